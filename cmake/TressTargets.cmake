@@ -1,0 +1,31 @@
+# Warnings for our own targets, and one function per kind of target.
+function(tress_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+  if(TRESS_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# tress_library(name source...): tress_<name>, also known as tress::<name>.
+function(tress_library name)
+  add_library(tress_${name} STATIC ${ARGN})
+  add_library(tress::${name} ALIAS tress_${name})
+  set_target_properties(tress_${name} PROPERTIES EXPORT_NAME ${name}
+                        POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(tress_${name} PUBLIC cxx_std_20)
+  target_include_directories(tress_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/tress>)
+  tress_warnings(tress_${name})
+endfunction()
+
+# tress_test(name source... ): an executable whose GoogleTest cases ctest runs one by one.
+function(tress_test name)
+  add_executable(test_${name} ${ARGN})
+  target_link_libraries(test_${name} PRIVATE tress::models tress::integrators tress_harness
+                        GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(test_${name} PRIVATE
+                             TRESS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             TRESS_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  tress_warnings(test_${name})
+  gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+endfunction()

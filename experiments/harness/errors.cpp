@@ -1,0 +1,1 @@
+#include "experiments/harness/errors.h"

@@ -1,0 +1,1 @@
+#include "integrators/linear/linear_solver.h"

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "models/system.h"
+
+namespace tress {
+
+/// The material points that an effect acts on; spans an effect does not need may be empty.
+struct Points {
+  int count = 0;
+  In x;        // (3 count) position, m
+  In v;        // (3 count) velocity, m/s
+  In tangent;  // (3 count) unit tangent
+  In mass;     // (count) mass carried by the point, kg
+  In length;   // (count) strand length carried by the point, m
+};
+
+/// What a model must compute before it calls an effect; the model computes the union.
+struct Needs {
+  bool velocity = false;
+  bool tangent = false;
+  bool derivatives = false;  // add_derivatives does something
+
+  Needs operator|(Needs other) const {
+    return {velocity || other.velocity, tangent || other.tangent,
+            derivatives || other.derivatives};
+  }
+};
+
+/// A force on material points that never sees degrees of freedom. Called once per block of
+/// points, never per point; an effect that a scene does not name is not built.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string_view name() const = 0;
+  virtual Needs needs() const = 0;
+  /// f += load, (3 count) N.
+  virtual void add_load(double t, const Points& p, InOut f) const noexcept = 0;
+  /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
+  virtual void add_derivatives(double t, const Points& p, double pos, double vel,
+                               InOut blocks) const noexcept = 0;
+  virtual double potential(double t, const Points& p) const noexcept = 0;  // J
+  /// W done by the part of the load that `potential` does not account for.
+  virtual double power(double t, const Points& p) const noexcept = 0;
+};
+
+using Effects = std::vector<std::unique_ptr<const Effect>>;
+
+inline Needs needs(const Effects& effects) {
+  Needs all;
+  for (const auto& effect : effects) all = all | effect->needs();
+  return all;
+}
+
+}  // namespace tress

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tress {
+
+/// Declares one parameter of a catalogue entry. `choices` non-empty: a word out of that
+/// list (separated by '|'); otherwise a number in [min, max], whole when `whole`.
+struct Parameter {
+  std::string_view name;
+  std::string_view help;  // with unit
+  double number = 0;      // default
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool whole = false;
+  std::string_view choices = {};  // first one is the default
+};
+
+/// Values for one entry's declared parameters: the defaults, then what the user set.
+class Parameters {
+ public:
+  /// `where` names the owner in messages, e.g. "model bead_on_wire".
+  Parameters(std::span<const Parameter> declared, std::string where);
+
+  /// Throws InputError on an unknown key, a malformed or non-finite number, a number out of
+  /// range or a word not among the choices; the message lists what would be accepted.
+  void set(std::string_view key, std::string_view value);
+  bool knows(std::string_view key) const;
+
+  double number(std::string_view key) const;
+  int whole(std::string_view key) const;
+  std::string_view word(std::string_view key) const;
+
+ private:
+  struct Value {
+    double number = 0;
+    std::string word;
+  };
+  std::size_t index(std::string_view key) const;
+
+  std::span<const Parameter> declared_;
+  std::vector<Value> values_;
+  std::string where_;
+};
+
+/// The candidate nearest to `word` by edit distance, or empty when none is near.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace tress

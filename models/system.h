@@ -1,0 +1,142 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+/// The contract between what moves (models) and how time advances (integrators).
+///
+/// A model is a mechanical system over coordinates q (n of them), q' = v, v' = a, with
+/// optional position constraints g(t, q) = 0 (m of them) and multipliers lambda:
+///
+///     r(t, q, v, a) = M(t, q) a - f(t, q, v),      r - G^T lambda = 0,   G = dg/dq
+///     S(w) = w.acc dr/da + w.vel dr/dv + w.pos dr/dq
+///
+/// Every implicit method is a choice of the three weights: backward Euler (1, h, h^2),
+/// Newmark and generalized-alpha (1, gamma h, beta h^2), IDA (cj^2, cj, 1). So a model is
+/// written once and every integrator drives it. Units are SI throughout.
+namespace tress {
+
+using In = std::span<const double>;
+using Out = std::span<double>;
+using InOut = std::span<double>;
+
+/// Outcome of a call inside a step: `retry` asks for a smaller step, `fatal` ends the run.
+/// Values agree with SUNDIALS' 0 / +1 / -1 through `sundials_code`.
+enum class [[nodiscard]] Status { ok, retry, fatal };
+
+struct Layout {
+  int coordinates = 0;  // n
+  int constraints = 0;  // m
+};
+
+/// What an integrator may assume; decides which integrators can drive the model.
+struct Traits {
+  bool constant_mass = false;  // dM/dt = 0 and dM/dq = 0
+  bool regular_mass = true;    // M is invertible at every state
+};
+
+struct Weights {
+  double acc = 0;
+  double vel = 0;
+  double pos = 0;
+};
+
+/// Which terms dr/dq and dr/dv carry: everything (full Newton), or only mass, damping and
+/// elastic stiffness (the semi-implicit Newton of the seed papers). An option of a model's
+/// constructor, for those whose two tangents differ.
+enum class Tangent { exact, stiff };
+
+/// Structure of a sparse matrix in compressed columns; rows ascend inside a column.
+struct Pattern {
+  int rows = 0;
+  int cols = 0;
+  std::vector<int> start;  // (cols + 1)
+  std::vector<int> row;    // (start[cols])
+
+  int nonzeros() const { return start.empty() ? 0 : start.back(); }
+};
+
+/// S(w) as a sparse matrix, for direct solvers. Required of a system with constraints.
+class SparseForm {
+ public:
+  virtual ~SparseForm() = default;
+  virtual const Pattern& pattern() const = 0;  // (n x n), fixed for the system's life
+  virtual Status values(double t, In q, In v, In a, Weights w, Out s) noexcept = 0;
+};
+
+/// a = a(t, q, v) at the cost of the model's own solve of M. Only of unconstrained systems.
+class ExplicitForm {
+ public:
+  virtual ~ExplicitForm() = default;
+  virtual Status acceleration(double t, In q, In v, Out a) noexcept = 0;
+};
+
+/// Position constraints g(t, q) = 0 in the units of the model (lengths in m, angles in rad).
+class ConstraintForm {
+ public:
+  virtual ~ConstraintForm() = default;
+
+  /// Of G^T (n x m): column k holds the gradient of constraint k. Fixed for life.
+  virtual const Pattern& pattern() const = 0;
+  virtual void scale(Out g_typ) const = 0;                                    // (m)
+  virtual Status value(double t, In q, Out g) noexcept = 0;                   // (m)
+  virtual Status gradient(double t, In q, Out gt) noexcept = 0;               // G^T
+  virtual Status rate(double t, In q, In v, Out g_dot) noexcept = 0;          // G v + g_t
+  virtual Status bias(double t, In q, In v, Out b) noexcept = 0;              // g'' - G a
+  /// (d(G v + g_t)/dq)^T on pattern(): the derivative of the rate.
+  virtual Status rate_gradient(double t, In q, In v, Out values) noexcept = 0;
+  /// s += factor d(G^T lambda)/dq on the pattern of the system's SparseForm.
+  virtual Status add_curvature(double t, In q, In lambda, double factor,
+                               InOut s) noexcept = 0;
+};
+
+struct Energy {
+  double kinetic = 0;    // J
+  double potential = 0;  // J
+  double total() const { return kinetic + potential; }
+};
+
+class Energetics {
+ public:
+  virtual ~Energetics() = default;
+  virtual Energy energy(double t, In q, In v) = 0;
+  /// Rate of work (W) of every force that `energy` does not account for: drag is negative.
+  virtual double power(double t, In q, In v) = 0;
+};
+
+/// Points of the body in space, for output, error norms and effects.
+class MaterialPoints {
+ public:
+  virtual ~MaterialPoints() = default;
+  virtual int count() const = 0;
+  virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
+  virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
+};
+
+/// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing
+/// allocates after the first call of each; only `accept` may change memory.
+class System {
+ public:
+  virtual ~System() = default;
+
+  virtual Layout layout() const = 0;
+  virtual Traits traits() const = 0;
+  virtual void initial_state(Out q, Out v) const = 0;  // satisfies g = 0 and G v + g_t = 0
+  virtual void scale(Out q_typ, Out v_typ) const = 0;  // typical sizes, > 0
+  virtual Status residual(double t, In q, In v, In a, Out r) noexcept = 0;
+  virtual Status linearize(double t, In q, In v, In a, Weights w) noexcept = 0;
+  virtual Status solve(In b, Out x) noexcept = 0;  // S(w) x = b; b and x may be the same
+
+  /// Called once after every accepted step; may move frames or contact sets and adjust the
+  /// state to them. True: the equations changed, multistep methods must restart.
+  virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
+
+  // Optional forms, null when absent; asked for once.
+  virtual SparseForm* sparse_form() { return nullptr; }
+  virtual ExplicitForm* explicit_form() { return nullptr; }
+  virtual ConstraintForm* constraint_form() { return nullptr; }
+  virtual Energetics* energetics() { return nullptr; }
+  virtual MaterialPoints* material_points() { return nullptr; }
+};
+
+}  // namespace tress
