@@ -43,9 +43,6 @@ Stats ArkodeErk::counters() const {
   return stats;
 }
 
-/// No Newton matrix, and so no solver to name, unless constraints need one for a.
-Stats ArkodeErk::work() const { return equations_.work(); }
-
 std::string ArkodeErk::reason(int code) const {
   return code_name(&ERKStepGetReturnFlagName, code);
 }

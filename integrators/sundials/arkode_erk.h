@@ -16,7 +16,7 @@ class ArkodeErk final : public Driver {
   int restart() override;
   int step(double t_end, double& t) override;
   Stats counters() const override;
-  Stats work() const override;
+  Stats work() const override { return equations_.work(); }
   std::string reason(int code) const override;
 
   FirstOrder equations_;
