@@ -92,7 +92,7 @@ TEST_P(Allocation, DynamicsAllocateNothingAfterTheFirstSolve) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, Allocation, testing::ValuesIn(catalogue_cases()),
-                         [](const auto& info) { return info.param.name(); });
+                         [](const auto& test) { return test.param.name(); });
 
 }  // namespace
 }  // namespace tress

@@ -101,7 +101,7 @@ TEST_P(FixedStepOrder, ErrorFallsAtTheNominalOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, FixedStepOrder, testing::ValuesIn(methods(false)),
-                         [](const auto& info) { return info.param.name(); });
+                         [](const auto& test) { return test.param.name(); });
 
 class AdaptiveTolerance : public testing::TestWithParam<Method> {};
 
@@ -125,7 +125,7 @@ TEST_P(AdaptiveTolerance, ErrorFollowsTheTolerance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveTolerance, testing::ValuesIn(methods(true)),
-                         [](const auto& info) { return info.param.name(); });
+                         [](const auto& test) { return test.param.name(); });
 
 class HeldConstraints : public testing::TestWithParam<Method> {};
 
@@ -151,7 +151,7 @@ std::vector<Method> holding() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, HeldConstraints, testing::ValuesIn(holding()),
-                         [](const auto& info) { return info.param.name(); });
+                         [](const auto& test) { return test.param.name(); });
 
 }  // namespace
 }  // namespace tress
