@@ -1,5 +1,6 @@
 // How large may Baumgarte's gains be before the feedback itself diverges, and does the
 // linear theory of each method predict it?
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -114,6 +115,8 @@ int main(int argc, char** argv) {
       .columns = columns,
       .settings = {},
       .cases = cases,
-      .checks = check};
+      .derive = {},
+      .checks = check,
+      .finding = {}};
   return run_experiment(experiment, argc, argv);
 }
