@@ -128,6 +128,7 @@ int report(const Experiment& experiment, const CommandLine& line,
   bool held = true;
   for (const auto& [claim, holds, value] : verdicts.all()) {
     held = held && holds;
+    if (line.progress == ProgressMode::json) continue;  // the manifest has them
     tell("{}: {} {} ({:.3g})\n", experiment.name, holds ? "PASS" : "FAIL", claim, value);
   }
   if (line.progress != ProgressMode::none || failed != nullptr) {

@@ -92,9 +92,10 @@ std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& n
 std::string matrix() {
   Footnotes notes;
   std::vector<std::vector<std::string>> columns;
-  std::vector<std::string>& names = columns.emplace_back(1, "");
-  for (const IntegratorEntry& integrator : integrators())
-    names.emplace_back(integrator.id);
+  columns.emplace_back(1, "");
+  for (const IntegratorEntry& integrator : integrators()) {
+    columns.front().emplace_back(integrator.id);
+  }
   for (const ModelEntry& model : models()) {
     std::vector<std::string>& column = columns.emplace_back(1, std::string(model.id));
     try {
@@ -109,7 +110,7 @@ std::string matrix() {
     }
   }
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
     std::string line = "  ";
     for (const std::vector<std::string>& column : columns) {
       std::size_t width = 0;
