@@ -1,9 +1,9 @@
 #include "experiments/harness/command_line.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <algorithm>
 
 #include "experiments/harness/parse.h"
 #include "experiments/harness/scene_file.h"
@@ -31,7 +31,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw) {
   app.add_option("--scene", raw.scene, "TOML file with any of these options");
   app.add_option("--set", raw.set, "key=value for the experiment, integrators or models")
       ->allow_extra_args(false);
-  app.add_option("--out", raw.out, "result table (default results/<experiment>.csv), or -");
+  app.add_option("--out", raw.out,
+                 "result table (default results/<experiment>.csv), or -");
   app.add_flag("--quick", line.quick, "a minute or less on two cores");
   app.add_flag("--full", line.full, "every row of the published tables");
   app.add_option("--jobs", raw.jobs, "rows run at the same time (default 1)");
@@ -49,10 +50,11 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw) {
 
 std::string help_text(const CLI::App& app, std::string_view name,
                       std::string_view example) {
-  return fmt::format("{}\nExample:\n  {} {}\n\nExit codes: 0 done, 1 internal error, "
-                     "2 usage or input error, 3 rows failed or a check did not hold, "
-                     "130 interrupted (--resume continues)\n",
-                     app.help(), name, example);
+  return fmt::format(
+      "{}\nExample:\n  {} {}\n\nExit codes: 0 done, 1 internal error, "
+      "2 usage or input error, 3 rows failed or a check did not hold, "
+      "130 interrupted (--resume continues)\n",
+      app.help(), name, example);
 }
 
 /// CLI11's messages name the offending argument but not the remedy.
@@ -63,8 +65,8 @@ std::string help_text(const CLI::App& app, std::string_view name,
   const std::vector<std::string_view> known(names.begin(), names.end());
   const std::string help = fmt::format("{} --help shows the options", name);
   for (int i = 1; i < argc; ++i) {
-    const std::string_view word = std::string_view(argv[i]).substr(
-        0, std::string_view(argv[i]).find('='));
+    const std::string_view word =
+        std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
     const bool option = word.starts_with("--") && word.size() > 2;
     if (!option || std::find(known.begin(), known.end(), word) != known.end()) continue;
     const std::string_view near = nearest(word, known);
@@ -97,11 +99,18 @@ void parse_settings(const std::vector<std::string>& given, CommandLine& line) {
   }
 }
 
-void interpret(const Raw& raw, CommandLine& line) {
-  const auto given = [&line](const std::string& text, const std::string& option) {
-    if (!text.empty()) line.places.emplace(option, "--" + option);
-    return !text.empty();
+void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
+  const auto given = [&app, &line](const std::string& text, const std::string& option) {
+    if (app.count("--" + option) == 0) return false;
+    if (text.empty()) {
+      throw InputError("empty value", "--" + option,
+                       "give a value or leave the option out");
+    }
+    line.places.emplace(option, "--" + option);
+    return true;
   };
+  if (given(raw.scene, "scene")) line.scene = raw.scene;
+  if (given(raw.out, "out")) line.out = raw.out;
   if (given(raw.models, "models")) line.models = split(raw.models, ',', "--models");
   if (given(raw.integrators, "integrators")) {
     line.integrators = split(raw.integrators, ',', "--integrators");
@@ -133,8 +142,9 @@ void check_combinations(const CommandLine& line) {
   };
   refuse_if(line.quick && line.full, "--quick and --full exclude each other",
             "command line", "give one of them");
-  refuse_if(line.resume && line.out == "-", "standard output keeps no rows to resume from",
-            "--resume", "give --out file.csv");
+  refuse_if(line.resume && line.out == "-",
+            "standard output keeps no rows to resume from", "--resume",
+            "give --out file.csv");
   refuse_if(line.retry_failed && !line.resume, "nothing to retry", "--retry-failed",
             "give --resume as well");
   refuse_if(!line.merge.empty() && line.places.count("out") == 0, "no output named",
@@ -154,8 +164,8 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   CommandLine line;
   Raw raw;
   CLI::App app{std::string(question), std::string(name)};
-  app.set_version_flag("--version", fmt::format("{} {} ({})", name, TRESS_VERSION,
-                                                TRESS_GIT_COMMIT));
+  app.set_version_flag("--version",
+                       fmt::format("{} {} ({})", name, TRESS_VERSION, TRESS_GIT_COMMIT));
   declare(app, line, raw);
   try {
     app.parse(argc, argv);
@@ -167,16 +177,12 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
     refuse(app, name, argc, argv, error);
   }
   line.argv.assign(argv, argv + argc);
-  interpret(raw, line);
-  line.scene = raw.scene;
-  line.out = raw.out;
-  if (!raw.out.empty()) line.places.emplace("out", "--out");
+  interpret(app, raw, line);
   if (!line.scene.empty()) read_scene_options(line.scene, line);
   if (line.out.empty()) {
-    line.out = line.shard_count == 1
-                   ? fmt::format("results/{}.csv", name)
-                   : fmt::format("results/{}.{}-of-{}.csv", name, line.shard_index,
-                                 line.shard_count);
+    line.out = line.shard_count == 1 ? fmt::format("results/{}.csv", name)
+                                     : fmt::format("results/{}.{}-of-{}.csv", name,
+                                                   line.shard_index, line.shard_count);
   }
   check_combinations(line);
   return line;

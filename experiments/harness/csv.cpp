@@ -1,8 +1,8 @@
 #include "experiments/harness/csv.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "experiments/harness/files.h"
 #include "models/input_error.h"
@@ -45,9 +45,7 @@ class Reader {
     ++at_;
   }
 
-  std::string cell() {
-    return !done() && peek() == '"' ? quoted() : plain();
-  }
+  std::string cell() { return !done() && peek() == '"' ? quoted() : plain(); }
 
   std::string plain() {
     std::string cell;
@@ -115,7 +113,8 @@ Table parse_csv(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i < table.header.size(); ++i) {
     const auto rest = table.header.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     if (std::find(rest, table.header.end(), table.header[i]) != table.header.end()) {
-      throw InputError("column '" + table.header[i] + "' appears twice", file + ":1", remedy);
+      throw InputError("column '" + table.header[i] + "' appears twice", file + ":1",
+                       remedy);
     }
   }
   while (!reader.done()) {

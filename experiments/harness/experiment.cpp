@@ -1,16 +1,15 @@
 #include "experiments/harness/experiment.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "experiments/harness/csv.h"
 #include "experiments/harness/files.h"
@@ -28,8 +27,13 @@
 namespace tress {
 namespace {
 
-enum ExitCode { done = 0, internal_error = 1, usage_error = 2, rows_failed = 3,
-                interrupted = 130 };
+enum ExitCode {
+  done = 0,
+  internal_error = 1,
+  usage_error = 2,
+  rows_failed = 3,
+  interrupted = 130
+};
 
 constexpr const char* standard_output = "-";
 
@@ -123,7 +127,8 @@ int report(const Experiment& experiment, const CommandLine& line,
   const bool held = !experiment.checks || line.shard_count > 1 || experiment.checks(rows);
   if (line.progress != ProgressMode::none || failed != nullptr) {
     std::string text;
-    for (const auto& [status, count] : counts) text += fmt::format(", {} {}", count, status);
+    for (const auto& [status, count] : counts)
+      text += fmt::format(", {} {}", count, status);
     if (failed != nullptr) {
       text += fmt::format("; first: {}", one_line(failed->text("reason")));
     }
@@ -145,8 +150,8 @@ void write_table(const Experiment& experiment, const CommandLine& line,
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
-  const Manifest manifest(experiment, line);
   const Merged merged = merge(line.merge, experiment.columns);
+  const Manifest manifest(experiment, line);
   write_table(experiment, line, merged.rows, manifest, merged.rows.size());
   for (const std::string& conflict : merged.conflicts) {
     tell("{}: conflict: {}\n", experiment.name, conflict);
@@ -155,8 +160,8 @@ int merge_tables(const Experiment& experiment, const CommandLine& line) {
   return merged.conflicts.empty() ? code : rows_failed;
 }
 
-/// Fails before the work rather than after it. Standard output can only be tried by writing
-/// to it, so it gets the header now.
+/// Fails before the work rather than after it. Standard output can only be tried by
+/// writing to it, so it gets the header now.
 void check_place(const Experiment& experiment, const CommandLine& line) {
   if (line.out == standard_output) {
     write_all(STDOUT_FILENO, csv_line(header(experiment.columns)), "standard output");
@@ -205,8 +210,10 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   }
   if (end == SweepEnd::interrupted) {
     const std::string remedy =
-        journal ? fmt::format("finished rows are in {}; the same command with --resume "
-                              "continues", journal_file(line))
+        journal ? fmt::format(
+                      "finished rows are in {}; the same command with --resume "
+                      "continues",
+                      journal_file(line))
                 : "nothing was written";
     tell("{}: interrupted: {}\n", experiment.name, remedy);
     return interrupted;
@@ -229,7 +236,8 @@ int answer(const Experiment& experiment, int argc, char** argv) {
                                               experiment.example, argc, argv);
   const Settings checked(line, experiment.settings);
   if (line.list) {
-    write_all(STDOUT_FILENO, catalogue_text(experiment.settings), "standard output");
+    write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),
+              "standard output");
     return done;
   }
   if (!line.merge.empty()) {
@@ -242,7 +250,8 @@ int answer(const Experiment& experiment, int argc, char** argv) {
 }  // namespace
 
 int run_experiment(const Experiment& experiment, int argc, char** argv) {
-  ::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write, with a message
+  ::signal(SIGXFSZ,
+           SIG_IGN);  // a file size limit is then an error of write, with a message
   try {
     return answer(experiment, argc, argv);
   } catch (const Answer& text) {

@@ -39,8 +39,8 @@ struct Case {
 /// One executable, one question.
 struct Experiment {
   std::string_view name, question;
-  std::string_view example;  // arguments only: "--models bead_on_wire --quick"
-  std::span<const Column> columns;  // status, reason and run_id are added to them
+  std::string_view example;             // arguments only: "--models bead_on_wire --quick"
+  std::span<const Column> columns;      // status, reason and run_id are added to them
   std::span<const Parameter> settings;  // keys of --set that are the experiment's own
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: prints a PASS or FAIL line (standard error) for everything that the table

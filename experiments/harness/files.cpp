@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 /// A descriptor that is closed on every path.
 class File {
  public:
-  File(const std::string& file, int flags) : descriptor_(::open(file.c_str(), flags, 0644)) {
+  File(const std::string& file, int flags)
+      : descriptor_(::open(file.c_str(), flags, 0644)) {
     if (descriptor_ < 0) cannot_write(file, errno);
   }
   ~File() { ::close(descriptor_); }
@@ -103,7 +104,8 @@ void check_output(const std::string& file) {
 std::string beside(const std::string& file, std::string_view ending) {
   const std::string_view csv = ".csv";
   const bool has_ending = file.size() > csv.size() && file.ends_with(csv);
-  return file.substr(0, file.size() - (has_ending ? csv.size() : 0)) + std::string(ending);
+  return file.substr(0, file.size() - (has_ending ? csv.size() : 0)) +
+         std::string(ending);
 }
 
 }  // namespace tress

@@ -8,12 +8,12 @@ namespace tress {
 /// The whole file; throws InputError when it is missing, a directory or unreadable.
 std::string read_file(const std::string& file);
 
-/// Writes all bytes to the descriptor; throws InputError naming `file` when it cannot (disk
-/// full, file too large, device gone).
+/// Writes all bytes to the descriptor; throws InputError naming `file` when it cannot
+/// (disk full, file too large, device gone).
 void write_all(int descriptor, std::string_view text, const std::string& file);
 
-/// Writes to a temporary neighbour, syncs it, then renames it over `file`: readers see the
-/// old content or the new, never half of it.
+/// Writes to a temporary neighbour, syncs it, then renames it over `file`: readers see
+/// the old content or the new, never half of it.
 void replace_file(const std::string& file, std::string_view text);
 
 /// Refuses, before any work, an output that could not be written at the end: a directory,

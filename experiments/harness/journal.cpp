@@ -1,14 +1,13 @@
 #include "experiments/harness/journal.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "experiments/harness/files.h"
 #include "models/input_error.h"
@@ -18,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A kill loses nothing that was written; only a power cut needs the sync, so once a second
-/// is enough and short rows stay cheap.
+/// A kill loses nothing that was written; only a power cut needs the sync, so once a
+/// second is enough and short rows stay cheap.
 constexpr std::chrono::seconds between_syncs{1};
 
 std::string dump(const json& value) {
@@ -87,7 +86,8 @@ void Journal::load(const JournalKey& key, Mode mode) {
   while ((n = ::read(descriptor_, buffer, sizeof buffer)) > 0) {
     text.append(buffer, static_cast<std::size_t>(n));
   }
-  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  const std::size_t whole =
+      text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   if (whole > 0 && mode == Mode::fresh) {
     throw InputError("an earlier run did not finish", file_,
                      "add --resume to continue it, or delete that file");

@@ -1,20 +1,19 @@
 #include "experiments/harness/machine.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_version.h>
 #include <klu.h>
 #include <sundials/sundials_version.h>
 #include <sys/utsname.h>
+#include <toml++/toml.h>
 #include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
-#include <fmt/format.h>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
-#include <toml++/toml.h>
 
 namespace tress {
 namespace {
@@ -31,7 +30,8 @@ std::string cpu_info(const std::string& key) {
   std::ifstream stream("/proc/cpuinfo");
   for (std::string line; std::getline(stream, line);) {
     const std::size_t colon = line.find(": ");
-    if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
+    if (line.starts_with(key) && colon != std::string::npos)
+      return line.substr(colon + 2);
   }
   return {};
 }
@@ -40,7 +40,8 @@ std::string cache_sizes() {
   std::string text;
   for (int i = 0;; ++i) {
     const auto entry = [i](const char* what) {
-      return first_line(fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/{}", i, what));
+      return first_line(
+          fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/{}", i, what));
     };
     const std::string level = entry("level"), type = entry("type");
     if (level.empty()) return text;

@@ -1,11 +1,11 @@
 #include "experiments/harness/manifest.h"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
-
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/harness/message.h"
@@ -15,7 +15,8 @@ namespace tress {
 namespace {
 
 std::string utc_now() {
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto now =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
                      fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
 }
@@ -26,6 +27,8 @@ std::string settings_text(const CommandLine& line) {
   auto sorted = line.set;
   std::sort(sorted.begin(), sorted.end());
   std::string text = fmt::format("seed={}", line.seed);
+  if (line.quick) text += " quick";
+  if (line.full) text += " full";
   for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
   return text;
 }
@@ -38,9 +41,15 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
       sundials_ratio_(sundials_speed_ratio()),
       start_(utc_now()) {
   if (sundials_ratio_ > slow_sundials_ratio) {
-    tell("{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
-         "nothing; './tress setup' builds a Release one\n",
-         experiment.name, sundials_ratio_);
+    tell(
+        "{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
+        "nothing; './tress setup' builds a Release one\n",
+        experiment.name, sundials_ratio_);
+  }
+  const int cpus = machine().cpus;
+  if (load_[0] > cpus) {
+    tell("{}: warning: the machine is busy (load {:.1f} on {} CPUs): timings are noisy\n",
+         experiment.name, load_[0], cpus);
   }
 }
 
@@ -62,6 +71,7 @@ std::string Manifest::finished(const std::vector<Row>& rows,
       {"schema", schema_version},
       {"tress_version", TRESS_VERSION},
       {"argv", line_.argv},
+      {"merged_from", line_.merge},
       {"settings", settings_text(line_)},
       {"scene", line_.scene},
       {"seed", line_.seed},
@@ -75,7 +85,9 @@ std::string Manifest::finished(const std::vector<Row>& rows,
       {"end", utc_now()},
       {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
       {"build",
-       {{"compiler", TRESS_COMPILER}, {"flags", TRESS_FLAGS}, {"type", TRESS_BUILD_TYPE}}},
+       {{"compiler", TRESS_COMPILER},
+        {"flags", TRESS_FLAGS},
+        {"type", TRESS_BUILD_TYPE}}},
       {"machine",
        {{"cpu", here.cpu},
         {"cpus", here.cpus},

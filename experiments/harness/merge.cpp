@@ -1,8 +1,8 @@
 #include "experiments/harness/merge.h"
 
-#include <map>
-
 #include <fmt/format.h>
+
+#include <map>
 
 #include "models/input_error.h"
 
@@ -54,8 +54,8 @@ Merged merge(std::span<const std::string> files, std::span<const Column> columns
         const std::string_view column = difference(kept, row, columns);
         if (column.empty()) continue;
         merged.conflicts.push_back(
-            fmt::format("run_id {}: {} is '{}' and in {} '{}'; the first is kept", id, column,
-                        kept.text(column), file, row.text(column)));
+            fmt::format("run_id {}: {} is '{}' and in {} '{}'; the first is kept", id,
+                        column, kept.text(column), file, row.text(column)));
       }
     }
   }

@@ -1,10 +1,10 @@
 #include "experiments/harness/parse.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "models/input_error.h"
 
@@ -27,8 +27,8 @@ int parse_count(std::string_view text, const std::string& where) {
 
 }  // namespace
 
-std::uint64_t parse_whole(std::string_view text, const std::string& where, std::uint64_t min,
-                          std::uint64_t max) {
+std::uint64_t parse_whole(std::string_view text, const std::string& where,
+                          std::uint64_t min, std::uint64_t max) {
   std::uint64_t x = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
   if (error != std::errc{} || end != text.data() + text.size() || x < min || x > max) {
@@ -84,7 +84,8 @@ double parse_duration(std::string_view text, const std::string& where) {
       {"", 1.0}, {"ms", 1e-3}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}};
   double x = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const std::string_view unit(end,
+                              static_cast<std::size_t>(text.data() + text.size() - end));
   for (const auto& [name, seconds] : units) {
     const bool positive = error == std::errc{} && std::isfinite(x) && x > 0;
     if (positive && unit == name) return x * seconds;
@@ -107,7 +108,8 @@ std::pair<int, int> parse_shard(std::string_view text, const std::string& where)
 std::string one_line(std::string_view text) {
   std::string line(text);
   std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; },
+      ' ');
   return line;
 }
 

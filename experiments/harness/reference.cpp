@@ -1,11 +1,11 @@
 #include "experiments/harness/reference.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 namespace tress {
 
@@ -48,8 +48,9 @@ ReferenceGap::ReferenceGap(In reference, In independent, In scale)
 
 void ReferenceGap::mark(Row& row, double relative_error) const {
   if (!row.ok() || trusts(relative_error)) return;
-  row.failed("below_reference", fmt::format("error {:.3g} < {} x gap {:.3g} of the references",
-                                            relative_error, margin, gap_));
+  row.failed("below_reference",
+             fmt::format("error {:.3g} < {} x gap {:.3g} of the references",
+                         relative_error, margin, gap_));
 }
 
 }  // namespace tress

@@ -18,8 +18,8 @@ struct Column {
 };
 
 /// One row of a result table: text by column name. Unset columns stay empty cells, and so
-/// do numbers that are not finite. Numbers are written by std::to_chars, the shortest text
-/// that reads back to the same bits (at most 17 significant digits).
+/// do numbers that are not finite. Numbers are written by std::to_chars, the shortest
+/// text that reads back to the same bits (at most 17 significant digits).
 class Row {
  public:
   using Cell = std::pair<std::string, std::string>;
@@ -32,7 +32,9 @@ class Row {
     return set(column, std::string_view(text));
   }
   Row& set(std::string_view column, double x);
-  Row& set(std::string_view column, bool yes) { return set(column, yes ? "true" : "false"); }
+  Row& set(std::string_view column, bool yes) {
+    return set(column, yes ? "true" : "false");
+  }
   template <std::integral T>
   Row& set(std::string_view column, T x) {
     return set(column, std::string_view(std::to_string(x)));

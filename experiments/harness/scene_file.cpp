@@ -1,10 +1,10 @@
 #include "experiments/harness/scene_file.h"
 
-#include <algorithm>
-#include <charconv>
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
 
 #include "experiments/harness/files.h"
 #include "experiments/harness/parse.h"
@@ -93,7 +93,8 @@ void read_settings(const toml::node& node, const std::string& where,
                    const std::string& file, CommandLine& line) {
   const toml::table* settings = node.as_table();
   if (settings == nullptr) {
-    throw InputError("'settings' is not a table", where, "write [settings] and key = value");
+    throw InputError("'settings' is not a table", where,
+                     "write [settings] and key = value");
   }
   for (const auto& [key, value] : *settings) {
     const std::string name(key.str());
@@ -103,40 +104,44 @@ void read_settings(const toml::node& node, const std::string& where,
       throw InputError("wrong type of value for '" + name + "'", place,
                        "give a number, a string, true or false");
     }
-    if (line.places.emplace("set:" + name, place).second) line.set.emplace_back(name, text);
+    if (line.places.emplace("set:" + name, place).second)
+      line.set.emplace_back(name, text);
   }
 }
 
 using Reader = void (*)(const toml::node&, const std::string& where, CommandLine&);
 
 constexpr std::pair<std::string_view, Reader> readers[] = {
-    {"title", [](const toml::node& n, const std::string& where, CommandLine&) {
-       static_cast<void>(word(n, where));
-     }},
-    {"models", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"title", [](const toml::node& n, const std::string& where,
+                 CommandLine&) { static_cast<void>(word(n, where)); }},
+    {"models",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.models = split(option_text(n, where), ',', where);
      }},
-    {"integrators", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"integrators",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.integrators = split(option_text(n, where), ',', where);
      }},
-    {"elements", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"elements",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.elements = parse_counts(option_text(n, where), where);
      }},
-    {"timeout", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"timeout",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.timeout_s = parse_duration(option_text(n, where), where);
      }},
-    {"repeat", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"repeat",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.repeat = count(option_text(n, where), where);
      }},
-    {"seed", [](const toml::node& n, const std::string& where, CommandLine& line) {
+    {"seed",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.seed = parse_whole(option_text(n, where), where);
      }},
-    {"quick", [](const toml::node& n, const std::string& where, CommandLine& line) {
-       line.quick = flag(n, where) && !line.full;
-     }},
-    {"full", [](const toml::node& n, const std::string& where, CommandLine& line) {
-       line.full = flag(n, where) && !line.quick;
-     }},
+    {"quick", [](const toml::node& n, const std::string& where,
+                 CommandLine& line) { line.quick = flag(n, where) && !line.full; }},
+    {"full", [](const toml::node& n, const std::string& where,
+                CommandLine& line) { line.full = flag(n, where) && !line.quick; }},
 };
 
 [[noreturn]] void unknown_key(std::string_view name, const std::string& where) {

@@ -1,8 +1,8 @@
 #include "experiments/harness/settings.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "experiments/harness/integrator_options.h"
 #include "integrators/catalogue.h"
@@ -98,9 +98,9 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
     for (const Parameter& p : model.parameters) known.push_back(p.name);
   }
   const std::string_view near = nearest(key, known);
-  throw InputError(fmt::format("unknown key '{}'", key), where,
-                   near.empty() ? "--list shows the keys"
-                                : fmt::format("did you mean '{}'?", near));
+  throw InputError(
+      fmt::format("unknown key '{}'", key), where,
+      near.empty() ? "--list shows the keys" : fmt::format("did you mean '{}'?", near));
 }
 
 }  // namespace tress

@@ -12,8 +12,8 @@
 namespace tress {
 
 /// Who takes each `--set key=value`: the first of the experiment's own settings, the
-/// integrators' options and the parameters of the selected models (all models when none is
-/// selected) that knows the key. Everything is checked when this is built.
+/// integrators' options and the parameters of the selected models (all models when none
+/// is selected) that knows the key. Everything is checked when this is built.
 class Settings {
  public:
   /// Throws InputError on an unknown model, integrator or key (naming the nearest of all

@@ -1,6 +1,7 @@
 #include "experiments/harness/worker.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -12,8 +13,6 @@
 #include <exception>
 #include <stdexcept>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "experiments/harness/files.h"
 #include "experiments/harness/journal.h"
@@ -59,9 +58,9 @@ Worker::Worker(const Case& work, std::size_t index, double timeout_s)
     : work_(&work),
       index_(index),
       timeout_s_(timeout_s),
-      kill_at_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(timeout_s +
-                                                                grace_s(timeout_s)))) {
+      kill_at_(Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(
+                   std::chrono::duration<double>(timeout_s + grace_s(timeout_s)))) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
     throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));

@@ -10,8 +10,8 @@
 
 namespace tress {
 
-/// One case in a forked process of its own group, which dies with its parent. Its row comes
-/// back through a pipe; what it prints goes to standard error.
+/// One case in a forked process of its own group, which dies with its parent. Its row
+/// comes back through a pipe; what it prints goes to standard error.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
@@ -25,8 +25,8 @@ class Worker {
   int pipe() const { return pipe_; }  // -1 once the far end is closed
   Clock::time_point killed_at() const { return kill_at_; }
 
-  /// Reads what there is; the row once the process has ended or its time is over: its own,
-  /// or the identity with status timeout or crashed.
+  /// Reads what there is; the row once the process has ended or its time is over: its
+  /// own, or the identity with status timeout or crashed.
   std::optional<Row> poll();
 
  private:

@@ -36,17 +36,22 @@ TEST_P(BadInputTest, IsOneLineWithPlaceAndRemedyAndExitCodeTwoAndNothingWritten)
 const BadInput bad_inputs[] = {
     {"UnknownModel", "--models no_such_model", "(--models)", "--list shows"},
     {"UnknownIntegrator", "--integrators no_such_one", "(--integrators)", "--list shows"},
-    {"UnknownKey", "--set particels=3", "(--set particels=3)", "did you mean 'particles'?"},
+    {"UnknownKey", "--set particels=3", "(--set particels=3)",
+     "did you mean 'particles'?"},
     {"UnknownOption", "--elments 3", "command line", "did you mean '--elements'?"},
     {"StrayWord", "run", "command line", "--help shows"},
     {"MissingValue", "--set", "command line", "--help shows"},
     {"NegativeTimeStep", "--set dt=-0.1", "(--set dt=-0.1)", "give a number between"},
-    {"NegativeIntegratorStep", "--set step=-1", "(--set step=-1)", "give a number between"},
+    {"NegativeIntegratorStep", "--set step=-1", "(--set step=-1)",
+     "give a number between"},
     {"AlphaNotANumber", "--set alpha=NaN", "(--set alpha=NaN)", "give a number"},
     {"ZeroParticles", "--set particles=0", "(--set particles=0)", "between 1 and"},
     {"HalfAParticle", "--set particles=1.5", "(--set particles=1.5)", "whole number"},
-    {"WordOutsideChoices", "--set linear=kul", "(--set linear=kul)", "use one of: automatic"},
+    {"WordOutsideChoices", "--set linear=kul", "(--set linear=kul)",
+     "use one of: automatic"},
     {"SettingWithoutValue", "--set dt", "(--set dt)", "give key=value"},
+    {"EmptyOutput", "--out ''", "(--out)", "leave the option out"},
+    {"EmptyModels", "--models ''", "(--models)", "leave the option out"},
     {"SettingTwice", "--set dt=1 --set dt=0.5", "(--set dt=0.5)", "set it once"},
     {"OutputIsADirectory", "--out .", "(--out .)", "give a file name"},
     {"OutputDirectoryMissing", "--out none/toy.csv", "(--out none/toy.csv)", "mkdir -p"},
@@ -66,14 +71,14 @@ const BadInput bad_inputs[] = {
      "seed = 1\nmodels = [\n"},
     {"SceneKeyTwice", "--scene scene.toml", "(scene.toml:2:", "correct the TOML",
      "seed = 1\nseed = 2\n"},
-    {"SceneUnknownKey", "--scene scene.toml", "(scene.toml:2:1)", "did you mean 'elements'?",
-     "seed = 1\nelemets = [1]\n"},
+    {"SceneUnknownKey", "--scene scene.toml", "(scene.toml:2:1)",
+     "did you mean 'elements'?", "seed = 1\nelemets = [1]\n"},
     {"SceneWrongType", "--scene scene.toml", "(scene.toml:1:9)", "give true or false",
      "quick = 1\n"},
     {"SceneUnknownSetting", "--scene scene.toml", "(scene.toml:2:", "did you mean 'dt'?",
      "[settings]\ndtt = 0.1\n"},
-    {"SceneNegativeStep", "--scene scene.toml", "(scene.toml:2:6)", "give a number between",
-     "[settings]\ndt = -0.1\n"},
+    {"SceneNegativeStep", "--scene scene.toml", "(scene.toml:2:6)",
+     "give a number between", "[settings]\ndt = -0.1\n"},
     {"SceneAlphaNotANumber", "--scene scene.toml", "(scene.toml:2:9)", "give a number",
      "[settings]\nalpha = nan\n"},
     {"SceneUnknownModel", "--scene scene.toml", "(scene.toml:1:", "--list shows",
@@ -90,6 +95,7 @@ TEST(BadInput, FullDeviceOnStandardOutputIsSeenBeforeAnyWork) {
   const Toy::Result result = toy.run("--out -", "", "/dev/full");
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.error_lines(), 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("free space"));
   EXPECT_THAT(toy.executed(), IsEmpty());
 }
 

@@ -28,11 +28,31 @@ TEST(CommandLine, DefaultsAreOneJobTenMinutesThreeRepeats) {
 }
 
 TEST(CommandLine, EveryOptionIsUnderstood) {
-  const CommandLine line =
-      parse({"--models", "a,b", "--integrators", "c", "--elements", "1,2,5,10:40:10", "--set",
-             "x=1", "--set", "y=z=2", "--out", "-", "--quick", "--jobs", "2", "--shard", "2/3",
-             "--timeout", "90s", "--repeat", "5", "--seed", "18446744073709551615",
-             "--progress", "none"});
+  const CommandLine line = parse({"--models",
+                                  "a,b",
+                                  "--integrators",
+                                  "c",
+                                  "--elements",
+                                  "1,2,5,10:40:10",
+                                  "--set",
+                                  "x=1",
+                                  "--set",
+                                  "y=z=2",
+                                  "--out",
+                                  "-",
+                                  "--quick",
+                                  "--jobs",
+                                  "2",
+                                  "--shard",
+                                  "2/3",
+                                  "--timeout",
+                                  "90s",
+                                  "--repeat",
+                                  "5",
+                                  "--seed",
+                                  "18446744073709551615",
+                                  "--progress",
+                                  "none"});
   EXPECT_THAT(line.models, ElementsAre("a", "b"));
   EXPECT_THAT(line.integrators, ElementsAre("c"));
   EXPECT_THAT(line.elements, ElementsAre(1, 2, 5, 10, 20, 30, 40));

@@ -98,7 +98,10 @@ TEST(Csv, ErrorsNameFileLineAndColumn) {
 
 TEST(Journal, LineRoundTripKeepsEveryCell) {
   Row row;
-  row.set("run_id", "0123").set("x", 0.1).set("note", "a\n\"b\"").failed("crashed", "why");
+  row.set("run_id", "0123")
+      .set("x", 0.1)
+      .set("note", "a\n\"b\"")
+      .failed("crashed", "why");
   const std::string line = to_json_line(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const Row back = from_json_line(line);

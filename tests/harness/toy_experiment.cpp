@@ -22,11 +22,16 @@ constexpr Column columns[] = {{"index", "which row"},
                               {"wall_s", "time it took", true}};
 
 constexpr Parameter settings[] = {
-    {.name = "particles", .help = "rows of the table", .number = 4, .min = 1, .max = 1000,
+    {.name = "particles",
+     .help = "rows of the table",
+     .number = 4,
+     .min = 1,
+     .max = 1000,
      .whole = true},
     {.name = "dt", .help = "time step (s)", .number = 0.1, .min = 1e-12, .max = 1},
     {.name = "nap", .help = "time per row (s)", .number = 0, .min = 0, .max = 100},
-    {.name = "odd_row", .help = "what row 2 does",
+    {.name = "odd_row",
+     .help = "what row 2 does",
      .choices = "ok|crash|throw|busy|deaf|polite|quit|undeclared"},
     {.name = "promise", .help = "what the check says", .choices = "held|broken"},
 };
@@ -85,17 +90,16 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "promise=broken") held = false;
   }
-  const tress::Experiment toy{
-      .name = "toy",
-      .question = "Does the harness keep its promises?",
-      .example = "--set particles=10 --out toy.csv",
-      .columns = tress::columns,
-      .settings = tress::settings,
-      .cases = tress::cases,
-      .checks =
-          [held](const std::vector<tress::Row>& rows) {
-            if (!held) tress::tell("FAIL the promise, {} rows\n", rows.size());
-            return held;
-          }};
+  const tress::Experiment toy{.name = "toy",
+                              .question = "Does the harness keep its promises?",
+                              .example = "--set particles=10 --out toy.csv",
+                              .columns = tress::columns,
+                              .settings = tress::settings,
+                              .cases = tress::cases,
+                              .checks = [held](const std::vector<tress::Row>& rows) {
+                                if (!held)
+                                  tress::tell("FAIL the promise, {} rows\n", rows.size());
+                                return held;
+                              }};
   return tress::run_experiment(toy, argc, argv);
 }

@@ -38,8 +38,8 @@ int Toy::Result::error_lines() const {
 
 std::string Toy::command(const std::string& arguments, const std::string& output) const {
   return "cd '" + path("work") + "' && export TOY_LOG='" + path("log") + "' && exec '" +
-         TOY_EXPERIMENT + "' " + arguments + " >'" + (output.empty() ? path("out") : output) + "' 2>'" +
-         path("err") + "'";
+         TOY_EXPERIMENT + "' " + arguments + " >'" +
+         (output.empty() ? path("out") : output) + "' 2>'" + path("err") + "'";
 }
 
 Toy::Result Toy::run(const std::string& arguments, const std::string& prefix,

@@ -21,8 +21,8 @@ class Toy {
     std::string out, err;
     int error_lines() const;
   };
-  /// `prefix` goes before the command in a shell, e.g. "ulimit -f 0;"; standard output goes
-  /// to `output`, by default a file that ends up in Result::out.
+  /// `prefix` goes before the command in a shell, e.g. "ulimit -f 0;"; standard output
+  /// goes to `output`, by default a file that ends up in Result::out.
   Result run(const std::string& arguments, const std::string& prefix = "",
              const std::string& output = "");
 
@@ -34,9 +34,9 @@ class Toy {
   bool exists(const std::string& name) const;
   std::string read(const std::string& name) const;
   void write(const std::string& name, const std::string& text) const;
-  std::vector<std::string> files() const;       // what it left behind, sorted
-  std::vector<int> executed() const;            // row numbers, in order of execution
-  void await_executions(std::size_t n) const;   // gives up after 30 s
+  std::vector<std::string> files() const;      // what it left behind, sorted
+  std::vector<int> executed() const;           // row numbers, in order of execution
+  void await_executions(std::size_t n) const;  // gives up after 30 s
 
  private:
   std::string command(const std::string& arguments, const std::string& output) const;
