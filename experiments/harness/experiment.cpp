@@ -117,14 +117,19 @@ void keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
 }
 
 int report(const Experiment& experiment, const CommandLine& line,
-           const std::vector<Row>& rows) {
+           const std::vector<Row>& rows, const Verdicts& verdicts) {
   std::map<std::string, int> counts;
   const Row* failed = nullptr;
   for (const Row& row : rows) {
     ++counts[std::string(row.status())];
-    if (failed == nullptr && !row.ok()) failed = &row;
+    const bool finding = experiment.finding && experiment.finding(row);
+    if (failed == nullptr && !row.ok() && !finding) failed = &row;
   }
-  const bool held = !experiment.checks || line.shard_count > 1 || experiment.checks(rows);
+  bool held = true;
+  for (const auto& [claim, holds, value] : verdicts.all()) {
+    held = held && holds;
+    tell("{}: {} {} ({:.3g})\n", experiment.name, holds ? "PASS" : "FAIL", claim, value);
+  }
   if (line.progress != ProgressMode::none || failed != nullptr) {
     std::string text;
     for (const auto& [status, count] : counts)
@@ -137,26 +142,32 @@ int report(const Experiment& experiment, const CommandLine& line,
   return held && failed == nullptr ? done : rows_failed;
 }
 
-void write_table(const Experiment& experiment, const CommandLine& line,
-                 const std::vector<Row>& rows, const Manifest& manifest,
-                 std::size_t kept_from_before) {
+/// Completes, judges and writes the table; returns the exit code.
+int finish(const Experiment& experiment, const CommandLine& line, std::vector<Row> rows,
+           const Manifest& manifest, std::size_t kept_from_before) {
+  Verdicts verdicts;
+  if (line.shard_count == 1) {
+    if (experiment.derive) experiment.derive(rows);
+    if (experiment.checks) experiment.checks(rows, verdicts);
+  }
   const std::string csv = to_csv(header(experiment.columns), rows);
   if (line.out == standard_output) {
     write_all(STDOUT_FILENO, csv.substr(csv.find('\n') + 1), "standard output");
-    return;
+  } else {
+    replace_file(beside(line.out, ".meta.json"),
+                 manifest.finished(rows, verdicts, kept_from_before));
+    replace_file(line.out, csv);
   }
-  replace_file(beside(line.out, ".meta.json"), manifest.finished(rows, kept_from_before));
-  replace_file(line.out, csv);
+  return report(experiment, line, rows, verdicts);
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
   const Merged merged = merge(line.merge, experiment.columns);
   const Manifest manifest(experiment, line);
-  write_table(experiment, line, merged.rows, manifest, merged.rows.size());
+  const int code = finish(experiment, line, merged.rows, manifest, merged.rows.size());
   for (const std::string& conflict : merged.conflicts) {
     tell("{}: conflict: {}\n", experiment.name, conflict);
   }
-  const int code = report(experiment, line, merged.rows);
   return merged.conflicts.empty() ? code : rows_failed;
 }
 
@@ -218,10 +229,9 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
     tell("{}: interrupted: {}\n", experiment.name, remedy);
     return interrupted;
   }
-  const std::vector<Row> table = rows.ordered(planned);
-  write_table(experiment, line, table, manifest, kept);
+  const int code = finish(experiment, line, rows.ordered(planned), manifest, kept);
   if (journal) journal->remove();
-  return report(experiment, line, table);
+  return code;
 }
 
 int dry_run(const Experiment& experiment, const CommandLine& line) {

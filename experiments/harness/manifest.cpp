@@ -53,7 +53,7 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
   }
 }
 
-std::string Manifest::finished(const std::vector<Row>& rows,
+std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                                std::size_t kept_from_before) const {
   using nlohmann::ordered_json;
   const Machine here = machine();
@@ -62,6 +62,10 @@ std::string Manifest::finished(const std::vector<Row>& rows,
   ordered_json columns;
   for (const Column& column : experiment_.columns) {
     columns[std::string(column.name)] = column.help;
+  }
+  ordered_json checks = ordered_json::array();
+  for (const auto& [claim, held, value] : verdicts.all()) {
+    checks.push_back({{"claim", claim}, {"held", held}, {"value", value}});
   }
   ordered_json libraries;
   for (const auto& [library, version] : library_versions()) libraries[library] = version;
@@ -83,6 +87,7 @@ std::string Manifest::finished(const std::vector<Row>& rows,
       {"shard", fmt::format("{}/{}", line_.shard_index, line_.shard_count)},
       {"start", start_},
       {"end", utc_now()},
+      {"checks", checks},
       {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
       {"build",
        {{"compiler", TRESS_COMPILER},

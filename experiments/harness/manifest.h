@@ -16,7 +16,8 @@ class Manifest {
   Manifest(const Experiment& experiment, const CommandLine& line);
 
   /// The JSON text, with end time, load and the counts of `rows`.
-  std::string finished(const std::vector<Row>& rows, std::size_t kept_from_before) const;
+  std::string finished(const std::vector<Row>& rows, const Verdicts& verdicts,
+                       std::size_t kept_from_before) const;
 
  private:
   const Experiment& experiment_;

@@ -90,16 +90,15 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "promise=broken") held = false;
   }
-  const tress::Experiment toy{.name = "toy",
-                              .question = "Does the harness keep its promises?",
-                              .example = "--set particles=10 --out toy.csv",
-                              .columns = tress::columns,
-                              .settings = tress::settings,
-                              .cases = tress::cases,
-                              .checks = [held](const std::vector<tress::Row>& rows) {
-                                if (!held)
-                                  tress::tell("FAIL the promise, {} rows\n", rows.size());
-                                return held;
-                              }};
+  const tress::Experiment toy{
+      .name = "toy",
+      .question = "Does the harness keep its promises?",
+      .example = "--set particles=10 --out toy.csv",
+      .columns = tress::columns,
+      .settings = tress::settings,
+      .cases = tress::cases,
+      .checks = [held](const std::vector<tress::Row>& rows, tress::Verdicts& verdicts) {
+        verdicts.check("the promise", held, static_cast<double>(rows.size()));
+      }};
   return tress::run_experiment(toy, argc, argv);
 }
