@@ -163,8 +163,8 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
-  const Manifest manifest(experiment, line);
   const Merged merged = merge(line.merge, experiment.columns);
+  const Manifest manifest(experiment, line);
   const int code = finish(experiment, line, merged.rows, manifest, merged.rows.size());
   for (const std::string& conflict : merged.conflicts) {
     tell("{}: conflict: {}\n", experiment.name, conflict);
@@ -247,7 +247,8 @@ int answer(const Experiment& experiment, int argc, char** argv) {
                                               experiment.example, argc, argv);
   const Settings checked(line, experiment.settings);
   if (line.list) {
-    write_all(STDOUT_FILENO, catalogue_text(experiment.settings), "standard output");
+    write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),
+              "standard output");
     return done;
   }
   if (!line.merge.empty()) {
