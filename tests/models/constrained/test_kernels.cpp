@@ -5,7 +5,7 @@
 
 #include "models/constrained/angles.h"
 #include "models/constrained/on_curve.h"
-#include "support/jet.h"
+#include "tests/support/jet.h"
 
 namespace tress {
 namespace {
