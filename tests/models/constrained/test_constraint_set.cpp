@@ -27,8 +27,8 @@ using Number = Jet<Jet<double, coordinates + 1>, coordinates + 1>;
 
 const double now = 0.37;  // s
 
-/// One module on a moving anchor, and the same constraint evaluated on jets along the path
-/// q + v (t - now), whose derivatives are everything that a ConstraintForm gives.
+/// One module on a moving anchor, and the same constraint evaluated on jets along the
+/// path q + v (t - now), whose derivatives are everything that a ConstraintForm gives.
 class Assembled {
  public:
   template <class Evaluate>
@@ -146,9 +146,10 @@ class Assembled {
 
 template <class Kernel>
 void expect_assembled(std::array<Node, Kernel::node_count> nodes, Kernel kernel) {
-  Assembled(std::make_unique<Module<Kernel>>(nodes, kernel),
-            [&](const Number* z, Number* c) { kernel.value(z, c); })
-      .expect_derivatives();
+  Assembled(std::make_unique<Module<Kernel>>(nodes, kernel), [&](const Number* z,
+                                                                 Number* c) {
+    kernel.value(z, c);
+  }).expect_derivatives();
 }
 
 const Vec axis1{0.6, 0.8, 0}, axis2{-0.8, 0.6, 0}, axis3{0, 0, 1};
@@ -182,11 +183,9 @@ TEST(ConstraintSet, TriangleWithOneMovingCornerGivesAllDerivatives) {
 }
 TEST(ConstraintSet, PointOnAnyCurveGivesAllDerivatives) {
   const std::shared_ptr<const FourierCurve> knot = trefoil(1.5);
-  Assembled(point_on_curve(particle1, parameter0, knot),
-            [&](const Number* z, Number* c) {
-              store3(load3(z) - knot->position(z[3]), c);
-            })
-      .expect_derivatives();
+  Assembled(point_on_curve(particle1, parameter0, knot), [&](const Number* z, Number* c) {
+    store3(load3(z) - knot->position(z[3]), c);
+  }).expect_derivatives();
 }
 
 void build(std::unique_ptr<const Constraint> module) {
@@ -207,11 +206,13 @@ TEST(Modules, RefuseShapesThatDoNotExist) {
   EXPECT_THROW((void)distance(particle0, particle1, 0), InputError);
   EXPECT_THROW((void)distance(particle0, particle1, std::nan("")), InputError);
   EXPECT_THROW((void)point_on_plane(particle0, anchor0, {}), InputError);
-  EXPECT_THROW((void)point_on_ellipse(particle0, anchor0, {1, 0, 0}, {1, 1, 0}), InputError);
+  EXPECT_THROW((void)point_on_ellipse(particle0, anchor0, {1, 0, 0}, {1, 1, 0}),
+               InputError);
   EXPECT_THROW((void)point_on_helix(particle0, anchor0, {1, 0, 0}, {0, 1, 0}, {}),
                InputError);
   EXPECT_THROW((void)angle(particle0, particle1, particle2, 0), InputError);
-  EXPECT_THROW((void)rigid_triangle(particle0, particle1, particle2, {1, 1, 2}), InputError);
+  EXPECT_THROW((void)rigid_triangle(particle0, particle1, particle2, {1, 1, 2}),
+               InputError);
   EXPECT_THROW((void)point_on_curve(particle0, particle1, trefoil(1)), InputError);
 }
 

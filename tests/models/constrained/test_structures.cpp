@@ -81,7 +81,8 @@ TEST_P(Structures, SolveIsTheInverseOfTheSparseForm) {
   const Eigen::VectorXd b = x;
   ASSERT_EQ(system->linearize(0, view(at.q), view(at.v), view(a), w), Status::ok);
   ASSERT_EQ(system->solve(view(x), view(x)), Status::ok);
-  EXPECT_LE((at.tangent(w) * x - b).lpNorm<Eigen::Infinity>(), 1e-14);  // 2 entries of eps
+  EXPECT_LE((at.tangent(w) * x - b).lpNorm<Eigen::Infinity>(),
+            1e-14);  // 2 entries of eps
   EXPECT_GT((at.tangent({1, 0, 0}) * x - b).lpNorm<Eigen::Infinity>(), 1e-3);
 }
 
@@ -90,11 +91,13 @@ TEST_P(Structures, ResidualTwiceGivesTheSameBits) {
   const Oracle at(*system);
   const Eigen::VectorXd a = Eigen::VectorXd::LinSpaced(at.q.size(), -1, 2);
   Eigen::VectorXd first(at.q.size()), second(at.q.size());
-  ASSERT_EQ(system->residual(0, view(at.q), view(at.v), view(a), view(first)), Status::ok);
+  ASSERT_EQ(system->residual(0, view(at.q), view(at.v), view(a), view(first)),
+            Status::ok);
   ASSERT_EQ(system->residual(0.3, view(at.v), view(at.q), view(a), view(second)),
             Status::ok);
   EXPECT_NE(first, second);
-  ASSERT_EQ(system->residual(0, view(at.q), view(at.v), view(a), view(second)), Status::ok);
+  ASSERT_EQ(system->residual(0, view(at.q), view(at.v), view(a), view(second)),
+            Status::ok);
   EXPECT_EQ(first, second);
 }
 
@@ -131,8 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ParticleSystem, SwungFromMovingAnchorIsConsistentOnlyWhenItFollows) {
   const auto build = [](Vec v) {
     ParticleScene scene;
-    const Node hand =
-        scene.add_anchor(orbit({}, {0.1, 0, 0}, {0, 0.1, 0}, 1));  // starts moving along y
+    const Node hand = scene.add_anchor(
+        orbit({}, {0.1, 0, 0}, {0, 0.1, 0}, 1));  // starts moving along y
     const Node bob = scene.add_particle(1, {0.6, 0, 0}, v);
     scene.constraints.push_back(distance(hand, bob, 0.5));
     const Node held = scene.add_particle(1, {0.1, 0, 0}, {0, 0.2 * 3.14159265358979, 0});
@@ -156,7 +159,8 @@ TEST(ParticleSystem, WithoutConstraintsFallsFreelyByItsExplicitForm) {
   Eigen::VectorXd a(6);
   ASSERT_EQ(system.explicit_form()->acceleration(0, view(at.q), view(at.v), view(a)),
             Status::ok);
-  const Eigen::VectorXd falling = (Eigen::VectorXd(6) << 0, 0, -9.81, 0, 0, -9.81).finished();
+  const Eigen::VectorXd falling =
+      (Eigen::VectorXd(6) << 0, 0, -9.81, 0, 0, -9.81).finished();
   EXPECT_LE((a - falling).norm(), 1e-14);
 }
 
