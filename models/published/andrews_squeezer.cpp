@@ -17,8 +17,8 @@ enum Coordinate { beta, theta, gamma_, phi, delta, omega, epsilon, coordinates }
 // lengths (m), spring (N/m, m), drive (N m). Names are the Test Set's.
 constexpr double m1 = .04325, m2 = .00365, m3 = .02373, m4 = .00706, m5 = .07050,
                  m6 = .00706, m7 = .05498;
-constexpr double i1 = 2.194e-6, i2 = 4.410e-7, i3 = 5.255e-6, i4 = 5.667e-7, i5 = 1.169e-5,
-                 i6 = 5.667e-7, i7 = 1.912e-5;
+constexpr double i1 = 2.194e-6, i2 = 4.410e-7, i3 = 5.255e-6, i4 = 5.667e-7,
+                 i5 = 1.169e-5, i6 = 5.667e-7, i7 = 1.912e-5;
 constexpr double xa = -.06934, ya = -.00227, xb = -.03635, yb = .03273, xc = .014,
                  yc = .072;
 constexpr double d = .028, da = .0115, e = .02, ea = .01421, rr = .007, ra = .00092,
@@ -38,19 +38,19 @@ struct Elbow {
   double c;
   double s;
 };
-constexpr std::array<Elbow, 3> elbows = {{{theta, beta, -m2 * da * rr, 0},
-                                          {phi, delta, 0, m4 * zt * (e - ea)},
-                                          {omega, epsilon, 0, -m6 * u * (zf - fa)}}};
+constexpr std::array<Elbow, 3> elbows = {{{theta, beta, -m2* da* rr, 0},
+                                          {phi, delta, 0, m4* zt*(e - ea)},
+                                          {omega, epsilon, 0, -m6* u*(zf - fa)}}};
 
 // Constant part: the diagonal, and the entry that couples each elbow's pair.
 constexpr std::array<double, coordinates> diagonal = {
     m1 * square(ra) + m2 * (square(rr) + square(da)) + i1 + i2,
-    m2 * square(da) + i2,
-    m3 * (square(sa) + square(sb)) + i3,
-    m4 * square(e - ea) + i4,
-    m4 * (square(zt) + square(e - ea)) + m5 * (square(ta) + square(tb)) + i4 + i5,
-    m6 * square(zf - fa) + i6,
-    m6 * (square(zf - fa) + square(u)) + m7 * (square(ua) + square(ub)) + i6 + i7};
+    m2* square(da) + i2,
+    m3*(square(sa) + square(sb)) + i3,
+    m4* square(e - ea) + i4,
+    m4*(square(zt) + square(e - ea)) + m5*(square(ta) + square(tb)) + i4 + i5,
+    m6* square(zf - fa) + i6,
+    m6*(square(zf - fa) + square(u)) + m7*(square(ua) + square(ub)) + i6 + i7};
 
 struct Mechanism {
   template <class Q, class X>
@@ -101,15 +101,27 @@ struct Mechanism {
 constexpr auto cosine = LoopTerm::cosine;
 constexpr auto sine = LoopTerm::sine;
 constexpr std::array<LoopTerm, 22> closure = {{
-    {0, rr, cosine, beta}, {0, -d, cosine, beta, theta}, {0, -ss, sine, gamma_},
-    {1, rr, sine, beta},   {1, -d, sine, beta, theta},   {1, ss, cosine, gamma_},
-    {2, rr, cosine, beta}, {2, -d, cosine, beta, theta}, {2, -e, sine, phi, delta},
+    {0, rr, cosine, beta},
+    {0, -d, cosine, beta, theta},
+    {0, -ss, sine, gamma_},
+    {1, rr, sine, beta},
+    {1, -d, sine, beta, theta},
+    {1, ss, cosine, gamma_},
+    {2, rr, cosine, beta},
+    {2, -d, cosine, beta, theta},
+    {2, -e, sine, phi, delta},
     {2, -zt, cosine, delta},
-    {3, rr, sine, beta},   {3, -d, sine, beta, theta},   {3, e, cosine, phi, delta},
+    {3, rr, sine, beta},
+    {3, -d, sine, beta, theta},
+    {3, e, cosine, phi, delta},
     {3, -zt, sine, delta},
-    {4, rr, cosine, beta}, {4, -d, cosine, beta, theta}, {4, -zf, cosine, omega, epsilon},
+    {4, rr, cosine, beta},
+    {4, -d, cosine, beta, theta},
+    {4, -zf, cosine, omega, epsilon},
     {4, -u, sine, epsilon},
-    {5, rr, sine, beta},   {5, -d, sine, beta, theta},   {5, -zf, sine, omega, epsilon},
+    {5, rr, sine, beta},
+    {5, -d, sine, beta, theta},
+    {5, -zf, sine, omega, epsilon},
     {5, u, cosine, epsilon},
 }};
 constexpr std::array<double, 6> closure_targets = {xb, yb, xa, ya, xa, ya};
@@ -121,7 +133,8 @@ constexpr std::array<double, coordinates> start = {
     0.487364979543842550225598953530,   -0.222668390165885884674473185609,
     1.23054744454982119249735015568};
 // Sizes seen over the published run, for norms and absolute tolerances.
-constexpr std::array<double, coordinates> angle_size = {10, 10, .5, .5, .5, .5, 1};  // rad
+constexpr std::array<double, coordinates> angle_size = {10, 10, .5, .5,
+                                                        .5, .5, 1};  // rad
 constexpr std::array<double, coordinates> speed_size = {1e3, 1e3, 20, 20,
                                                         20,  20,  20};  // rad/s
 

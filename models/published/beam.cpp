@@ -42,7 +42,9 @@ class Beam final : public System,
         lu_(3 * segments, 3, 3) {}
 
   Layout layout() const override { return {n_, 0}; }
-  Traits traits() const override { return {.constant_mass = false, .regular_mass = true}; }
+  Traits traits() const override {
+    return {.constant_mass = false, .regular_mass = true};
+  }
   void initial_state(Out q, Out v) const override {
     std::fill(q.begin(), q.end(), 0.0);
     std::fill(v.begin(), v.end(), 0.0);
@@ -103,9 +105,9 @@ class Beam final : public System,
     return Status::ok;
   }
 
-  // Torque balance gives each N_l across its segment, (N_l . e'_l); the axial part follows
-  // from the second difference of N along e, which must be the centripetal -s^2 v^2, and a
-  // from the same difference along e'.
+  // Torque balance gives each N_l across its segment, (N_l . e'_l); the axial part
+  // follows from the second difference of N along e, which must be the centripetal -s^2
+  // v^2, and a from the same difference along e'.
   ExplicitForm* explicit_form() override { return this; }
   Status acceleration(double t, In q, In v, Out a) noexcept override {
     const Vec2 force = tip_force(t);
@@ -216,17 +218,22 @@ class Beam final : public System,
   double s_;     // segment length (m)
   double load_;  // N
   Tangent tangent_;
-  // Scratch, rewritten by each call that reads it; lu_ alone lives from linearize to solve.
-  std::vector<Vec2> axis_;      // (n) e_l
-  std::vector<Vec2> internal_;  // (n) N_l; over s^2 in `acceleration`
-  std::vector<double> axial_;   // (n) N_l . e_l over s^2
-  std::vector<double> pivot_;   // (n)
+  // Scratch, rewritten by each call that reads it; lu_ alone lives from linearize to
+  // solve.
+  std::vector<Vec2> axis_;        // (n) e_l
+  std::vector<Vec2> internal_;    // (n) N_l; over s^2 in `acceleration`
+  std::vector<double> axial_;     // (n) N_l . e_l over s^2
+  std::vector<double> pivot_;     // (n)
   std::vector<double> unknowns_;  // (3n) x_l, dN_l over s^2
   BandedLu lu_;
 };
 
 constexpr std::array<Parameter, 3> parameters_table = {
-    {{.name = "segments", .help = "rigid segments", .number = 40, .min = 1, .max = 1e6,
+    {{.name = "segments",
+      .help = "rigid segments",
+      .number = 40,
+      .min = 1,
+      .max = 1e6,
       .whole = true},
      {.name = "load", .help = "amplitude of the force on the tip (N)", .number = 1.5},
      tangent_parameter}};

@@ -17,10 +17,14 @@ double turned(const LoopTerm& term, In q, int order) {
   const double angle = along(term, q);
   const int quarter = term.trig == LoopTerm::sine ? order + 3 : order;
   switch (quarter % 4) {
-    case 0: return term.length * std::cos(angle);
-    case 1: return -term.length * std::sin(angle);
-    case 2: return -term.length * std::cos(angle);
-    default: return term.length * std::sin(angle);
+    case 0:
+      return term.length * std::cos(angle);
+    case 1:
+      return -term.length * std::sin(angle);
+    case 2:
+      return -term.length * std::cos(angle);
+    default:
+      return term.length * std::sin(angle);
   }
 }
 
@@ -51,8 +55,8 @@ LoopClosure::LoopClosure(int coordinates, std::span<const LoopTerm> terms,
     return static_cast<int>(found - pattern_.row.begin());
   };
   for (const LoopTerm& term : terms_) {
-    slots_.push_back({slot(term.constraint, term.i),
-                      term.j < 0 ? -1 : slot(term.constraint, term.j)});
+    slots_.push_back(
+        {slot(term.constraint, term.i), term.j < 0 ? -1 : slot(term.constraint, term.j)});
   }
 }
 
