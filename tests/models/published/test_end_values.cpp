@@ -132,9 +132,9 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedEndValues,
 
 class PublishedDae : public testing::TestWithParam<const char*> {};
 
-// No time stepping: M a - f - G^T lambda = 0 row by row at the printed state, to 12
-// digits of the largest term (printed with 16, of which the row's cancellation takes
-// some).
+// No time stepping: M a - f - G^T lambda = 0 row by row at the printed state. The printed
+// runs solved it to their Newton tolerance (squeezer 2e-10 of the largest term, crank
+// 4e-15); the data have 3 to 8 digits, so a wrong digit shows as 1e-8 or more.
 TEST_P(PublishedDae, PrintedAccelerationsAndMultipliersBalanceTheForces) {
   const PublishedEnd* end = published_end(GetParam());
   ASSERT_NE(end, nullptr);
@@ -150,7 +150,7 @@ TEST_P(PublishedDae, PrintedAccelerationsAndMultipliersBalanceTheForces) {
   const Vector gap = residual_of(*system, s) - gt * lambda;
   const Vector terms = dense(sparse.pattern(), in(mass)).cwiseAbs() * s.a.cwiseAbs() +
                        gt.cwiseAbs() * lambda.cwiseAbs();
-  EXPECT_LE(gap.cwiseQuotient(terms).lpNorm<Eigen::Infinity>(), 1e-12);
+  EXPECT_LE(gap.cwiseQuotient(terms).lpNorm<Eigen::Infinity>(), 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PublishedDae,
