@@ -27,6 +27,7 @@ class EliminatedNewton final : public DaeNewton {
  private:
   DaeForm& form_;
   double t_ = 0, cj_ = 0;
+  Dynamics::Base base_ = Dynamics::Base::fresh;
   std::vector<double> q_, v_, a_, dq_, zero_, r_;
 };
 

@@ -31,12 +31,11 @@ Driver::Driver(std::string_view id, System& system, const Options& options,
       system_(system),
       n_(static_cast<std::size_t>(system.layout().coordinates)) {
   if (std::ranges::find(formulations, options.formulation) == formulations.end()) {
-    const bool projected = options.formulation == Formulation::projection;
     throw InputError(id_ + " cannot solve this formulation of constraints",
                      std::string(name(options.formulation)),
-                     projected ? "projecting between its steps would spoil its history; "
-                                 "cvode_bdf and the one-step methods can"
-                               : "choose one that its list of formulations names");
+                     options.formulation == Formulation::projection
+                         ? "SUNDIALS projects in cvode_bdf only; ida has index2_ggl"
+                         : "choose one that --list shows for it");
   }
   const Out y = y_.values();
   system.initial_state(y.first(n_), y.subspan(n_, n_));

@@ -25,9 +25,11 @@ namespace tress {
 /// which is one Dynamics::directional and one Dynamics::solve of size n + m. No 2n matrix
 /// and no derivative of M^-1 is ever formed.
 ///
-/// accelerate() factors the mass matrix in its own Dynamics. Where both share the one
-/// factorisation that System::linearize keeps (no constraints, no explicit form), the
-/// Newton matrix is rebuilt at its old state when accelerate() has overwritten it.
+/// accelerate() factors the mass matrix in its own Dynamics. A system without constraints
+/// and without an explicit form keeps one factorisation for both (System::linearize), and
+/// rates come between every two Newton corrections. So its Newton matrix is factored from
+/// its sparse form by a solver of ours; a system without that form either has the Newton
+/// matrix rebuilt at its old state whenever a rate has overwritten it.
 class FirstOrder final : public NewtonMatrix {
  public:
   FirstOrder(System& system, const Options& options);
@@ -47,13 +49,18 @@ class FirstOrder final : public NewtonMatrix {
 
  private:
   Status newton_matrix() noexcept;
+  Status newton_solve() noexcept;
   Status project_error(double t, In y, InOut error) noexcept;
 
   Dynamics rates_, newton_;
   std::optional<Projection> projection_;
   const std::size_t n_;
-  const bool shared_;             // both Dynamics use System::linearize
-  bool newton_current_ = false;  // what is factored there is the Newton matrix
+  const bool shared_;  // both Dynamics would use System::linearize
+  SparseForm* const sparse_;
+  std::unique_ptr<LinearSolver> own_;  // of the Newton matrix, when shared_ and sparse_
+  std::vector<double> own_values_;
+  bool newton_current_ = false;  // what is factored is the Newton matrix
+  Dynamics::Base base_ = Dynamics::Base::fresh;
   double t_ = 0, gamma_ = 0;     // of the Newton matrix, with the state below
   std::vector<double> q_, v_, a_, lambda_;
   std::vector<double> dq_, r_, c_, multipliers_;  // scratch
