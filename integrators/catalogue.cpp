@@ -16,10 +16,8 @@ using enum Formulation;
 
 // What a family of methods can take on; a method outside its list gets `gap`'s reason.
 constexpr std::array one_step_ode{parametric, acceleration, baumgarte, projection};
-constexpr std::array multistep_ode{parametric, acceleration, baumgarte};
 constexpr std::array implicit_dae{parametric, acceleration, baumgarte, projection,
                                   index3};
-constexpr std::array ida_forms{parametric, acceleration, baumgarte, index2_ggl, index3};
 constexpr std::array rattle_only{rattle};
 
 std::string any(System&, Formulation) { return {}; }
@@ -59,13 +57,13 @@ constexpr std::array table{
     IntegratorEntry{"generalized_alpha", "order 2, damping by rho_inf", "Chung-Hulbert 1993", 2, false, implicit_dae, any, make_generalized_alpha},
     IntegratorEntry{"gsl_rkf45", "order 5(4) explicit Runge-Kutta", "GSL odeiv2", 5, true, one_step_ode, inverts_mass, make_gsl_rkf45},
     IntegratorEntry{"gsl_rk8pd", "order 8(7) explicit Runge-Kutta", "GSL odeiv2", 8, true, one_step_ode, inverts_mass, make_gsl_rk8pd},
-    IntegratorEntry{"gsl_msadams", "orders 1-12 Adams", "GSL odeiv2", 12, true, multistep_ode, inverts_mass, make_gsl_msadams},
+    IntegratorEntry{"gsl_msadams", "orders 1-12 Adams", "GSL odeiv2", 12, true, ode_formulations, inverts_mass, make_gsl_msadams},
     IntegratorEntry{"gsl_bsimp", "implicit extrapolation, stiff", "GSL odeiv2, Bader-Deuflhard 1983", 8, true, one_step_ode, dense_jacobian, make_gsl_bsimp},
-    IntegratorEntry{"cvode_adams", "orders 1-12 Adams-Moulton", "SUNDIALS CVODE", 12, true, multistep_ode, inverts_mass, make_cvode_adams},
-    IntegratorEntry{"cvode_bdf", "BDF, order 2 by default, 1-5 on request", "SUNDIALS CVODE", 2, true, one_step_ode, inverts_mass, make_cvode_bdf},
-    IntegratorEntry{"arkode_erk", "explicit Runge-Kutta, orders 2-8", "SUNDIALS ARKODE", 4, true, multistep_ode, inverts_mass, make_arkode_erk},
-    IntegratorEntry{"arkode_dirk", "ESDIRK4(3)6L[2]SA, L-stable", "SUNDIALS ARKODE", 4, true, multistep_ode, inverts_mass, make_arkode_dirk},
-    IntegratorEntry{"ida", "BDF on the residual form, orders 1-5", "SUNDIALS IDA", 5, true, ida_forms, any, make_ida},
+    IntegratorEntry{"cvode_adams", "orders 1-12 Adams-Moulton", "SUNDIALS CVODE", 12, true, ode_formulations, inverts_mass, make_cvode_adams},
+    IntegratorEntry{"cvode_bdf", "BDF, order 2 by default, 1-5 on request", "SUNDIALS CVODE", 2, true, cvode_bdf_formulations, inverts_mass, make_cvode_bdf},
+    IntegratorEntry{"arkode_erk", "explicit Runge-Kutta, orders 2-8", "SUNDIALS ARKODE", 4, true, ode_formulations, inverts_mass, make_arkode_erk},
+    IntegratorEntry{"arkode_dirk", "ESDIRK4(3)6L[2]SA, L-stable", "SUNDIALS ARKODE", 4, true, ode_formulations, inverts_mass, make_arkode_dirk},
+    IntegratorEntry{"ida", "BDF on the residual form, orders 1-5", "SUNDIALS IDA", 5, true, ida_formulations, any, make_ida},
 };
 // clang-format on
 

@@ -127,11 +127,14 @@ class StiffFollower : public System {
 /// the top, started at rest at 1 rad: a dense mass matrix that moves with q.
 ///     r_i = sum_j m_ij (cos(q_i - q_j) a_j + sin(q_i - q_j) v_j^2) + m_ii g sin q_i,
 ///     m_ij = links - max(i, j).
-class AngleChain : public System {
+class AngleChain : public System, private SparseForm {
  public:
+  bool offers_sparse_form = false;
+
   explicit AngleChain(int links)
       : n_(links),
-        solver_(make_linear_solver(LinearKind::dense, dense_pattern(links))),
+        pattern_(dense_pattern(links)),
+        solver_(make_linear_solver(LinearKind::dense, pattern_)),
         s_(static_cast<std::size_t>(links * links)) {}
 
   Layout layout() const override { return {n_, 0}; }
@@ -154,7 +157,19 @@ class AngleChain : public System {
     }
     return Status::ok;
   }
-  Status linearize(double, In q, In v, In a, Weights w) noexcept override {
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    (void)values(t, q, v, a, w, s_);
+    return solver_->factor(s_);
+  }
+  Status solve(In b, Out x) noexcept override {
+    std::copy(b.begin(), b.end(), x.begin());
+    return solver_->solve(x);
+  }
+  SparseForm* sparse_form() override { return offers_sparse_form ? this : nullptr; }
+
+ private:
+  const Pattern& pattern() const override { return pattern_; }
+  Status values(double, In q, In v, In a, Weights w, Out s) noexcept override {
     const std::size_t n = q.size();
     for (std::size_t i = 0; i < n; ++i) {
       double turned = mass(i, i) * gravity * std::cos(q[i]);  // dr_i/dq_i
@@ -162,24 +177,19 @@ class AngleChain : public System {
         const double d = q[i] - q[j], sine = std::sin(d), cosine = std::cos(d);
         const double dq = mass(i, j) * (sine * a[j] - cosine * v[j] * v[j]);
         turned -= dq;
-        s_[j * n + i] = w.acc * mass(i, j) * cosine +
-                        w.vel * mass(i, j) * 2 * sine * v[j] + w.pos * dq;
+        s[j * n + i] = w.acc * mass(i, j) * cosine +
+                       w.vel * mass(i, j) * 2 * sine * v[j] + w.pos * dq;
       }
-      s_[i * n + i] += w.pos * turned;
+      s[i * n + i] += w.pos * turned;
     }
-    return solver_->factor(s_);
+    return Status::ok;
   }
-  Status solve(In b, Out x) noexcept override {
-    std::copy(b.begin(), b.end(), x.begin());
-    return solver_->solve(x);
-  }
-
- private:
   double mass(std::size_t i, std::size_t j) const {
     return n_ - static_cast<double>(std::max(i, j));
   }
 
   int n_;
+  Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> s_;
 };
