@@ -5,9 +5,10 @@
 
 namespace tress {
 
-/// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS' defaults
-/// by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound by the
-/// fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+/// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS'
+/// defaults by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound
+/// by the fastest mode. A model's `retry` ends the run: ERKStep has no smaller step for
+/// it. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
 class ArkodeErk final : public Driver {
  public:
   ArkodeErk(System& system, const Options& options);

@@ -95,10 +95,12 @@ Status FirstOrder::project(double t, In y, Out correction, InOut error) noexcept
 Status FirstOrder::project_error(double t, In y, InOut error) noexcept {
   ConstraintForm& form = *rates_.constraints();
   std::ranges::fill(dq_, 0.0);
-  if (const Status s = form.rate(t, y.first(n_), dq_, g_dot_0_); s != Status::ok) return s;
+  if (const Status s = form.rate(t, y.first(n_), dq_, g_dot_0_); s != Status::ok)
+    return s;
   for (const InOut part : {error.first(n_), error.last(n_)}) {
     // G part = rate(part) - rate(0): the second is dg/dt of moving constraints.
-    if (const Status s = form.rate(t, y.first(n_), part, g_dot_); s != Status::ok) return s;
+    if (const Status s = form.rate(t, y.first(n_), part, g_dot_); s != Status::ok)
+      return s;
     for (std::size_t k = 0; k < g_dot_.size(); ++k) g_dot_[k] -= g_dot_0_[k];
     std::ranges::fill(r_, 0.0);
     if (const Status s = rates_.solve(r_, g_dot_); s != Status::ok) return s;
@@ -120,8 +122,10 @@ Stats FirstOrder::work() const {
 
 int FirstOrder::rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot,
                               void* self) noexcept {
-  return sundials_code(
-      static_cast<FirstOrder*>(self)->rate(t, entries(y), entries(y_dot)));
+  FirstOrder& equations = *static_cast<FirstOrder*>(self);
+  const Status status = equations.rate(t, entries(y), entries(y_dot));
+  if (status == Status::fatal) equations.gave_up_ = true;
+  return sundials_code(status);
 }
 
 }  // namespace tress

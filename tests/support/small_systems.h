@@ -31,6 +31,8 @@ class AnglePendulum : public System, private ExplicitForm {
   bool offers_explicit_form = true;
   double fails_after = std::numeric_limits<double>::infinity();  // s
   Status failure = Status::fatal;
+  double longest_leap = std::numeric_limits<double>::infinity();  // s, beyond it: retry
+  double leaps_from = 0;                                          // s
   bool bounces = false;  // off the vertical q = 0, elastically
   int bounced = 0;
 
@@ -69,7 +71,10 @@ class AnglePendulum : public System, private ExplicitForm {
     a[0] = -gravity * std::sin(q[0]);
     return outcome(t);
   }
-  Status outcome(double t) const { return t > fails_after ? failure : Status::ok; }
+  Status outcome(double t) const {
+    if (t > leaps_from + longest_leap) return Status::retry;
+    return t > fails_after ? failure : Status::ok;
+  }
   double s_ = 1;
 };
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/runs.h"
+#include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
 namespace tress {
@@ -37,7 +37,7 @@ template <class Pendulum>
 std::vector<double> reference(Pendulum&& system, double t_end) {
   Options options;
   options.step = 1e-4;
-  Run run("rk4", system, options);
+  Drive run("rk4", system, options);
   EXPECT_EQ(run.to(t_end), Status::ok) << run.integrator->failure();
   return {run.integrator->q().begin(), run.integrator->q().end()};
 }
@@ -48,13 +48,13 @@ class Accuracy : public testing::TestWithParam<Case> {
  protected:
   template <class System>
   double error(System& system, double tolerance, In expected, double t_end) {
-    Run run(GetParam().id, system, options_of(GetParam(), tolerance));
+    Drive run(GetParam().id, system, options_of(GetParam(), tolerance));
     EXPECT_EQ(run.to(t_end), Status::ok) << run.integrator->failure();
     return run.distance(expected);
   }
 
-  // The error per step is rtol, so a method of order p collects rtol^{p/(p+1)}: at order 2
-  // it may leave 100 rtol behind at tight tolerances; 100 rtol^{2/3} it must keep.
+  // The error per step is rtol, so a method of order p collects rtol^{p/(p+1)}: at order
+  // 2 it may leave 100 rtol behind at tight tolerances; 100 rtol^{2/3} it must keep.
   double allowed(double tolerance) const {
     const bool second_order = GetParam().id == "cvode_bdf" && GetParam().max_order <= 2;
     return second_order ? 100 * std::pow(tolerance, 2.0 / 3) : 100 * tolerance;
@@ -104,7 +104,7 @@ class Stiff : public testing::TestWithParam<Case> {};
 TEST_P(Stiff, FollowerOnItsSlowMotion_TakesFewSteps) {
   StiffFollower system;
   const StiffFollower::State exact = StiffFollower::exact(3);
-  Run run(GetParam().id, system, options_of(GetParam(), 1e-6));
+  Drive run(GetParam().id, system, options_of(GetParam(), 1e-6));
   ASSERT_EQ(run.to(3), Status::ok) << run.integrator->failure();
   EXPECT_LE(run.distance(exact.q), 1e-4);
   const Stats stats = run.integrator->stats();
@@ -119,32 +119,29 @@ INSTANTIATE_TEST_SUITE_P(Sundials, Stiff,
 
 class Newton : public testing::TestWithParam<Case> {};
 
-// A right matrix of an almost linear problem needs little more than one correction a step
-// (or stage); a wrong one converges slowly or not at all.
+// A right matrix needs about one correction a step (or stage) and the next to see that it
+// was enough; a wrong one converges slowly or not at all.
 TEST_P(Newton, MatrixIsRightAndRebuiltOnlyWhenNeeded) {
   AngleChain system(3);
   system.offers_sparse_form = true;
   Options options = options_of(GetParam(), 1e-6);
-  options.newton_coefficient = 1e-3;  // tight, so that convergence is what is counted
   const auto newton_work = [&] {
-    Run run(GetParam().id, system, options);
+    Drive run(GetParam().id, system, options);
     EXPECT_EQ(run.to(1), Status::ok) << run.integrator->failure();
     Stats stats = run.integrator->stats();
-    if (GetParam().id != "ida") {  // the ODE form also factors and solves once per rate
-      const long rates = stats.solves - stats.newton_iterations;
-      stats.linearizations -= rates;
-    }
+    // Rates of the ODE form (and initial ones) also factor and solve, once each.
+    stats.linearizations -= stats.solves - stats.newton_iterations;
     return stats;
   };
+  options.refresh = Refresh::when_slow;
   const Stats lazy = newton_work();
   const long stages = GetParam().id == "arkode_dirk" ? 5 : 1;
-  EXPECT_LE(lazy.newton_iterations, 4 * stages * (lazy.steps + lazy.rejected));
+  EXPECT_LE(lazy.newton_iterations, 3 * stages * (lazy.steps + lazy.rejected));
   EXPECT_LE(lazy.linearizations, lazy.newton_iterations / 5);
 
   options.refresh = Refresh::every_step;
   const Stats eager = newton_work();
-  EXPECT_GE(eager.linearizations, 2 * lazy.linearizations);
-  EXPECT_LE(eager.newton_iterations, lazy.newton_iterations);
+  EXPECT_GT(eager.linearizations, lazy.linearizations);
 }
 
 TEST_P(Newton, CoefficientTightensTheCorrections) {
@@ -152,7 +149,7 @@ TEST_P(Newton, CoefficientTightensTheCorrections) {
   const auto iterations = [&](double coefficient) {
     Options options = options_of(GetParam(), 1e-6);
     options.newton_coefficient = coefficient;
-    Run run(GetParam().id, system, options);
+    Drive run(GetParam().id, system, options);
     EXPECT_EQ(run.to(1), Status::ok) << run.integrator->failure();
     return static_cast<double>(run.integrator->stats().newton_iterations) /
            static_cast<double>(run.integrator->stats().steps);

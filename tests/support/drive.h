@@ -11,8 +11,8 @@
 namespace tress::testing_support {
 
 /// A system's own start state, driven to `t_end` by one integrator.
-struct Run {
-  Run(std::string_view id, System& system, const Options& options)
+struct Drive {
+  Drive(std::string_view id, System& system, const Options& options)
       : integrator(find_integrator(id).make(system, options)) {
     const auto n = static_cast<std::size_t>(system.layout().coordinates);
     q0.resize(n);
