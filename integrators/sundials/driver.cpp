@@ -87,7 +87,12 @@ Status Driver::advance(double t_end, const Observer& each_step) {
     const int code = step(t_end, reached);
     if (code < 0) {  // y_ may hold a trial state
       std::ranges::copy(last_, y_.values().begin());
-      return fail_with(code);
+      const Stats counted = added_counters();
+      if (!recover(code)) return fail_with(code);
+      carried_ = counted;
+      ++carried_.rejected;
+      restarted_ = true;
+      continue;
     }
     const double length = reached - time_;
     time_ = reached;

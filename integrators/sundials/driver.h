@@ -34,6 +34,9 @@ class Driver : public Integrator {
   virtual int restart() = 0;
   /// One internal step into y_ that does not pass t_end.
   virtual int step(double t_end, double& t) = 0;
+  /// After a failed step, with y_ back at the last good state: true when the method has
+  /// begun anew there with a smaller step.
+  virtual bool recover(int /*code*/) { return false; }
   /// Rejected steps and Newton iterations since the last restart().
   virtual Stats counters() const = 0;
   /// Residuals, linearizations and solves since construction, and the solver.
