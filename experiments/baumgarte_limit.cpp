@@ -1,5 +1,6 @@
 // How large may Baumgarte's gains be before the feedback itself diverges, and does the
 // linear theory of each method predict it?
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -112,7 +113,6 @@ int main(int argc, char** argv) {
       .question = "how large may Baumgarte's gains be, and does theory predict it?",
       .example = "--integrators symplectic_euler,rk4",
       .columns = columns,
-      .settings = {},
       .cases = cases,
       .checks = check};
   return run_experiment(experiment, argc, argv);

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <stdexcept>
 
 #include "experiments/harness/pendulum_reference.h"
+#include "experiments/harness/reference.h"
 #include "models/published/references.h"
 
 namespace tress {
@@ -19,12 +20,6 @@ Values points(System& system, const State& end) {
   Values x(3 * static_cast<std::size_t>(material.count()));
   material.positions(0, end.q, x);
   return x;
-}
-
-double largest_difference(const Values& x, const Values& y) {
-  double most = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, std::abs(x[i] - y[i]));
-  return most;
 }
 
 /// A bead of 1 m radius released horizontally: x = sin theta, z = -cos theta.
@@ -82,7 +77,8 @@ Values tight_run(const Problem& problem, std::string_view integrator,
 Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
   problem.reference = tight_run(problem, "gsl_rk8pd", runge_kutta);
   const Values second = tight_run(problem, "cvode_adams", adams);
-  problem.reference_gap = largest_difference(problem.reference, second) / problem.scale;
+  problem.reference_gap =
+      ReferenceGap(problem.reference, second, In(&problem.scale, 1)).gap();
   return problem;
 }
 
@@ -119,19 +115,7 @@ std::vector<Problem> make_problems() {
 
 ProblemError Problem::error(System& system, const State& end) const {
   const Values x = compared(system, end);
-  double relative = 0, entrywise = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double difference = std::abs(x[i] - reference[i]);
-    if (!std::isfinite(difference)) {
-      return {std::numeric_limits<double>::infinity(), 0};
-    }
-    relative = std::max(relative, difference / scale);
-    // Entries that vanish by symmetry have no relative error.
-    if (reference[i] != 0) {
-      entrywise = std::max(entrywise, difference / std::abs(reference[i]));
-    }
-  }
-  return {relative, -std::log10(std::max(entrywise, 1e-16))};
+  return {error_norms(x, reference, In(&scale, 1)).relative, scd(x, reference)};
 }
 
 std::span<const Problem> problems() {

@@ -21,7 +21,7 @@ struct ProblemError {
 struct Problem {
   std::string_view name;
   std::string_view model;
-  Settings settings;
+  ModelSettings settings;
   double t_end;        // s
   double coarse_step;  // s, the loosest fixed step worth trying
   double scale;        // of the compared values

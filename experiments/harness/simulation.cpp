@@ -2,7 +2,7 @@
 
 namespace tress {
 
-std::unique_ptr<System> make_model(std::string_view id, const Settings& settings) {
+std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
   const ModelEntry& entry = find_model(id);
   Parameters parameters(entry.parameters, "model " + std::string(id));
   for (const auto& [key, value] : settings) parameters.set(key, value);

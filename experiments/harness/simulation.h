@@ -11,10 +11,11 @@
 
 namespace tress {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// A model of the catalogue with the given parameters set.
-std::unique_ptr<System> make_model(std::string_view id, const Settings& settings = {});
+std::unique_ptr<System> make_model(std::string_view id,
+                                   const ModelSettings& settings = {});
 
 struct State {
   std::vector<double> q, v;
