@@ -1,0 +1,29 @@
+# deb822 stanzas (RS="") of the distribution's own suites, as source-package stanzas.
+# `codename` is the release's name. Continued lines belong to the field above them.
+{
+  types = ""; suites = ""; components = ""; uris = ""; rest = ""; field = ""; on = 1
+  n = split($0, line, "\n")
+  for (i = 1; i <= n; i++) {
+    if (line[i] ~ /^#/) continue
+    if (line[i] ~ /^[ \t]/) {
+      value = line[i]
+    } else {
+      field = tolower(line[i]); sub(/:.*/, "", field)
+      value = line[i]; sub(/^[^:]*:/, "", value)
+    }
+    if (field == "types") types = types " " value
+    else if (field == "suites") suites = suites " " value
+    else if (field == "components") components = components " " value
+    else if (field == "uris") uris = uris " " value
+    else if (field == "enabled") on = (value !~ /no|false|off|0/)
+    else rest = rest line[i] "\n"
+  }
+  wanted = ""
+  n = split(suites, suite, /[ \t]+/)
+  for (i = 1; i <= n; i++)
+    if (suite[i] ~ ("^(" codename "|stable|testing|sid)(-updates|-security)?/?$"))
+      wanted = wanted " " suite[i]
+  if (!on || wanted == "" || (" " types " ") !~ / deb / || uris ~ /cdrom:/) next
+  if ((" " components " ") !~ / (main|universe) /) next
+  printf "Types: deb-src\nURIs:%s\nSuites:%s\nComponents:%s\n%s\n", uris, wanted, components, rest
+}
