@@ -2,6 +2,7 @@
 # so that #include "models/system.h" reads the same inside and outside this repository.
 # Nothing installed names a folder of the build: the libraries that static linking needs are
 # found again by tressConfig.cmake, and Eigen is used in our .cpp files only.
+include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS tress_models tress_linear tress_integrators EXPORT tressTargets)

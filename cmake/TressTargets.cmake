@@ -1,6 +1,10 @@
 # Warnings for our own targets, and one function per kind of target.
 function(tress_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+  # GCC 12 sees uninitialised variables inside its own AVX-512 intrinsics (GCC bug 105593).
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+  endif()
   if(TRESS_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -15,9 +15,9 @@ enum class Formulation {
   acceleration,  // g'' = 0: index 1, drifts
   baumgarte,     // g'' = -alpha g - beta g': index 1 with feedback
   projection,    // g'' = 0, then q and v are projected after each step
-  index2_ggl,    // g = 0 and g' = 0 with a second multiplier (Gear, Gupta, Leimkuhler 1985)
-  index3,        // g = 0 as it stands
-  rattle,        // g = 0 and g' = 0 by half-step impulses (Andersen 1983)
+  index2_ggl,  // g = 0 and g' = 0 with a second multiplier (Gear, Gupta, Leimkuhler 1985)
+  index3,      // g = 0 as it stands
+  rattle,      // g = 0 and g' = 0 by half-step impulses (Andersen 1983)
 };
 std::string_view name(Formulation formulation);
 
@@ -30,14 +30,14 @@ struct Options {
   double alpha = 0;  // 1/s^2, Baumgarte's position gain
   double beta = 0;   // 1/s, Baumgarte's velocity gain
 
-  double step = 1e-3;  // s, fixed-step methods
-  double rtol = 1e-6;  // adaptive methods
-  double atol = 1e-8;  // adaptive methods, times System::scale
-  double max_step = 0;        // s, 0: unlimited
+  double step = 1e-3;           // s, fixed-step methods
+  double rtol = 1e-6;           // adaptive methods
+  double atol = 1e-8;           // adaptive methods, times System::scale
+  double max_step = 0;          // s, 0: unlimited
   long max_steps = 10'000'000;  // per advance; beyond it the run fails
 
-  int max_order = 0;    // multistep order or Runge-Kutta order; 0: the method's default
-  std::string table;    // arkode_dirk: a SUNDIALS Butcher table by name; empty: our default
+  int max_order = 0;  // multistep order or Runge-Kutta order; 0: the method's default
+  std::string table;  // arkode_dirk: a SUNDIALS Butcher table by name; empty: our default
   double rho_inf = 0.9;  // generalized_alpha: spectral radius at infinity, in [0, 1]
 
   double newton_tolerance = 1e-10;  // largest correction over System::scale

@@ -1,13 +1,28 @@
 #include "models/catalogue.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "models/input_error.h"
+#include "models/published/andrews_squeezer.h"
+#include "models/published/beam.h"
+#include "models/published/double_pendulum.h"
+#include "models/published/slider_crank.h"
 
 namespace tress {
 
-std::span<const ModelEntry> models() { return {}; }
+// clang-format off
+std::span<const ModelEntry> models() {
+  static const std::array entries = {
+      ModelEntry{"andrews_squeezer", "7 angles, 6 loop closures; planar mechanism with one spring", "Test Set for IVP Solvers 2.4, andrews", andrews_squeezer_parameters(), make_andrews_squeezer},
+      ModelEntry{"slider_crank", "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)", "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_parameters(), make_slider_crank},
+      ModelEntry{"beam", "n angles of inextensible segments, clamped, pushed at the tip", "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_parameters(), make_beam},
+      ModelEntry{"double_pendulum", "2 angles, point masses, chaotic", "Landau & Lifshitz 1976, section 5", double_pendulum_parameters(), make_double_pendulum},
+  };
+  return entries;
+}
+// clang-format on
 
 const ModelEntry& find_model(std::string_view id) {
   std::vector<std::string_view> ids;

@@ -122,7 +122,7 @@ class System {
   virtual Layout layout() const = 0;
   virtual Traits traits() const = 0;
   virtual void initial_state(Out q, Out v) const = 0;  // satisfies g = 0 and G v + g_t = 0
-  virtual void scale(Out q_typ, Out v_typ) const = 0;  // typical sizes, > 0
+  virtual void scale(Out q_typ, Out v_typ) const = 0;  // typical sizes, > 0; angles <= 1
   virtual Status residual(double t, In q, In v, In a, Out r) noexcept = 0;
   virtual Status linearize(double t, In q, In v, In a, Weights w) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // S(w) x = b; b and x may be the same

@@ -8,7 +8,11 @@ namespace tress {
 namespace {
 
 constexpr Parameter declared[] = {
-    {.name = "links", .help = "number of links", .number = 10, .min = 1, .max = 1e5,
+    {.name = "links",
+     .help = "number of links",
+     .number = 10,
+     .min = 1,
+     .max = 1e5,
      .whole = true},
     {.name = "length", .help = "length (m)", .number = 1, .min = 0},
     {.name = "curve", .help = "shape", .choices = "circle|ellipse|helix"},

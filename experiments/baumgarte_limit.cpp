@@ -1,0 +1,122 @@
+// How large may Baumgarte's gains be before the feedback itself diverges, and does the
+// linear theory of each method predict it?
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/amplification.h"
+#include "experiments/harness/drift_monitor.h"
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/simulation.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"integrator", "method"},
+    {"zeta", "damping ratio beta / (2 sqrt alpha)"},
+    {"dt_s", "step"},
+    {"omega_h_predicted", "limit of sqrt(alpha) dt from the method's step matrix"},
+    {"omega_h_measured",
+     "largest sqrt(alpha) dt at which a swinging bead stays on its wire"},
+    {"rel_gap", "measured over predicted, minus one"},
+};
+
+constexpr double dt = 1e-3;  // s
+constexpr int steps = 4000;  // 0.2 % above the limit, a violation grows 1000-fold
+constexpr double start_violation = 1e-6;  // m, far inside the linear range
+constexpr double growth = 1e3;
+
+/// Whether a bead on a circle keeps a small violation small. The swing starts gently, so
+/// that the method's own drift stays below the growth that is looked for.
+bool stays(std::string_view integrator, double omega_h, double zeta) {
+  const auto bead =
+      make_model("bead_on_wire", {{"curve", "circle"}, {"form", "implicit"}});
+  State start = initial_state(*bead);
+  start.q[0] += start_violation;  // released horizontally: x is the normal
+  Options options;
+  options.formulation = Formulation::baumgarte;
+  options.step = dt;
+  const double omega = omega_h / dt;
+  options.alpha = omega * omega;
+  options.beta = 2 * zeta * omega;
+  DriftMonitor monitor(*bead, start.q, start.v, growth * start_violation);
+  const Simulation run =
+      simulate(integrator, *bead, options, start, steps * dt,
+               [&monitor](double t, In q, In v) { return monitor(t, q, v); });
+  return run.status == Status::ok;
+}
+
+// Above this the method is called unlimited.
+constexpr double beyond = 50;
+
+double measured_limit(std::string_view integrator, double zeta, double guess) {
+  double low = 0.5 * guess, high = 2 * guess;
+  while (high - low > 2e-3 * guess) {
+    const double middle = 0.5 * (low + high);
+    (stays(integrator, middle, zeta) ? low : high) = middle;
+  }
+  return low;
+}
+
+void measure(std::string_view integrator, double zeta, Row& row) {
+  const auto predicted = stability_limit(integrator, zeta);
+  if (!predicted) {
+    if (stays(integrator, beyond, zeta)) return;  // no limit predicted, none found
+    row.failed("unstable", "predicted to have no limit, diverged at omega h = 50");
+    return;
+  }
+  const double measured = measured_limit(integrator, zeta, *predicted);
+  row.set("omega_h_predicted", *predicted).set("omega_h_measured", measured);
+  row.set("rel_gap", measured / *predicted - 1);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const double ratio = line.full ? std::pow(10, 0.125) : std::pow(10, 0.25);
+  std::vector<Case> all;
+  for (const std::string_view id :
+       {"explicit_euler", "symplectic_euler", "velocity_verlet", "rk4",
+        "semi_implicit_euler", "backward_euler", "bdf2", "implicit_midpoint"}) {
+    if (!line.integrators.empty() &&
+        std::find(line.integrators.begin(), line.integrators.end(), id) ==
+            line.integrators.end()) {
+      continue;
+    }
+    for (double zeta = 0.1; zeta < 10.01; zeta *= ratio) {
+      Row identity;
+      identity.set("integrator", id).set("zeta", zeta).set("dt_s", dt);
+      all.push_back(
+          {identity, [id, zeta](Row& row, const auto&) { measure(id, zeta, row); }});
+    }
+  }
+  return all;
+}
+
+void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+  for (const Row& row : rows) {
+    if (!row.has("rel_gap")) continue;
+    const double gap = row.number("rel_gap");
+    verdicts.check(std::string(row.text("integrator")) + ", zeta " +
+                       std::string(row.text("zeta")) + ": limit within 5 % of theory",
+                   std::abs(gap) <= 0.05, gap);
+  }
+}
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "baumgarte_limit",
+      .question = "how large may Baumgarte's gains be, and does theory predict it?",
+      .example = "--integrators symplectic_euler,rk4",
+      .columns = columns,
+      .settings = {},
+      .cases = cases,
+      .derive = {},
+      .checks = check,
+      .finding = {}};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,130 @@
+// Which maximum order should a BDF code have on a rod? The Beam problem (stiff, undamped,
+// eigenvalues near +-6400 i) with CVODE's BDF of maximum order 1 to 5, beside methods
+// that are stable on the imaginary axis (ESDIRK, generalized-alpha, midpoint) and Adams.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/problems.h"
+#include "experiments/harness/simulation.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "the problem"},
+    {"integrator", "method"},
+    {"label", "method and order"},
+    {"max_order", "maximum order of a multistep method"},
+    {"rtol", "relative tolerance, adaptive methods"},
+    {"dt_s", "fixed step"},
+    {"error_rel", "largest error of the angles over their scale"},
+    {"scd", "significant correct digits of the angles"},
+    {"steps", "accepted steps"},
+    {"rejected", "rejected steps"},
+    {"linearizations", "Newton matrices"},
+    {"wall_s", "wall time", true},
+};
+
+const Problem& beam() {
+  const auto all = problems();
+  return *std::find_if(all.begin(), all.end(),
+                       [](const Problem& p) { return p.name == "beam"; });
+}
+
+void measure(std::string_view integrator, const Options& options, Row& row) {
+  const auto system = beam().make();
+  const auto begin = std::chrono::steady_clock::now();
+  const Simulation run =
+      simulate(integrator, *system, options, initial_state(*system), beam().t_end);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  row.set("steps", run.stats.steps).set("rejected", run.stats.rejected);
+  row.set("linearizations", run.stats.linearizations).set("wall_s", wall.count());
+  if (run.status != Status::ok) {
+    row.failed("solver_error", run.failure);
+    return;
+  }
+  const ProblemError error = beam().error(*system, run.state);
+  row.set("error_rel", error.relative).set("scd", error.scd);
+}
+
+void add(std::vector<Case>& all, std::string_view integrator, std::string label,
+         const Options& options, bool adaptive) {
+  Row identity;
+  identity.set("scene", "beam").set("integrator", integrator).set("label", label);
+  if (options.max_order > 0) identity.set("max_order", options.max_order);
+  if (adaptive) {
+    identity.set("rtol", options.rtol);
+  } else {
+    identity.set("dt_s", options.step);
+  }
+  all.push_back({identity, [integrator, options](Row& row, const auto&) {
+                   measure(integrator, options, row);
+                 }});
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  std::vector<Case> all;
+  const int tightest = line.full ? 8 : 6;
+  for (int digits = 3; digits <= tightest; ++digits) {
+    Options options;
+    options.rtol = options.atol = std::pow(10, -digits);
+    for (int order = 1; order <= 5; ++order) {
+      options.max_order = order;
+      add(all, "cvode_bdf", "cvode_bdf, order up to " + std::to_string(order), options,
+          true);
+    }
+    options.max_order = 0;
+    add(all, "arkode_dirk", "arkode_dirk, ESDIRK4", options, true);
+    add(all, "cvode_adams", "cvode_adams, order up to 12", options, true);
+  }
+  for (int level = 0; level < (line.full ? 9 : 7); ++level) {
+    Options options;
+    options.step = 0.02 / std::pow(2, level);
+    for (const std::string_view id : {"generalized_alpha", "implicit_midpoint", "bdf2"}) {
+      add(all, id, std::string(id) + ", order 2", options, false);
+    }
+  }
+  return all;
+}
+
+double steps_of(const std::vector<Row>& rows, int order, double rtol) {
+  for (const Row& row : rows) {
+    if (row.text("integrator") == "cvode_bdf" && row.number("max_order") == order &&
+        std::abs(row.number("rtol") / rtol - 1) < 1e-6) {
+      return row.number("steps");
+    }
+  }
+  return std::nan("");
+}
+
+void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+  const double second = steps_of(rows, 2, 1e-3), fifth = steps_of(rows, 5, 1e-3);
+  verdicts.check(
+      "BDF up to order 5 needs over ten times the steps of order 2 at rtol 1e-3",
+      fifth > 10 * second, fifth / second);
+}
+
+/// A run that does not finish is the point: high orders crawl.
+bool finding(const Row&) { return true; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "bdf_order",
+      .question = "which maximum order should a BDF code have on a rod?",
+      .example = "--full --timeout 5m",
+      .columns = columns,
+      .settings = {},
+      .cases = cases,
+      .derive = {},
+      .checks = check,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

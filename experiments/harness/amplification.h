@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace tress {
+
+/// What one step of a fixed-step method does to the violation C of a constraint under
+/// Baumgarte feedback: the test equation
+///     C'' + beta C' + alpha C = 0,   omega^2 = alpha,   beta = 2 zeta omega.
+/// Small violations obey it whatever the motion is, because the feedback acts along the
+/// constraint's own gradient.
+
+/// Spectral radius of the step's matrix on (C, h C') (velocity_verlet: with h^2 C'' too).
+/// Empty for a method that is not among those with a finite limit below.
+std::optional<double> amplification(std::string_view integrator, double omega_h,
+                                    double zeta);
+
+/// Smallest omega h at which the radius exceeds one; empty when the method is A-stable
+/// (its limit is infinite: both roots of the test equation lie in the left half-plane).
+/// Known values at zeta = 1: explicit_euler 2, symplectic_euler 2 (sqrt 2 - 1),
+/// rk4 2.785.
+std::optional<double> stability_limit(std::string_view integrator, double zeta);
+
+}  // namespace tress

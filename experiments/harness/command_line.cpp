@@ -1,0 +1,187 @@
+#include "experiments/harness/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "experiments/harness/parse.h"
+#include "experiments/harness/scene_file.h"
+#include "models/input_error.h"
+#include "models/parameters.h"
+
+namespace tress {
+namespace {
+
+constexpr int most_jobs = 1024;
+constexpr int most_repeats = 1'000'000;
+
+/// Options as CLI11 collects them: text, so that our own messages name place and remedy.
+struct Raw {
+  std::string models, integrators, elements, scene, out, shard, timeout, progress;
+  std::string jobs, repeat, seed;
+  std::vector<std::string> set;
+};
+
+void declare(CLI::App& app, CommandLine& line, Raw& raw) {
+  app.add_flag("--list", line.list, "print models, integrators and what drives what");
+  app.add_option("--models", raw.models, "models to run, as in a,b");
+  app.add_option("--integrators", raw.integrators, "integrators to run, as in a,b");
+  app.add_option("--elements", raw.elements, "element counts, as in 1,2,5,10:40:10");
+  app.add_option("--scene", raw.scene, "TOML file with any of these options");
+  app.add_option("--set", raw.set, "key=value for the experiment, integrators or models")
+      ->allow_extra_args(false);
+  app.add_option("--out", raw.out,
+                 "result table (default results/<experiment>.csv), or -");
+  app.add_flag("--quick", line.quick, "a minute or less on two cores");
+  app.add_flag("--full", line.full, "every row of the published tables");
+  app.add_option("--jobs", raw.jobs, "rows run at the same time (default 1)");
+  app.add_option("--shard", raw.shard, "run part i of n, as in 1/4");
+  app.add_option("--merge", line.merge, "join tables of this experiment into --out")
+      ->allow_extra_args(true);
+  app.add_option("--timeout", raw.timeout, "per row: 30s, 10m, 2h (default 10m)");
+  app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
+  app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
+  app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");
+  app.add_option("--seed", raw.seed, "seed of every random choice (default 1)");
+  app.add_option("--progress", raw.progress, "auto, none or json (default auto)");
+  app.add_flag("--dry-run", line.dry_run, "print the rows that would run");
+}
+
+std::string help_text(const CLI::App& app, std::string_view name,
+                      std::string_view example) {
+  return fmt::format(
+      "{}\nExample:\n  {} {}\n\nExit codes: 0 done, 1 internal error, "
+      "2 usage or input error, 3 rows failed or a check did not hold, "
+      "130 interrupted (--resume continues)\n",
+      app.help(), name, example);
+}
+
+/// CLI11's messages name the offending argument but not the remedy.
+[[noreturn]] void refuse(const CLI::App& app, std::string_view name, int argc,
+                         const char* const* argv, const CLI::ParseError& error) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const std::string help = fmt::format("{} --help shows the options", name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word =
+        std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+    const bool option = word.starts_with("--") && word.size() > 2;
+    if (!option || std::find(known.begin(), known.end(), word) != known.end()) continue;
+    const std::string_view near = nearest(word, known);
+    throw InputError(fmt::format("unknown option '{}'", word), "command line",
+                     near.empty() ? help : fmt::format("did you mean '{}'?", near));
+  }
+  throw InputError(error.what(), "command line", help);
+}
+
+ProgressMode parse_progress(std::string_view text) {
+  if (text == "auto") return ProgressMode::automatic;
+  if (text == "none") return ProgressMode::none;
+  if (text == "json") return ProgressMode::json;
+  throw InputError(fmt::format("'{}' is not a kind of progress", text), "--progress",
+                   "use one of: auto, none, json");
+}
+
+void parse_settings(const std::vector<std::string>& given, CommandLine& line) {
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals);
+    const std::string where = "--set " + text;
+    if (equals == std::string::npos || key.empty()) {
+      throw InputError("not a setting", where, "give key=value");
+    }
+    if (!line.places.emplace("set:" + key, where).second) {
+      throw InputError("'" + key + "' is set twice", where, "set it once");
+    }
+    line.set.emplace_back(key, text.substr(equals + 1));
+  }
+}
+
+void interpret(const Raw& raw, CommandLine& line) {
+  const auto given = [&line](const std::string& text, const std::string& option) {
+    if (!text.empty()) line.places.emplace(option, "--" + option);
+    return !text.empty();
+  };
+  if (given(raw.models, "models")) line.models = split(raw.models, ',', "--models");
+  if (given(raw.integrators, "integrators")) {
+    line.integrators = split(raw.integrators, ',', "--integrators");
+  }
+  if (given(raw.elements, "elements")) {
+    line.elements = parse_counts(raw.elements, "--elements");
+  }
+  if (given(raw.shard, "shard")) {
+    std::tie(line.shard_index, line.shard_count) = parse_shard(raw.shard, "--shard");
+  }
+  if (given(raw.timeout, "timeout")) {
+    line.timeout_s = parse_duration(raw.timeout, "--timeout");
+  }
+  if (given(raw.jobs, "jobs")) {
+    line.jobs = static_cast<int>(parse_whole(raw.jobs, "--jobs", 1, most_jobs));
+  }
+  if (given(raw.repeat, "repeat")) {
+    line.repeat = static_cast<int>(parse_whole(raw.repeat, "--repeat", 1, most_repeats));
+  }
+  if (given(raw.seed, "seed")) line.seed = parse_whole(raw.seed, "--seed");
+  if (given(raw.progress, "progress")) line.progress = parse_progress(raw.progress);
+  parse_settings(raw.set, line);
+}
+
+void check_combinations(const CommandLine& line) {
+  const auto refuse_if = [](bool bad, const char* problem, const char* where,
+                            const char* remedy) {
+    if (bad) throw InputError(problem, where, remedy);
+  };
+  refuse_if(line.quick && line.full, "--quick and --full exclude each other",
+            "command line", "give one of them");
+  refuse_if(line.resume && line.out == "-",
+            "standard output keeps no rows to resume from", "--resume",
+            "give --out file.csv");
+  refuse_if(line.retry_failed && !line.resume, "nothing to retry", "--retry-failed",
+            "give --resume as well");
+  refuse_if(!line.merge.empty() && line.places.count("out") == 0, "no output named",
+            "--merge", "give --out file.csv");
+}
+
+}  // namespace
+
+std::string CommandLine::place(std::string_view option) const {
+  const auto found = places.find(option);
+  return found == places.end() ? "--" + std::string(option) : found->second;
+}
+
+CommandLine parse_command_line(std::string_view name, std::string_view question,
+                               std::string_view example, int argc,
+                               const char* const* argv) {
+  CommandLine line;
+  Raw raw;
+  CLI::App app{std::string(question), std::string(name)};
+  app.set_version_flag("--version",
+                       fmt::format("{} {} ({})", name, TRESS_VERSION, TRESS_GIT_COMMIT));
+  declare(app, line, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    throw Answer(help_text(app, name, example));
+  } catch (const CLI::CallForVersion& version) {
+    throw Answer(std::string(version.what()) + "\n");
+  } catch (const CLI::ParseError& error) {
+    refuse(app, name, argc, argv, error);
+  }
+  line.argv.assign(argv, argv + argc);
+  interpret(raw, line);
+  line.scene = raw.scene;
+  line.out = raw.out;
+  if (!raw.out.empty()) line.places.emplace("out", "--out");
+  if (!line.scene.empty()) read_scene_options(line.scene, line);
+  if (line.out.empty()) {
+    line.out = line.shard_count == 1 ? fmt::format("results/{}.csv", name)
+                                     : fmt::format("results/{}.{}-of-{}.csv", name,
+                                                   line.shard_index, line.shard_count);
+  }
+  check_combinations(line);
+  return line;
+}
+
+}  // namespace tress

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/harness/row.h"
+
+namespace tress {
+
+/// A table as read: every line has as many cells as the header.
+struct Table {
+  std::vector<std::string> header;
+  std::vector<Row> rows;
+};
+
+/// RFC 4180: comma, quotes around cells that hold comma, quote or line break, quotes
+/// doubled. Lines end with '\n' alone, which every reader accepts and which diffs well.
+std::string csv_line(std::span<const std::string> cells);
+
+/// Header and rows; status "ok" is written out where a row does not say otherwise.
+std::string to_csv(std::span<const std::string> header, std::span<const Row> rows);
+
+/// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
+/// unclosed quote, a line of the wrong length and a repeated column name.
+Table parse_csv(std::string_view text, const std::string& file);
+
+Table read_csv(const std::string& file);
+
+}  // namespace tress

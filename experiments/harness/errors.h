@@ -1,3 +1,0 @@
-#pragma once
-
-#include "models/input_error.h"

@@ -1,0 +1,278 @@
+#include "experiments/harness/experiment.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "experiments/harness/csv.h"
+#include "experiments/harness/files.h"
+#include "experiments/harness/journal.h"
+#include "experiments/harness/list.h"
+#include "experiments/harness/manifest.h"
+#include "experiments/harness/merge.h"
+#include "experiments/harness/message.h"
+#include "experiments/harness/parse.h"
+#include "experiments/harness/progress.h"
+#include "experiments/harness/settings.h"
+#include "experiments/harness/sweep.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+enum ExitCode {
+  done = 0,
+  internal_error = 1,
+  usage_error = 2,
+  rows_failed = 3,
+  interrupted = 130
+};
+
+constexpr const char* standard_output = "-";
+
+/// Rows by run_id, in the order they are to be written.
+class Rows {
+ public:
+  void keep(Row row) {
+    const std::string id(row.text("run_id"));
+    const auto [place, fresh] = place_.emplace(id, rows_.size());
+    if (fresh) {
+      rows_.push_back(std::move(row));
+    } else {
+      rows_[place->second] = std::move(row);
+    }
+  }
+  const Row* find(const std::string& id) const {
+    const auto place = place_.find(id);
+    return place == place_.end() ? nullptr : &rows_[place->second];
+  }
+  const std::vector<Row>& all() const { return rows_; }
+
+  /// The planned rows first and in their order, then those of earlier plans.
+  std::vector<Row> ordered(const std::vector<Case>& plan) const {
+    std::vector<Row> result;
+    std::set<std::string_view> taken;
+    for (const Case& work : plan) {
+      const std::string id(work.identity.text("run_id"));
+      if (const Row* row = find(id)) {
+        result.push_back(*row);
+        taken.insert(row->text("run_id"));
+      }
+    }
+    for (const Row& row : rows_) {
+      if (taken.count(row.text("run_id")) == 0) result.push_back(row);
+    }
+    return result;
+  }
+
+ private:
+  std::vector<Row> rows_;
+  std::map<std::string, std::size_t> place_;
+};
+
+/// The cases of this shard, each with its run_id.
+std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
+  std::vector<Case> cases = experiment.cases(line);
+  std::set<std::string> ids;
+  std::vector<Case> mine;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const std::string id = run_id(experiment.name, cases[i].identity);
+    if (!ids.insert(id).second) {
+      throw std::logic_error("two rows have the same identity: " +
+                             describe(cases[i].identity));
+    }
+    const auto shard = static_cast<std::size_t>(line.shard_count);
+    if (i % shard != static_cast<std::size_t>(line.shard_index - 1)) continue;
+    cases[i].identity.set("run_id", id);
+    mine.push_back(std::move(cases[i]));
+  }
+  return mine;
+}
+
+std::string journal_file(const CommandLine& line) { return line.out + ".journal"; }
+
+/// Rows of a complete table from an earlier run with the same settings.
+void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
+  if (!std::filesystem::exists(line.out)) return;
+  const Table table = read_csv(line.out);
+  check_header(table, experiment.columns, line.out);
+  const std::string meta = beside(line.out, ".meta.json");
+  if (std::filesystem::exists(meta)) {
+    const auto manifest = nlohmann::json::parse(read_file(meta), nullptr, false);
+    const bool same = manifest.is_object() &&
+                      manifest.value("settings", std::string()) == settings_text(line);
+    if (!same) {
+      throw InputError("the table to resume was made with other settings", meta,
+                       "repeat them, choose another --out, or leave out --resume");
+    }
+  }
+  for (const Row& row : table.rows) rows.keep(row);
+}
+
+int report(const Experiment& experiment, const CommandLine& line,
+           const std::vector<Row>& rows, const Verdicts& verdicts) {
+  std::map<std::string, int> counts;
+  const Row* failed = nullptr;
+  for (const Row& row : rows) {
+    ++counts[std::string(row.status())];
+    const bool finding = experiment.finding && experiment.finding(row);
+    if (failed == nullptr && !row.ok() && !finding) failed = &row;
+  }
+  bool held = true;
+  for (const auto& [claim, holds, value] : verdicts.all()) {
+    held = held && holds;
+    tell("{}: {} {} ({:.3g})\n", experiment.name, holds ? "PASS" : "FAIL", claim, value);
+  }
+  if (line.progress != ProgressMode::none || failed != nullptr) {
+    std::string text;
+    for (const auto& [status, count] : counts)
+      text += fmt::format(", {} {}", count, status);
+    if (failed != nullptr) {
+      text += fmt::format("; first: {}", one_line(failed->text("reason")));
+    }
+    tell("{}: {} rows{} -> {}\n", experiment.name, rows.size(), text, line.out);
+  }
+  return held && failed == nullptr ? done : rows_failed;
+}
+
+/// Completes, judges and writes the table; returns the exit code.
+int finish(const Experiment& experiment, const CommandLine& line, std::vector<Row> rows,
+           const Manifest& manifest, std::size_t kept_from_before) {
+  Verdicts verdicts;
+  if (line.shard_count == 1) {
+    if (experiment.derive) experiment.derive(rows);
+    if (experiment.checks) experiment.checks(rows, verdicts);
+  }
+  const std::string csv = to_csv(header(experiment.columns), rows);
+  if (line.out == standard_output) {
+    write_all(STDOUT_FILENO, csv.substr(csv.find('\n') + 1), "standard output");
+  } else {
+    replace_file(beside(line.out, ".meta.json"),
+                 manifest.finished(rows, verdicts, kept_from_before));
+    replace_file(line.out, csv);
+  }
+  return report(experiment, line, rows, verdicts);
+}
+
+int merge_tables(const Experiment& experiment, const CommandLine& line) {
+  const Manifest manifest(experiment, line);
+  const Merged merged = merge(line.merge, experiment.columns);
+  const int code = finish(experiment, line, merged.rows, manifest, merged.rows.size());
+  for (const std::string& conflict : merged.conflicts) {
+    tell("{}: conflict: {}\n", experiment.name, conflict);
+  }
+  return merged.conflicts.empty() ? code : rows_failed;
+}
+
+/// Fails before the work rather than after it. Standard output can only be tried by
+/// writing to it, so it gets the header now.
+void check_place(const Experiment& experiment, const CommandLine& line) {
+  if (line.out == standard_output) {
+    write_all(STDOUT_FILENO, csv_line(header(experiment.columns)), "standard output");
+    return;
+  }
+  std::error_code ignored;  // check_output tells what is wrong with the directory
+  const bool ours = line.places.count("out") == 0;
+  if (ours) std::filesystem::create_directory("results", ignored);
+  check_output(line.out);
+}
+
+int run_rows(const Experiment& experiment, const CommandLine& line) {
+  const std::vector<Case> planned = plan(experiment, line);
+  if (planned.empty() && line.shard_count == 1) {
+    throw InputError("these options leave no row to run", "command line",
+                     "--list shows what there is");
+  }
+  check_place(experiment, line);
+  Rows rows;
+  std::optional<Journal> journal;
+  if (line.resume) keep_table(experiment, line, rows);
+  if (line.out != standard_output) {
+    const JournalKey key{std::string(experiment.name), settings_text(line),
+                         header(experiment.columns)};
+    journal.emplace(journal_file(line), key,
+                    line.resume ? Journal::Mode::resume : Journal::Mode::fresh);
+    for (const Row& row : journal->rows()) rows.keep(row);
+  }
+  std::vector<Case> todo;
+  for (const Case& work : planned) {
+    const Row* row = rows.find(std::string(work.identity.text("run_id")));
+    if (row == nullptr || (line.retry_failed && !row->ok())) todo.push_back(work);
+  }
+  const std::size_t kept = planned.size() - todo.size();
+  const Manifest manifest(experiment, line);
+  const std::vector<std::string> columns = header(experiment.columns);
+  SweepEnd end = SweepEnd::complete;
+  {
+    Progress progress(line.progress, experiment.name, todo.size());
+    end = sweep(todo, line.jobs, line.timeout_s, [&](std::size_t, Row row) {
+      static_cast<void>(in_order(row, columns));  // an undeclared column is our mistake
+      if (journal) journal->append(row);
+      progress.finished(row);
+      rows.keep(std::move(row));
+    });
+  }
+  if (end == SweepEnd::interrupted) {
+    const std::string remedy =
+        journal ? fmt::format(
+                      "finished rows are in {}; the same command with --resume "
+                      "continues",
+                      journal_file(line))
+                : "nothing was written";
+    tell("{}: interrupted: {}\n", experiment.name, remedy);
+    return interrupted;
+  }
+  const int code = finish(experiment, line, rows.ordered(planned), manifest, kept);
+  if (journal) journal->remove();
+  return code;
+}
+
+int dry_run(const Experiment& experiment, const CommandLine& line) {
+  std::string text;
+  for (const Case& work : plan(experiment, line)) text += describe(work.identity) + '\n';
+  write_all(STDOUT_FILENO, text, "standard output");
+  return done;
+}
+
+int answer(const Experiment& experiment, int argc, char** argv) {
+  const CommandLine line = parse_command_line(experiment.name, experiment.question,
+                                              experiment.example, argc, argv);
+  const Settings checked(line, experiment.settings);
+  if (line.list) {
+    write_all(STDOUT_FILENO, catalogue_text(experiment.settings), "standard output");
+    return done;
+  }
+  if (!line.merge.empty()) {
+    check_place(experiment, line);
+    return merge_tables(experiment, line);
+  }
+  return line.dry_run ? dry_run(experiment, line) : run_rows(experiment, line);
+}
+
+}  // namespace
+
+int run_experiment(const Experiment& experiment, int argc, char** argv) {
+  ::signal(SIGXFSZ,
+           SIG_IGN);  // a file size limit is then an error of write, with a message
+  try {
+    return answer(experiment, argc, argv);
+  } catch (const Answer& text) {
+    std::fputs(text.what(), stdout);
+    return done;
+  } catch (const InputError& error) {
+    tell("{}: error: {}\n", experiment.name, one_line(error.what()));
+    return usage_error;
+  } catch (const std::exception& error) {
+    tell("{}: internal error: {}\n", experiment.name, one_line(error.what()));
+    return internal_error;
+  }
+}
+
+}  // namespace tress

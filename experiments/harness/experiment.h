@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "experiments/harness/command_line.h"
+#include "experiments/harness/row.h"
+#include "experiments/harness/verdicts.h"
+#include "models/parameters.h"
+
+namespace tress {
+
+/// When a case has to end. One that looks at `passed()` can stop by itself with what it
+/// measured; one that does not is killed shortly after.
+class Deadline {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit Deadline(double seconds)
+      : end_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                std::chrono::duration<double>(seconds))) {}
+  bool passed() const { return Clock::now() >= end_; }
+  double remaining_s() const {
+    return std::chrono::duration<double>(end_ - Clock::now()).count();
+  }
+
+ private:
+  Clock::time_point end_;
+};
+
+/// One row to be measured, in a process of its own: it may crash, hang or throw, and the
+/// table still gets its row.
+struct Case {
+  Row identity;  // the columns that tell this row from all others; hashed into run_id
+  std::function<void(Row&, const Deadline&)> run;  // the row comes with the identity set
+};
+
+/// One executable, one question.
+struct Experiment {
+  std::string_view name, question;
+  std::string_view example;             // arguments only: "--models bead_on_wire --quick"
+  std::span<const Column> columns;      // status, reason and run_id are added to them
+  std::span<const Parameter> settings;  // keys of --set that are the experiment's own
+  std::function<std::vector<Case>(const CommandLine&)> cases;
+  /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
+  std::function<void(std::vector<Row>&)> derive;
+  /// Optional: states what the table must show; a claim that does not hold makes the exit
+  /// code 3. Neither is called on a single shard.
+  std::function<void(const std::vector<Row>&, Verdicts&)> checks;
+  /// Optional: a row that is not ok but is what the experiment set out to find (a
+  /// divergence beyond a limit, say) does not make the exit code 3.
+  std::function<bool(const Row&)> finding;
+};
+
+/// The whole main(): options, --list, sweep, table, manifest; returns the exit code.
+/// 0 all rows ok and checks passed; 1 internal error; 2 usage or input error; 3 some rows
+/// failed or a check did not hold (the table is complete); 130 interrupted (resumable).
+int run_experiment(const Experiment& experiment, int argc, char** argv);
+
+}  // namespace tress

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "models/parameters.h"
+
+namespace tress {
+
+/// What --list prints: models with their parameters, integrators, the experiment's and
+/// the integrators' keys, and which integrator drives which model under which formulation
+/// of the constraints, every gap with its reason.
+std::string catalogue_text(std::span<const Parameter> experiment_settings);
+
+}  // namespace tress

@@ -1,0 +1,104 @@
+#include "experiments/harness/manifest.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "experiments/harness/message.h"
+#include "experiments/harness/sundials_speed.h"
+
+namespace tress {
+namespace {
+
+std::string utc_now() {
+  const auto now =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
+}  // namespace
+
+std::string settings_text(const CommandLine& line) {
+  auto sorted = line.set;
+  std::sort(sorted.begin(), sorted.end());
+  std::string text = fmt::format("seed={}", line.seed);
+  for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
+  return text;
+}
+
+Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
+    : experiment_(experiment),
+      line_(line),
+      source_(source_state()),
+      load_(load_average()),
+      sundials_ratio_(sundials_speed_ratio()),
+      start_(utc_now()) {
+  if (sundials_ratio_ > slow_sundials_ratio) {
+    tell(
+        "{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
+        "nothing; './tress setup' builds a Release one\n",
+        experiment.name, sundials_ratio_);
+  }
+}
+
+std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
+                               std::size_t kept_from_before) const {
+  using nlohmann::ordered_json;
+  const Machine here = machine();
+  std::map<std::string, int> counts;
+  for (const Row& row : rows) ++counts[std::string(row.status())];
+  ordered_json columns;
+  for (const Column& column : experiment_.columns) {
+    columns[std::string(column.name)] = column.help;
+  }
+  ordered_json checks = ordered_json::array();
+  for (const auto& [claim, held, value] : verdicts.all()) {
+    checks.push_back({{"claim", claim}, {"held", held}, {"value", value}});
+  }
+  ordered_json libraries;
+  for (const auto& [library, version] : library_versions()) libraries[library] = version;
+  const ordered_json manifest{
+      {"experiment", experiment_.name},
+      {"question", experiment_.question},
+      {"schema", schema_version},
+      {"tress_version", TRESS_VERSION},
+      {"argv", line_.argv},
+      {"settings", settings_text(line_)},
+      {"scene", line_.scene},
+      {"seed", line_.seed},
+      {"jobs", line_.jobs},
+      {"repeat", line_.repeat},
+      {"timeout_s", line_.timeout_s},
+      {"quick", line_.quick},
+      {"full", line_.full},
+      {"shard", fmt::format("{}/{}", line_.shard_index, line_.shard_count)},
+      {"start", start_},
+      {"end", utc_now()},
+      {"checks", checks},
+      {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
+      {"build",
+       {{"compiler", TRESS_COMPILER},
+        {"flags", TRESS_FLAGS},
+        {"type", TRESS_BUILD_TYPE}}},
+      {"machine",
+       {{"cpu", here.cpu},
+        {"cpus", here.cpus},
+        {"caches", here.caches},
+        {"simd", here.simd},
+        {"kernel", here.kernel},
+        {"load_before", load_},
+        {"load_after", load_average()}}},
+      {"libraries", libraries},
+      {"sundials_speed_ratio", sundials_ratio_},
+      {"rows",
+       {{"total", rows.size()}, {"by_status", counts}, {"resumed", kept_from_before}}},
+      {"columns", columns}};
+  return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace tress

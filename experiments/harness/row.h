@@ -1,0 +1,76 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tress {
+
+/// One column of a result table; the unit is part of the name ("dt_s", "error_rel").
+struct Column {
+  std::string_view name;
+  std::string_view help;
+  bool timing = false;  // differs from run to run: left out when two rows are compared
+};
+
+/// One row of a result table: text by column name. Unset columns stay empty cells, and so
+/// do numbers that are not finite. Numbers are written by std::to_chars, the shortest
+/// text that reads back to the same bits (at most 17 significant digits).
+class Row {
+ public:
+  using Cell = std::pair<std::string, std::string>;
+
+  Row& set(std::string_view column, std::string_view text);
+  Row& set(std::string_view column, const char* text) {
+    return set(column, std::string_view(text));
+  }
+  Row& set(std::string_view column, const std::string& text) {
+    return set(column, std::string_view(text));
+  }
+  Row& set(std::string_view column, double x);
+  Row& set(std::string_view column, bool yes) {
+    return set(column, yes ? "true" : "false");
+  }
+  template <std::integral T>
+  Row& set(std::string_view column, T x) {
+    return set(column, std::string_view(std::to_string(x)));
+  }
+
+  /// What went wrong: unstable, diverged, timeout, solver_error, refused,
+  /// below_reference ... and the time or place it happened.
+  Row& failed(std::string_view status, std::string_view reason);
+
+  bool has(std::string_view column) const;
+  std::string_view text(std::string_view column) const;  // empty when unset
+  double number(std::string_view column) const;          // NaN when empty or not a number
+  std::string_view status() const;                       // "ok" unless failed
+  bool ok() const { return status() == "ok"; }
+  std::span<const Cell> cells() const { return cells_; }
+
+ private:
+  std::vector<Cell> cells_;
+};
+
+/// Layout of the rows that one experiment writes; a change of meaning raises it, so that
+/// older tables are not resumed.
+constexpr int schema_version = 1;
+
+/// Names a row across runs: 16 hexadecimal digits hashed from the experiment's name, the
+/// identity cells sorted by column, and the schema version.
+std::string run_id(std::string_view experiment, const Row& identity);
+
+/// "a=1 b=2" for messages.
+std::string describe(const Row& identity);
+
+/// The experiment's columns followed by status, reason and run_id.
+std::vector<std::string> header(std::span<const Column> columns);
+
+/// The row's cells in the order of `header`; throws std::logic_error when the row holds a
+/// column that the header lacks.
+std::vector<std::string> in_order(const Row& row, std::span<const std::string> header);
+
+}  // namespace tress

@@ -1,0 +1,179 @@
+#include "experiments/harness/scene_file.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "experiments/harness/files.h"
+#include "experiments/harness/parse.h"
+#include "models/input_error.h"
+#include "models/parameters.h"
+
+namespace tress {
+namespace {
+
+std::string place_of(const toml::source_region& source, const std::string& file) {
+  return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
+}
+
+/// toml++ has aborted on NUL bytes in some builds, so they are looked for first.
+void refuse_nul_bytes(std::string_view text, const std::string& file) {
+  const std::size_t at = text.find('\0');
+  if (at == std::string_view::npos) return;
+  int row = 1, column = 1;
+  for (const char c : text.substr(0, at)) {
+    column = c == '\n' ? 1 : column + 1;
+    row += c == '\n' ? 1 : 0;
+  }
+  throw InputError("NUL byte in a scene file", fmt::format("{}:{}:{}", file, row, column),
+                   "scene files are plain text");
+}
+
+toml::table parse(const std::string& file) {
+  const std::string text = read_file(file);
+  refuse_nul_bytes(text, file);
+  try {
+    return toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    throw InputError(std::string(error.description()), place_of(error.source(), file),
+                     "correct the TOML there");
+  }
+}
+
+/// Text of a scalar as `--set` would give it; empty when it is not a scalar.
+std::string scalar_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* yes = node.as_boolean()) return yes->get() ? "true" : "false";
+  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+  if (const auto* real = node.as_floating_point()) {
+    char buffer[32];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, real->get());
+    return std::string(buffer, end.ptr);
+  }
+  return {};
+}
+
+/// A scalar, or a list of scalars joined by commas: what the option of that name accepts.
+std::string option_text(const toml::node& node, const std::string& where) {
+  const auto text_of = [&where](const toml::node& scalar) {
+    std::string text = scalar_text(scalar);
+    if (text.empty()) {
+      throw InputError("wrong type of value", where,
+                       "give a string, a number, or a list of them");
+    }
+    return text;
+  };
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return text_of(node);
+  std::string joined;
+  for (const toml::node& entry : *list) {
+    if (!joined.empty()) joined += ',';
+    joined += text_of(entry);
+  }
+  return joined;
+}
+
+bool flag(const toml::node& node, const std::string& where) {
+  if (const auto* yes = node.as_boolean()) return yes->get();
+  throw InputError("wrong type of value", where, "give true or false");
+}
+
+std::string word(const toml::node& node, const std::string& where) {
+  if (const auto* text = node.as_string()) return text->get();
+  throw InputError("wrong type of value", where, "give a string");
+}
+
+int count(const std::string& text, const std::string& where) {
+  return static_cast<int>(parse_whole(text, where, 1, 1'000'000));
+}
+
+void read_settings(const toml::node& node, const std::string& where,
+                   const std::string& file, CommandLine& line) {
+  const toml::table* settings = node.as_table();
+  if (settings == nullptr) {
+    throw InputError("'settings' is not a table", where,
+                     "write [settings] and key = value");
+  }
+  for (const auto& [key, value] : *settings) {
+    const std::string name(key.str());
+    const std::string place = place_of(value.source(), file);
+    const std::string text = scalar_text(value);
+    if (text.empty()) {
+      throw InputError("wrong type of value for '" + name + "'", place,
+                       "give a number, a string, true or false");
+    }
+    if (line.places.emplace("set:" + name, place).second)
+      line.set.emplace_back(name, text);
+  }
+}
+
+using Reader = void (*)(const toml::node&, const std::string& where, CommandLine&);
+
+constexpr std::pair<std::string_view, Reader> readers[] = {
+    {"title", [](const toml::node& n, const std::string& where,
+                 CommandLine&) { static_cast<void>(word(n, where)); }},
+    {"models",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.models = split(option_text(n, where), ',', where);
+     }},
+    {"integrators",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.integrators = split(option_text(n, where), ',', where);
+     }},
+    {"elements",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.elements = parse_counts(option_text(n, where), where);
+     }},
+    {"timeout",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.timeout_s = parse_duration(option_text(n, where), where);
+     }},
+    {"repeat",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.repeat = count(option_text(n, where), where);
+     }},
+    {"seed",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.seed = parse_whole(option_text(n, where), where);
+     }},
+    {"quick", [](const toml::node& n, const std::string& where,
+                 CommandLine& line) { line.quick = flag(n, where) && !line.full; }},
+    {"full", [](const toml::node& n, const std::string& where,
+                CommandLine& line) { line.full = flag(n, where) && !line.quick; }},
+};
+
+[[noreturn]] void unknown_key(std::string_view name, const std::string& where) {
+  std::vector<std::string_view> known{"settings"};
+  for (const auto& [key, read] : readers) known.push_back(key);
+  const std::string_view near = nearest(name, known);
+  throw InputError(fmt::format("unknown key '{}'", name), where,
+                   near.empty() ? fmt::format("use one of: {}", fmt::join(known, ", "))
+                                : fmt::format("did you mean '{}'?", near));
+}
+
+}  // namespace
+
+void read_scene_options(const std::string& file, CommandLine& line) {
+  const toml::table scene = parse(file);
+  for (const auto& [key, value] : scene) {
+    const std::string name(key.str());
+    const std::string where = place_of(value.source(), file);
+    if (name == "settings") {
+      read_settings(value, where, file, line);
+      continue;
+    }
+    const auto* reader = std::find_if(std::begin(readers), std::end(readers),
+                                      [&](const auto& r) { return r.first == name; });
+    if (reader == std::end(readers)) unknown_key(name, place_of(key.source(), file));
+    if (line.places.emplace(name, where).second) {
+      reader->second(value, where, line);
+    } else {
+      CommandLine checked;  // the command line wins, but a wrong value is still an error
+      reader->second(value, where, checked);
+    }
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace tress {
+
+/// The middle value (mean of the two middle ones); 0 of none.
+double median(std::vector<double> values);
+
+/// Wall time of repeated calls, in s. The median is what tables show: the smallest is an
+/// unusually lucky run, the mean is spoilt by one interruption.
+struct Timing {
+  double median_s = 0, min_s = 0;
+  int repeats = 0;
+};
+Timing summarize(const std::vector<double>& seconds);
+
+/// Calls f once unmeasured (caches, lazy allocation), then `repeats` times.
+template <typename F>
+Timing time_it(int repeats, F&& f) {
+  using Clock = std::chrono::steady_clock;
+  f();
+  std::vector<double> seconds;
+  for (int i = 0; i < std::max(repeats, 1); ++i) {
+    const auto start = Clock::now();
+    f();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return summarize(seconds);
+}
+
+}  // namespace tress

@@ -1,0 +1,149 @@
+#include "experiments/harness/worker.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "experiments/harness/files.h"
+#include "experiments/harness/journal.h"
+
+namespace tress {
+namespace {
+
+/// Time between the deadline that a case may honour and the kill: a tenth of the timeout,
+/// at least 50 ms, at most 2 s.
+double grace_s(double timeout_s) { return std::clamp(0.1 * timeout_s, 0.05, 2.0); }
+
+void reset_signals() {
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+[[noreturn]] void run_case(const Case& work, double timeout_s, int pipe, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it died before the line above
+  reset_signals();
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  Row row = work.identity;
+  try {
+    work.run(row, Deadline(timeout_s));
+  } catch (const std::exception& error) {
+    row.failed("exception", error.what());
+  } catch (...) {
+    row.failed("exception", "something that is no std::exception was thrown");
+  }
+  try {
+    write_all(pipe, to_json_line(row) + '\n', "pipe");
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+Worker::Worker(const Case& work, std::size_t index, double timeout_s)
+    : work_(&work),
+      index_(index),
+      timeout_s_(timeout_s),
+      kill_at_(Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(
+                   std::chrono::duration<double>(timeout_s + grace_s(timeout_s)))) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
+  }
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ < 0) {
+    const int error = errno;
+    ::close(ends[0]);
+    ::close(ends[1]);
+    throw std::runtime_error(std::string("fork: ") + std::strerror(error));
+  }
+  if (process_ == 0) run_case(work, timeout_s, ends[1], parent);
+  setpgid(process_, process_);  // also here: the kill below must not come too early
+  ::close(ends[1]);
+  pipe_ = ends[0];
+  fcntl(pipe_, F_SETFL, O_NONBLOCK);
+}
+
+Worker::Worker(Worker&& other) noexcept
+    : work_(other.work_),
+      index_(other.index_),
+      timeout_s_(other.timeout_s_),
+      kill_at_(other.kill_at_),
+      process_(std::exchange(other.process_, -1)),
+      pipe_(std::exchange(other.pipe_, -1)),
+      received_(std::move(other.received_)) {}
+
+Worker::~Worker() {
+  if (process_ > 0) {
+    kill(-process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
+  if (pipe_ >= 0) ::close(pipe_);
+}
+
+void Worker::drain() {
+  char buffer[16384];
+  while (pipe_ >= 0) {
+    const ssize_t n = ::read(pipe_, buffer, sizeof buffer);
+    if (n > 0) {
+      received_.append(buffer, static_cast<std::size_t>(n));
+    } else if (n < 0 && errno == EINTR) {
+      continue;
+    } else if (n < 0 && errno == EAGAIN) {
+      return;
+    } else {
+      ::close(std::exchange(pipe_, -1));
+    }
+  }
+}
+
+std::optional<Row> Worker::poll() {
+  drain();
+  int wait_status = 0;
+  const bool timed_out = Clock::now() >= kill_at_;
+  if (timed_out) kill(-process_, SIGKILL);
+  const pid_t ended = waitpid(process_, &wait_status, timed_out ? 0 : WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
+  kill(-process_, SIGKILL);  // children that it may have left behind
+  process_ = -1;
+  drain();
+  return result(wait_status, timed_out);
+}
+
+Row Worker::result(int wait_status, bool timed_out) const {
+  if (received_.ends_with('\n')) {
+    try {
+      return from_json_line(received_);
+    } catch (const std::exception&) {
+      // Not our line: told below as a crash.
+    }
+  }
+  Row row = work_->identity;
+  if (timed_out) {
+    return row.failed("timeout", fmt::format("killed after {:.3g} s", timeout_s_));
+  }
+  if (WIFSIGNALED(wait_status)) {
+    const int signal = WTERMSIG(wait_status);
+    return row.failed("crashed", fmt::format("signal {}: {}", signal, strsignal(signal)));
+  }
+  return row.failed("crashed", fmt::format("exit code {} before the row was complete",
+                                           WEXITSTATUS(wait_status)));
+}
+
+}  // namespace tress

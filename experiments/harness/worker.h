@@ -1,0 +1,45 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "experiments/harness/experiment.h"
+
+namespace tress {
+
+/// One case in a forked process of its own group, which dies with its parent. Its row
+/// comes back through a pipe; what it prints goes to standard error.
+class Worker {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Worker(const Case& work, std::size_t index, double timeout_s);
+  ~Worker();  // kills what still runs
+  Worker(Worker&& other) noexcept;
+  Worker& operator=(Worker&&) = delete;
+
+  std::size_t index() const { return index_; }
+  int pipe() const { return pipe_; }  // -1 once the far end is closed
+  Clock::time_point killed_at() const { return kill_at_; }
+
+  /// Reads what there is; the row once the process has ended or its time is over: its
+  /// own, or the identity with status timeout or crashed.
+  std::optional<Row> poll();
+
+ private:
+  void drain();
+  Row result(int wait_status, bool timed_out) const;
+
+  const Case* work_;
+  std::size_t index_;
+  double timeout_s_;
+  Clock::time_point kill_at_;
+  pid_t process_ = -1;
+  int pipe_ = -1;
+  std::string received_;
+};
+
+}  // namespace tress

@@ -1,0 +1,179 @@
+// What does accuracy cost in time, per integrator? Error at the end of a run against its
+// wall time, from loose to tight, on problems with exact, published or doubly computed
+// references.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/problems.h"
+#include "experiments/harness/settings.h"
+#include "experiments/harness/simulation.h"
+#include "experiments/harness/timing.h"
+#include "experiments/harness/work_precision_series.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "the problem"},
+    {"model", "catalogue id"},
+    {"integrator", "method"},
+    {"formulation", "how constraints enter"},
+    {"dt_s", "fixed step"},
+    {"rtol", "relative tolerance, adaptive methods"},
+    {"elements", "coordinates of the problem"},
+    {"solver", "linear solver in use"},
+    {"error_kind", "time: against the same equations integrated to convergence"},
+    {"error_rel", "largest error of the compared positions over their scale"},
+    {"scd", "significant correct digits, -log10 of the largest relative error"},
+    {"reference_gap", "disagreement of the two references, same norm"},
+    {"below_reference", "error below ten times that gap: not to be trusted"},
+    {"wall_s", "median wall time of the run", true},
+    {"wall_s_per_sim_s", "the same per simulated second", true},
+    {"steps", "accepted steps"},
+    {"rejected", "rejected steps"},
+    {"residuals", "residual or acceleration evaluations"},
+    {"linearizations", "matrices built and factored"},
+    {"solves", "linear solves"},
+    {"order_fit", "slope of log error against log step over the finest points"},
+    {"pareto", "no other run of the scene is both faster and more accurate"},
+};
+
+// Runs longer than this are timed once; shorter ones --repeat times, for the median.
+constexpr double long_run = 0.3;  // s
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void measure(const Problem& problem, std::string_view integrator, const Options& options,
+             int repeat, Row& row) {
+  const auto system = problem.make();
+  const State start = initial_state(*system);
+  const auto begin = std::chrono::steady_clock::now();
+  const Simulation run = simulate(integrator, *system, options, start, problem.t_end);
+  double wall = seconds_since(begin);
+  row.set("elements", system->layout().coordinates).set("solver", run.stats.solver);
+  row.set("steps", run.stats.steps).set("rejected", run.stats.rejected);
+  row.set("residuals", run.stats.residuals);
+  row.set("linearizations", run.stats.linearizations).set("solves", run.stats.solves);
+  if (run.status != Status::ok) {
+    row.failed("solver_error", run.failure);
+    return;
+  }
+  const ProblemError error = problem.error(*system, run.state);
+  if (!std::isfinite(error.relative) || error.relative > 10) {
+    row.failed("diverged", "error above ten times the scale of the problem");
+    return;
+  }
+  if (wall < long_run) {
+    wall = time_it(repeat, [&] {
+             (void)simulate(integrator, *system, options, start, problem.t_end);
+           }).median_s;
+  }
+  row.set("error_kind", "time").set("error_rel", error.relative).set("scd", error.scd);
+  row.set("reference_gap", problem.reference_gap);
+  row.set("below_reference", error.relative < 10 * problem.reference_gap);
+  row.set("wall_s", wall).set("wall_s_per_sim_s", wall / problem.t_end);
+}
+
+/// The formulations a table of manageable size shows: the method's own best. --full: all
+/// but Baumgarte's, whose gains are the subject of constraint_drift.
+std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, bool full) {
+  constexpr Formulation preference[] = {
+      Formulation::parametric, Formulation::rattle,     Formulation::index2_ggl,
+      Formulation::index3,     Formulation::projection, Formulation::acceleration};
+  std::vector<Formulation> list;
+  for (const Formulation formulation : preference) {
+    if (refusal(entry, system, formulation).empty()) list.push_back(formulation);
+  }
+  if (!full && list.size() > 1) list.resize(1);
+  return list;
+}
+
+bool wanted(const std::vector<std::string>& list, std::string_view id) {
+  return list.empty() || std::find(list.begin(), list.end(), id) != list.end();
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Options base = Settings(line, {}).options();
+  std::vector<Case> all;
+  for (const Problem& problem : problems()) {
+    if (!wanted(line.models, problem.model)) continue;
+    const auto system = problem.make();
+    for (const IntegratorEntry& entry : integrators()) {
+      if (!wanted(line.integrators, entry.id)) continue;
+      for (const Formulation formulation : shown(entry, *system, line.full)) {
+        const int points = line.full ? 10 : 7;
+        for (int level = 0; level < points; ++level) {
+          Options options = base;
+          options.formulation = formulation;
+          Row identity;
+          identity.set("scene", problem.name).set("model", problem.model);
+          identity.set("integrator", entry.id).set("formulation", name(formulation));
+          if (entry.adaptive) {
+            options.rtol = options.atol = std::pow(10, -3 - level);
+            identity.set("rtol", options.rtol);
+          } else {
+            options.step = problem.coarse_step / std::pow(2, level);
+            identity.set("dt_s", options.step);
+          }
+          all.push_back({identity, [&problem, id = entry.id, options,
+                                    repeat = line.repeat](Row& row, const auto&) {
+                           measure(problem, id, options, repeat, row);
+                         }});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+double best_scd(const std::vector<Row>& rows, std::string_view scene,
+                std::string_view integrator) {
+  double best = 0;
+  for (const Row& row : rows) {
+    if (row.text("scene") == scene && row.text("integrator") == integrator && row.ok()) {
+      best = std::max(best, row.number("scd"));
+    }
+  }
+  return best;
+}
+
+void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+  int on_beam = 0;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (best_scd(rows, "beam", entry.id) >= 6) ++on_beam;
+  }
+  double squeezer = 0;
+  for (const std::string_view id : {"ida", "generalized_alpha", "newmark", "bdf2"}) {
+    squeezer = std::max(squeezer, best_scd(rows, "andrews_squeezer", id));
+  }
+  verdicts.check("Andrews' squeezer: 6 correct digits from ida or an implicit method",
+                 squeezer >= 6, squeezer);
+  verdicts.check("Beam: 6 correct digits from two integrators", on_beam >= 2, on_beam);
+}
+
+/// A step or tolerance too loose for the method is where its curve ends, not a mistake.
+bool finding(const Row&) { return true; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "work_precision",
+      .question = "what does accuracy cost in time, per integrator?",
+      .example = "--models beam --integrators cvode_bdf,arkode_dirk",
+      .columns = columns,
+      .settings = {},
+      .cases = cases,
+      .derive = add_series_columns,
+      .checks = check,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

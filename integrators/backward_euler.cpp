@@ -1,0 +1,38 @@
+#include "integrators/fixed_step.h"
+#include "integrators/methods.h"
+#include "integrators/stage.h"
+#include "integrators/vector_ops.h"
+
+namespace tress {
+namespace {
+
+/// v_{n+1} = v_n + h a_{n+1}, q_{n+1} = q_n + h v_{n+1}. The last acceleration is the
+/// guess.
+class BackwardEuler final : public FixedStep {
+ public:
+  BackwardEuler(System& system, const Options& options)
+      : FixedStep(system, options),
+        stage_(dynamics_, options),
+        a_(vector_n()),
+        q_bar_(vector_n()) {}
+
+ private:
+  Status step(double t, double h) override {
+    shifted(q_bar_, q_, h, v_);
+    const Status s = stage_.solve(t + h, q_bar_, v_, {1, h, h * h}, a_, lambda_);
+    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
+    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    return s;
+  }
+
+  Stage stage_;
+  std::vector<double> a_, q_bar_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_backward_euler(System& system, const Options& options) {
+  return std::make_unique<BackwardEuler>(system, options);
+}
+
+}  // namespace tress

@@ -1,0 +1,58 @@
+#include "integrators/fixed_step.h"
+#include "integrators/methods.h"
+#include "integrators/stage.h"
+#include "integrators/vector_ops.h"
+
+namespace tress {
+namespace {
+
+/// y_{n+1} = c0 y_n - c1 y_{n-1} + b h y'_{n+1} for y = q and y = v, with
+/// w = h / h_previous: b = (1 + w)/(1 + 2w), c0 = (1 + w)^2/(1 + 2w), c1 = w^2/(1 + 2w).
+/// w = 0 is backward Euler, the first step.
+class Bdf2 final : public FixedStep {
+ public:
+  Bdf2(System& system, const Options& options)
+      : FixedStep(system, options),
+        stage_(dynamics_, options),
+        a_(vector_n()),
+        q_bar_(vector_n()),
+        v_bar_(vector_n()),
+        q_previous_(vector_n()),
+        v_previous_(vector_n()) {}
+
+ private:
+  Status reset(double /*t*/) override {
+    h_previous_ = 0;
+    return Status::ok;
+  }
+
+  Status step(double t, double h) override {
+    const double w = h_previous_ > 0 ? h / h_previous_ : 0;
+    const double c0 = (1 + w) * (1 + w) / (1 + 2 * w);
+    const double c1 = w * w / (1 + 2 * w);
+    const double bh = (1 + w) / (1 + 2 * w) * h;
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      v_bar_[i] = c0 * v_[i] - c1 * v_previous_[i];
+      q_bar_[i] = c0 * q_[i] - c1 * q_previous_[i] + bh * v_bar_[i];
+    }
+    const Status s = stage_.solve(t + h, q_bar_, v_bar_, {1, bh, bh * bh}, a_, lambda_);
+    q_previous_ = q_;
+    v_previous_ = v_;
+    h_previous_ = h;
+    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
+    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    return s;
+  }
+
+  Stage stage_;
+  double h_previous_ = 0;
+  std::vector<double> a_, q_bar_, v_bar_, q_previous_, v_previous_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_bdf2(System& system, const Options& options) {
+  return std::make_unique<Bdf2>(system, options);
+}
+
+}  // namespace tress

@@ -1,0 +1,82 @@
+#include "integrators/fixed_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tress {
+namespace {
+
+bool finite(In x) {
+  return std::all_of(x.begin(), x.end(),
+                     [](double entry) { return std::isfinite(entry); });
+}
+
+}  // namespace
+
+FixedStep::FixedStep(System& system, const Options& options)
+    : options_(options),
+      dynamics_(system, options),
+      q_(static_cast<std::size_t>(dynamics_.n())),
+      v_(q_.size()),
+      lambda_(static_cast<std::size_t>(dynamics_.m())) {
+  if (options.formulation == Formulation::projection) projection_.emplace(dynamics_);
+}
+
+Status FixedStep::start(double t, In q, In v) {
+  std::copy(q.begin(), q.end(), q_.begin());
+  std::copy(v.begin(), v.end(), v_.begin());
+  std::fill(lambda_.begin(), lambda_.end(), 0.0);
+  t_ = t;
+  failure_.clear();
+  const Stats fresh{.solver = dynamics_.stats.solver};
+  dynamics_.stats = fresh;
+  const Status s = reset(t);
+  return s == Status::ok ? s : fail(s, t, "no acceleration at the initial state");
+}
+
+Status FixedStep::fail(Status status, double t, const std::string& what) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%.9g", t);
+  failure_ = what + " at t = " + time + " s";
+  return status == Status::ok ? Status::fatal : status;
+}
+
+Status FixedStep::finish_step(double t) {
+  if (!finite(q_) || !finite(v_)) return fail(Status::fatal, t, "state not finite");
+  if (projection_) {
+    const Status s = projection_->project(t, q_, v_);
+    if (s != Status::ok) return fail(s, t, "projection onto the constraints failed");
+  }
+  if (dynamics_.system().accept(t, q_, v_)) {
+    const Status s = reset(t);
+    if (s != Status::ok) return fail(s, t, "restart after an event failed");
+  }
+  return Status::ok;
+}
+
+Status FixedStep::advance(double t_end, const Observer& each_step) {
+  const double t_begin = t_;
+  const double span = t_end - t_begin;
+  if (span <= 0) return Status::ok;
+  // 1e-9: a span that is a whole number of steps up to rounding is not cut once more.
+  const double count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
+  if (count > static_cast<double>(options_.max_steps)) {
+    return fail(Status::fatal, t_, "more than max_steps steps needed");
+  }
+  const auto steps = static_cast<long>(count);
+  const double h = span / count;
+  for (long i = 0; i < steps; ++i) {
+    const double t = t_begin + static_cast<double>(i) * h;
+    if (const Status s = step(t, h); s != Status::ok) {
+      return fail(s, t, "no solution for the step");
+    }
+    t_ = i + 1 == steps ? t_end : t + h;
+    ++dynamics_.stats.steps;
+    if (const Status s = finish_step(t_); s != Status::ok) return s;
+    if (each_step && !each_step(t_, q_, v_)) return fail(Status::fatal, t_, "stopped");
+  }
+  return Status::ok;
+}
+
+}  // namespace tress

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integrators/formulation/dynamics.h"
+#include "integrators/formulation/projection.h"
+#include "integrators/integrator.h"
+
+namespace tress {
+
+/// The loop shared by every method with a fixed step: equal steps no longer than
+/// Options::step that land on t_end, then projection if asked for, System::accept and the
+/// observer. A method writes step() and, when it has history, reset().
+class FixedStep : public Integrator {
+ public:
+  FixedStep(System& system, const Options& options);
+
+  Status start(double t, In q, In v) final;
+  Status advance(double t_end, const Observer& each_step = {}) final;
+  double time() const final { return t_; }
+  In q() const final { return q_; }
+  In v() const final { return v_; }
+  Stats stats() const final { return dynamics_.stats; }
+  std::string failure() const final { return failure_; }
+
+ protected:
+  /// Forgets history; the state is q_, v_ at time t.
+  virtual Status reset(double /*t*/) { return Status::ok; }
+  /// Moves q_, v_ from t to t + h.
+  virtual Status step(double t, double h) = 0;
+
+  std::vector<double> vector_n() const { return std::vector<double>(q_.size()); }
+
+  Options options_;
+  Dynamics dynamics_;
+  std::vector<double> q_, v_;
+  std::vector<double> lambda_;  // (m) the last multipliers, a guess for the next ones
+
+ private:
+  Status fail(Status status, double t, const std::string& what);
+  Status finish_step(double t);
+
+  std::optional<Projection> projection_;
+  double t_ = 0;
+  std::string failure_;
+};
+
+}  // namespace tress

@@ -1,0 +1,169 @@
+#include "integrators/formulation/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tress {
+namespace {
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+}  // namespace
+
+double scaled_norm(In x, In typ) noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double entry = std::abs(x[i]) / typ[i];
+    if (!(entry <= std::numeric_limits<double>::max())) {
+      return std::numeric_limits<double>::infinity();
+    }
+    largest = std::max(largest, entry);
+  }
+  return largest;
+}
+
+Dynamics::Dynamics(System& system, const Options& options)
+    : system_(system),
+      layout_(system.layout()),
+      sparse_(layout_.constraints > 0 ? system.sparse_form() : nullptr),
+      constraints_(layout_.constraints > 0 ? system.constraint_form() : nullptr),
+      explicit_(layout_.constraints > 0 ? nullptr : system.explicit_form()),
+      position_level_(options.formulation == Formulation::index3) {
+  if (options.formulation == Formulation::baumgarte) {
+    alpha_ = options.alpha;
+    beta_ = options.beta;
+  }
+  for (auto* values : {&q_typ_, &v_typ_, &zero_n_, &q_shift_, &v_shift_, &r_base_}) {
+    values->assign(size(n()), 0.0);
+  }
+  for (auto* values : {&g_typ_, &zero_m_, &g_, &g_dot_, &c_base_}) {
+    values->assign(size(m()), 0.0);
+  }
+  system_.scale(q_typ_, v_typ_);
+  stats.solver = "structured";
+  if (constraints_ == nullptr) return;
+  constraints_->scale(g_typ_);
+  kkt_.emplace(options.linear, sparse_->pattern(), constraints_->pattern());
+  s_.resize(size(sparse_->pattern().nonzeros()));
+  for (auto* values : {&gt_, &ht_, &rate_gt_}) {
+    values->resize(size(constraints_->pattern().nonzeros()));
+  }
+}
+
+Status Dynamics::residual(double t, In q, In v, In a, In lambda, Out r, Out c) noexcept {
+  ++stats.residuals;
+  if (const Status s = system_.residual(t, q, v, a, r); s != Status::ok) return s;
+  if (constraints_ == nullptr) return Status::ok;
+  if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
+  const Pattern& pattern = constraints_->pattern();
+  for (int k = 0; k < m(); ++k) {
+    for (int p = pattern.start[size(k)]; p < pattern.start[size(k) + 1]; ++p) {
+      r[size(pattern.row[size(p)])] -= gt_[size(p)] * lambda[size(k)];
+    }
+  }
+  return constraint_row(t, q, v, a, c);
+}
+
+/// Expects gt_ at (t, q).
+Status Dynamics::constraint_row(double t, In q, In v, In a, Out c) noexcept {
+  if (position_level_) return constraints_->value(t, q, c);
+  if (const Status s = constraints_->bias(t, q, v, c); s != Status::ok) return s;
+  const Pattern& pattern = constraints_->pattern();
+  for (int k = 0; k < m(); ++k) {
+    for (int p = pattern.start[size(k)]; p < pattern.start[size(k) + 1]; ++p) {
+      c[size(k)] += gt_[size(p)] * a[size(pattern.row[size(p)])];
+    }
+  }
+  if (alpha_ == 0 && beta_ == 0) return Status::ok;
+  if (const Status s = constraints_->value(t, q, g_); s != Status::ok) return s;
+  if (const Status s = constraints_->rate(t, q, v, g_dot_); s != Status::ok) return s;
+  for (std::size_t k = 0; k < c.size(); ++k) c[k] += alpha_ * g_[k] + beta_ * g_dot_[k];
+  return Status::ok;
+}
+
+Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noexcept {
+  ++stats.linearizations;
+  weights_ = w;
+  if (constraints_ == nullptr) return system_.linearize(t, q, v, a, w);
+  if (const Status s = sparse_->values(t, q, v, a, w, s_); s != Status::ok) return s;
+  if (w.pos != 0) {
+    const Status s = constraints_->add_curvature(t, q, lambda, -w.pos, s_);
+    if (s != Status::ok) return s;
+  }
+  if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
+  if (const Status s = constraint_tangent(t, q, v, a, w); s != Status::ok) return s;
+  const Status s = kkt_->factor(s_, gt_, ht_);
+  const KktReport& report = kkt_->report();
+  stats.solver = report.solver;
+  stats.rank_deficiency = std::max(stats.rank_deficiency, report.rank_deficiency);
+  stats.condition = std::max(stats.condition, report.condition);
+  return s;
+}
+
+/// ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T. With R(v) = d(G v + g_t)/dq:
+/// dc/da = G, dc/dv = 2 R(v) + beta G, dc/dq = R(a) + beta R(v) + alpha G + d(bias)/dq,
+/// whose last term (third derivatives of g) is left out. Index 3: G, scaled in solve().
+Status Dynamics::constraint_tangent(double t, In q, In v, In a, Weights w) noexcept {
+  std::copy(gt_.begin(), gt_.end(), ht_.begin());
+  if (position_level_ || (w.vel == 0 && w.pos == 0)) return Status::ok;
+  const double gain = w.acc + w.vel * beta_ + w.pos * alpha_;
+  for (double& value : ht_) value *= gain;
+  const auto add = [&](In direction, double factor) {
+    const Status s = constraints_->rate_gradient(t, q, direction, rate_gt_);
+    for (std::size_t p = 0; p < ht_.size(); ++p) ht_[p] += factor * rate_gt_[p];
+    return s;
+  };
+  if (const Status s = add(v, 2 * w.vel + w.pos * beta_); s != Status::ok) return s;
+  return add(a, w.pos);
+}
+
+Status Dynamics::solve(InOut r, InOut c) noexcept {
+  ++stats.solves;
+  if (constraints_ == nullptr) return system_.solve(r, r);
+  if (position_level_ && weights_.pos != 0) {
+    for (double& entry : c) entry /= weights_.pos;
+  }
+  return kkt_->solve(r, c);
+}
+
+Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr,
+                             Out dc) noexcept {
+  const double length = std::max(scaled_norm(dq, q_typ_), scaled_norm(dv, v_typ_));
+  std::fill(dr.begin(), dr.end(), 0.0);
+  std::fill(dc.begin(), dc.end(), 0.0);
+  if (length == 0) return Status::ok;
+  const double size_of_state =
+      1 + std::max(scaled_norm(q, q_typ_), scaled_norm(v, v_typ_));
+  const double e =
+      std::sqrt(std::numeric_limits<double>::epsilon()) * size_of_state / length;
+  for (std::size_t i = 0; i < dq.size(); ++i) {
+    q_shift_[i] = q[i] + e * dq[i];
+    v_shift_[i] = v[i] + e * dv[i];
+  }
+  if (const Status s = residual(t, q, v, a, lambda, r_base_, c_base_); s != Status::ok) {
+    return s;
+  }
+  const Status s = residual(t, q_shift_, v_shift_, a, lambda, dr, dc);
+  for (std::size_t i = 0; i < dr.size(); ++i) dr[i] = (dr[i] - r_base_[i]) / e;
+  for (std::size_t k = 0; k < dc.size(); ++k) dc[k] = (dc[k] - c_base_[k]) / e;
+  return s;
+}
+
+Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
+  if (explicit_ != nullptr) {
+    ++stats.residuals;
+    return explicit_->acceleration(t, q, v, a);
+  }
+  const bool position_level = position_level_;
+  position_level_ = false;
+  Status s = linearize(t, q, v, zero_n_, zero_m_, {1, 0, 0});
+  if (s == Status::ok) s = residual(t, q, v, zero_n_, zero_m_, a, lambda);
+  position_level_ = position_level;
+  if (s != Status::ok) return s;
+  for (double& entry : a) entry = -entry;
+  for (double& entry : lambda) entry = -entry;
+  return solve(a, lambda);
+}
+
+}  // namespace tress

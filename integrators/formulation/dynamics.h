@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "integrators/linear/kkt.h"
+
+namespace tress {
+
+/// A system together with the form its constraints take, as one set of equations in the
+/// accelerations a (n) and multipliers lambda (m):
+///
+///     r = M a - f - G^T lambda = 0
+///     c = 0, where c is, by formulation,
+///         g'' + beta g' + alpha g   (acceleration: alpha = beta = 0; Baumgarte;
+///         projection) g                         (index 3)
+///
+/// Unconstrained systems pass through to System::linearize and solve. Constrained ones
+/// are solved by the KKT matrix of linear/kkt.h. No call allocates after the first.
+class Dynamics {
+ public:
+  Dynamics(System& system, const Options& options);
+
+  int n() const { return layout_.coordinates; }
+  int m() const { return layout_.constraints; }
+  System& system() { return system_; }
+  ConstraintForm* constraints() { return constraints_; }
+
+  /// Counts residuals, linearizations and solves; integrators add the rest.
+  Stats stats;
+
+  /// r (n) and c (m) at any state; nothing has to vanish there.
+  Status residual(double t, In q, In v, In a, In lambda, Out r, Out c) noexcept;
+
+  /// Readies solve() for x = dr/d(...) under w, with w.acc = 1: q moves by w.pos x, v by
+  /// w.vel x, a by x. Omits the derivative of the bias with respect to q only.
+  Status linearize(double t, In q, In v, In a, In lambda, Weights w) noexcept;
+
+  /// (r, c) -> (x, y): S x - G^T y = r and (dc) x = c, as linearize() left the matrix.
+  Status solve(InOut r, InOut c) noexcept;
+
+  /// Derivative of (r, c) along (dq, dv) at fixed a and lambda, by a forward difference:
+  /// one residual, error about 1e-8 relative, enough for the right-hand side of a Newton
+  /// correction. All zero directions cost nothing.
+  Status directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr,
+                     Out dc) noexcept;
+
+  /// a and lambda that satisfy r = 0 and g'' = -alpha g - beta g' at (t, q, v); leaves
+  /// the mass matrix with the constraints of this state factored for solve().
+  Status accelerate(double t, In q, In v, Out a, Out lambda) noexcept;
+
+  /// Typical sizes of the coordinates and velocities (System::scale), and of g.
+  In q_typ() const { return q_typ_; }
+  In v_typ() const { return v_typ_; }
+  In g_typ() const { return g_typ_; }
+
+ private:
+  Status constraint_row(double t, In q, In v, In a, Out c) noexcept;
+  Status constraint_tangent(double t, In q, In v, In a, Weights w) noexcept;
+
+  System& system_;
+  Layout layout_;
+  SparseForm* sparse_;
+  ConstraintForm* constraints_;
+  ExplicitForm* explicit_;
+  bool position_level_;
+  double alpha_ = 0, beta_ = 0;
+  Weights weights_;
+  std::optional<Kkt> kkt_;
+  std::vector<double> q_typ_, v_typ_, g_typ_;
+  std::vector<double> s_, gt_, ht_, rate_gt_;                         // matrix values
+  std::vector<double> zero_n_, zero_m_, q_shift_, v_shift_, r_base_;  // scratch
+  std::vector<double> g_, g_dot_, c_base_;
+};
+
+/// Largest |x_i| / typ_i; infinity when any entry is not finite.
+double scaled_norm(In x, In typ) noexcept;
+
+}  // namespace tress

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "integrators/formulation/dynamics.h"
+
+namespace tress {
+
+/// Mass-orthogonal projection of a state onto g = 0 and g' = 0:
+///     M dq = G^T mu, g(q + dq) = 0   and   M dv = G^T nu, G (v + dv) + g_t = 0.
+/// One factorisation at the incoming q serves both, by simplified Newton iterations.
+class Projection {
+ public:
+  explicit Projection(Dynamics& dynamics);
+
+  /// `retry` when the iteration does not reach the rounding level of g.
+  Status project(double t, InOut q, InOut v) noexcept;
+
+  /// The last two steps separately, with the factorisation that dynamics holds.
+  Status positions(double t, InOut q) noexcept;
+  Status velocities(double t, In q, InOut v) noexcept;
+
+ private:
+  Dynamics& dynamics_;
+  std::vector<double> step_, g_, zero_;
+};
+
+}  // namespace tress

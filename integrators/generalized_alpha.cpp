@@ -1,0 +1,78 @@
+#include "integrators/fixed_step.h"
+#include "integrators/methods.h"
+#include "integrators/stage.h"
+
+namespace tress {
+namespace {
+
+struct Coefficients {
+  double alpha_m, alpha_f, gamma, beta;
+};
+
+/// [Chung, Hulbert 1993, eq. (25)], optimal for a given spectral radius at infinity.
+Coefficients chung_hulbert(double rho) {
+  const double alpha_m = (2 * rho - 1) / (rho + 1);
+  const double alpha_f = rho / (rho + 1);
+  const double gamma = 0.5 + alpha_f - alpha_m;
+  return {alpha_m, alpha_f, gamma, (gamma + 0.5) * (gamma + 0.5) / 4};
+}
+
+/// With a the algorithmic and u the true acceleration (the stage's unknown):
+///     (1 - alpha_m) a_{n+1} + alpha_m a_n = (1 - alpha_f) u_{n+1} + alpha_f u_n
+///     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
+///     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
+/// Newmark's method is alpha_m = alpha_f = 0, where a = u.
+class GeneralizedAlpha final : public FixedStep {
+ public:
+  GeneralizedAlpha(System& system, const Options& options, Coefficients coefficients)
+      : FixedStep(system, options),
+        k_(coefficients),
+        stage_(dynamics_, options),
+        u_(vector_n()),
+        a_(vector_n()),
+        a_known_(vector_n()),
+        q_bar_(vector_n()),
+        v_bar_(vector_n()) {}
+
+ private:
+  Status reset(double t) override {
+    const Status s = dynamics_.accelerate(t, q_, v_, u_, lambda_);
+    a_ = u_;
+    return s;
+  }
+
+  Status step(double t, double h) override {
+    const double ratio = (1 - k_.alpha_f) / (1 - k_.alpha_m);
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      a_known_[i] = (k_.alpha_f * u_[i] - k_.alpha_m * a_[i]) / (1 - k_.alpha_m);
+      q_bar_[i] =
+          q_[i] + h * v_[i] + h * h * ((0.5 - k_.beta) * a_[i] + k_.beta * a_known_[i]);
+      v_bar_[i] = v_[i] + h * ((1 - k_.gamma) * a_[i] + k_.gamma * a_known_[i]);
+    }
+    const Weights w{1, h * k_.gamma * ratio, h * h * k_.beta * ratio};
+    const Status s = stage_.solve(t + h, q_bar_, v_bar_, w, u_, lambda_);
+    for (std::size_t i = 0; i < q_.size(); ++i) a_[i] = a_known_[i] + ratio * u_[i];
+    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
+    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    return s;
+  }
+
+  Coefficients k_;
+  Stage stage_;
+  std::vector<double> u_, a_, a_known_, q_bar_, v_bar_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_generalized_alpha(System& system,
+                                                   const Options& options) {
+  return std::make_unique<GeneralizedAlpha>(system, options,
+                                            chung_hulbert(options.rho_inf));
+}
+
+std::unique_ptr<Integrator> make_newmark(System& system, const Options& options) {
+  return std::make_unique<GeneralizedAlpha>(system, options,
+                                            Coefficients{0, 0, 0.5, 0.25});
+}
+
+}  // namespace tress

@@ -1,0 +1,188 @@
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "integrators/formulation/dynamics.h"
+#include "integrators/formulation/projection.h"
+#include "integrators/methods.h"
+#include "integrators/vector_ops.h"
+
+namespace tress {
+namespace {
+
+struct Free {
+  void operator()(gsl_odeiv2_driver* driver) const { gsl_odeiv2_driver_free(driver); }
+};
+
+int gsl_code(Status s) {
+  switch (s) {
+    case Status::ok:
+      return GSL_SUCCESS;
+    case Status::retry:
+      return GSL_FAILURE;  // GSL halves the step
+    case Status::fatal:
+      break;
+  }
+  return GSL_EBADFUNC;  // GSL gives up
+}
+
+/// y = (q, v), y' = (v, a(t, q, v)), stepped by GSL's evolve with its own step control:
+/// error of entry i held below rtol |y_i| + atol typ_i.
+class GslOdeiv2 final : public Integrator {
+ public:
+  GslOdeiv2(System& system, const Options& options, const gsl_odeiv2_step_type* type)
+      : options_(options),
+        dynamics_(system, options),
+        n_(static_cast<std::size_t>(dynamics_.n())),
+        y_(2 * n_),
+        shifted_(2 * n_),
+        a_(n_),
+        a_shifted_(n_),
+        lambda_(static_cast<std::size_t>(dynamics_.m())),
+        ode_{&rhs, &jacobian, 2 * n_, this} {
+    gsl_set_error_handler_off();
+    std::vector<double> typical(dynamics_.q_typ().begin(), dynamics_.q_typ().end());
+    typical.insert(typical.end(), dynamics_.v_typ().begin(), dynamics_.v_typ().end());
+    driver_.reset(gsl_odeiv2_driver_alloc_scaled_new(
+        &ode_, type, first_step(), options.atol, options.rtol, 1, 0, typical.data()));
+    if (options.max_step > 0) gsl_odeiv2_driver_set_hmax(driver_.get(), options.max_step);
+    if (options.formulation == Formulation::projection) projection_.emplace(dynamics_);
+  }
+
+  Status start(double t, In q, In v) override {
+    std::copy(q.begin(), q.end(), y_.begin());
+    std::copy(v.begin(), v.end(), y_.begin() + static_cast<std::ptrdiff_t>(n_));
+    t_ = t;
+    h_ = first_step();
+    dynamics_.stats = Stats{.solver = dynamics_.stats.solver};
+    failure_.clear();
+    gsl_odeiv2_driver_reset(driver_.get());
+    return Status::ok;
+  }
+
+  Status advance(double t_end, const Observer& each_step) override {
+    const long limit = dynamics_.stats.steps + options_.max_steps;
+    while (t_ < t_end) {
+      if (dynamics_.stats.steps >= limit) return fail("more than max_steps steps needed");
+      if (options_.max_step > 0) h_ = std::min(h_, options_.max_step);
+      const int code = gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &ode_,
+                                               &t_, t_end, &h_, y_.data());
+      if (code != GSL_SUCCESS) return fail(gsl_strerror(code));
+      ++dynamics_.stats.steps;
+      if (!(h_ > 0) || !std::isfinite(y_[0])) return fail("state not finite");
+      if (projection_ && projection_->project(t_, q_part(), v_part()) != Status::ok) {
+        return fail("projection onto the constraints failed");
+      }
+      if (dynamics_.system().accept(t_, q_part(), v_part())) {
+        gsl_odeiv2_driver_reset(driver_.get());
+      }
+      if (each_step && !each_step(t_, q(), v())) return fail("stopped");
+    }
+    return Status::ok;
+  }
+
+  double time() const override { return t_; }
+  In q() const override { return In(y_).first(n_); }
+  In v() const override { return In(y_).last(n_); }
+  std::string failure() const override { return failure_; }
+
+  Stats stats() const override {
+    Stats s = dynamics_.stats;
+    s.rejected = static_cast<long>(driver_->e->failed_steps);
+    return s;
+  }
+
+ private:
+  /// Small against every scale of the tolerance; step control grows it at once.
+  double first_step() const { return 1e-3 * std::pow(options_.rtol, 0.25); }
+
+  InOut q_part() { return InOut(y_).first(n_); }
+  InOut v_part() { return InOut(y_).last(n_); }
+
+  Status fail(const char* what) {
+    char text[32];
+    std::snprintf(text, sizeof text, " at t = %.9g s", t_);
+    failure_ = std::string(what) + text;
+    return Status::fatal;
+  }
+
+  static int rhs(double t, const double* y, double* dydt, void* self_pointer) {
+    auto& self = *static_cast<GslOdeiv2*>(self_pointer);
+    const In state(y, 2 * self.n_);
+    const Out rate(dydt, 2 * self.n_);
+    std::copy(state.begin() + static_cast<std::ptrdiff_t>(self.n_), state.end(), dydt);
+    return gsl_code(self.dynamics_.accelerate(
+        t, state.first(self.n_), state.last(self.n_), rate.last(self.n_), self.lambda_));
+  }
+
+  /// Forward differences of the acceleration, column by column; bsimp needs all of it,
+  /// dense.
+  static int jacobian(double t, const double* y, double* dfdy, double* dfdt,
+                      void* pointer) {
+    auto& self = *static_cast<GslOdeiv2*>(pointer);
+    const std::size_t n = self.n_;
+    ++self.dynamics_.stats.linearizations;
+    std::fill(dfdy, dfdy + 4 * n * n, 0.0);
+    std::fill(dfdt, dfdt + 2 * n, 0.0);
+    std::copy(y, y + 2 * n, self.shifted_.begin());
+    const In q = In(self.shifted_).first(n), v = In(self.shifted_).last(n);
+    const auto acceleration = [&](double time, Out a) {
+      return self.dynamics_.accelerate(time, q, v, a, self.lambda_);
+    };
+    Status s = acceleration(t, self.a_);
+    if (s != Status::ok) return gsl_code(s);
+    for (std::size_t j = 0; j < 2 * n; ++j) {
+      const double typical =
+          j < n ? self.dynamics_.q_typ()[j] : self.dynamics_.v_typ()[j - n];
+      const double e = 1.5e-8 * std::max(std::abs(y[j]), typical);
+      self.shifted_[j] = y[j] + e;
+      s = acceleration(t, self.a_shifted_);
+      self.shifted_[j] = y[j];
+      if (s != Status::ok) return gsl_code(s);
+      for (std::size_t i = 0; i < n; ++i) {
+        dfdy[(n + i) * 2 * n + j] = (self.a_shifted_[i] - self.a_[i]) / e;
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) dfdy[i * 2 * n + n + i] = 1;
+    const double e = 1.5e-8 * std::max(1.0, std::abs(t));
+    s = acceleration(t + e, self.a_shifted_);
+    for (std::size_t i = 0; i < n; ++i) {
+      dfdt[n + i] = (self.a_shifted_[i] - self.a_[i]) / e;
+    }
+    return gsl_code(s);
+  }
+
+  Options options_;
+  Dynamics dynamics_;
+  std::size_t n_;
+  std::vector<double> y_, shifted_, a_, a_shifted_, lambda_;
+  gsl_odeiv2_system ode_;
+  std::unique_ptr<gsl_odeiv2_driver, Free> driver_;
+  std::optional<Projection> projection_;
+  double t_ = 0;
+  double h_ = 0;
+  std::string failure_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_gsl_rkf45(System& system, const Options& options) {
+  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_rkf45);
+}
+
+std::unique_ptr<Integrator> make_gsl_rk8pd(System& system, const Options& options) {
+  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_rk8pd);
+}
+
+std::unique_ptr<Integrator> make_gsl_msadams(System& system, const Options& options) {
+  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_msadams);
+}
+
+std::unique_ptr<Integrator> make_gsl_bsimp(System& system, const Options& options) {
+  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_bsimp);
+}
+
+}  // namespace tress

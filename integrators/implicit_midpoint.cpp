@@ -1,0 +1,39 @@
+#include "integrators/fixed_step.h"
+#include "integrators/methods.h"
+#include "integrators/stage.h"
+#include "integrators/vector_ops.h"
+
+namespace tress {
+namespace {
+
+/// a at t + h/2, (q_n + h/2 v_mid, v_mid = v_n + h/2 a); v += h a, q += h v_mid.
+class ImplicitMidpoint final : public FixedStep {
+ public:
+  ImplicitMidpoint(System& system, const Options& options)
+      : FixedStep(system, options),
+        stage_(dynamics_, options),
+        a_(vector_n()),
+        q_bar_(vector_n()) {}
+
+ private:
+  Status step(double t, double h) override {
+    shifted(q_bar_, q_, h / 2, v_);
+    const Status s =
+        stage_.solve(t + h / 2, q_bar_, v_, {1, h / 2, h * h / 4}, a_, lambda_);
+    add(q_, h, stage_.v());
+    add(v_, h, a_);
+    return s;
+  }
+
+  Stage stage_;
+  std::vector<double> a_, q_bar_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_implicit_midpoint(System& system,
+                                                   const Options& options) {
+  return std::make_unique<ImplicitMidpoint>(system, options);
+}
+
+}  // namespace tress

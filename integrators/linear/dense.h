@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "integrators/linear/direct_solver.h"
+
+namespace tress {
+
+/// Dense LU with partial pivoting, 2/3 n^3 operations: for a few unknowns, and the
+/// reference of the others. Eigen's blocked kernel allocates packing buffers of its own
+/// above a few hundred unknowns; below, nothing allocates after the first factorisation.
+class DenseSolver final : public DirectSolver {
+ public:
+  explicit DenseSolver(const Pattern& pattern);
+  ~DenseSolver() override;
+  std::string_view name() const override { return "dense"; }
+
+ private:
+  double factor_scaled(In values) noexcept override;
+  void solve_scaled(InOut b) const noexcept override;
+
+  struct Matrices;
+  std::unique_ptr<Matrices> dense_;
+};
+
+}  // namespace tress

@@ -1,0 +1,116 @@
+#include "integrators/linear/direct_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "integrators/linear/finite.h"
+
+namespace tress {
+namespace {
+
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
+/// Rounding leaves the last pivot of a singular matrix at a small multiple of the roundoff
+/// that grows with n but not beyond what elimination mixes; 128 roundoffs = 1.4e-14.
+constexpr double singular_pivot = 128;
+
+double length(In x) {
+  double largest = 0;
+  for (double v : x) largest = std::max(largest, std::abs(v));
+  if (largest == 0 || !std::isfinite(largest)) return largest;
+  double sum = 0;
+  for (double v : x) sum += (v / largest) * (v / largest);
+  return largest * std::sqrt(sum);
+}
+
+/// Signs without pattern (splitmix64 of the index), the same on every call.
+double scattered_sign(std::uint64_t i) {
+  i += 0x9e3779b97f4a7c15ULL;
+  i = (i ^ (i >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  i = (i ^ (i >> 27)) * 0x94d049bb133111ebULL;
+  return ((i ^ (i >> 31)) & 1U) != 0 ? 1.0 : -1.0;
+}
+
+}  // namespace
+
+DirectSolver::DirectSolver(const Pattern& pattern)
+    : pattern_(pattern),
+      scaled_(static_cast<std::size_t>(pattern.nonzeros())),
+      row_scale_(static_cast<std::size_t>(pattern.rows)),
+      column_scale_(static_cast<std::size_t>(pattern.cols)),
+      probe_(static_cast<std::size_t>(pattern.rows)) {
+  if (pattern.rows != pattern.cols) {
+    throw std::invalid_argument("linear solver: the matrix must be square");
+  }
+}
+
+bool DirectSolver::scale(In values) noexcept {
+  if (!all_finite(values)) return false;
+  const std::size_t n = row_scale_.size();
+  std::ranges::fill(row_scale_, 0.0);
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    double& largest = row_scale_[static_cast<std::size_t>(pattern_.row[p])];
+    largest = std::max(largest, std::abs(values[p]));
+  }
+  for (double& r : row_scale_) {
+    if (r == 0) return false;
+    r = 1 / r;
+  }
+  norm_ = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    const auto first = static_cast<std::size_t>(pattern_.start[j]);
+    const auto last = static_cast<std::size_t>(pattern_.start[j + 1]);
+    double largest = 0;
+    double sum = 0;
+    for (std::size_t p = first; p < last; ++p) {
+      scaled_[p] = values[p] * row_scale_[static_cast<std::size_t>(pattern_.row[p])];
+      largest = std::max(largest, std::abs(scaled_[p]));
+      sum += std::abs(scaled_[p]);
+    }
+    if (largest == 0) return false;
+    column_scale_[j] = 1 / largest;
+    for (std::size_t p = first; p < last; ++p) scaled_[p] *= column_scale_[j];
+    norm_ = std::max(norm_, sum / largest);
+  }
+  return true;
+}
+
+Status DirectSolver::factor(In values) noexcept {
+  condition_ = 0;
+  factored_ = scale(values) &&
+              factor_scaled(scaled_) > singular_pivot * unit_roundoff;
+  return factored_ ? Status::ok : Status::retry;
+}
+
+Status DirectSolver::solve(InOut b) noexcept {
+  if (!factored_) return Status::retry;
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] *= row_scale_[i];
+  solve_scaled(b);
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] *= column_scale_[i];
+  return all_finite(b) ? Status::ok : Status::retry;
+}
+
+/// |(R A C)^-1 x| / |x|; x becomes the unit vector along the solution.
+double DirectSolver::amplification(InOut x) const noexcept {
+  const double before = length(x);
+  solve_scaled(x);
+  const double after = length(x);
+  for (double& v : x) v /= after;
+  return after / before;
+}
+
+double DirectSolver::condition() const noexcept {
+  if (!factored_) return std::numeric_limits<double>::infinity();
+  if (condition_ == 0) {
+    for (std::size_t i = 0; i < probe_.size(); ++i) probe_[i] = scattered_sign(i);
+    const double first = amplification(probe_);
+    const double second = amplification(probe_);
+    condition_ = norm_ * std::max(first, second);
+    if (!std::isfinite(condition_)) condition_ = std::numeric_limits<double>::infinity();
+  }
+  return condition_;
+}
+
+}  // namespace tress

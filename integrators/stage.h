@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "integrators/formulation/dynamics.h"
+
+namespace tress {
+
+/// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
+/// method: find a (n) and lambda (m) with
+///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
+/// by Newton's method. Options: newton_tolerance bounds the last correction of q and v
+/// over System::scale, newton_iterations, refresh.
+class Stage {
+ public:
+  Stage(Dynamics& dynamics, const Options& options);
+
+  /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
+  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+
+  /// Exactly one Newton step from the guess, converged or not (semi-implicit methods).
+  Status single_step(double t, In q_bar, In v_bar, Weights w, InOut a,
+                     InOut lambda) noexcept;
+
+  In q() const { return q_; }  // of the last call
+  In v() const { return v_; }
+
+ private:
+  void place(In q_bar, In v_bar, Weights w, In a) noexcept;
+  Status correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
+                 InOut lambda, double& correction) noexcept;
+
+  Dynamics& dynamics_;
+  double tolerance_;
+  int iterations_;
+  Refresh refresh_;
+  Weights factored_;  // weights of the matrix held by dynamics_; acc = 0: none
+  std::vector<double> q_, v_, r_, c_;
+};
+
+}  // namespace tress

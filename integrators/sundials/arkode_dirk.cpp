@@ -1,0 +1,109 @@
+#include "integrators/sundials/arkode_dirk.h"
+
+#include <algorithm>
+
+#include "integrators/sundials/factories.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr std::string_view id = "arkode_dirk";
+constexpr const char* standard_table = "ARKODE_ESDIRK436L2SA_6_3_4";
+constexpr const char* no_explicit_table = "ARKODE_ERK_NONE";
+
+// SUNDIALS offers no list of its names, and prints when asked for an unknown one.
+constexpr std::array<std::string_view, 23> tables{
+    "ARKODE_SDIRK_2_1_2",           "ARKODE_BILLINGTON_3_3_2",
+    "ARKODE_TRBDF2_3_3_2",          "ARKODE_KVAERNO_4_2_3",
+    "ARKODE_ARK324L2SA_DIRK_4_2_3", "ARKODE_CASH_5_2_4",
+    "ARKODE_CASH_5_3_4",            "ARKODE_SDIRK_5_3_4",
+    "ARKODE_KVAERNO_5_3_4",         "ARKODE_ARK436L2SA_DIRK_6_3_4",
+    "ARKODE_KVAERNO_7_4_5",         "ARKODE_ARK548L2SA_DIRK_8_4_5",
+    "ARKODE_ARK437L2SA_DIRK_7_3_4", "ARKODE_ARK548L2SAb_DIRK_8_4_5",
+    "ARKODE_ESDIRK324L2SA_4_2_3",   "ARKODE_ESDIRK325L2SA_5_2_3",
+    "ARKODE_ESDIRK32I5L2SA_5_2_3",  "ARKODE_ESDIRK436L2SA_6_3_4",
+    "ARKODE_ESDIRK43I6L2SA_6_3_4",  "ARKODE_QESDIRK436L2SA_6_3_4",
+    "ARKODE_ESDIRK437L2SA_7_3_4",   "ARKODE_ESDIRK547L2SA_7_4_5",
+    "ARKODE_ESDIRK547L2SA2_7_4_5"};
+
+InputError unknown_table(const std::string& table) {
+  std::string known = "choose one of";
+  for (const std::string_view each : tables) known += " " + std::string(each);
+  return {"unknown Butcher table '" + table + "'", std::string(id) + " table", known};
+}
+
+}  // namespace
+
+ArkodeDirk::ArkodeDirk(System& system, const Options& options)
+    : Driver(id, system, options, ode_formulations, 0),
+      equations_(system, options),
+      memory_(require(ARKStepCreate(nullptr, &FirstOrder::rate_callback, time_,
+                                    y_.handle(), context_.handle()),
+                      "ARKStepCreate")),
+      linear_(context_, equations_) {
+  void* const memory = memory_.get();
+  require(send_messages(memory_, context_.messages), "ARKStepSetErrHandlerFn");
+  require(ARKStepSetUserData(memory, &equations_), "ARKStepSetUserData");
+  require(ARKStepSVtolerances(memory, options.rtol, atol_.handle()),
+          "ARKStepSVtolerances");
+  choose_table();
+  require(ARKStepSetMaxStep(memory, options.max_step), "ARKStepSetMaxStep");
+  require(ARKStepSetMaxHnilWarns(memory, -1), "ARKStepSetMaxHnilWarns");
+  linear_.attach(memory_);
+  if (options.refresh == Refresh::every_step) {
+    require(ARKStepSetLSetupFrequency(memory, 1), "ARKStepSetLSetupFrequency");
+    require(ARKStepSetDeltaGammaMax(memory, 0), "ARKStepSetDeltaGammaMax");
+  }
+  if (options.newton_coefficient > 0) {
+    require(ARKStepSetNonlinConvCoef(memory, options.newton_coefficient),
+            "ARKStepSetNonlinConvCoef");
+  }
+}
+
+void ArkodeDirk::choose_table() {
+  if (options_.table.empty() && options_.max_order != 0) {
+    require(ARKStepSetOrder(memory_.get(), chosen_order(id, options_, 0, 2, 5)),
+            "ARKStepSetOrder");
+    return;
+  }
+  if (!options_.table.empty() &&
+      std::ranges::find(tables, options_.table) == tables.end()) {
+    throw unknown_table(options_.table);
+  }
+  const char* table = options_.table.empty() ? standard_table : options_.table.c_str();
+  require(ARKStepSetTableName(memory_.get(), table, no_explicit_table),
+          "ARKStepSetTableName");
+}
+
+int ArkodeDirk::restart() {
+  return ARKStepReInit(memory_.get(), nullptr, &FirstOrder::rate_callback, time_,
+                       y_.handle());
+}
+
+int ArkodeDirk::step(double t_end, double& t) {
+  const int code = ARKStepSetStopTime(memory_.get(), t_end);
+  if (code < 0) return code;
+  return ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+}
+
+Stats ArkodeDirk::counters() const {
+  long errors = 0, stalls = 0, iterations = 0;
+  ARKStepGetNumErrTestFails(memory_.get(), &errors);
+  ARKStepGetNumStepSolveFails(memory_.get(), &stalls);
+  ARKStepGetNumNonlinSolvIters(memory_.get(), &iterations);
+  Stats stats;
+  stats.rejected = errors + stalls;
+  stats.newton_iterations = iterations;
+  return stats;
+}
+
+std::string ArkodeDirk::reason(int code) const {
+  return code_name(&ARKStepGetReturnFlagName, code);
+}
+
+std::unique_ptr<Integrator> make_arkode_dirk(System& system, const Options& options) {
+  return std::make_unique<ArkodeDirk>(system, options);
+}
+
+}  // namespace tress

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "integrators/sundials/driver.h"
+#include "integrators/sundials/first_order.h"
+
+namespace tress {
+
+/// ARKODE's diagonally implicit Runge-Kutta methods on the ODE form with the eliminated
+/// Newton matrix of FirstOrder. By default ESDIRK4(3)6L[2]SA, stiffly accurate and L-stable
+/// (Kennedy and Carpenter, NASA/TM-2016-219173). `table` takes any SUNDIALS DIRK table by
+/// name; else max_order 2 to 5 takes SUNDIALS' own choice of that order.
+/// Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+class ArkodeDirk final : public Driver {
+ public:
+  ArkodeDirk(System& system, const Options& options);
+
+ private:
+  void choose_table();
+  int restart() override;
+  int step(double t_end, double& t) override;
+  Stats counters() const override;
+  Stats work() const override { return equations_.work(); }
+  std::string reason(int code) const override;
+
+  FirstOrder equations_;
+  ArkstepMemory memory_;
+  LinearAdapter linear_;
+};
+
+}  // namespace tress

@@ -1,0 +1,54 @@
+#include "integrators/sundials/arkode_erk.h"
+
+#include "integrators/sundials/factories.h"
+
+namespace tress {
+namespace {
+
+constexpr std::string_view id = "arkode_erk";
+constexpr int standard_order = 5;
+
+}  // namespace
+
+ArkodeErk::ArkodeErk(System& system, const Options& options)
+    : Driver(id, system, options, ode_formulations, 0),
+      equations_(system, options),
+      memory_(require(ERKStepCreate(&FirstOrder::rate_callback, time_, y_.handle(),
+                                    context_.handle()),
+                      "ERKStepCreate")) {
+  void* const memory = memory_.get();
+  require(send_messages(memory_, context_.messages), "ERKStepSetErrHandlerFn");
+  require(ERKStepSetUserData(memory, &equations_), "ERKStepSetUserData");
+  require(ERKStepSVtolerances(memory, options.rtol, atol_.handle()),
+          "ERKStepSVtolerances");
+  require(ERKStepSetOrder(memory, chosen_order(id, options, standard_order, 2, 8)),
+          "ERKStepSetOrder");
+  require(ERKStepSetMaxStep(memory, options.max_step), "ERKStepSetMaxStep");
+  require(ERKStepSetMaxHnilWarns(memory, -1), "ERKStepSetMaxHnilWarns");
+}
+
+int ArkodeErk::restart() {
+  return ERKStepReInit(memory_.get(), &FirstOrder::rate_callback, time_, y_.handle());
+}
+
+int ArkodeErk::step(double t_end, double& t) {
+  const int code = ERKStepSetStopTime(memory_.get(), t_end);
+  if (code < 0) return code;
+  return ERKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+}
+
+Stats ArkodeErk::counters() const {
+  Stats stats;
+  ERKStepGetNumErrTestFails(memory_.get(), &stats.rejected);
+  return stats;
+}
+
+std::string ArkodeErk::reason(int code) const {
+  return code_name(&ERKStepGetReturnFlagName, code);
+}
+
+std::unique_ptr<Integrator> make_arkode_erk(System& system, const Options& options) {
+  return std::make_unique<ArkodeErk>(system, options);
+}
+
+}  // namespace tress

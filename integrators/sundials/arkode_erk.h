@@ -1,0 +1,26 @@
+#pragma once
+
+#include "integrators/sundials/driver.h"
+#include "integrators/sundials/first_order.h"
+
+namespace tress {
+
+/// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS' defaults
+/// by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound by the
+/// fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+class ArkodeErk final : public Driver {
+ public:
+  ArkodeErk(System& system, const Options& options);
+
+ private:
+  int restart() override;
+  int step(double t_end, double& t) override;
+  Stats counters() const override;
+  Stats work() const override { return equations_.work(); }
+  std::string reason(int code) const override;
+
+  FirstOrder equations_;
+  ErkstepMemory memory_;
+};
+
+}  // namespace tress

@@ -1,0 +1,30 @@
+#include "integrators/sundials/cvode_adams.h"
+
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "integrators/sundials/factories.h"
+
+namespace tress {
+namespace {
+
+constexpr std::string_view id = "cvode_adams";
+constexpr int highest_order = 12;
+constexpr int anderson_vectors = 0;  // plain fixed-point iteration
+
+}  // namespace
+
+CvodeAdams::CvodeAdams(System& system, const Options& options)
+    : Cvode(id, system, options, ode_formulations, CV_ADAMS,
+            chosen_order(id, options, highest_order, 1, highest_order)),
+      fixed_point_(require(
+          SUNNonlinSol_FixedPoint(y_.handle(), anderson_vectors, context_.handle()),
+          "SUNNonlinSol_FixedPoint")) {
+  require(CVodeSetNonlinearSolver(memory_.get(), fixed_point_.get()),
+          "CVodeSetNonlinearSolver");
+}
+
+std::unique_ptr<Integrator> make_cvode_adams(System& system, const Options& options) {
+  return std::make_unique<CvodeAdams>(system, options);
+}
+
+}  // namespace tress

@@ -1,0 +1,39 @@
+#include "integrators/sundials/cvode_bdf.h"
+
+#include "integrators/sundials/factories.h"
+
+namespace tress {
+namespace {
+
+constexpr std::string_view id = "cvode_bdf";
+constexpr int standard_order = 2;
+constexpr int highest_order = 5;
+
+int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vector error,
+            void* self) noexcept {
+  return sundials_code(static_cast<FirstOrder*>(self)->project(
+      t, entries(y), entries(correction), error == nullptr ? InOut{} : entries(error)));
+}
+
+}  // namespace
+
+CvodeBdf::CvodeBdf(System& system, const Options& options)
+    : Cvode(id, system, options, cvode_bdf_formulations, CV_BDF,
+            chosen_order(id, options, standard_order, 1, highest_order)),
+      linear_(context_, equations_) {
+  void* const memory = memory_.get();
+  linear_.attach(memory_);
+  if (options.refresh == Refresh::every_step) {
+    require(CVodeSetLSetupFrequency(memory, 1), "CVodeSetLSetupFrequency");
+    require(CVodeSetDeltaGammaMaxLSetup(memory, 0), "CVodeSetDeltaGammaMaxLSetup");
+  }
+  if (options.formulation == Formulation::projection) {
+    require(CVodeSetProjFn(memory, &project), "CVodeSetProjFn");
+  }
+}
+
+std::unique_ptr<Integrator> make_cvode_bdf(System& system, const Options& options) {
+  return std::make_unique<CvodeBdf>(system, options);
+}
+
+}  // namespace tress

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "integrators/formulation/dynamics.h"
+
+namespace tress {
+
+/// The system as a residual F(t, y, y') = 0 with y = (q, v, lambda, mu):
+///
+///     q' - v - G^T mu                   (n)
+///     r(t, q, v, v') - G^T lambda       (n)
+///     rows of lambda                    (m)  g'' = -alpha g - beta g' (index 1), g
+///                                            (index 3), or g' (GGL)
+///     rows of mu                        (m)  g, GGL only
+///
+/// GGL: Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985) 77, stabilised index 2.
+/// Without constraints F is the first two rows and nothing else.
+class DaeForm {
+ public:
+  DaeForm(System& system, const Options& options);
+
+  /// How many unknowns follow q and v.
+  static int multipliers(System& system, Formulation formulation);
+
+  Status residual(double t, In y, In y_dot, Out f) noexcept;
+
+  /// Fills lambda, mu = 0 and y' = (v, a, 0) so that F = 0 when (q, v) satisfies g = 0 and
+  /// g' = 0, without a corrector of the initial values.
+  Status consistent(double t, InOut y, Out y_dot) noexcept;
+
+  /// Typical sizes of the multipliers at a consistent y: of lambda the larger of its value
+  /// there and of the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|); of mu
+  /// v_typ / |G|.
+  Status multiplier_scale(double t, In y, Out typ) noexcept;
+
+  /// 1 for differential unknowns (q and v), 0 for multipliers.
+  void differential(Out id) const;
+
+  Dynamics dynamics;
+  SparseForm* const sparse;  // null without constraints
+  const Formulation formulation;
+  const std::size_t n, m;
+
+  /// The parts of y, y' or a direction.
+  struct Parts {
+    In q, v, lambda, mu;
+  };
+  Parts parts(In y) const noexcept;
+
+ private:
+  std::vector<double> gt_, mass_;
+};
+
+}  // namespace tress

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+
+#include "integrators/integrator.h"
+#include "integrators/sundials/sundials.h"
+
+namespace tress {
+
+/// What all SUNDIALS integrators share: the state y = (q, v, ...) in our memory, absolute
+/// tolerances atol * System::scale, one internal step at a time with the end of the
+/// interval as stop time, System::accept and the observer after each, and failures as text.
+///
+/// Options.refresh: SUNDIALS never rebuilds inside a step. `every_step` forces a rebuild
+/// in each; the other two leave SUNDIALS' own rule (when gamma or cj has drifted, when
+/// convergence is slow, at the latest after some 20 steps).
+class Driver : public Integrator {
+ public:
+  Status start(double t, In q, In v) final;
+  Status advance(double t_end, const Observer& each_step) final;
+  double time() const final { return time_; }
+  In q() const final { return y_.values().first(n_); }
+  In v() const final { return y_.values().subspan(n_, n_); }
+  Stats stats() const final;
+  std::string failure() const final { return failure_; }
+
+ protected:
+  /// `unknowns` beyond q and v follow them in y.
+  Driver(std::string_view id, System& system, const Options& options,
+         std::span<const Formulation> formulations, int unknowns);
+
+  /// Begins anew at (time_, y_); returns SUNDIALS' code.
+  virtual int restart() = 0;
+  /// One internal step into y_ that does not pass t_end.
+  virtual int step(double t_end, double& t) = 0;
+  /// Rejected steps and Newton iterations since the last restart().
+  virtual Stats counters() const = 0;
+  /// Residuals, linearizations and solves since construction, and the solver.
+  virtual Stats work() const = 0;
+  virtual std::string reason(int code) const = 0;
+
+  const Options options_;
+  SundialsContext context_;
+  SundialsVector y_, atol_;
+  double time_ = 0;
+
+ private:
+  Status fail(const std::string& why);
+  Status fail_with(int code);
+  Status begin();
+  Stats added_counters() const;
+
+  const std::string id_;
+  System& system_;
+  const std::size_t n_;
+  long steps_ = 0;
+  Stats carried_;     // counters of the stretches before the last restart
+  Stats work_before_;  // work() at start()
+  std::string failure_ = "not started";
+};
+
+/// Options.max_order if it is within [1, most], `standard` if it is 0, else InputError.
+int chosen_order(std::string_view id, const Options& options, int standard, int least,
+                 int most);
+
+}  // namespace tress

@@ -1,0 +1,77 @@
+#include "integrators/sundials/linear_adapter.h"
+
+#include <algorithm>
+
+namespace tress {
+namespace {
+
+NewtonMatrix& newton(SUNMatrix matrix) {
+  return *static_cast<NewtonMatrix*>(matrix->content);
+}
+
+int factor(double t, N_Vector y, N_Vector y_dot, double coefficient,
+           SUNMatrix matrix) noexcept {
+  return sundials_code(newton(matrix).factor(t, entries(y), entries(y_dot), coefficient));
+}
+
+int cvode_system(sunrealtype t, N_Vector y, N_Vector y_dot, SUNMatrix matrix,
+                 sunbooleantype, sunbooleantype* current, sunrealtype gamma, void*,
+                 N_Vector, N_Vector, N_Vector) noexcept {
+  *current = 1;
+  return factor(t, y, y_dot, gamma, matrix);
+}
+
+int arkode_system(sunrealtype t, N_Vector y, N_Vector y_dot, SUNMatrix matrix, SUNMatrix,
+                  sunbooleantype, sunbooleantype* current, sunrealtype gamma, void*,
+                  N_Vector, N_Vector, N_Vector) noexcept {
+  *current = 1;
+  return factor(t, y, y_dot, gamma, matrix);
+}
+
+int ida_jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector y_dot, N_Vector,
+                 SUNMatrix matrix, void*, N_Vector, N_Vector, N_Vector) noexcept {
+  return factor(t, y, y_dot, cj, matrix);
+}
+
+int solve(SUNLinearSolver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype) noexcept {
+  const In right = entries(b);
+  const Out solution = entries(x);
+  std::copy(right.begin(), right.end(), solution.begin());
+  return linear_solver_code(newton(matrix).solve(solution));
+}
+
+}  // namespace
+
+LinearAdapter::LinearAdapter(const SundialsContext& context, NewtonMatrix& newton_matrix)
+    : matrix_(require(SUNMatNewEmpty(context.handle()), "SUNMatNewEmpty")),
+      solver_(require(SUNLinSolNewEmpty(context.handle()), "SUNLinSolNewEmpty")) {
+  matrix_->content = &newton_matrix;
+  matrix_->ops->getid = [](SUNMatrix) noexcept { return SUNMATRIX_CUSTOM; };
+  matrix_->ops->zero = [](SUNMatrix) noexcept { return 0; };  // IDA asks before every factor
+  solver_->ops->gettype = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_DIRECT; };
+  solver_->ops->getid = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_CUSTOM; };
+  solver_->ops->initialize = [](SUNLinearSolver) noexcept { return 0; };
+  // The factorisation happens where the time and coefficient are known: in the callbacks.
+  solver_->ops->setup = [](SUNLinearSolver, SUNMatrix) noexcept { return 0; };
+  solver_->ops->solve = &solve;
+}
+
+void LinearAdapter::attach(const CvodeMemory& memory) const {
+  require(CVodeSetLinearSolver(memory.get(), solver_.get(), matrix_.get()),
+          "CVodeSetLinearSolver");
+  require(CVodeSetLinSysFn(memory.get(), &cvode_system), "CVodeSetLinSysFn");
+}
+
+void LinearAdapter::attach(const ArkstepMemory& memory) const {
+  require(ARKStepSetLinearSolver(memory.get(), solver_.get(), matrix_.get()),
+          "ARKStepSetLinearSolver");
+  require(ARKStepSetLinSysFn(memory.get(), &arkode_system), "ARKStepSetLinSysFn");
+}
+
+void LinearAdapter::attach(const IdaMemory& memory) const {
+  require(IDASetLinearSolver(memory.get(), solver_.get(), matrix_.get()),
+          "IDASetLinearSolver");
+  require(IDASetJacFn(memory.get(), &ida_jacobian), "IDASetJacFn");
+}
+
+}  // namespace tress

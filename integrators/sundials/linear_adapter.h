@@ -1,0 +1,43 @@
+#pragma once
+
+#include "integrators/sundials/sundials.h"
+
+namespace tress {
+
+/// The Newton matrix of one integrator, as SUNDIALS sees it: something to rebuild at a
+/// state when its own rules ask for it, and to solve with until then.
+class NewtonMatrix {
+ public:
+  virtual ~NewtonMatrix() = default;
+
+  /// CVODE, ARKODE: I - coefficient df/dy, y_dot = f(t, y).
+  /// IDA: dF/dy + coefficient dF/dy'.
+  virtual Status factor(double t, In y, In y_dot, double coefficient) noexcept = 0;
+
+  /// b becomes the solution.
+  virtual Status solve(InOut b) noexcept = 0;
+};
+
+/// An opaque SUNMatrix with a direct SUNLinearSolver around a NewtonMatrix. It is not of
+/// the matrix-embedded type, which would switch off the lazy refactorisation of IDA and
+/// the rescaling of corrections when gamma or cj has changed since.
+class LinearAdapter {
+ public:
+  LinearAdapter(const SundialsContext& context, NewtonMatrix& newton);
+
+  void attach(const CvodeMemory& memory) const;
+  void attach(const ArkstepMemory& memory) const;
+  void attach(const IdaMemory& memory) const;
+
+ private:
+  struct FreeMatrix {
+    void operator()(SUNMatrix matrix) const { SUNMatFreeEmpty(matrix); }
+  };
+  struct FreeSolver {
+    void operator()(SUNLinearSolver solver) const { SUNLinSolFreeEmpty(solver); }
+  };
+  std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeMatrix> matrix_;
+  std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeSolver> solver_;
+};
+
+}  // namespace tress

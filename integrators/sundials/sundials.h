@@ -1,0 +1,175 @@
+#pragma once
+
+#include <arkode/arkode_arkstep.h>
+#include <arkode/arkode_erkstep.h>
+#include <cvode/cvode.h>
+#include <ida/ida.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+#include <sundials/sundials_nonlinearsolver.h>
+#include <sundials/sundials_version.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "models/system.h"
+
+/// Ownership and return codes of SUNDIALS in one place. Everything that differs between
+/// 6.4 and 7.x stands below; the rest of this folder is written for both.
+namespace tress {
+
+/// What a callback answers: 0, try a smaller step (+1), give up (-1).
+constexpr int sundials_code(Status status) noexcept {
+  return status == Status::ok ? 0 : status == Status::retry ? 1 : -1;
+}
+
+/// What a linear solver's solve() answers.
+constexpr int linear_solver_code(Status status) noexcept {
+#if SUNDIALS_VERSION_MAJOR >= 7
+  constexpr int unrecoverable = SUN_ERR_EXT_FAIL;
+#else
+  constexpr int unrecoverable = SUNLS_PACKAGE_FAIL_UNREC;
+#endif
+  return status == Status::ok      ? 0
+         : status == Status::retry ? SUNLS_PACKAGE_FAIL_REC
+                                   : unrecoverable;
+}
+
+/// For calls that set up an integrator: they fail only by a mistake of ours or for lack of
+/// memory, so they throw. Never used inside a callback.
+inline void require(int code, const char* call) {
+  if (code >= 0) return;
+  throw std::runtime_error(std::string("SUNDIALS refused ") + call + " with code " +
+                           std::to_string(code));
+}
+
+template <class Pointer>
+Pointer require(Pointer made, const char* call) {
+  if (made == nullptr) throw std::runtime_error(std::string("SUNDIALS failed: ") + call);
+  return made;
+}
+
+/// The last error SUNDIALS reported, kept here instead of printed. Warnings are dropped:
+/// what they say shows in the counters.
+class SundialsMessages {
+ public:
+  const char* last() const { return text_.data(); }
+  void clear() noexcept { text_[0] = '\0'; }
+
+  void keep(const char* message) noexcept {
+    std::strncpy(text_.data(), message == nullptr ? "" : message, text_.size() - 1);
+  }
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+  static void receive(int, const char*, const char*, const char* message, SUNErrCode code,
+                      void* self, SUNContext) noexcept {
+    if (code < 0) static_cast<SundialsMessages*>(self)->keep(message);
+  }
+#else
+  static void receive(int code, const char*, const char*, char* message,
+                      void* self) noexcept {
+    if (code < 0) static_cast<SundialsMessages*>(self)->keep(message);
+  }
+#endif
+
+ private:
+  std::array<char, 256> text_{};
+};
+
+/// One per integrator: contexts are not shared between threads. Outlives what uses it.
+class SundialsContext {
+ public:
+  SundialsContext() {
+#if SUNDIALS_VERSION_MAJOR >= 7
+    require(-std::abs(SUNContext_Create(SUN_COMM_NULL, &context_)), "SUNContext_Create");
+    SUNContext_ClearErrHandlers(context_);
+    SUNContext_PushErrHandler(context_, &SundialsMessages::receive, &messages);
+#else
+    require(-std::abs(SUNContext_Create(nullptr, &context_)), "SUNContext_Create");
+#endif
+  }
+  ~SundialsContext() { SUNContext_Free(&context_); }
+  SundialsContext(const SundialsContext&) = delete;
+  SundialsContext& operator=(const SundialsContext&) = delete;
+  SUNContext handle() const { return context_; }
+
+  SundialsMessages messages;
+
+ private:
+  SUNContext context_ = nullptr;
+};
+
+/// Our memory, with an N_Vector looking at it.
+class SundialsVector {
+ public:
+  SundialsVector(const SundialsContext& context, int length)
+      : values_(static_cast<std::size_t>(length)),
+        handle_(require(N_VMake_Serial(length, values_.data(), context.handle()),
+                        "N_VMake_Serial")) {}
+  N_Vector handle() const { return handle_.get(); }
+  Out values() { return values_; }
+  In values() const { return values_; }
+
+ private:
+  struct Destroy {
+    void operator()(N_Vector v) const { N_VDestroy(v); }
+  };
+  std::vector<double> values_;
+  std::unique_ptr<std::remove_pointer_t<N_Vector>, Destroy> handle_;
+};
+
+inline Out entries(N_Vector v) noexcept {
+  return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
+}
+
+template <void (*Free)(void**)>
+struct FreeSundials {
+  void operator()(void* memory) const { Free(&memory); }
+};
+using CvodeMemory = std::unique_ptr<void, FreeSundials<CVodeFree>>;
+using IdaMemory = std::unique_ptr<void, FreeSundials<IDAFree>>;
+using ArkstepMemory = std::unique_ptr<void, FreeSundials<ARKStepFree>>;
+using ErkstepMemory = std::unique_ptr<void, FreeSundials<ERKStepFree>>;
+
+struct FreeNonlinearSolver {
+  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
+};
+using NonlinearSolver =
+    std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, FreeNonlinearSolver>;
+
+/// Sends an integrator's errors to `messages`; in 7.x its context does that already.
+#if SUNDIALS_VERSION_MAJOR >= 7
+template <class Memory>
+int send_messages(const Memory&, SundialsMessages&) {
+  return 0;
+}
+#else
+inline int send_messages(const CvodeMemory& memory, SundialsMessages& messages) {
+  return CVodeSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
+}
+inline int send_messages(const IdaMemory& memory, SundialsMessages& messages) {
+  return IDASetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
+}
+inline int send_messages(const ArkstepMemory& memory, SundialsMessages& messages) {
+  return ARKStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
+}
+inline int send_messages(const ErkstepMemory& memory, SundialsMessages& messages) {
+  return ERKStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
+}
+#endif
+
+/// SUNDIALS' name of a return code ("CV_CONV_FAILURE"), by the package's own function.
+inline std::string code_name(char* (*name_of)(long int), int code) {
+  const std::unique_ptr<char, decltype(&std::free)> text(name_of(code), &std::free);
+  return text == nullptr ? "code " + std::to_string(code) : std::string(text.get());
+}
+
+}  // namespace tress

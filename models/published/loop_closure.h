@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "models/system.h"
+
+namespace tress {
+
+/// One link of a planar loop: length * trig(angle), its angle q_i or q_i + q_j.
+struct LoopTerm {
+  enum Trig { cosine, sine };
+  int constraint;
+  double length;  // m, signed
+  Trig trig;
+  int i;
+  int j = -1;  // -1: the angle is q_i alone
+};
+
+/// Closure of planar linkages, g_k(q) = sum_terms length trig(q_i [+ q_j]) - target_k = 0.
+/// Every derivative of a term is the same term turned by quarter turns, so value, gradient,
+/// rate, bias and curvature all read one table. The system's tangent must be stored full
+/// (n x n, compressed columns). Cost O(terms).
+class LoopClosure final : public ConstraintForm {
+ public:
+  LoopClosure(int coordinates, std::span<const LoopTerm> terms,
+              std::span<const double> targets, double typical_length);
+
+  int count() const { return static_cast<int>(targets_.size()); }
+  const Pattern& pattern() const override { return pattern_; }
+  void scale(Out g_typ) const override;
+  Status value(double t, In q, Out g) noexcept override;
+  Status gradient(double t, In q, Out gt) noexcept override;
+  Status rate(double t, In q, In v, Out g_dot) noexcept override;
+  Status bias(double t, In q, In v, Out b) noexcept override;
+  Status rate_gradient(double t, In q, In v, Out values) noexcept override;
+  Status add_curvature(double t, In q, In lambda, double factor, InOut s) noexcept override;
+
+ private:
+  struct Slots {
+    int i;
+    int j;  // -1 when the term has one angle
+  };
+
+  int coordinates_;
+  std::vector<LoopTerm> terms_;
+  std::vector<double> targets_;  // (m) m
+  std::vector<Slots> slots_;     // of each term in the values on pattern_
+  double typical_length_;
+  Pattern pattern_;
+};
+
+}  // namespace tress

@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "integrators/formulation/dynamics.h"
+#include "tests/support/catalogue_cases.h"
+
+// Counts heap allocations by standing in for malloc and realloc; the sanitizers have
+// their own malloc, so there the test is skipped.
+namespace {
+long allocations = 0;
+}  // namespace
+
+#ifndef __SANITIZE_ADDRESS__
+extern "C" {
+void* __libc_malloc(std::size_t size);                  // NOLINT: glibc's names
+void* __libc_realloc(void* pointer, std::size_t size);  // NOLINT
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* realloc(void* pointer, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(pointer, size);
+}
+}
+#endif
+
+namespace tress {
+namespace {
+
+using namespace testing_support;
+
+class Allocation : public testing::TestWithParam<CatalogueCase> {
+ protected:
+  void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  }
+};
+
+template <class F>
+long count(F f) {
+  const long before = allocations;
+  f();
+  return allocations - before;
+}
+
+TEST_P(Allocation, TheGuardSeesAnAllocation) {
+  EXPECT_GT(count([] {
+              std::vector<double> x(100);
+              EXPECT_EQ(x[7], 0);
+            }),
+            0);
+}
+
+TEST_P(Allocation, ModelCallsAllocateNothingAfterTheFirst) {
+  const auto system = GetParam().make();
+  States s(*system);
+  s.shake(0.01);
+  std::vector<double> r(s.n), x(s.n);
+  const auto once = [&] {
+    (void)system->residual(0.01, s.q, s.v, s.a, r);
+    if (!system->traits().regular_mass) return;
+    (void)system->linearize(0.01, s.q, s.v, s.a, {1, 0.1, 0.01});
+    (void)system->solve(r, x);
+  };
+  once();
+  EXPECT_EQ(count(once), 0);
+}
+
+TEST_P(Allocation, DynamicsAllocateNothingAfterTheFirstSolve) {
+  const auto system = GetParam().make();
+  States s(*system);
+  Options options;
+  if (s.m > 0) options.formulation = Formulation::baumgarte;
+  Dynamics dynamics(*system, options);
+  std::vector<double> a(s.n), lambda(s.m), r(s.n), c(s.m);
+  bool redundant = false;
+  const auto once = [&] {
+    (void)dynamics.accelerate(0, s.q, s.v, a, lambda);
+    (void)dynamics.residual(0, s.q, s.v, a, lambda, r, c);
+    (void)dynamics.linearize(0, s.q, s.v, a, lambda, {1, 1e-3, 1e-6});
+    (void)dynamics.solve(r, c);
+    redundant = dynamics.stats.rank_deficiency > 0;
+  };
+  once();
+  once();  // the second matrix is the first to be refactored
+  if (redundant) GTEST_SKIP() << "redundant constraints are analysed anew each time";
+  EXPECT_EQ(count(once), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, Allocation, testing::ValuesIn(catalogue_cases()),
+                         [](const auto& test) { return test.param.name(); });
+
+}  // namespace
+}  // namespace tress

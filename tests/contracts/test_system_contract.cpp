@@ -1,0 +1,315 @@
+#include <gtest/gtest.h>
+
+#include "integrators/formulation/projection.h"
+#include "tests/support/catalogue_cases.h"
+
+namespace tress {
+namespace {
+
+using namespace testing_support;
+
+// One time off the start, so that time-dependent terms are alive.
+constexpr double t0 = 0.013;
+
+constexpr Weights weight_sets[] = {
+    {1, 1e-3, 1e-6}, {1, 0.1, 0.01}, {1, 0, 0}, {400, 20, 1}, {1, 0.05, 0}};
+
+class SystemContract : public testing::TestWithParam<CatalogueCase> {
+ protected:
+  void SetUp() override {
+    system_ = GetParam().make();
+    ASSERT_NE(system_, nullptr);
+  }
+  std::unique_ptr<System> system_;
+};
+
+std::vector<double> residual(System& system, const std::vector<double>& q,
+                             const std::vector<double>& v, const std::vector<double>& a) {
+  std::vector<double> r(q.size());
+  EXPECT_EQ(system.residual(t0, q, v, a, r), Status::ok);
+  return r;
+}
+
+/// S(w) x by central differences of the residual.
+std::vector<double> tangent_product(System& system, const States& s, Weights w,
+                                    const std::vector<double>& x) {
+  double length = 0;
+  for (std::size_t i = 0; i < s.n; ++i) {
+    length = std::max({length, std::abs(w.pos * x[i]) / s.q_typ[i],
+                       std::abs(w.vel * x[i]) / s.v_typ[i],
+                       std::abs(w.acc * x[i]) / s.a_typ[i]});
+  }
+  return central_difference(difference_step / length, [&](double e) {
+    return residual(system, plus(s.q, e * w.pos, x), plus(s.v, e * w.vel, x),
+                    plus(s.a, e * w.acc, x));
+  });
+}
+
+/// |S x - b| / |b| for x from linearize and solve, with b the image of a random vector.
+double tangent_error(System& tangent_of, System& residual_of, States& s, Weights w) {
+  const std::vector<double> b = tangent_product(residual_of, s, w, s.random(s.a_typ));
+  EXPECT_EQ(tangent_of.linearize(t0, s.q, s.v, s.a, w), Status::ok);
+  std::vector<double> x(s.n);
+  EXPECT_EQ(tangent_of.solve(b, x), Status::ok);
+  const std::vector<double> sx = tangent_product(residual_of, s, w, x);
+  return largest(plus(sx, -1, b)) / largest(b);
+}
+
+bool exact_tangent(const CatalogueCase& c) { return c.word != "stiff"; }
+
+// Truncation e^4 = 3e-13 times the ratio of fifth to first derivatives, plus rounding
+// eps / e = 3e-13 times the ratio of |r| to |S x|: 1e-7 leaves five digits for both
+// ratios.
+constexpr double tangent_tolerance = 1e-7;
+
+TEST_P(SystemContract, TangentIsTheDerivativeOfTheResidual) {
+  if (!exact_tangent(GetParam()))
+    GTEST_SKIP() << "stiff tangent leaves terms out by design";
+  if (!system_->traits().regular_mass)
+    GTEST_SKIP() << "S is singular without constraints";
+  States s(*system_);
+  for (const Weights w : weight_sets) {
+    s.shake(0.05);
+    EXPECT_LE(tangent_error(*system_, *system_, s, w), tangent_tolerance)
+        << "weights " << w.acc << " " << w.vel << " " << w.pos;
+  }
+}
+
+/// A system whose residual has one more term than its tangent knows.
+class Mutant final : public System {
+ public:
+  Mutant(System& original, Weights term, std::vector<double> size)
+      : original_(original), term_(term), size_(std::move(size)) {}
+  Layout layout() const override { return original_.layout(); }
+  Traits traits() const override { return original_.traits(); }
+  void initial_state(Out q, Out v) const override { original_.initial_state(q, v); }
+  void scale(Out q, Out v) const override { original_.scale(q, v); }
+  Status residual(double t, In q, In v, In a, Out r) noexcept override {
+    const Status s = original_.residual(t, q, v, a, r);
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      r[i] += size_[i] * (term_.acc * a[i] + term_.vel * v[i] + term_.pos * q[i]);
+    }
+    return s;
+  }
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return original_.linearize(t, q, v, a, w);
+  }
+  Status solve(In b, Out x) noexcept override { return original_.solve(b, x); }
+
+ private:
+  System& original_;
+  Weights term_;
+  std::vector<double> size_;
+};
+
+TEST_P(SystemContract, TangentTestSeesAMissingTerm) {
+  if (!system_->traits().regular_mass)
+    GTEST_SKIP() << "S is singular without constraints";
+  for (const Weights term : {Weights{1, 0, 0}, Weights{0, 1, 0}, Weights{0, 0, 1}}) {
+    States s(*system_);
+    s.shake(0.05);
+    const Weights w{1, 0.1, 0.01};
+    const std::vector<double> x = s.random(s.a_typ);
+    const std::vector<double> sx = tangent_product(*system_, s, w, x);
+    // A term a thousandth of what the tangent already holds.
+    const double factor = term.acc * w.acc + term.vel * w.vel + term.pos * w.pos;
+    const std::vector<double> size(s.n, 1e-3 * largest(sx) / (factor * largest(x)));
+    Mutant mutant(*system_, term, size);
+    EXPECT_GT(tangent_error(*system_, mutant, s, w), tangent_tolerance);
+  }
+}
+
+TEST_P(SystemContract, SparseFormHoldsTheTangent) {
+  SparseForm* form = system_->sparse_form();
+  if (form == nullptr) GTEST_SKIP() << "no sparse form";
+  if (!exact_tangent(GetParam()))
+    GTEST_SKIP() << "stiff tangent leaves terms out by design";
+  States s(*system_);
+  const Pattern& p = form->pattern();
+  ASSERT_EQ(p.cols, system_->layout().coordinates);
+  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
+  for (const Weights w : weight_sets) {
+    s.shake(0.05);
+    const std::vector<double> x = s.random(s.a_typ);
+    ASSERT_EQ(form->values(t0, s.q, s.v, s.a, w, values), Status::ok);
+    std::vector<double> product(s.n);
+    for (std::size_t j = 0; j < s.n; ++j) {
+      for (int k = p.start[j]; k < p.start[j + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        product[static_cast<std::size_t>(p.row[at])] += values[at] * x[j];
+      }
+    }
+    const std::vector<double> expected = tangent_product(*system_, s, w, x);
+    EXPECT_GT(largest(expected), 0);
+    EXPECT_LE(largest(plus(product, -1, expected)),
+              tangent_tolerance * largest(expected));
+  }
+}
+
+TEST_P(SystemContract, ResidualIsPure) {
+  States s(*system_);
+  s.shake(0.05);
+  const auto first = residual(*system_, s.q, s.v, s.a);
+  States other(*system_, 99);
+  other.shake(0.1);
+  residual(*system_, other.q, other.v, other.a);
+  (void)system_->linearize(t0, other.q, other.v, other.a, {1, 0.1, 0.01});
+  EXPECT_EQ(residual(*system_, s.q, s.v, s.a), first);
+}
+
+TEST_P(SystemContract, ResidualVanishesOnExplicitAcceleration) {
+  ExplicitForm* form = system_->explicit_form();
+  if (form == nullptr) GTEST_SKIP() << "no explicit form";
+  States s(*system_);
+  s.shake(0.05);
+  std::vector<double> a(s.n);
+  ASSERT_EQ(form->acceleration(t0, s.q, s.v, a), Status::ok);
+  const auto r = residual(*system_, s.q, s.v, a);
+  const auto f = residual(*system_, s.q, s.v, std::vector<double>(s.n, 0.0));
+  ASSERT_GT(largest(f), 0);
+  // The solve for a is backward stable: a residual of n rounding errors of the load.
+  EXPECT_LE(largest(r), 1e3 * static_cast<double>(s.n) * 2.2e-16 * largest(f));
+}
+
+TEST_P(SystemContract, InitialStateSatisfiesTheConstraints) {
+  ConstraintForm* form = system_->constraint_form();
+  ASSERT_EQ(form != nullptr, system_->layout().constraints > 0);
+  if (form == nullptr) GTEST_SKIP() << "no constraints";
+  ASSERT_NE(system_->sparse_form(), nullptr) << "constraints need the sparse form";
+  States s(*system_);
+  std::vector<double> g(s.m), rate(s.m), g_typ(s.m);
+  form->scale(g_typ);
+  ASSERT_EQ(form->value(0, s.q, g), Status::ok);
+  ASSERT_EQ(form->rate(0, s.q, s.v, rate), Status::ok);
+  // Published initial values carry 15 digits of quantities of order one.
+  EXPECT_LE(scaled_norm(g, g_typ), 1e-13);
+  EXPECT_LE(scaled_norm(rate, g_typ), 1e-13 * std::max(1.0, largest(s.v)));
+}
+
+TEST_P(SystemContract, ConstraintDerivativesAgreeWithDifferences) {
+  ConstraintForm* form = system_->constraint_form();
+  if (form == nullptr) GTEST_SKIP() << "no constraints";
+  States s(*system_);
+  s.shake(0.05);
+  const Pattern& p = form->pattern();
+  const auto multiply = [&](const std::vector<double>& gt, const std::vector<double>& x) {
+    std::vector<double> y(s.m);
+    for (std::size_t k = 0; k < s.m; ++k) {
+      for (int i = p.start[k]; i < p.start[k + 1]; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        y[k] += gt[at] * x[static_cast<std::size_t>(p.row[at])];
+      }
+    }
+    return y;
+  };
+  const auto nonzeros = static_cast<std::size_t>(p.nonzeros());
+  std::vector<double> gt(nonzeros), rate_gt(nonzeros);
+  ASSERT_EQ(form->gradient(t0, s.q, gt), Status::ok);
+  ASSERT_EQ(form->rate_gradient(t0, s.q, s.v, rate_gt), Status::ok);
+  const std::vector<double> d = s.random(s.q_typ);
+  const double tolerance = 1e-10;  // e^4 and eps / e with two digits of margin
+
+  const auto value = [&](double e) {
+    std::vector<double> g(s.m);
+    EXPECT_EQ(form->value(t0, plus(s.q, e, d), g), Status::ok);
+    return g;
+  };
+  const auto g_d = multiply(gt, d);
+  ASSERT_GT(largest(g_d), 0);
+  EXPECT_LE(largest(plus(central_difference(difference_step, value), -1, g_d)),
+            tolerance * largest(g_d));
+
+  const auto rate = [&](double e) {
+    std::vector<double> g(s.m);
+    EXPECT_EQ(form->rate(t0, plus(s.q, e, d), s.v, g), Status::ok);
+    return g;
+  };
+  EXPECT_LE(
+      largest(plus(central_difference(difference_step, rate), -1, multiply(rate_gt, d))),
+      tolerance * (largest(s.v) + 1) * largest(g_d));
+
+  // g'' - G a: the rate's derivative along the motion q + e v, t + e, with v constant.
+  const double step = difference_step / scaled_norm(s.v, s.q_typ);
+  const auto along = [&](double e) {
+    std::vector<double> g(s.m);
+    EXPECT_EQ(form->rate(t0 + e, plus(s.q, e, s.v), s.v, g), Status::ok);
+    return g;
+  };
+  std::vector<double> bias(s.m);
+  ASSERT_EQ(form->bias(t0, s.q, s.v, bias), Status::ok);
+  const double speed = largest(s.v) + 1;
+  EXPECT_LE(largest(plus(central_difference(step, along), -1, bias)),
+            tolerance * std::max(largest(bias), speed * speed));
+
+  SparseForm* sparse = system_->sparse_form();
+  const Pattern& sp = sparse->pattern();
+  const std::vector<double> lambda = s.random(std::vector<double>(s.m, 1.0));
+  std::vector<double> values(static_cast<std::size_t>(sp.nonzeros()));
+  ASSERT_EQ(form->add_curvature(t0, s.q, lambda, 1, values), Status::ok);
+  std::vector<double> product(s.n);
+  for (std::size_t j = 0; j < s.n; ++j) {
+    for (int i = sp.start[j]; i < sp.start[j + 1]; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      product[static_cast<std::size_t>(sp.row[at])] += values[at] * d[j];
+    }
+  }
+  const auto force = [&](double e) {
+    std::vector<double> gradient(nonzeros), f(s.n);
+    EXPECT_EQ(form->gradient(t0, plus(s.q, e, d), gradient), Status::ok);
+    for (std::size_t k = 0; k < s.m; ++k) {
+      for (int i = p.start[k]; i < p.start[k + 1]; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        f[static_cast<std::size_t>(p.row[at])] += gradient[at] * lambda[k];
+      }
+    }
+    return f;
+  };
+  EXPECT_LE(largest(plus(central_difference(difference_step, force), -1, product)),
+            tolerance * (largest(product) + largest(gt)));
+}
+
+TEST_P(SystemContract, EnergyChangesByThePowerOfTheRemainingForces) {
+  Energetics* energetics = system_->energetics();
+  if (energetics == nullptr) GTEST_SKIP() << "no energetics";
+  States s(*system_);
+  Options options;
+  if (s.m > 0) options.formulation = Formulation::acceleration;
+  Dynamics dynamics(*system_, options);
+  if (s.m == 0) {
+    s.shake(0.05);
+  } else {  // off the constraints their forces would do work: only the velocity is shaken
+    s.v = s.random(s.v_typ);
+    const std::vector<double> zero_n(s.n), zero_m(s.m);
+    ASSERT_EQ(dynamics.linearize(t0, s.q, s.v, zero_n, zero_m, {1, 0, 0}), Status::ok);
+    ASSERT_EQ(Projection(dynamics).velocities(t0, s.q, s.v), Status::ok);
+  }
+  std::vector<double> a(s.n), lambda(s.m);
+  ASSERT_EQ(dynamics.accelerate(t0, s.q, s.v, a, lambda), Status::ok);
+  // The time in which the state moves by its own scale, whichever rate is faster.
+  const double time =
+      std::min(largest(s.q_typ) / largest(s.v), largest(s.v) / largest(a));
+  const double step = difference_step * time;
+  const auto energy = [&](double e) {
+    const auto q = plus(plus(s.q, e, s.v), e * e / 2, a);
+    return std::vector<double>{energetics->energy(t0 + e, q, plus(s.v, e, a)).total()};
+  };
+  const double power = energetics->power(t0, s.q, s.v);
+  const Energy now = energetics->energy(t0, s.q, s.v);
+  const double rate = central_difference(step, energy)[0];
+  // e^4 and eps / e of the difference, relative to E / time; two digits of margin.
+  const double scale = std::abs(now.kinetic) + std::abs(now.potential);
+  EXPECT_NEAR(rate, power, 1e-10 * scale / time);
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, SystemContract, testing::ValuesIn(catalogue_cases()),
+                         [](const auto& test) {
+                           std::string name = test.param.name();
+                           for (char& c : name) {
+                             if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+                               c = '_';
+                           }
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace tress

@@ -1,0 +1,301 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "experiments/harness/csv.h"
+#include "tests/harness/toy_process.h"
+
+namespace tress {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+Table table(const Toy& toy, const std::string& file) {
+  return parse_csv(toy.read(file), file);
+}
+
+std::vector<std::string> cells(const Table& of, const std::string& column) {
+  std::vector<std::string> result;
+  for (const Row& row : of.rows) result.emplace_back(row.text(column));
+  return result;
+}
+
+TEST(Sweep, WritesEveryRowInOrderWithManifestAndRemovesTheJournal) {
+  Toy toy;
+  const Toy::Result result = toy.run("--out toy.csv --jobs 3");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(toy.files(), ElementsAre("toy.csv", "toy.meta.json"));
+  const Table rows = table(toy, "toy.csv");
+  EXPECT_THAT(rows.header, ElementsAre("index", "dt_s", "square", "wall_s", "status",
+                                       "reason", "run_id"));
+  EXPECT_THAT(cells(rows, "index"), ElementsAre("0", "1", "2", "3"));
+  EXPECT_THAT(cells(rows, "square"), ElementsAre("0", "1", "4", "9"));
+  EXPECT_THAT(cells(rows, "status"), ElementsAre("ok", "ok", "ok", "ok"));
+}
+
+TEST(Sweep, DefaultOutputIsResultsSlashName) {
+  Toy toy;
+  EXPECT_EQ(toy.run("").code, 0);
+  EXPECT_THAT(toy.files(),
+              ElementsAre("results", "results/toy.csv", "results/toy.meta.json"));
+}
+
+TEST(Sweep, ManifestSaysHowTheTableWasMade) {
+  Toy toy;
+  ASSERT_EQ(toy.run("--out toy.csv --seed 42 --set dt=0.5").code, 0);
+  const auto meta = nlohmann::json::parse(toy.read("toy.meta.json"));
+  EXPECT_EQ(meta.at("seed"), 42);
+  EXPECT_EQ(meta.at("rows").at("by_status").at("ok"), 4);
+  EXPECT_GT(meta.at("sundials_speed_ratio").get<double>(), 0);
+  EXPECT_NE(meta.at("machine").at("kernel"), "");
+  EXPECT_NE(meta.at("build").at("compiler"), "");
+  EXPECT_NE(meta.at("git").at("commit"), "");
+  EXPECT_THAT(meta.at("argv").size(), 7u);
+  EXPECT_THAT(meta.at("libraries").at("eigen").get<std::string>(), HasSubstr("3."));
+}
+
+struct OddRow {
+  std::string name, status, reason;
+};
+
+class OddRowTest : public testing::TestWithParam<OddRow> {};
+
+TEST_P(OddRowTest, BecomesARowWithReasonBesideCompleteNeighbours) {
+  const OddRow& odd = GetParam();
+  Toy toy;
+  const auto start = std::chrono::steady_clock::now();
+  const Toy::Result result =
+      toy.run("--out toy.csv --timeout 300ms --set odd_row=" + odd.name);
+  // Not a timing: a hang that nobody ends would last for ever.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+  EXPECT_EQ(result.code, 3);
+  const Table rows = table(toy, "toy.csv");
+  EXPECT_THAT(cells(rows, "status"), ElementsAre("ok", "ok", odd.status, "ok"));
+  EXPECT_THAT(cells(rows, "reason")[2], HasSubstr(odd.reason));
+  EXPECT_THAT(cells(rows, "index"), ElementsAre("0", "1", "2", "3"));
+  EXPECT_FALSE(toy.exists("toy.csv.journal"));
+}
+
+const OddRow odd_rows[] = {
+    {"crash", "crashed", ""},  // a sanitizer turns the signal into an exit code
+    {"quit", "crashed", "exit code 7"},
+    {"throw", "exception", "row 2, \"as asked\",\nthrew"},
+    {"busy", "timeout", "killed after 0.3 s"},
+    {"deaf", "timeout", "killed after 0.3 s"},
+    {"polite", "timeout", "stopped at t = 1 s"},
+};
+INSTANTIATE_TEST_SUITE_P(Harness, OddRowTest, testing::ValuesIn(odd_rows),
+                         [](const auto& run) { return run.param.name; });
+
+TEST(Sweep, ACaseThatHonoursItsDeadlineKeepsWhatItMeasured) {
+  Toy toy;
+  static_cast<void>(toy.run("--out toy.csv --timeout 300ms --set odd_row=polite"));
+  EXPECT_EQ(cells(table(toy, "toy.csv"), "square")[2], "1");
+}
+
+TEST(Sweep, AnUndeclaredColumnIsAnInternalError) {
+  Toy toy;
+  const Toy::Result result = toy.run("--out toy.csv --set odd_row=undeclared");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("'sqare'"));
+  EXPECT_FALSE(toy.exists("toy.csv"));
+}
+
+TEST(Sweep, ABrokenCheckMakesTheExitCodeThreeButKeepsTheTable) {
+  Toy toy;
+  const Toy::Result result = toy.run("--out toy.csv --set promise=broken");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("FAIL the promise, 4 rows"));
+  EXPECT_EQ(table(toy, "toy.csv").rows.size(), 4u);
+}
+
+TEST(Sweep, KilledHalfWayResumesWithoutRepeatingFinishedRows) {
+  Toy toy;
+  const std::string command = "--out toy.csv --set particles=8 --set nap=0.05";
+  const pid_t process = toy.start(command);
+  toy.await_executions(4);  // so at least three rows are finished
+  kill(process, SIGKILL);
+  EXPECT_EQ(toy.wait(process).code, 128 + SIGKILL);
+  EXPECT_FALSE(toy.exists("toy.csv"));
+  const std::string journal = toy.read("toy.csv.journal");
+  const auto finished = std::count(journal.begin(), journal.end(), '\n') - 1;
+  ASSERT_GE(finished, 3);
+  EXPECT_EQ(toy.run(command).code, 2)
+      << "without --resume the finished rows would be lost";
+
+  const std::size_t before = toy.executed().size();
+  EXPECT_EQ(toy.run(command + " --resume").code, 0);
+  EXPECT_EQ(toy.executed().size() - before, 8u - static_cast<std::size_t>(finished));
+  EXPECT_THAT(cells(table(toy, "toy.csv"), "square"),
+              ElementsAre("0", "1", "4", "9", "16", "25", "36", "49"));
+  EXPECT_FALSE(toy.exists("toy.csv.journal"));
+}
+
+TEST(Sweep, ATornLastLineOfTheJournalIsRepeated) {
+  Toy toy;
+  const std::string command = "--out toy.csv --set particles=8 --set nap=0.05";
+  const pid_t process = toy.start(command);
+  toy.await_executions(4);
+  kill(process, SIGKILL);
+  static_cast<void>(toy.wait(process));
+  const std::string journal = toy.read("toy.csv.journal");
+  toy.write("toy.csv.journal", journal.substr(0, journal.size() - 9));
+  const auto whole = std::count(journal.begin(), journal.end(), '\n') - 2;
+  const std::size_t before = toy.executed().size();
+  EXPECT_EQ(toy.run(command + " --resume").code, 0);
+  EXPECT_EQ(toy.executed().size() - before, 8u - static_cast<std::size_t>(whole));
+  EXPECT_EQ(table(toy, "toy.csv").rows.size(), 8u);
+}
+
+TEST(Sweep, ADamagedJournalAndOtherSettingsAreRefused) {
+  Toy toy;
+  const pid_t process = toy.start("--out toy.csv --set nap=0.2");
+  toy.await_executions(3);
+  kill(process, SIGKILL);
+  static_cast<void>(toy.wait(process));
+  const Toy::Result other = toy.run("--out toy.csv --set nap=0.1 --resume");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("other settings"));
+  const std::string journal = toy.read("toy.csv.journal");
+  const std::size_t second = journal.find('\n') + 1;
+  toy.write("toy.csv.journal", std::string(journal).replace(second, 5, "x\nyz\n"));
+  const Toy::Result damaged = toy.run("--out toy.csv --set nap=0.2 --resume");
+  EXPECT_EQ(damaged.code, 2);
+  EXPECT_THAT(damaged.err, HasSubstr("toy.csv.journal:2:1"));
+}
+
+TEST(Sweep, InterruptKeepsTheJournalAndTellsHowToGoOn) {
+  Toy toy;
+  const std::string command = "--out toy.csv --set particles=8 --set nap=0.1";
+  const pid_t process = toy.start(command);
+  toy.await_executions(3);
+  kill(process, SIGINT);
+  const Toy::Result result = toy.wait(process);
+  EXPECT_EQ(result.code, 130);
+  EXPECT_THAT(result.err, HasSubstr("--resume"));
+  EXPECT_THAT(toy.files(), ElementsAre("toy.csv.journal"));
+  EXPECT_EQ(toy.run(command + " --resume").code, 0);
+  EXPECT_EQ(table(toy, "toy.csv").rows.size(), 8u);
+}
+
+TEST(Sweep, ResumeOfACompleteTableRunsNothingAndRetryOnlyWhatFailed) {
+  Toy toy;
+  const std::string command = "--out toy.csv --set odd_row=quit";
+  EXPECT_EQ(toy.run(command).code, 3);
+  EXPECT_EQ(toy.run(command + " --resume").code, 3);
+  EXPECT_EQ(toy.executed().size(), 4u);
+  EXPECT_EQ(toy.run(command + " --resume --retry-failed").code, 3);
+  EXPECT_THAT(toy.executed(), ElementsAre(0, 1, 2, 3, 2));
+}
+
+TEST(Sweep, ASecondRunOnTheSameTableIsRefusedWhileTheFirstRuns) {
+  Toy toy;
+  const pid_t process = toy.start("--out toy.csv --set nap=0.3");
+  toy.await_executions(1);
+  Toy other;
+  const Toy::Result second =
+      other.run("--resume --set nap=0.3 --out '" + toy.path("work") + "/toy.csv'");
+  EXPECT_EQ(second.code, 2);
+  EXPECT_THAT(second.err, HasSubstr("another run"));
+  EXPECT_EQ(toy.wait(process).code, 0);
+}
+
+TEST(Sweep, AFullDiskDuringTheRunIsOneLineAndKeepsTheJournal) {
+  Toy toy;
+  // 1 block of 512 bytes holds the journal's first line and a few rows of the 30.
+  const Toy::Result result =
+      toy.run("--out toy.csv --progress none --set particles=30", "ulimit -f 2; ");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.error_lines(), 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("free space"));
+  EXPECT_THAT(toy.files(), ElementsAre("toy.csv.journal"));
+  EXPECT_EQ(toy.run("--out toy.csv --set particles=30 --resume").code, 0);
+  EXPECT_EQ(table(toy, "toy.csv").rows.size(), 30u);
+}
+
+TEST(Sweep, ShardsMergeIntoTheWholeTable) {
+  Toy toy;
+  const std::string same = " --set particles=7";
+  EXPECT_EQ(toy.run("--out whole.csv" + same).code, 0);
+  for (const std::string i : {"1", "2", "3"}) {
+    EXPECT_EQ(toy.run("--shard " + i + "/3 --out part" + i + ".csv" + same).code, 0);
+  }
+  EXPECT_EQ(toy.run("--merge part1.csv part2.csv part3.csv --out merged.csv").code, 0);
+  auto whole = cells(table(toy, "whole.csv"), "run_id");
+  auto merged = cells(table(toy, "merged.csv"), "run_id");
+  std::sort(whole.begin(), whole.end());
+  std::sort(merged.begin(), merged.end());
+  EXPECT_EQ(merged, whole);
+  EXPECT_EQ(merged.size(), 7u);
+}
+
+TEST(Sweep, MergeDropsRepeatsAndReportsContradictions) {
+  Toy toy;
+  ASSERT_EQ(toy.run("--out a.csv").code, 0);
+  EXPECT_EQ(toy.run("--merge a.csv a.csv --out same.csv").code, 0);
+  EXPECT_EQ(table(toy, "same.csv").rows.size(), 4u);
+  std::string other = toy.read("a.csv");
+  const std::size_t square = other.find("3,0.1,9,");
+  ASSERT_NE(square, std::string::npos);
+  toy.write("b.csv", other.replace(square, 8, "3,0.1,8,"));
+  const Toy::Result result = toy.run("--merge a.csv b.csv --out c.csv");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("square is '9' and in b.csv '8'"));
+  EXPECT_EQ(table(toy, "c.csv").rows.size(), 4u);
+}
+
+TEST(Sweep, StandardOutputGetsTheTableAndNothingElse) {
+  Toy toy;
+  const Toy::Result result = toy.run("--out -");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(parse_csv(result.out, "out").rows.size(), 4u);
+  EXPECT_TRUE(toy.files().empty());
+}
+
+TEST(Sweep, JsonProgressIsOneObjectPerRow) {
+  Toy toy;
+  const Toy::Result result = toy.run("--out toy.csv --progress json");
+  const std::string first = result.err.substr(0, result.err.find('\n'));
+  EXPECT_EQ(nlohmann::json::parse(first).at("done"), 1);
+  EXPECT_EQ(nlohmann::json::parse(first).at("total"), 4);
+  EXPECT_THAT(result.err, Not(HasSubstr("\033")));
+}
+
+TEST(Sweep, DryRunPrintsTheRowsAndWritesNothing) {
+  Toy toy;
+  const Toy::Result result = toy.run("--dry-run --set particles=2");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, HasSubstr("index=1 dt_s=0.1"));
+  EXPECT_TRUE(toy.files().empty());
+  EXPECT_TRUE(toy.executed().empty());
+}
+
+TEST(Sweep, HelpShowsTheExampleAndListTheKeys) {
+  Toy toy;
+  EXPECT_THAT(toy.run("--help").out, HasSubstr("toy --set particles=10 --out toy.csv"));
+  EXPECT_THAT(toy.run("--version").out, HasSubstr("toy 0."));
+  const Toy::Result list = toy.run("--list");
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(list.out, HasSubstr("WHAT DRIVES WHAT"));
+  EXPECT_THAT(list.out, HasSubstr("particles"));
+  EXPECT_THAT(list.out, HasSubstr("rho_inf"));
+}
+
+TEST(Sweep, SceneFileSuppliesOptionsAndTheCommandLineWins) {
+  Toy toy;
+  toy.write("scene.toml",
+            "title = \"two\"\nseed = 7\n[settings]\nparticles = 2\ndt = 0.25\n");
+  ASSERT_EQ(toy.run("--scene scene.toml --set dt=0.5 --out toy.csv").code, 0);
+  const Table rows = table(toy, "toy.csv");
+  EXPECT_THAT(cells(rows, "dt_s"), ElementsAre("0.5", "0.5"));
+  EXPECT_EQ(nlohmann::json::parse(toy.read("toy.meta.json")).at("seed"), 7);
+}
+
+}  // namespace
+}  // namespace tress

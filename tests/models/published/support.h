@@ -1,0 +1,111 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <initializer_list>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "models/catalogue.h"
+
+namespace tress {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+inline In in(const Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+inline Out out(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+inline Vector vector_of(In x) {
+  return Eigen::Map<const Vector>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+inline std::unique_ptr<System> make_model(
+    std::string_view id,
+    std::initializer_list<std::pair<std::string_view, std::string_view>> settings = {}) {
+  const ModelEntry& entry = find_model(id);
+  Parameters parameters(entry.parameters, "model " + std::string(id));
+  for (const auto& [key, value] : settings) parameters.set(key, value);
+  return entry.make(parameters);
+}
+
+struct State {
+  double t = 0;
+  Vector q, v, a;
+};
+
+inline State start_of(const System& system) {
+  const int n = system.layout().coordinates;
+  State s{0, Vector(n), Vector(n), Vector::Zero(n)};
+  system.initial_state(out(s.q), out(s.v));
+  return s;
+}
+
+/// A state away from the start by the model's typical sizes; t inside the load's pulse.
+inline State random_state(const System& system, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  const int n = system.layout().coordinates;
+  Vector q_typ(n), v_typ(n);
+  system.scale(out(q_typ), out(v_typ));
+  State s = start_of(system);
+  s.t = 0.7;
+  for (int i = 0; i < n; ++i) {
+    s.q[i] += 0.3 * std::min(1.0, q_typ[i]) * normal(engine);
+    s.v[i] += 0.5 * v_typ[i] * normal(engine);
+    s.a[i] = v_typ[i] * v_typ[i] * normal(engine);
+  }
+  return s;
+}
+
+inline Vector random_vector(int n, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  Vector x(n);
+  for (double& entry : x) entry = normal(engine);
+  return x;
+}
+
+inline Matrix dense(const Pattern& pattern, In values) {
+  Matrix m = Matrix::Zero(pattern.rows, pattern.cols);
+  for (int j = 0; j < pattern.cols; ++j) {
+    for (int p = pattern.start[j]; p < pattern.start[j + 1]; ++p) {
+      m(pattern.row[p], j) = values[p];
+    }
+  }
+  return m;
+}
+
+/// Derivative of f at 0: central differences at h and h/2, extrapolated; error O(h^4).
+template <class F>
+Vector derivative(F f, double h) {
+  const Vector coarse = (f(h) - f(-h)) / (2 * h);
+  const Vector fine = (f(h / 2) - f(-h / 2)) / h;
+  return (4 * fine - coarse) / 3;
+}
+
+inline Vector residual_of(System& system, const State& s) {
+  Vector r(s.q.size());
+  EXPECT_EQ(system.residual(s.t, in(s.q), in(s.v), in(s.a), out(r)), Status::ok);
+  return r;
+}
+
+/// S(w) column by column, by solving for unit right-hand sides and inverting.
+inline Matrix tangent_of(System& system, const State& s, Weights w) {
+  const Eigen::Index n = s.q.size();
+  EXPECT_EQ(system.linearize(s.t, in(s.q), in(s.v), in(s.a), w), Status::ok);
+  Matrix inverse(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const Vector unit = Vector::Unit(n, j);
+    Vector x(n);
+    EXPECT_EQ(system.solve(in(unit), out(x)), Status::ok);
+    inverse.col(j) = x;
+  }
+  return inverse.inverse();
+}
+
+}  // namespace tress
