@@ -113,10 +113,7 @@ int main(int argc, char** argv) {
       .question = "how large may Baumgarte's gains be, and does theory predict it?",
       .example = "--integrators symplectic_euler,rk4",
       .columns = columns,
-      .settings = {},
       .cases = cases,
-      .derive = {},
-      .checks = check,
-      .finding = {}};
+      .checks = check};
   return run_experiment(experiment, argc, argv);
 }

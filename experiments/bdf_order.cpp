@@ -121,9 +121,7 @@ int main(int argc, char** argv) {
       .question = "which maximum order should a BDF code have on a rod?",
       .example = "--full --timeout 5m",
       .columns = columns,
-      .settings = {},
       .cases = cases,
-      .derive = {},
       .checks = check,
       .finding = finding};
   return run_experiment(experiment, argc, argv);

@@ -208,8 +208,7 @@ std::vector<double> geometric(double from, double to, double ratio) {
   return values;
 }
 
-void add_gains(const CommandLine& line, const Options& base,
-               std::vector<Study>& studies) {
+void add_gains(const CommandLine& line, const Settings& user, std::vector<Study>& studies) {
   const double ratio = line.full ? std::pow(10, 0.25) : std::sqrt(10);
   const Scene scene = circle_bead(user);
   for (const std::string_view id :
@@ -351,9 +350,7 @@ int main(int argc, char** argv) {
       .question = "how far do constraints drift, and what does stopping the drift cost?",
       .example = "--integrators rk4,rattle --set step=5e-4",
       .columns = columns,
-      .settings = {},
       .cases = cases,
-      .derive = {},
       .checks = check,
       .finding = finding};
   return run_experiment(experiment, argc, argv);

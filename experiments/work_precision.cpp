@@ -170,7 +170,6 @@ int main(int argc, char** argv) {
       .question = "what does accuracy cost in time, per integrator?",
       .example = "--models beam --integrators cvode_bdf,arkode_dirk",
       .columns = columns,
-      .settings = {},
       .cases = cases,
       .derive = add_series_columns,
       .checks = check,

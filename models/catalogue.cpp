@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "models/constrained/bead_on_wire.h"
+#include "models/constrained/inextensible_chain.h"
+#include "models/constrained/tinkertoys.h"
 #include "models/input_error.h"
 #include "models/published/andrews_squeezer.h"
 #include "models/published/beam.h"
@@ -15,10 +18,13 @@ namespace tress {
 // clang-format off
 std::span<const ModelEntry> models() {
   static const std::array entries = {
+      ModelEntry{"bead_on_wire", "bead on a circle, ellipse, helix or trefoil; x with lambda, or one coordinate", "Witkin 1997", bead_on_wire_parameters(), make_bead_on_wire},
+      ModelEntry{"tinkertoys", "3n particles as a chain, ring, net, tree or over-constrained truss", "Witkin 1997", tinkertoys_parameters(), make_tinkertoys},
+      ModelEntry{"inextensible_chain", "hanging strand of n rigid links; 3n with n multipliers, open or closed", "Baraff 1996", inextensible_chain_parameters(), make_inextensible_chain},
+      ModelEntry{"double_pendulum", "2 angles, point masses, chaotic", "Landau & Lifshitz 1976, section 5", double_pendulum_parameters(), make_double_pendulum},
       ModelEntry{"andrews_squeezer", "7 angles, 6 loop closures; planar mechanism with one spring", "Test Set for IVP Solvers 2.4, andrews", andrews_squeezer_parameters(), make_andrews_squeezer},
       ModelEntry{"slider_crank", "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)", "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_parameters(), make_slider_crank},
       ModelEntry{"beam", "n angles of inextensible segments, clamped, pushed at the tip", "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_parameters(), make_beam},
-      ModelEntry{"double_pendulum", "2 angles, point masses, chaotic", "Landau & Lifshitz 1976, section 5", double_pendulum_parameters(), make_double_pendulum},
   };
   return entries;
 }

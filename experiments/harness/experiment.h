@@ -42,16 +42,16 @@ struct Experiment {
   std::string_view name, question;
   std::string_view example;             // arguments only: "--models bead_on_wire --quick"
   std::span<const Column> columns;      // status, reason and run_id are added to them
-  std::span<const Parameter> settings;  // keys of --set that are the experiment's own
+  std::span<const Parameter> settings = {};  // keys of --set that are the experiment's own
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
-  std::function<void(std::vector<Row>&)> derive;
+  std::function<void(std::vector<Row>&)> derive = {};
   /// Optional: states what the table must show; a claim that does not hold makes the exit
   /// code 3. Neither is called on a single shard.
-  std::function<void(const std::vector<Row>&, Verdicts&)> checks;
+  std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
   /// Optional: a row that is not ok but is what the experiment set out to find (a
   /// divergence beyond a limit, say) does not make the exit code 3.
-  std::function<bool(const Row&)> finding;
+  std::function<bool(const Row&)> finding = {};
 };
 
 /// The whole main(): options, --list, sweep, table, manifest; returns the exit code.

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cmath>
+
+#include "models/constrained/constraint.h"
+#include "models/constrained/joints.h"
+#include "models/math/vec3.h"
+
+namespace tress {
+
+/// Fixed angle theta0 at b between u = a - b and v = c - b:
+///     C = (cos theta0 - cos theta) / sin theta0,   cos theta = u.v / (|u| |v|),
+/// which is theta - theta0 (rad) to first order, whatever the lengths. Regular for theta in
+/// (0, pi); the straight and the folded angle are where any single equation fails.
+struct Angle {
+  static constexpr int node_count = 3;
+  static constexpr int inputs = 9;
+  static constexpr int rows = 1;
+  static constexpr bool linear = false;
+  double cosine, sine;  // of theta0
+  double scale(double) const { return 1; }
+
+  template <class T>
+  void value(const T* z, T* c) const {
+    using std::sqrt;
+    const Vec3<T> u = load3(z) - load3(z + 3);
+    const Vec3<T> v = load3(z + 6) - load3(z + 3);
+    c[0] = (T(cosine) - dot(u, v) / sqrt(dot(u, u) * dot(v, v))) / T(sine);
+  }
+  void gradient(const double* z, double* g) const;
+  void hessian(const double* z, const double* w, double* h) const;
+};
+
+/// Three distances at once (3 rows, m): edges ab, bc, ca.
+struct Triangle {
+  static constexpr int node_count = 3;
+  static constexpr int inputs = 9;
+  static constexpr int rows = 3;
+  static constexpr bool linear = false;
+  std::array<double, 3> length;  // m
+  double scale(double) const { return length[0]; }
+
+  template <class T>
+  void value(const T* z, T* c) const {
+    for (int k = 0; k < 3; ++k) {
+      T d[3];
+      store3(load3(z + 3 * k) - load3(z + 3 * ((k + 1) % 3)), d);
+      Distance{length[static_cast<std::size_t>(k)]}.value(d, c + k);
+    }
+  }
+  void gradient(const double* z, double* g) const;
+  void hessian(const double* z, const double* w, double* h) const;
+};
+
+/// Angle (rad, at least 1e-3 away from 0 and pi) at `vertex` between `a` and `c`.
+std::unique_ptr<Constraint> angle(Node a, Node vertex, Node c, double theta);
+/// Edges ab, bc, ca (m); they must satisfy the strict triangle inequality.
+std::unique_ptr<Constraint> rigid_triangle(Node a, Node b, Node c,
+                                           std::array<double, 3> edges);
+
+}  // namespace tress

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "models/constrained/curve.h"
+#include "models/constrained/particles.h"
+#include "models/effects/effect.h"
+#include "models/parameters.h"
+
+namespace tress {
+
+/// A bead of mass m on a wire x = c(s), the parametric form: one coordinate s, no
+/// constraint (its violation is zero because no g exists),
+///
+///     r = c'.(m (c' s'' + c'' s'^2) - f(t, x, x')),    x' = c' s',    M = m |c'|^2,
+///
+/// with the exact tangent (c''' included) or the stiff one, which drops the derivatives of
+/// the inertia terms m c'.(c' s'' + c'' s'^2) by s and s' and keeps those of the load.
+/// The implicit form (x, lambda) is a ParticleSystem with one module of on_curve.h.
+/// Units: s in the curve's unit (rad for those built here). All O(1).
+class BeadOnWire final : public System,
+                         private SparseForm,
+                         private ExplicitForm,
+                         private Energetics,
+                         private MaterialPoints {
+ public:
+  struct Setup {
+    std::shared_ptr<const Curve> curve;
+    double mass = 1;         // kg, > 0
+    double length = 1;       // m of strand that drag acts on
+    double start = 0;        // s at t = 0
+    double start_speed = 0;  // m/s along increasing s
+    double extent = 1;         // m, typical size
+    double typical_speed = 1;  // m/s
+    bool uniform = false;      // |c'| is the same everywhere: M is constant
+    Tangent tangent = Tangent::exact;
+  };
+
+  /// Throws InputError on a mass that is not positive or a curve with c' = 0 at the start.
+  BeadOnWire(Setup setup, Effects effects);
+
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {.constant_mass = setup_.uniform}; }
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override;
+  Status residual(double t, In q, In v, In a, Out r) noexcept override;
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
+  Status solve(In b, Out x) noexcept override;
+  SparseForm* sparse_form() override { return this; }
+  ExplicitForm* explicit_form() override { return this; }
+  Energetics* energetics() override { return this; }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  struct State;
+
+  const Pattern& pattern() const override { return pattern_; }
+  Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
+  Status acceleration(double t, In q, In v, Out a) noexcept override;
+  Energy energy(double t, In q, In v) override;
+  double power(double t, In q, In v) override;
+  int count() const override { return 1; }
+  void positions(double t, In q, Out x) override;
+  void velocities(double t, In q, In v, Out u) override;
+
+  State state(In q, In v) const noexcept;
+  Vec load(double t, const State& at) const noexcept;
+  double tangent(double t, In q, In v, In a, Weights w) const noexcept;
+
+  Setup setup_;
+  Effects effects_;
+  Needs needs_;
+  Pattern pattern_{.rows = 1, .cols = 1, .start = {0, 1}, .row = {0}};
+  double tangent_ = 0;
+};
+
+std::span<const Parameter> bead_on_wire_parameters();
+std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters);
+
+}  // namespace tress

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "models/system.h"
+
+namespace tress {
+
+/// What a constraint is attached to: a particle (3 coordinates), a massless parameter
+/// (1 coordinate) or an anchor (3 numbers prescribed in time, no coordinates).
+struct Node {
+  enum class Kind { particle, parameter, anchor };
+  Kind kind = Kind::particle;
+  int index = 0;
+
+  int size() const { return kind == Kind::parameter ? 1 : 3; }
+  friend bool operator==(const Node&, const Node&) = default;
+};
+
+inline constexpr int max_constraint_inputs = 9;
+inline constexpr int max_constraint_rows = 3;
+
+/// One modular constraint C(z) = 0, local: z are the numbers of its nodes, in their order.
+/// These three functions give everything the assembly (constraint_set.h) needs:
+///
+///     C' = (dC/dz) z',   C'' - G a = z'^T H z' + (dC/dz) p'',   dC'/dz = H z',
+///
+/// with H the second derivatives. Time enters only through anchors p(t), which are part of
+/// z, so no module has time derivatives of its own. Pure, no allocation.
+/// [Witkin 1997] A. Witkin, Physically Based Modeling: Constrained Dynamics, SIGGRAPH
+/// course notes, section 4.
+class Constraint {
+ public:
+  virtual ~Constraint() = default;
+  virtual std::span<const Node> nodes() const = 0;
+  virtual int inputs() const = 0;  // numbers in z
+  virtual int rows() const = 0;    // 1 to 3
+  virtual bool linear() const = 0;  // H = 0: hessian() is not called
+  /// Typical size of C (m, or rad) in a scene of the given extent (m).
+  virtual double scale(double extent) const = 0;
+  virtual void value(In z, Out c) const noexcept = 0;            // (rows)
+  virtual void gradient(In z, Out g) const noexcept = 0;         // (rows x inputs)
+  virtual void hessian(In z, In w, Out h) const noexcept = 0;    // (inputs x inputs)
+                                                                 // sum_k w_k H_k
+};
+
+using Constraints = std::vector<std::unique_ptr<const Constraint>>;
+
+/// A constraint out of a kernel: a small struct with `node_count`, `inputs`, `rows`,
+/// `linear`, scale(extent), value(z, c) (a template on the scalar), gradient(z, g) and
+/// hessian(z, w, h) on plain arrays; matrices are row-major.
+template <class Kernel>
+class Module final : public Constraint {
+ public:
+  Module(std::array<Node, Kernel::node_count> nodes, Kernel kernel)
+      : nodes_(nodes), kernel_(std::move(kernel)) {
+    static_assert(Kernel::inputs <= max_constraint_inputs);
+    static_assert(Kernel::rows <= max_constraint_rows);
+  }
+
+  std::span<const Node> nodes() const override { return nodes_; }
+  int inputs() const override { return Kernel::inputs; }
+  int rows() const override { return Kernel::rows; }
+  bool linear() const override { return Kernel::linear; }
+  double scale(double extent) const override { return kernel_.scale(extent); }
+  void value(In z, Out c) const noexcept override { kernel_.value(z.data(), c.data()); }
+  void gradient(In z, Out g) const noexcept override {
+    kernel_.gradient(z.data(), g.data());
+  }
+  void hessian(In z, In w, Out h) const noexcept override {
+    kernel_.hessian(z.data(), w.data(), h.data());
+  }
+
+ private:
+  std::array<Node, Kernel::node_count> nodes_;
+  Kernel kernel_;
+};
+
+/// A kernel of two points that depends on d = x - origin only, out of one of d.
+template <class Inner>
+struct Difference {
+  static constexpr int node_count = 2;
+  static constexpr int inputs = 6;
+  static constexpr int rows = Inner::rows;
+  static constexpr bool linear = Inner::linear;
+
+  Inner inner;
+
+  double scale(double extent) const { return inner.scale(extent); }
+
+  template <class T>
+  void value(const T* z, T* c) const {
+    const T d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
+    inner.value(d, c);
+  }
+
+  void gradient(const double* z, double* g) const {
+    const double d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
+    double local[3 * rows];
+    inner.gradient(d, local);
+    for (int k = 0; k < rows; ++k) {
+      for (int i = 0; i < 3; ++i) {
+        g[6 * k + i] = local[3 * k + i];
+        g[6 * k + 3 + i] = -local[3 * k + i];
+      }
+    }
+  }
+
+  void hessian(const double* z, const double* w, double* h) const {
+    const double d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
+    double local[9];
+    inner.hessian(d, w, local);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        h[6 * i + j] = h[6 * (i + 3) + j + 3] = local[3 * i + j];
+        h[6 * (i + 3) + j] = h[6 * i + j + 3] = -local[3 * i + j];
+      }
+    }
+  }
+};
+
+}  // namespace tress

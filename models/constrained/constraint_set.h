@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "models/constrained/constraint.h"
+#include "models/constrained/curve.h"
+
+namespace tress {
+
+/// A point whose place is prescribed: fixed at x, or moving as `motion` says (then x unused).
+struct Anchor {
+  Vec x;
+  std::shared_ptr<const Curve> motion;
+};
+
+/// Assembles modules into g(t, q) = 0 with block-sparse G. The numbers of particle i are
+/// q[3i..3i+2], of parameter j q[3 particles + j]; anchors follow as prescribed inputs p(t),
+/// from which the time derivatives of g come. Rows stand in the order of the modules, so a
+/// chain whose particles and links are added from one end to the other has a banded KKT
+/// matrix once q and lambda are interleaved. Everything is O(modules).
+class ConstraintSet final : public ConstraintForm {
+ public:
+  /// Throws InputError when a module names an unknown node, or one node twice.
+  ConstraintSet(Constraints modules, std::vector<Anchor> anchors, int particles,
+                int parameters, double extent);
+
+  int rows() const { return gradient_.cols; }
+
+  /// Adds to `columns` (one list of rows per column of S) every pair that curvature couples.
+  void couple(std::vector<std::vector<int>>& columns) const;
+  /// Looks up where curvature goes in S; call once, before add_curvature.
+  void bind(const Pattern& s);
+
+  const Pattern& pattern() const override { return gradient_; }
+  void scale(Out g_typ) const override;
+  Status value(double t, In q, Out g) noexcept override;
+  Status gradient(double t, In q, Out gt) noexcept override;
+  Status rate(double t, In q, In v, Out g_dot) noexcept override;
+  Status bias(double t, In q, In v, Out b) noexcept override;
+  Status rate_gradient(double t, In q, In v, Out values) noexcept override;
+  Status add_curvature(double t, In q, In lambda, double factor,
+                       InOut s) noexcept override;
+
+ private:
+  struct Item {
+    const Constraint* module = nullptr;
+    int rows = 0;
+    int inputs = 0;
+    int first_row = 0;
+    int first_input = 0;
+    int first_coupling = 0;
+  };
+  struct Local;
+
+  int first_number(Node node) const;
+  void build_pattern();
+  void move_anchors(double t) noexcept;
+  double number(In q, const std::vector<double>& anchors, int input) const noexcept;
+  Local gather(const Item& item, In q) const noexcept;
+  void gather_rates(const Item& item, In v, Local& local) const noexcept;
+  void scatter_column(const Item& item, int row, const double* values,
+                      Out out) const noexcept;
+
+  Constraints modules_;
+  std::vector<Anchor> anchors_;
+  int particles_;
+  int parameters_;
+  int coordinates_;
+  double extent_;
+  Pattern gradient_;  // of G^T
+  std::vector<Item> items_;
+  std::vector<int> input_;     // per local input: coordinate, or coordinates + 3 anchor + axis
+  std::vector<int> rank_;      // per local input: place in its column of G^T, -1: prescribed
+  std::vector<int> coupling_;  // per local pair: place in S, -1: prescribed
+  std::vector<double> place_, velocity_, acceleration_;  // (3 anchors)
+};
+
+}  // namespace tress

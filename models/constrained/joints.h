@@ -1,0 +1,60 @@
+#pragma once
+
+#include "models/constrained/constraint.h"
+#include "models/math/vec3.h"
+
+namespace tress {
+
+/// C = d (3 rows, m).
+struct Coincidence {
+  static constexpr int rows = 3;
+  static constexpr bool linear = true;
+  double scale(double extent) const { return extent; }
+
+  template <class T>
+  void value(const T* d, T* c) const {
+    for (int k = 0; k < 3; ++k) c[k] = d[k];
+  }
+  void gradient(const double* d, double* g) const;
+  void hessian(const double* d, const double* w, double* h) const;
+};
+
+/// C = (|d|^2 - l^2) / (2 l) (m): the error of the length to first order, without a root.
+struct Distance {
+  static constexpr int rows = 1;
+  static constexpr bool linear = false;
+  double length;  // l, m
+  double scale(double) const { return length; }
+
+  template <class T>
+  void value(const T* d, T* c) const {
+    const T two_l(2 * length);
+    c[0] = (dot(load3(d), load3(d)) - T(length * length)) / two_l;
+  }
+  void gradient(const double* d, double* g) const;
+  void hessian(const double* d, const double* w, double* h) const;
+};
+
+/// C = normal.d (m), with a unit normal.
+struct OnPlane {
+  static constexpr int rows = 1;
+  static constexpr bool linear = true;
+  Vec normal;
+  double scale(double extent) const { return extent; }
+
+  template <class T>
+  void value(const T* d, T* c) const {
+    c[0] = dot(Vec3<T>(normal), load3(d));
+  }
+  void gradient(const double* d, double* g) const;
+  void hessian(const double* d, const double* w, double* h) const;
+};
+
+/// Point x held at a point of space: an anchor (fixed or moving) or another particle.
+std::unique_ptr<Constraint> fixed_point(Node x, Node where);
+/// |a - b| = length (m, > 0). Either end may be an anchor.
+std::unique_ptr<Constraint> distance(Node a, Node b, double length);
+/// normal.(x - origin) = 0; the normal is normalised here.
+std::unique_ptr<Constraint> point_on_plane(Node x, Node origin, Vec normal);
+
+}  // namespace tress

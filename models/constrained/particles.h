@@ -1,0 +1,114 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "models/constrained/constraint_set.h"
+#include "models/effects/effect.h"
+
+namespace tress {
+
+/// What a particle system is made of; built on the fly, e.g. a two-link pendulum:
+///
+///     ParticleScene scene;
+///     const Node pivot = scene.add_anchor({0, 0, 0});
+///     const Node a = scene.add_particle(1.0, {1, 0, 0});
+///     const Node b = scene.add_particle(1.0, {2, 0, 0});
+///     scene.constraints.push_back(distance(pivot, a, 1.0));
+///     scene.constraints.push_back(distance(a, b, 1.0));
+///     scene.effects.push_back(std::make_unique<Gravity>(Vec{0, 0, -9.81}));
+///     ParticleSystem system(std::move(scene));
+///
+/// Add particles and constraints in the order in which they hang together: see
+/// constraint_set.h. Modules: joints.h, on_curve.h, angles.h, or the caller's own.
+struct ParticleScene {
+  struct Particle {
+    double mass;  // kg, > 0
+    Vec x, v;     // at t = 0, m and m/s
+    double length;  // strand length carried, m (what drag acts on)
+  };
+  struct MasslessParameter {
+    double s, rate;  // at t = 0
+  };
+
+  Node add_particle(double mass, Vec x, Vec v = {}, double length = 0);
+  Node add_parameter(double s, double rate = 0);
+  Node add_anchor(Vec x);
+  Node add_anchor(std::shared_ptr<const Curve> motion);  // time in s is its parameter
+
+  std::vector<Particle> particles;
+  std::vector<MasslessParameter> parameters;
+  std::vector<Anchor> anchors;
+  Constraints constraints;
+  Effects effects;
+  double typical_speed = 0;  // m/s; the fastest particle counts too; 0: extent per second
+};
+
+/// Particles with any constraints and effects (the seed's "tinkertoys"):
+///
+///     r = M a - f(t, x, v),   M = diag(m_i I3, 0 for parameters),
+///     S(w) = w.acc M - w.pos df/dx - w.vel df/dv   (3x3 blocks of the effects).
+///
+/// q = (x_1, ..., x_N, s_1, ...) in m (parameters in their curve's unit). Effects see the
+/// particles through Points, computed as far as they need; without effects f = 0 costs
+/// nothing. residual is O(N), linearize and solve invert 3x3 blocks. With parameters M is
+/// singular (traits().regular_mass false, linearize is `fatal`) while the KKT matrix is
+/// regular: use a constrained formulation, which reads sparse_form() and constraint_form().
+/// The work of moving anchors is not in power(): it depends on the multipliers.
+class ParticleSystem final : public System,
+                             private SparseForm,
+                             private ExplicitForm,
+                             private Energetics,
+                             private MaterialPoints {
+ public:
+  /// Throws InputError on no particles, a mass that is not positive, numbers that are not
+  /// finite, or a state that violates the constraints.
+  explicit ParticleSystem(ParticleScene scene);
+
+  Layout layout() const override;
+  Traits traits() const override;
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override;
+  Status residual(double t, In q, In v, In a, Out r) noexcept override;
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
+  Status solve(In b, Out x) noexcept override;
+
+  SparseForm* sparse_form() override { return this; }
+  ExplicitForm* explicit_form() override;
+  ConstraintForm* constraint_form() override;
+  Energetics* energetics() override { return this; }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  const Pattern& pattern() const override { return pattern_; }
+  Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
+  Status acceleration(double t, In q, In v, Out a) noexcept override;
+  Energy energy(double t, In q, In v) override;
+  double power(double t, In q, In v) override;
+  int count() const override { return particles_; }
+  void positions(double t, In q, Out x) override;
+  void velocities(double t, In q, In v, Out u) override;
+
+  void validate() const;
+  void build_pattern();
+  void check_initial_state();
+  Points points(In q, In v) const;
+  void load(double t, In q, In v) noexcept;
+  void blocks(double t, In q, In v, Weights w) noexcept;
+
+  ParticleScene scene_;
+  int particles_;
+  int coordinates_;
+  double extent_;  // m, > 0
+  double speed_;   // m/s, > 0
+  Needs needs_;
+  ConstraintSet constraints_;
+  Pattern pattern_;
+  std::vector<int> block_;  // (9 particles) places of the 3x3 blocks in pattern_
+  std::vector<double> mass_, length_;
+  std::vector<double> load_;    // (3 particles)
+  std::vector<double> blocks_;  // (9 particles) S(w), row-major
+  std::vector<double> inverse_;  // (9 particles)
+};
+
+}  // namespace tress

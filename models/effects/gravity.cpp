@@ -1,0 +1,31 @@
+#include "models/effects/gravity.h"
+
+#include <cmath>
+
+#include "models/input_error.h"
+
+namespace tress {
+
+Gravity::Gravity(Vec acceleration) : g_(acceleration) {
+  if (!std::isfinite(dot(g_, g_))) {
+    throw InputError("gravity is not finite", "effect gravity",
+                     "give three finite numbers in m/s^2");
+  }
+}
+
+void Gravity::add_load(double, const Points& p, InOut f) const noexcept {
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    double* load = &f[3 * i];
+    store3(load3(load) + p.mass[i] * g_, load);
+  }
+}
+
+double Gravity::potential(double, const Points& p) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    sum -= p.mass[i] * dot(g_, load3(&p.x[3 * i]));
+  }
+  return sum;
+}
+
+}  // namespace tress

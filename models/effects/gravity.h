@@ -1,0 +1,27 @@
+#pragma once
+
+#include "models/effects/effect.h"
+#include "models/math/vec3.h"
+
+namespace tress {
+
+/// Uniform gravity: f = m g per point, potential energy -m g.x (zero at the origin).
+/// Reads mass and, for the potential, position. O(points).
+class Gravity final : public Effect {
+ public:
+  /// `acceleration` in m/s^2. Throws InputError unless finite.
+  explicit Gravity(Vec acceleration);
+
+  std::string_view name() const override { return "gravity"; }
+  Needs needs() const override { return {}; }
+  void add_load(double t, const Points& p, InOut f) const noexcept override;
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  double potential(double t, const Points& p) const noexcept override;
+  double power(double, const Points&) const noexcept override { return 0; }
+
+ private:
+  Vec g_;
+};
+
+}  // namespace tress

@@ -1,0 +1,44 @@
+#include "models/effects/linear_drag.h"
+
+#include <cmath>
+
+#include "models/input_error.h"
+#include "models/math/vec3.h"
+
+namespace tress {
+
+LinearDrag::LinearDrag(double nu) : nu_(nu) {
+  if (!std::isfinite(nu) || nu < 0) {
+    throw InputError("drag coefficient is negative or not finite", "effect linear_drag",
+                     "give nu >= 0 in kg/(m s)");
+  }
+}
+
+void LinearDrag::add_load(double, const Points& p, InOut f) const noexcept {
+  for (std::size_t i = 0; i < p.length.size(); ++i) {
+    double* load = &f[3 * i];
+    store3(load3(load) - nu_ * p.length[i] * load3(&p.v[3 * i]), load);
+  }
+}
+
+void LinearDrag::add_derivatives(double, const Points& p, double, double vel,
+                                 InOut blocks) const noexcept {
+  for (std::size_t i = 0; i < p.length.size(); ++i) {
+    const double slope = -vel * nu_ * p.length[i];
+    double* block = &blocks[9 * i];
+    block[0] += slope;
+    block[4] += slope;
+    block[8] += slope;
+  }
+}
+
+double LinearDrag::power(double, const Points& p) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.length.size(); ++i) {
+    const Vec v = load3(&p.v[3 * i]);
+    sum -= nu_ * p.length[i] * dot(v, v);
+  }
+  return sum;
+}
+
+}  // namespace tress
