@@ -10,7 +10,8 @@ function(tress_warnings target)
   endif()
 endfunction()
 
-# tress_library(name source...): tress_<name>, also known as tress::<name>.
+# tress_library(name source...): tress_<name>, also known as tress::<name>. Link Eigen as
+# $<BUILD_INTERFACE:Eigen3::Eigen>: users of the installed library do not need it.
 function(tress_library name)
   add_library(tress_${name} STATIC ${ARGN})
   add_library(tress::${name} ALIAS tress_${name})
