@@ -24,6 +24,8 @@ constexpr Column columns[] = {
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance of an adaptive method"},
     {"suppress_algebraic", "ida: multipliers out of the error test"},
+    {"multiplier_atol",
+     "ida: absolute tolerance of the multipliers over that of q and v"},
     {"t_end_s", "simulated time"},
     {"violation", "|g| put into the start state, m"},
     {"g_max", "largest |g| over the run"},
@@ -69,6 +71,7 @@ Row identity(const Study& s) {
   }
   if (s.integrator == "ida" && s.system != "parametric bead") {
     row.set("suppress_algebraic", s.options.suppress_algebraic);
+    row.set("multiplier_atol", s.options.multiplier_atol);
   }
   row.set("t_end_s", s.t_end).set("violation", s.violation);
   return row;
@@ -118,9 +121,10 @@ void measure(const Study& s, int repeat, Row& row) {
     row.set("recovery_time_s", monitor.recovery_time());
     row.set("overshoot", monitor.overshoot());
   }
-  row.set("wall_s", time_it(repeat, [&] {
-                      (void)simulate(s.integrator, *system, s.options, start, s.t_end);
-                    }).median_s);
+  const auto again = [&] {
+    (void)simulate(s.integrator, *system, s.options, start, s.t_end);
+  };
+  row.set("wall_s", time_run(repeat, again));
 }
 
 // ---- the studies
@@ -151,7 +155,7 @@ std::vector<Scene> scenes(const Settings& user) {
           scene("parametric bead", "bead_on_wire", user,
                 {{"curve", "circle"}, {"form", "parametric"}}),
           scene("chain of 10", "inextensible_chain", user, {{"links", "10"}}),
-          scene("truss", "tinkertoys", user, {{"structure", "truss"}})};
+          scene("truss", "tinkertoys", user, {{"structure", "truss"}, {"size", "1"}})};
 }
 
 // Baumgarte's gains for the table: a slow and a fast critically damped pair.
@@ -169,8 +173,11 @@ void add_formulations(const CommandLine& line, const Settings& user,
     for (const IntegratorEntry& entry : integrators()) {
       for (const Formulation formulation : entry.formulations) {
         if (!refusal(entry, *system, formulation).empty()) continue;
+        // Redundant constraints are analysed anew at every factorisation: a tenth will
+        // do.
+        const double t_end = scene.name == "truss" ? 1 : 10;
         Study study{"formulation", scene.name, scene.model, scene.parameters,
-                    entry.id,      base,       10};
+                    entry.id,      base,       t_end};
         study.options.formulation = formulation;
         // IDA drags itself along when its multipliers are in the error test; enough steps
         // to see by how much, then the row says so.
@@ -191,8 +198,11 @@ void add_formulations(const CommandLine& line, const Settings& user,
         } else {
           add_steps();
         }
-        if (entry.id == "ida" && (formulation == Formulation::index2_ggl ||
-                                  formulation == Formulation::index3)) {
+        if (entry.id == "ida" && formulation == Formulation::index2_ggl) {
+          // Multipliers held to the tolerance of the coordinates: harmless out of the
+          // error test, ruinous in it.
+          study.options.multiplier_atol = 1;
+          add_steps();
           study.options.suppress_algebraic = false;
           add_steps();
         }
@@ -208,7 +218,8 @@ std::vector<double> geometric(double from, double to, double ratio) {
   return values;
 }
 
-void add_gains(const CommandLine& line, const Settings& user, std::vector<Study>& studies) {
+void add_gains(const CommandLine& line, const Settings& user,
+               std::vector<Study>& studies) {
   const double ratio = line.full ? std::pow(10, 0.25) : std::sqrt(10);
   const Scene scene = circle_bead(user);
   for (const std::string_view id :

@@ -2,7 +2,6 @@
 // wall time, from loose to tight, on problems with exact, published or doubly computed
 // references.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -42,13 +41,6 @@ constexpr Column columns[] = {
     {"pareto", "no other run of the scene is both faster and more accurate"},
 };
 
-// Runs longer than this are timed once; shorter ones --repeat times, for the median.
-constexpr double long_run = 0.3;  // s
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 void measure(const Problem& problem, std::string_view integrator, const Options& options,
              int repeat, Row& row) {
   const auto system = problem.make();
@@ -69,11 +61,9 @@ void measure(const Problem& problem, std::string_view integrator, const Options&
     row.failed("diverged", "error above ten times the scale of the problem");
     return;
   }
-  if (wall < long_run) {
-    wall = time_it(repeat, [&] {
-             (void)simulate(integrator, *system, options, start, problem.t_end);
-           }).median_s;
-  }
+  const double wall = time_run(repeat, [&] {
+    (void)simulate(integrator, *system, options, start, problem.t_end);
+  });
   row.set("error_kind", "time").set("error_rel", error.relative).set("scd", error.scd);
   row.set("reference_gap", problem.reference_gap);
   row.set("below_reference", error.relative < 10 * problem.reference_gap);

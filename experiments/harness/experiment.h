@@ -40,9 +40,10 @@ struct Case {
 /// One executable, one question.
 struct Experiment {
   std::string_view name, question;
-  std::string_view example;             // arguments only: "--models bead_on_wire --quick"
-  std::span<const Column> columns;      // status, reason and run_id are added to them
-  std::span<const Parameter> settings = {};  // keys of --set that are the experiment's own
+  std::string_view example;         // arguments only: "--models bead_on_wire --quick"
+  std::span<const Column> columns;  // status, reason and run_id are added to them
+  std::span<const Parameter> settings =
+      {};  // keys of --set that are the experiment's own
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
