@@ -51,7 +51,7 @@ void measure(std::string_view integrator, const Options& options, Row& row) {
   row.set("error_rel", error.relative).set("scd", error.scd);
 }
 
-void add(std::vector<Case>& all, std::string_view integrator, std::string label,
+void add(std::vector<Case>& all, std::string_view integrator, const std::string& label,
          const Options& options, bool adaptive) {
   Row identity;
   identity.set("scene", "beam").set("integrator", integrator).set("label", label);

@@ -19,8 +19,7 @@ double largest(In x) {
 }  // namespace
 
 DriftMonitor::DriftMonitor(System& system, In q, In v, double escape)
-    : system_(system),
-      constraints_(system.constraint_form()),
+    : constraints_(system.constraint_form()),
       energetics_(system.energetics()),
       escape_(escape),
       g_(static_cast<std::size_t>(system.layout().constraints)),

@@ -30,7 +30,6 @@ class DriftMonitor {
   double overshoot() const { return overshoot_; }
 
  private:
-  System& system_;
   ConstraintForm* constraints_;
   Energetics* energetics_;
   double escape_;
