@@ -34,6 +34,9 @@ export class Browser {
         `--user-data-dir=${browser.profile}`] },
     } } });
     browser.session = `/session/${sessionId}`;
+    // Chromium's own start page must not be counted among the page's requests.
+    await browser.command('/url', { url: 'about:blank' });
+    await browser.requests();
     return browser;
   }
 

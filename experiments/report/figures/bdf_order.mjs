@@ -45,7 +45,8 @@ export const bdf_order = {
     const style = label_style(rows);
     const scenes = [...group_by(rows, (row) => row.scene)];
     const { columns, panel_width, legend } =
-      layout(width, scenes.length * measures.length, { columns_max: 2 });
+      layout(width, scenes.length * measures.length,
+        { columns_max: 2, labels: style.domain });
     const list = scenes.flatMap(([scene, members]) => measures.map(([field, title]) => {
       const drawn = members.filter((row) => is_positive(row[field]));
       const x = log_channel('error_rel', 'relative error', log_extent(members.map((r) =>

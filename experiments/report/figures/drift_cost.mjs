@@ -28,9 +28,10 @@ export const drift_cost = {
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
     const groups = [...group_by(rows, (row) => row.system)];
-    const { columns, panel_width, legend } = layout(width, groups.length, { columns_max: 2 });
     const formulations = formulation_style(rows.map((row) => row.formulation));
     const integrators = series_style(rows.map((row) => row.integrator)).domain;
+    const { columns, panel_width, legend } = layout(width, groups.length,
+      { columns_max: 2, labels: [...formulations.domain, ...integrators] });
     const zero = rows.some((row) => row.g_max === 0);
     const list = groups.map(([system, members]) => ({
       title: system.replaceAll('_', ' '), width: panel_width, height: 330,

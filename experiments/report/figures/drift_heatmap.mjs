@@ -134,7 +134,7 @@ export const drift_heatmap = {
     const label = (row) => (varied.length > 0 ? varied : ['integrator'])
       .map((key) => (key === 'dt_s' ? `dt = ${row.dt_s} s` : String(row[key]).replaceAll('_', ' ')))
       .join(', ');
-    const size = layout(width, groups.length, { columns_max: 3, legend: width >= 720 });
+    const size = layout(width, groups.length, { columns_max: 3 });
     const drawn = rows.filter(succeeded).map((row) => row.g_max).filter(is_positive);
     const colour_domain = drawn.length > 0 ? [Math.min(...drawn), Math.max(...drawn)] : [1e-9, 1];
     const gradient = { format: '.0e', tickCount: 6, gradientThickness: 12 };

@@ -30,8 +30,9 @@ export const drift_recovery = {
       distinct(rows.map((row) => row[name])).length > 1);
     const unit = { alpha: ' 1/s²', dt_s: ' s', violation: ' m' };
     const groups = [...group_by(rows, key).values()];
-    const { columns, panel_width, legend } = layout(width, groups.length, { columns_max: 2 });
     const style = series_style(rows.map((row) => row.integrator));
+    const { columns, panel_width, legend } =
+      layout(width, groups.length, { columns_max: 2, labels: style.domain });
     const y_extent = log_extent(rows.filter((r) => r.recovered).map((r) => r.recovery_time_s), 5);
     const y = log_channel('recovery_time_s', 'recovery time (s)', y_extent);
     const list = groups.map((members) => {

@@ -10,7 +10,7 @@ const polygon = (corners, radius = 1, turn = 0) =>
 
 export const shapes = [
   'circle', 'square', 'triangle-up', 'diamond', 'cross', 'triangle-down', polygon(10, [1, 0.45]),
-  polygon(4, [1, 0.3], Math.PI / 4), polygon(6), 'triangle-right', polygon(6, [1, 0.4]),
+  polygon(8, [1, 0.4]), polygon(6), 'triangle-right', polygon(6, [1, 0.4]),
   'triangle-left', 'M-0.9,-0.9L0.9,-0.9L-0.9,0.9L0.9,0.9Z', polygon(5),
   'M-0.9,-0.9L0.9,0.9L0.9,-0.9L-0.9,0.9Z', polygon(16, [1, 0.55]),
   'M-1,-0.35L1,-0.35L1,0.35L-1,0.35Z', 'M-0.35,-1L0.35,-1L0.35,1L-0.35,1Z',
@@ -19,7 +19,7 @@ export const shapes = [
 const dashes = [[1, 0], [6, 3], [2, 2], [9, 3, 2, 3], [4, 4], [1, 3]];
 
 export const families = [
-  { name: 'explicit, fixed step', colours: ['#0072B2', '#56B4E9'],
+  { name: 'explicit, fixed step', colours: ['#1F7FC2', '#6CC0EE'],
     members: ['explicit_euler', 'symplectic_euler', 'velocity_verlet', 'rk4'] },
   { name: 'explicit, adaptive', colours: ['#009E73', '#4FC9A4'],
     members: ['gsl_rkf45', 'gsl_rk8pd', 'arkode_erk'] },

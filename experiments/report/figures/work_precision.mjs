@@ -64,10 +64,9 @@ function panel(scene, members, { panel_width, legend, style, theme }) {
       encoding: { x, y, order: { field: 'wall_s_per_sim_s', type: 'quantitative' } },
     }, ...['no', 'yes'].map((below) => ({
       data: { values: members.filter((row) => row.below === below) },
-      mark: { type: 'point', size: 55, strokeWidth: 1.6, filled: below === 'no' },
+      mark: { type: 'point', size: 70, strokeWidth: 1.6, filled: below === 'no' },
       encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip: tooltips(counts) },
     })), {
-{
       data: { values: front },
       mark: { type: 'point', shape: 'circle', size: 170, strokeWidth: 1.5, stroke: theme.text,
         filled: false },
@@ -106,8 +105,9 @@ export const work_precision = {
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
     const groups = [...group_by(rows, (row) => row.scene)];
-    const { columns, panel_width, legend } = layout(width, groups.length, { columns_max: 2 });
     const style = series_style(rows.map((row) => row.integrator));
+    const { columns, panel_width, legend } =
+      layout(width, groups.length, { columns_max: 2, labels: style.domain });
     return panels(with_parameters(groups.map(([scene, members]) =>
       panel(scene, members, { panel_width, legend, style, theme })),
     [legend_selection('pick_integrator', 'integrator')]), columns);

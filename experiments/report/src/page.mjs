@@ -19,6 +19,10 @@ const sections = [
   { figure: 'bdf_order', findings: bdf_findings, tables: ['bdf_order'] },
 ];
 
+// A number and its unit stay on one line.
+const prose_html = (text) => escape_html(text).replace(
+  /\d[\d.]*(?:e-?\d+)?(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g, '<span class="number">$&</span>');
+
 const one_line = (text) => text.replace(/\s+/g, ' ').trim();
 
 function missing_html(name) {
@@ -33,7 +37,7 @@ const table_html = (name, title, rows) =>
   `${rows} row${rows === 1 ? '' : 's'} (${escape_html(name)}.csv)</summary></details>`;
 
 const list_html = (sentences, visible = 8) => {
-  const item = (sentence) => `<li>${escape_html(sentence)}</li>`;
+  const item = (sentence) => `<li>${prose_html(sentence)}</li>`;
   if (sentences.length === 0) return '';
   const rest = sentences.slice(visible);
   return `<ul class="findings">${sentences.slice(0, visible).map(item).join('')}</ul>` +
@@ -66,9 +70,9 @@ function header_html(objects) {
 <h1>Constraint drift, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
-<dd id="answer-drift">${escape_html(drift_answer(objects) ?? none('constraint_drift'))}</dd>
+<dd id="answer-drift">${prose_html(drift_answer(objects) ?? none('constraint_drift'))}</dd>
 <dt>What does accuracy cost in time, per integrator?</dt>
-<dd id="answer-work">${escape_html(work_answer(objects) ?? none('work_precision'))}</dd>
+<dd id="answer-work">${prose_html(work_answer(objects) ?? none('work_precision'))}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 </header>

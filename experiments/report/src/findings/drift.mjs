@@ -89,10 +89,13 @@ export function failure_sentence(rows) {
 }
 
 export function drift_findings({ constraint_drift: rows = [] }) {
-  const formulation_rows = rows.filter((row) => row.study !== 'grid' || row.status === 'ok');
-  const gains = feedback_gains(formulation_rows).sort((a, b) => b.gain - a.gain);
-  return [...gains.map(feedback_sentence), ...exact_sentences(rows), ...index2_sentences(rows),
-    ...failure_sentence(rows.filter((row) => row.study !== 'grid' && row.study !== 'recovery'))];
+  const gains = feedback_gains(rows).sort((a, b) => b.gain - a.gain);
+  const helped = gains.filter(({ gain }) => gain >= 1);
+  const hurt = gains.filter(({ gain }) => gain < 1).reverse();
+  return [...helped.slice(0, 2), ...hurt.slice(0, 1)].map(feedback_sentence)
+    .concat(exact_sentences(rows), index2_sentences(rows).slice(0, 1), failure_sentence(rows),
+      [...helped.slice(2), ...hurt.slice(1)].map(feedback_sentence),
+      index2_sentences(rows).slice(1));
 }
 
 // The one-sentence answer to "how far, and at what cost".

@@ -18,10 +18,10 @@ function cheapest_sentences(rows) {
   return [...group_by(usable(rows), (row) => row.scene)].map(([scene, members]) => {
     const parts = levels.flatMap((level) => {
       const best = cheapest(members, level);
-      return best ? [`${format_number(level)}: ${best.integrator}, ` +
-        `${format_time(best.wall_s_per_sim_s)} per simulated second`] : [];
+      return best ? [`error ${format_number(level)} by ${best.integrator} ` +
+        `(${format_time(best.wall_s_per_sim_s)})`] : [];
     });
-    return parts.length > 0 ? `${spaced(scene)}, cheapest run at or below error ${parts.join('; ')}.`
+    return parts.length > 0 ? `${spaced(scene)}, cheapest per simulated second: ${parts.join(', ')}.`
       : `${spaced(scene)}: no run reaches an error of ${levels[0]}.`;
   });
 }
@@ -38,10 +38,11 @@ function order_sentences(rows) {
 
 function digits_sentences(rows) {
   const scored = rows.filter((row) => succeeded(row) && is_positive(row.scd));
-  return [...group_by(scored, (row) => row.scene)].map(([scene, members]) => {
+  const parts = [...group_by(scored, (row) => row.scene)].map(([scene, members]) => {
     const best = minimum_by(members, (row) => -row.scd);
-    return `${spaced(scene)}: most correct digits ${best.scd.toFixed(1)} (${best.integrator}).`;
+    return `${spaced(scene)} ${best.scd.toFixed(1)} (${best.integrator})`;
   });
+  return parts.length > 0 ? [`Most correct digits: ${parts.join(', ')}.`] : [];
 }
 
 function reference_sentence(rows) {
