@@ -5,12 +5,16 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-export const report_root = fileURLToPath(new URL('../../experiments/report/', import.meta.url));
+export const report_root = fileURLToPath(
+  new URL('../../experiments/report/', import.meta.url),
+);
 const command = join(report_root, 'dist/report.mjs');
 const generator = fileURLToPath(new URL('./make_fixture.mjs', import.meta.url));
 
 export function run_report(...argv) {
-  const { status, stderr } = spawnSync(process.execPath, [command, ...argv], { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(process.execPath, [command, ...argv], {
+    encoding: 'utf8',
+  });
   return { status, stderr };
 }
 
@@ -19,8 +23,9 @@ export const remove = (directory) => rmSync(directory, { recursive: true, force:
 
 export function fixture_directory() {
   const directory = empty_directory();
-  const { status, stderr } = spawnSync(process.execPath, [generator, directory],
-    { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(process.execPath, [generator, directory], {
+    encoding: 'utf8',
+  });
   if (status !== 0) throw new Error(stderr);
   return directory;
 }

@@ -5,10 +5,18 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { sources_hash } from '../../experiments/report/src/sources_hash.mjs';
 import { parse_csv } from '../../experiments/report/src/csv.mjs';
-import { empty_directory, fixture_directory, remove, report_root, run_report } from './support.mjs';
+import {
+  empty_directory,
+  fixture_directory,
+  remove,
+  report_root,
+  run_report,
+} from './support.mjs';
 
 let directory;
-before(() => { directory = fixture_directory(); });
+before(() => {
+  directory = fixture_directory();
+});
 after(() => remove(directory));
 
 const figures = {
@@ -19,15 +27,18 @@ const figures = {
   bdf_order: ['relative error', 'steps', 'wall time (s)'],
 };
 
-// Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser would.
+// Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser
+// would.
 function assert_well_formed(xml) {
   const open = [];
-  const rest = xml.replace(/<(\/?)([A-Za-z][\w:-]*)((?:\s+[\w:-]+="[^"<]*")*)\s*(\/?)>/g,
+  const rest = xml.replace(
+    /<(\/?)([A-Za-z][\w:-]*)((?:\s+[\w:-]+="[^"<]*")*)\s*(\/?)>/g,
     (_, closing, name, attributes, empty) => {
       if (closing) assert.equal(open.pop(), name);
       else if (!empty) open.push(name);
       return '';
-    });
+    },
+  );
   assert.deepEqual(open, []);
   assert.doesNotMatch(rest, /[<>]/);
   assert.doesNotMatch(xml, /&(?!(amp|lt|gt|quot|apos|#\d+|#x[\da-f]+);)/i);
@@ -41,18 +52,26 @@ const mark_count = (svg) => {
 test('Bundles_AreBuiltFromTheseSources', () => {
   const hash = sources_hash(report_root);
   for (const file of ['report.mjs', 'render.mjs', 'page.html']) {
-    assert.ok(readFileSync(join(report_root, 'dist', file), 'utf8').includes(hash),
-      `dist/${file} is stale: npm ci && npm run build in experiments/report`);
+    assert.ok(
+      readFileSync(join(report_root, 'dist', file), 'utf8').includes(hash),
+      `dist/${file} is stale: npm ci && npm run build in experiments/report`,
+    );
   }
 });
 
 test('LockFile_CarriesNoDownloadAddresses', () => {
-  assert.doesNotMatch(readFileSync(join(report_root, 'package-lock.json'), 'utf8'),
-    /"resolved"|\.tgz/);
+  assert.doesNotMatch(
+    readFileSync(join(report_root, 'package-lock.json'), 'utf8'),
+    /"resolved"|\.tgz/,
+  );
 });
 
 test('Report_WritesPageAndOneSvgPerFigure', () => {
-  const { status, stderr } = run_report(directory, '--out', join(directory, 'report.html'));
+  const { status, stderr } = run_report(
+    directory,
+    '--out',
+    join(directory, 'report.html'),
+  );
   assert.equal(status, 0, stderr);
   assert.equal(stderr.trim().split('\n').length, 1);
   for (const [id, titles] of Object.entries(figures)) {
@@ -70,13 +89,18 @@ test('Page_LoadsNothingAndForbidsTheNetwork', () => {
   assert.match(policy, /^default-src 'none';/);
   assert.match(policy, /script-src 'sha256-[\w+/=]{44}'$/);
   assert.doesNotMatch(policy, /unsafe-eval|https?:|\*/);
-  assert.doesNotMatch(page.slice(0, page.indexOf('<script id="program">')),
-    /(src|href)="(?!#|data:)/);
+  assert.doesNotMatch(
+    page.slice(0, page.indexOf('<script id="program">')),
+    /(src|href)="(?!#|data:)/,
+  );
 });
 
 test('Data_CannotEndTheScriptThatCarriesThem', () => {
   const other = empty_directory();
-  writeFileSync(join(other, 'hostile.csv'), 'name,status\n</script><script>alert(1)</script>,ok\n');
+  writeFileSync(
+    join(other, 'hostile.csv'),
+    'name,status\n</script><script>alert(1)</script>,ok\n',
+  );
   assert.equal(run_report(other).status, 0);
   assert.ok(!readFileSync(join(other, 'report.html'), 'utf8').includes('<script>alert'));
   remove(other);
@@ -86,7 +110,12 @@ test('MissingTables_SayHowToProduceThem', () => {
   const other = empty_directory();
   assert.equal(run_report(other).status, 0);
   const page = readFileSync(join(other, 'report.html'), 'utf8');
-  for (const name of ['constraint_drift', 'drift_boundary', 'work_precision', 'bdf_order']) {
+  for (const name of [
+    'constraint_drift',
+    'drift_boundary',
+    'work_precision',
+    'bdf_order',
+  ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);
   }
   assert.match(page, /\.\/tress run/);
@@ -106,11 +135,18 @@ function refusal(file, text) {
 
 test('MalformedTables_AreOneLineWithFileAndLine', () => {
   const head = 'scene,integrator,label,error_rel,steps,wall_s,status\n';
-  assert.match(refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,10,1,ok\nbeam,ida\n`),
-    /bdf_order\.csv:3: 2 fields where the header has 7/);
-  assert.match(refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,many,1,ok\n`),
-    /bdf_order\.csv:2: 'many' in column 'steps' is not a number/);
-  assert.match(refusal('bdf_order.csv', 'scene,integrator\n'), /bdf_order\.csv:1: column 'label'/);
+  assert.match(
+    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,10,1,ok\nbeam,ida\n`),
+    /bdf_order\.csv:3: 2 fields where the header has 7/,
+  );
+  assert.match(
+    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,many,1,ok\n`),
+    /bdf_order\.csv:2: 'many' in column 'steps' is not a number/,
+  );
+  assert.match(
+    refusal('bdf_order.csv', 'scene,integrator\n'),
+    /bdf_order\.csv:1: column 'label'/,
+  );
   assert.match(refusal('x.csv', ''), /x\.csv:1: empty/);
   assert.match(refusal('x.csv', 'a,a\n1,2\n'), /x\.csv:1: column 'a' appears twice/);
   assert.match(refusal('x.csv', 'a,b\n1,"2\n'), /x\.csv:2: a quote is opened/);
@@ -135,21 +171,39 @@ test('Findings_FollowTheTables', () => {
   };
   const first = answer();
   assert.match(first, /drift by up to 0\.68 m \(bead on helix, explicit_euler\)/);
-  writeFileSync(path, text.replace(/^(formulation,bead_on_circle,acceleration,rk4,.*?,)5e-11,/m,
-    '$17.25,'));
+  writeFileSync(
+    path,
+    text.replace(/^(formulation,bead_on_circle,acceleration,rk4,.*?,)5e-11,/m, '$17.25,'),
+  );
   assert.match(answer(), /drift by up to 7\.25 m \(bead on circle, rk4\)/);
   writeFileSync(path, text);
 });
 
 test('BdfFinding_StatesTheRatioOfTheRows', () => {
-  const page = readFileSync(join(directory, 'report.html'), 'utf8').replace(/<\/?span[^>]*>/g, '');
-  assert.match(page, /maximum order 5 takes 16800 steps where order 2 takes 231 \(72\.7 times/);
+  const page = readFileSync(join(directory, 'report.html'), 'utf8').replace(
+    /<\/?span[^>]*>/g,
+    '',
+  );
+  assert.match(
+    page,
+    /maximum order 5 takes 16800 steps where order 2 takes 231 \(72\.7 times/,
+  );
 });
 
 test('Csv_ReadsQuotesAndSpecialNumbers', () => {
-  const { columns, rows } = parse_csv('a,b\r\n1e-3,"x, ""y""\nz"\nnan,\n-inf,q\n', 'f.csv');
-  assert.deepEqual(columns.map((c) => c.numeric), [true, false]);
-  assert.deepEqual(rows, [[1e-3, 'x, "y"\nz'], ['nan', ''], ['-inf', 'q']]);
+  const { columns, rows } = parse_csv(
+    'a,b\r\n1e-3,"x, ""y""\nz"\nnan,\n-inf,q\n',
+    'f.csv',
+  );
+  assert.deepEqual(
+    columns.map((c) => c.numeric),
+    [true, false],
+  );
+  assert.deepEqual(rows, [
+    [1e-3, 'x, "y"\nz'],
+    ['nan', ''],
+    ['-inf', 'q'],
+  ]);
 });
 
 test('Manifest_MustBeJson', () => {
