@@ -5,7 +5,13 @@ import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
 import { work_precision } from './work_precision.mjs';
 
-export const figures = [drift_cost, drift_heatmap, drift_recovery, work_precision, bdf_order];
+export const figures = [
+  drift_cost,
+  drift_heatmap,
+  drift_recovery,
+  work_precision,
+  bdf_order,
+];
 
 // A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.
 export function figure_spec(figure, tables, options) {

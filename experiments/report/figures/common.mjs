@@ -1,14 +1,23 @@
-// Parts every figure shares: theme, log axes, panels laid out for the width at hand, legends.
+// Parts every figure shares: theme, log axes, panels laid out for the width at hand,
+// legends.
 import { is_positive } from '../src/tables.mjs';
 
 // The browser passes CSS variables, so light, dark and print need no redraw.
 export const paper_theme = {
-  text: '#1d2127', muted: '#5c6470', grid: '#e3e6ea', axis: '#8b939e', background: '#ffffff',
+  text: '#1d2127',
+  muted: '#5c6470',
+  grid: '#e3e6ea',
+  axis: '#8b939e',
+  background: '#ffffff',
   bad: '#c2c7ce',
 };
 export const page_theme = {
-  text: 'var(--text)', muted: 'var(--muted)', grid: 'var(--grid)', axis: 'var(--axis)',
-  background: 'var(--card)', bad: 'var(--bad)',
+  text: 'var(--text)',
+  muted: 'var(--muted)',
+  grid: 'var(--grid)',
+  axis: 'var(--axis)',
+  background: 'var(--card)',
+  bad: 'var(--bad)',
 };
 
 const font = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
@@ -19,14 +28,28 @@ export const vega_config = (theme) => ({
   view: { stroke: null },
   title: { color: theme.text, fontSize: 13, fontWeight: 600, anchor: 'start', offset: 8 },
   axis: {
-    labelColor: theme.muted, titleColor: theme.text, gridColor: theme.grid,
-    domainColor: theme.axis, tickColor: theme.axis, labelFontSize: 11, titleFontSize: 12,
-    titleFontWeight: 500, titlePadding: 8,
+    labelColor: theme.muted,
+    titleColor: theme.text,
+    gridColor: theme.grid,
+    domainColor: theme.axis,
+    tickColor: theme.axis,
+    labelFontSize: 11,
+    titleFontSize: 12,
+    titleFontWeight: 500,
+    titlePadding: 8,
   },
   legend: {
-    labelColor: theme.text, titleColor: theme.text, labelFontSize: 12, titleFontSize: 12,
-    titleFontWeight: 600, labelLimit: 210, rowPadding: 3, symbolSize: 70,
-    symbolStrokeWidth: 1.8, titleLimit: 300,
+    labelColor: theme.text,
+    titleColor: theme.text,
+    labelFontSize: 12,
+    titleFontSize: 12,
+    titleFontWeight: 600,
+    labelLimit: 210,
+    rowPadding: 3,
+    symbolSize: 70,
+    symbolStrokeWidth: 1.8,
+    titleLimit: 300,
+    layout: { bottom: { anchor: 'start', direction: 'vertical', margin: 14 } },
   },
   text: { color: theme.text, font },
 });
@@ -55,12 +78,14 @@ export function log_extent(values, max_ticks = 7) {
 }
 
 const label_expression =
-  "datum.value == 0 || (abs(datum.value) >= 0.01 && abs(datum.value) < 10000) " +
+  'datum.value == 0 || (abs(datum.value) >= 0.01 && abs(datum.value) < 10000) ' +
   "? format(datum.value, '~g') : replace(format(datum.value, '.0e'), '+', '')";
 
 export function log_channel(field, title, { domain, ticks }, axis = {}) {
   return {
-    field, type: 'quantitative', title,
+    field,
+    type: 'quantitative',
+    title,
     scale: { type: 'log', domain, nice: false },
     axis: { values: ticks, labelExpr: label_expression, ...axis },
   };
@@ -70,62 +95,87 @@ export function linear_channel(field, title, axis = {}) {
   return { field, type: 'quantitative', title, axis: { tickCount: 5, ...axis } };
 }
 
-const axis_room = 74;
+const axis_room = 64;
 const panel_gap = 28;
-const legend_room = 215;
+const legend_from = 720;
 
 // How many panels of what width fit, and where the legend goes.
-export function layout(width, panel_count, { legend = true, columns_max = 3 } = {}) {
-  const beside = legend && width >= 720;
-  const room = width - (beside ? legend_room : 0) - 12;
+export function layout(width, panel_count, { labels = [], columns_max = 3 } = {}) {
+  const beside = width >= legend_from;
+  const longest = Math.max(12, ...labels.map((label) => label.length));
+  const room = width - (beside ? 56 + 7.2 * longest : 0) - 12;
   const fit = Math.max(1, Math.floor((room + panel_gap) / (250 + axis_room + panel_gap)));
   const columns = Math.min(panel_count, columns_max, fit);
-  const panel_width = Math.floor((room - (columns - 1) * panel_gap) / columns - axis_room);
-  const legend_columns = beside ? 1 : Math.max(1, Math.floor(width / 178));
+  const panel_width = Math.floor(
+    (room - (columns - 1) * panel_gap) / columns - axis_room,
+  );
+  const legend_columns = Math.max(
+    1,
+    Math.floor((width - axis_room) / (30 + 7.2 * longest)),
+  );
   return {
     columns,
     panel_width: Math.max(200, Math.min(panel_width, 760)),
-    legend: beside ? { orient: 'right', offset: 16 }
-      : { orient: 'bottom', columns: legend_columns, offset: 14, labelLimit: 150 },
+    legend: beside
+      ? { orient: 'right', offset: 16 }
+      : { orient: 'bottom', columns: legend_columns, offset: 14 },
   };
 }
 
-// Selection by legend: a legend click keeps one entry and dims the rest (shift-click adds).
-export const legend_selection = (name, field) =>
-  ({ name, select: { type: 'point', fields: [field] }, bind: 'legend' });
+// Selection by legend: a legend click keeps one entry and dims the rest (shift-click
+// adds).
+export const legend_selection = (name, field) => ({
+  name,
+  select: { type: 'point', fields: [field] },
+  bind: 'legend',
+});
 
-export const dimmed_unless = (names, value = 1, dim = 0.08) =>
-  ({ condition: { test: { and: names.map((param) => ({ param })) }, value }, value: dim });
+export const dimmed_unless = (names, value = 1, dim = 0.08) => ({
+  condition: { test: { and: names.map((param) => ({ param })) }, value },
+  value: dim,
+});
 
-// Colour, shape and dash of one series field as one merged legend.
+// Colour and shape of one series field share a legend; dashes only support them.
 export function series_channels(field, title, style, legend) {
   const scale = (range) => ({ domain: style.domain, range });
   const shared = { field, type: 'nominal', title };
   return {
     color: { ...shared, scale: scale(style.colours), legend },
     shape: { ...shared, scale: scale(style.shapes), legend },
-    strokeDash: { ...shared, scale: scale(style.dashes), legend },
+    strokeDash: { ...shared, scale: scale(style.dashes), legend: null },
   };
 }
 
-// Panels side by side, wrapped to the width. Selection parameters must sit in the first layer of
-// the first panel: on a layered chart's top level they collide, in later layers clicks are lost.
+// Panels side by side, wrapped to the width. Selection parameters must sit in the first
+// layer of the first panel: on a layered chart's top level they collide, in later layers
+// clicks are lost.
 export function panels(list, columns) {
-  if (list.length === 1) return list[0];
   return {
-    concat: list, columns, spacing: panel_gap,
-    resolve: { scale: { color: 'shared', shape: 'shared', strokeDash: 'shared' },
-      legend: { color: 'shared', shape: 'shared', strokeDash: 'shared' } },
+    concat: list,
+    columns,
+    spacing: panel_gap,
+    resolve: {
+      scale: { color: 'shared', shape: 'shared', strokeDash: 'independent' },
+      legend: { color: 'shared', shape: 'shared' },
+    },
   };
 }
 
 export const with_parameters = (list, parameters) =>
-  list.map((panel, i) => (i > 0 ? panel : {
-    ...panel,
-    layer: panel.layer.map((layer, k) => (k > 0 ? layer : { ...layer, params: parameters })),
-  }));
+  list.map((panel, i) =>
+    i > 0
+      ? panel
+      : {
+          ...panel,
+          layer: panel.layer.map((layer, k) =>
+            k > 0 ? layer : { ...layer, params: parameters },
+          ),
+        },
+  );
 
 export const tooltips = (fields) =>
   fields.map(([field, title, format]) => ({
-    field, title, ...(format ? { type: 'quantitative', format } : { type: 'nominal' }),
+    field,
+    title,
+    ...(format ? { type: 'quantitative', format } : { type: 'nominal' }),
   }));

@@ -1,14 +1,21 @@
-// CSV reader: RFC 4180 quotes, header row, '.' decimal. Every complaint names file and line.
+// CSV reader: RFC 4180 quotes, header row, '.' decimal. Every complaint names file and
+// line.
 
 export class InputError extends Error {}
 
 // Splits `text` into records of {line, fields}; blank lines are skipped.
 function records(text, file) {
   const out = [];
-  let fields = [], field = '', line = 1, start = 1, quoted = false, was_quoted = false;
+  let fields = [],
+    field = '',
+    line = 1,
+    start = 1,
+    quoted = false,
+    was_quoted = false;
   const end_record = () => {
     fields.push(field);
-    if (fields.length > 1 || field !== '' || was_quoted) out.push({ line: start, fields });
+    if (fields.length > 1 || field !== '' || was_quoted)
+      out.push({ line: start, fields });
     fields = [];
     field = '';
     was_quoted = false;
@@ -32,7 +39,8 @@ function records(text, file) {
       field += c;
     }
   }
-  if (quoted) throw new InputError(`${file}:${start}: a quote is opened and never closed`);
+  if (quoted)
+    throw new InputError(`${file}:${start}: a quote is opened and never closed`);
   end_record();
   return out;
 }
@@ -69,23 +77,29 @@ export function parse_csv(text, file, { required = [], numeric = [] } = {}) {
   for (const { line, fields } of body) {
     if (fields.length !== names.length) {
       throw new InputError(
-        `${file}:${line}: ${fields.length} fields where the header has ${names.length}`);
+        `${file}:${line}: ${fields.length} fields where the header has ${names.length}`,
+      );
     }
   }
   const columns = names.map((name, i) => ({
     name,
-    numeric: numeric.includes(name) || (body.some(({ fields }) => fields[i].trim() !== '') &&
-      body.every(({ fields }) => parse_number(fields[i]) !== undefined)),
+    numeric:
+      numeric.includes(name) ||
+      (body.some(({ fields }) => fields[i].trim() !== '') &&
+        body.every(({ fields }) => parse_number(fields[i]) !== undefined)),
   }));
-  const rows = body.map(({ line, fields }) => fields.map((field, i) => {
-    if (!columns[i].numeric) return field;
-    const value = parse_number(field);
-    if (value === undefined) {
-      throw new InputError(
-        `${file}:${line}: '${field}' in column '${names[i]}' is not a number`);
-    }
-    return value;
-  }));
+  const rows = body.map(({ line, fields }) =>
+    fields.map((field, i) => {
+      if (!columns[i].numeric) return field;
+      const value = parse_number(field);
+      if (value === undefined) {
+        throw new InputError(
+          `${file}:${line}: '${field}' in column '${names[i]}' is not a number`,
+        );
+      }
+      return value;
+    }),
+  );
   return { columns, rows };
 }
 

@@ -15,8 +15,11 @@ export async function render_figures(tables) {
     const spec = figure_spec(figure, tables, { width: paper_width, theme: paper_theme });
     if (spec === undefined) continue;
     const compiled = vega_lite.compile(spec, { config: vega_config(paper_theme) }).spec;
-    const view = new vega.View(vega.parse(compiled, null, { ast: true }),
-      { renderer: 'none', expr: expressionInterpreter, logLevel: vega.Warn });
+    const view = new vega.View(vega.parse(compiled, null, { ast: true }), {
+      renderer: 'none',
+      expr: expressionInterpreter,
+      logLevel: vega.Warn,
+    });
     out.push({ id: figure.id, svg: `${await view.toSVG()}\n` });
     view.finalize();
   }

@@ -1,4 +1,5 @@
-// report.mjs RESULTS [--out FILE]: one self-contained page, one SVG per figure beside the CSVs.
+// report.mjs RESULTS [--out FILE]: one self-contained page, one SVG per figure beside the
+// CSVs.
 import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -29,7 +30,8 @@ function options_of(argv) {
       throw new InputError(`${argv[i]}: a second directory; give one`);
     }
   }
-  if (options.directory === undefined) throw new InputError('no results directory given; see --help');
+  if (options.directory === undefined)
+    throw new InputError('no results directory given; see --help');
   return { ...options, out: options.out ?? join(options.directory, 'report.html') };
 }
 
@@ -37,25 +39,36 @@ function write(path, text) {
   try {
     writeFileSync(path, text);
   } catch (error) {
-    throw new InputError(`${path}: cannot write (${error.code}); choose another place with --out`);
+    throw new InputError(
+      `${path}: cannot write (${error.code}); choose another place with --out`,
+    );
   }
 }
 
 // '<' must not end the script element that carries the data.
 const embedded_json = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
 
-const script_hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+const script_hash = (text) =>
+  `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
 
 // The page: the template with policy, text and data filled in.
 export function page_html(template, tables, objects) {
   const script = /<script id="program">([\s\S]*?)<\/script>/.exec(template)[1];
-  const policy = "default-src 'none'; base-uri 'none'; form-action 'none'; " +
+  const policy =
+    "default-src 'none'; base-uri 'none'; form-action 'none'; " +
     `img-src data:; style-src 'unsafe-inline'; script-src ${script_hash(script)}`;
-  const data = Object.fromEntries(Object.entries(tables).map(([name, { columns, rows }]) =>
-    [name, { columns, rows }]));
-  const values = { POLICY: policy, BODY: body_html(tables, objects), DATA: embedded_json(data) };
-  return template.replace(/<!--TRESS_(POLICY|BODY|DATA)-->|TRESS_(POLICY)_VALUE/g,
-    (_, slot, attribute) => values[slot ?? attribute]);
+  const data = Object.fromEntries(
+    Object.entries(tables).map(([name, { columns, rows }]) => [name, { columns, rows }]),
+  );
+  const values = {
+    POLICY: policy,
+    BODY: body_html(tables, objects),
+    DATA: embedded_json(data),
+  };
+  return template.replace(
+    /<!--TRESS_(POLICY|BODY|DATA)-->|TRESS_(POLICY)_VALUE/g,
+    (_, slot, attribute) => values[slot ?? attribute],
+  );
 }
 
 async function main(argv) {
@@ -65,9 +78,13 @@ async function main(argv) {
     return;
   }
   const tables = load_results(directory);
-  const objects = Object.fromEntries(Object.entries(tables).map(([name, table]) =>
-    [name, as_objects(table)]));
-  const template = readFileSync(fileURLToPath(new URL('./page.html', import.meta.url)), 'utf8');
+  const objects = Object.fromEntries(
+    Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
+  );
+  const template = readFileSync(
+    fileURLToPath(new URL('./page.html', import.meta.url)),
+    'utf8',
+  );
   const { render_figures } = await import('./render.mjs');
   const drawn = await render_figures(objects);
   for (const { id, svg } of drawn) write(join(directory, `${id}.svg`), svg);

@@ -1,19 +1,50 @@
-// The tables the page knows: which columns must exist, which hold numbers, how to make the file.
+// The tables the page knows: which columns must exist, which hold numbers, how to make
+// the file.
 
 export const known_tables = {
   constraint_drift: {
     title: 'Constraint drift',
-    required: ['study', 'system', 'formulation', 'integrator', 'alpha', 'beta', 'dt_s', 'g_max',
-      'wall_s', 'status'],
-    numeric: ['alpha', 'beta', 'dt_s', 't_end_s', 'violation', 'g_max', 'g_final', 'g_rate_max',
-      'energy_drift_rel', 'recovery_time_s', 'overshoot', 'steps', 'wall_s'],
+    required: [
+      'study',
+      'system',
+      'formulation',
+      'integrator',
+      'alpha',
+      'beta',
+      'dt_s',
+      'g_max',
+      'wall_s',
+      'status',
+    ],
+    numeric: [
+      'alpha',
+      'beta',
+      'dt_s',
+      't_end_s',
+      'violation',
+      'g_max',
+      'g_final',
+      'g_rate_max',
+      'energy_drift_rel',
+      'recovery_time_s',
+      'overshoot',
+      'steps',
+      'wall_s',
+    ],
     command: './tress run',
     program: 'constraint_drift',
   },
   drift_boundary: {
     title: 'Measured and predicted stability boundary',
-    required: ['integrator', 'zeta', 'omega_h_predicted', 'omega_h_measured', 'rel_gap', 'dt_s',
-      'status'],
+    required: [
+      'integrator',
+      'zeta',
+      'omega_h_predicted',
+      'omega_h_measured',
+      'rel_gap',
+      'dt_s',
+      'status',
+    ],
     numeric: ['zeta', 'omega_h_predicted', 'omega_h_measured', 'rel_gap', 'dt_s'],
     command: './tress run',
     program: 'constraint_drift',
@@ -29,8 +60,22 @@ export const known_tables = {
   work_precision: {
     title: 'Work and precision',
     required: ['scene', 'integrator', 'error_rel', 'wall_s_per_sim_s', 'status'],
-    numeric: ['elements', 'dt_s', 'rtol', 'max_order', 'error_rel', 'scd', 'wall_s_per_sim_s',
-      'wall_s', 'steps', 'rejected', 'residuals', 'linearizations', 'solves', 'order_fit'],
+    numeric: [
+      'elements',
+      'dt_s',
+      'rtol',
+      'max_order',
+      'error_rel',
+      'scd',
+      'wall_s_per_sim_s',
+      'wall_s',
+      'steps',
+      'rejected',
+      'residuals',
+      'linearizations',
+      'solves',
+      'order_fit',
+    ],
     command: './tress run',
     program: 'work_precision',
   },
@@ -61,5 +106,7 @@ export function group_by(rows, key) {
 }
 
 export const minimum_by = (rows, value) =>
-  rows.reduce((best, row) => (best === undefined || value(row) < value(best) ? row : best),
-    undefined);
+  rows.reduce(
+    (best, row) => (best === undefined || value(row) < value(best) ? row : best),
+    undefined,
+  );

@@ -7,8 +7,9 @@ import { as_objects } from '../csv.mjs';
 import { fill_table } from './table.mjs';
 
 const tables = JSON.parse(document.getElementById('data').textContent);
-const objects = Object.fromEntries(Object.entries(tables).map(([name, table]) =>
-  [name, as_objects(table)]));
+const objects = Object.fromEntries(
+  Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
+);
 
 const views = new Map();
 const drawn_width = new Map();
@@ -20,17 +21,27 @@ async function draw(place) {
   const figure = figures.find(({ id }) => id === place.dataset.figure);
   const spec = figure_spec(figure, objects, { width, theme: page_theme });
   views.get(place)?.finalize();
-  views.set(place, await embed(place, spec, {
-    mode: 'vega-lite', renderer: 'svg', actions: false, ast: true, expr: expressionInterpreter,
-    config: vega_config(page_theme), tooltip: { theme: 'custom' },
-  }));
+  views.set(
+    place,
+    await embed(place, spec, {
+      mode: 'vega-lite',
+      renderer: 'svg',
+      actions: false,
+      ast: true,
+      expr: expressionInterpreter,
+      config: vega_config(page_theme),
+      tooltip: { theme: 'custom' },
+    }),
+  );
 }
 
 // The drawn figure as a file: the page's colour variables become the colours now shown.
 async function save(place) {
   const style = getComputedStyle(document.documentElement);
-  const svg = (await views.get(place).view.toSVG())
-    .replace(/var\((--[\w-]+)\)/g, (_, name) => style.getPropertyValue(name).trim());
+  const svg = (await views.get(place).view.toSVG()).replace(
+    /var\((--[\w-]+)\)/g,
+    (_, name) => style.getPropertyValue(name).trim(),
+  );
   const link = document.createElement('a');
   link.href = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
   link.download = `${place.dataset.figure}.svg`;
@@ -55,9 +66,13 @@ new ResizeObserver(() => {
 }).observe(document.body);
 
 for (const details of document.querySelectorAll('[data-table]')) {
-  details.addEventListener('toggle', () => {
-    if (details.open) fill_table(details, tables[details.dataset.table]);
-  }, { once: true });
+  details.addEventListener(
+    'toggle',
+    () => {
+      if (details.open) fill_table(details, tables[details.dataset.table]);
+    },
+    { once: true },
+  );
 }
 
 Promise.all(places.map(draw)).then(() => {

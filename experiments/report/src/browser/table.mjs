@@ -1,4 +1,5 @@
-// Sortable, filterable table; headers are buttons, so the keyboard does what the mouse does.
+// Sortable, filterable table; headers are buttons, so the keyboard does what the mouse
+// does.
 import { format_number } from '../format.mjs';
 
 const first_rows = 100;
@@ -30,14 +31,21 @@ function sorted(rows, { column, descending }, numeric) {
 }
 
 export function fill_table(details, { columns, rows }) {
-  const shown = columns.map((column, i) => ({ ...column, i }))
-    .filter(({ i }) => rows.length === 0 || rows.some((row) => row[i] !== null && row[i] !== ''));
+  const shown = columns
+    .map((column, i) => ({ ...column, i }))
+    .filter(
+      ({ i }) =>
+        rows.length === 0 || rows.some((row) => row[i] !== null && row[i] !== ''),
+    );
   const status = columns.findIndex(({ name }) => name === 'status');
   const state = { column: undefined, descending: false, filter: '', all: false };
 
   const count = element('span', { class: 'count', role: 'status' });
-  const filter = element('input', { type: 'search', placeholder: 'Filter rows',
-    'aria-label': 'Filter rows: every word must occur in the row' });
+  const filter = element('input', {
+    type: 'search',
+    placeholder: 'Filter rows',
+    'aria-label': 'Filter rows: every word must occur in the row',
+  });
   const more = element('button', { type: 'button', class: 'more-rows' });
   const body = element('tbody');
   const heads = shown.map(({ name, numeric, i }) => {
@@ -54,7 +62,8 @@ export function fill_table(details, { columns, rows }) {
     const value = row[i];
     const text = numeric ? format_number(value, 4) : value;
     const td = element('td', { class: numeric ? 'number' : 'text' }, text);
-    if (numeric && typeof value === 'number' && String(value) !== text) td.title = String(value);
+    if (numeric && typeof value === 'number' && String(value) !== text)
+      td.title = String(value);
     return td;
   }
 
@@ -67,10 +76,16 @@ export function fill_table(details, { columns, rows }) {
     const numeric = columns[state.column]?.numeric;
     const ordered = sorted(kept, state, numeric);
     const visible = state.all ? ordered : ordered.slice(0, first_rows);
-    body.replaceChildren(...visible.map((row) => {
-      const failed = status >= 0 && row[status] !== 'ok';
-      return element('tr', failed ? { class: 'failed' } : {}, ...shown.map((c) => cell(row, c)));
-    }));
+    body.replaceChildren(
+      ...visible.map((row) => {
+        const failed = status >= 0 && row[status] !== 'ok';
+        return element(
+          'tr',
+          failed ? { class: 'failed' } : {},
+          ...shown.map((c) => cell(row, c)),
+        );
+      }),
+    );
     heads.forEach((head, k) => {
       if (shown[k].i === state.column) {
         head.setAttribute('aria-sort', state.descending ? 'descending' : 'ascending');
@@ -78,8 +93,10 @@ export function fill_table(details, { columns, rows }) {
         head.removeAttribute('aria-sort');
       }
     });
-    count.textContent = kept.length === rows.length ? `${rows.length} rows`
-      : `${kept.length} of ${rows.length} rows`;
+    count.textContent =
+      kept.length === rows.length
+        ? `${rows.length} rows`
+        : `${kept.length} of ${rows.length} rows`;
     more.hidden = visible.length === ordered.length;
     more.textContent = `Show all ${ordered.length} rows`;
   }
@@ -95,8 +112,12 @@ export function fill_table(details, { columns, rows }) {
   const label = details.querySelector('summary').textContent;
   details.append(
     element('div', { class: 'table-tools' }, filter, count),
-    element('div', { class: 'table-box', tabindex: '0', role: 'region', 'aria-label': label },
-      element('table', {}, element('thead', {}, element('tr', {}, ...heads)), body)),
-    more);
+    element(
+      'div',
+      { class: 'table-box', tabindex: '0', role: 'region', 'aria-label': label },
+      element('table', {}, element('thead', {}, element('tr', {}, ...heads)), body),
+    ),
+    more,
+  );
   update();
 }

@@ -1,0 +1,209 @@
+// The page in headless Chromium: `node --test tests/report/test_page.mjs`. CHROMEDRIVER
+// and CHROMIUM name the programs when they are not on the path.
+import assert from 'node:assert/strict';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Browser } from './browser.mjs';
+import { fixture_directory, remove, run_report } from './support.mjs';
+
+const figures = [
+  'drift_cost',
+  'drift_heatmap',
+  'drift_recovery',
+  'work_precision',
+  'bdf_order',
+];
+let directory, browser, url;
+
+before(async () => {
+  directory = fixture_directory();
+  assert.equal(run_report(directory).status, 0);
+  url = `file://${join(directory, 'report.html')}`;
+  browser = await Browser.start({
+    driver: process.env.CHROMEDRIVER,
+    binary: process.env.CHROMIUM,
+  });
+});
+
+after(async () => {
+  await browser?.stop();
+  remove(directory);
+});
+
+// Opacities of the drawn points of a figure, by their opacity attribute or style.
+const point_opacities = (figure) =>
+  browser.run(`
+  return [...document.querySelectorAll('#plot-${figure} path[aria-roledescription="point"]')]
+    .map((p) => Number(p.getAttribute('opacity') ?? 1));`);
+
+// Clicks the legend entry with this text in a figure.
+async function click_legend(figure, text) {
+  const at = await browser.run(
+    `
+    const label = [...document.querySelectorAll('#plot-${figure} .role-legend-label text')]
+      .find((t) => t.textContent === arguments[0]);
+    label.scrollIntoView({ block: 'center', behavior: 'instant' });
+    const box = label.getBoundingClientRect();
+    return [box.x + box.width / 2, box.y + box.height / 2];`,
+    text,
+  );
+  await browser.click_at(...at);
+}
+
+const settle = async (ready) => {
+  for (let attempt = 0; attempt < 50; ++attempt) {
+    if (await ready()) return true;
+  }
+  return false;
+};
+
+test('Page_DrawsEveryFigureWithoutErrorsOrRequests', async () => {
+  await browser.open(url);
+  for (const figure of figures) {
+    const marks = await browser.run(
+      `return document.querySelectorAll('#plot-${figure} svg .mark-symbol path, ` +
+        `#plot-${figure} svg .mark-rect path').length`,
+    );
+    assert.ok(marks > 10, `${figure}: ${marks} marks`);
+  }
+  assert.deepEqual(
+    (await browser.log('browser')).map((entry) => entry.message),
+    [],
+  );
+  assert.deepEqual(await browser.requests(), [url]);
+});
+
+test('Policy_StopsTheNetworkAndEvaluation', async () => {
+  await browser.open(url);
+  assert.equal(
+    await browser.run(`
+    return fetch('https://example.org/').then(() => 'loaded', () => 'refused')`),
+    'refused',
+  );
+  assert.equal(
+    await browser.run(`
+    const s = document.createElement('script');
+    s.textContent = 'window.injected = 1';
+    document.body.append(s);
+    return window.injected === undefined ? 'refused' : 'ran'`),
+    'refused',
+  );
+  await browser.log('browser');
+});
+
+for (const [figure, entry] of [
+  ['work_precision', 'rk4'],
+  ['drift_cost', 'projection'],
+  ['drift_cost', 'symplectic_euler'],
+  ['drift_recovery', 'velocity_verlet'],
+  ['bdf_order', 'cvode_bdf max order 2'],
+]) {
+  test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
+    await browser.open(url);
+    const dimmed = async () =>
+      (await point_opacities(figure)).filter((o) => o < 0.2).length;
+    assert.equal(await dimmed(), 0);
+    await click_legend(figure, entry);
+    assert.ok(await settle(async () => (await dimmed()) > 0), 'nothing was dimmed');
+    const all = await point_opacities(figure);
+    assert.ok(
+      all.some((o) => o > 0.5),
+      'nothing was kept',
+    );
+    // Panels share the selection: kept points lie in as many panels as hold the entry.
+    assert.deepEqual(
+      (await browser.log('browser')).map((e) => e.message),
+      [],
+    );
+  });
+}
+
+const column = (name) =>
+  browser.run(
+    `
+  const table = document.querySelector('[data-table="bdf_order"] table');
+  const k = [...table.tHead.rows[0].cells].findIndex((c) => c.textContent === arguments[0]);
+  return [...table.tBodies[0].rows].map((row) => row.cells[k].textContent);`,
+    name,
+  );
+
+test('Table_SortsFiltersAndShowsFailures', async () => {
+  await browser.open(url);
+  await browser.run(`document.querySelector('[data-table="bdf_order"]').open = true`);
+  const header = '[data-table="bdf_order"] thead th:nth-child(9) button';
+  assert.ok(
+    await settle(() => browser.run(`return !!document.querySelector('${header}')`)),
+  );
+  await browser.run(
+    `document.querySelector('${header}').scrollIntoView({ block: 'center', behavior: 'instant' })`,
+  );
+  const name = await browser.run(
+    `return document.querySelector('${header}').textContent`,
+  );
+  await browser.click(header);
+  const up = (await column(name)).map(Number);
+  assert.deepEqual(
+    up,
+    [...up].sort((a, b) => a - b),
+  );
+  await browser.click(header);
+  const down = (await column(name)).map(Number);
+  assert.deepEqual(down, [...up].reverse());
+  assert.notDeepEqual(up, down);
+  assert.equal(
+    await browser.run(`
+    return document.querySelector('${header}').parentNode.getAttribute('aria-sort')`),
+    'descending',
+  );
+  const failed = await browser.run(`
+    return [...document.querySelectorAll('[data-table="bdf_order"] tr.failed')]
+      .map((row) => row.textContent)`);
+  assert.equal(failed.length, 1);
+  assert.match(failed[0], /more than 50000 steps/);
+  await browser.run(`
+    const box = document.querySelector('[data-table="bdf_order"] input');
+    box.value = 'ESDIRK';
+    box.dispatchEvent(new Event('input'));`);
+  assert.equal((await column(name)).length, 5);
+});
+
+test('UnknownTable_IsShownAsText', async () => {
+  await browser.open(url);
+  await browser.run(
+    `document.querySelector('[data-table="benchmark_extra"]').open = true`,
+  );
+  assert.ok(
+    await settle(() =>
+      browser.run(`
+    return document.querySelector('[data-table="benchmark_extra"] tbody')
+      ?.textContent.includes('chain <n>') ?? false`),
+    ),
+  );
+});
+
+for (const width of [390, 768, 1400]) {
+  test(`Page_HasNoHorizontalScroll_${width}`, async () => {
+    await browser.open(url, width);
+    await browser.run(
+      `for (const d of document.querySelectorAll('details')) d.open = true`,
+    );
+    const [content, view] = await browser.run(
+      'return [document.documentElement.scrollWidth, window.innerWidth]',
+    );
+    assert.equal(view, width);
+    assert.ok(content <= width, `${content} px wide`);
+    // Nor may a figure hide anything behind its own scroll bar.
+    const cut = await browser.run(`return [...document.querySelectorAll('.plot')]
+      .filter((p) => p.scrollWidth > p.clientWidth + 1).map((p) => p.id)`);
+    assert.deepEqual(cut, []);
+  });
+}
+
+test('Figures_HaveDescriptions', async () => {
+  await browser.open(url);
+  for (const figure of figures) {
+    const label = await browser.run(`
+      return document.querySelector('#plot-${figure} svg [aria-label]').getAttribute('aria-label')`);
+    assert.ok(label.length > 40, `${figure}: ${label}`);
+  }
+});

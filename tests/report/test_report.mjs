@@ -1,0 +1,219 @@
+// The report command without a browser: `node --test tests/report/test_report.mjs`.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { sources_hash } from '../../experiments/report/src/sources_hash.mjs';
+import { parse_csv } from '../../experiments/report/src/csv.mjs';
+import {
+  empty_directory,
+  fixture_directory,
+  remove,
+  report_root,
+  run_report,
+} from './support.mjs';
+
+let directory;
+before(() => {
+  directory = fixture_directory();
+});
+after(() => remove(directory));
+
+const figures = {
+  drift_cost: ['wall time (s)', 'largest violation max |g| (m)'],
+  drift_heatmap: ['alpha (1/s²)', 'beta (1/s)'],
+  drift_recovery: ['beta² / (4 alpha)', 'recovery time (s)'],
+  work_precision: ['wall time per simulated second (s/s)', 'relative error'],
+  bdf_order: ['relative error', 'steps', 'wall time (s)'],
+};
+
+// Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser
+// would.
+function assert_well_formed(xml) {
+  const open = [];
+  const rest = xml.replace(
+    /<(\/?)([A-Za-z][\w:-]*)((?:\s+[\w:-]+="[^"<]*")*)\s*(\/?)>/g,
+    (_, closing, name, attributes, empty) => {
+      if (closing) assert.equal(open.pop(), name);
+      else if (!empty) open.push(name);
+      return '';
+    },
+  );
+  assert.deepEqual(open, []);
+  assert.doesNotMatch(rest, /[<>]/);
+  assert.doesNotMatch(xml, /&(?!(amp|lt|gt|quot|apos|#\d+|#x[\da-f]+);)/i);
+}
+
+const mark_count = (svg) => {
+  const paths = [...svg.matchAll(/aria-roledescription="([^"]*)"[^>]*d="(M[^"]{4,})"/g)];
+  return paths.filter(([, role]) => /point|rect|line|circle|mark/.test(role)).length;
+};
+
+test('Bundles_AreBuiltFromTheseSources', () => {
+  const hash = sources_hash(report_root);
+  for (const file of ['report.mjs', 'render.mjs', 'page.html']) {
+    assert.ok(
+      readFileSync(join(report_root, 'dist', file), 'utf8').includes(hash),
+      `dist/${file} is stale: npm ci && npm run build in experiments/report`,
+    );
+  }
+});
+
+test('LockFile_CarriesNoDownloadAddresses', () => {
+  assert.doesNotMatch(
+    readFileSync(join(report_root, 'package-lock.json'), 'utf8'),
+    /"resolved"|\.tgz/,
+  );
+});
+
+test('Report_WritesPageAndOneSvgPerFigure', () => {
+  const { status, stderr } = run_report(
+    directory,
+    '--out',
+    join(directory, 'report.html'),
+  );
+  assert.equal(status, 0, stderr);
+  assert.equal(stderr.trim().split('\n').length, 1);
+  for (const [id, titles] of Object.entries(figures)) {
+    const svg = readFileSync(join(directory, `${id}.svg`), 'utf8');
+    assert_well_formed(svg);
+    for (const title of titles) assert.ok(svg.includes(`>${title}<`), `${id}: ${title}`);
+    assert.ok(mark_count(svg) > 10, `${id}: ${mark_count(svg)} marks`);
+    assert.doesNotMatch(svg, /NaN|undefined|var\(/);
+  }
+});
+
+test('Page_LoadsNothingAndForbidsTheNetwork', () => {
+  const page = readFileSync(join(directory, 'report.html'), 'utf8');
+  const policy = /http-equiv="Content-Security-Policy" content="([^"]*)"/.exec(page)[1];
+  assert.match(policy, /^default-src 'none';/);
+  assert.match(policy, /script-src 'sha256-[\w+/=]{44}'$/);
+  assert.doesNotMatch(policy, /unsafe-eval|https?:|\*/);
+  assert.doesNotMatch(
+    page.slice(0, page.indexOf('<script id="program">')),
+    /(src|href)="(?!#|data:)/,
+  );
+});
+
+test('Data_CannotEndTheScriptThatCarriesThem', () => {
+  const other = empty_directory();
+  writeFileSync(
+    join(other, 'hostile.csv'),
+    'name,status\n</script><script>alert(1)</script>,ok\n',
+  );
+  assert.equal(run_report(other).status, 0);
+  assert.ok(!readFileSync(join(other, 'report.html'), 'utf8').includes('<script>alert'));
+  remove(other);
+});
+
+test('MissingTables_SayHowToProduceThem', () => {
+  const other = empty_directory();
+  assert.equal(run_report(other).status, 0);
+  const page = readFileSync(join(other, 'report.html'), 'utf8');
+  for (const name of [
+    'constraint_drift',
+    'drift_boundary',
+    'work_precision',
+    'bdf_order',
+  ]) {
+    assert.ok(page.includes(`${name}.csv is not there yet`), name);
+  }
+  assert.match(page, /\.\/tress run/);
+  assert.ok(!existsSync(join(other, 'drift_cost.svg')));
+  remove(other);
+});
+
+function refusal(file, text) {
+  const other = empty_directory();
+  writeFileSync(join(other, file), text);
+  const { status, stderr } = run_report(other);
+  remove(other);
+  assert.equal(status, 2);
+  assert.equal(stderr.trim().split('\n').length, 1, stderr);
+  return stderr;
+}
+
+test('MalformedTables_AreOneLineWithFileAndLine', () => {
+  const head = 'scene,integrator,label,error_rel,steps,wall_s,status\n';
+  assert.match(
+    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,10,1,ok\nbeam,ida\n`),
+    /bdf_order\.csv:3: 2 fields where the header has 7/,
+  );
+  assert.match(
+    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,many,1,ok\n`),
+    /bdf_order\.csv:2: 'many' in column 'steps' is not a number/,
+  );
+  assert.match(
+    refusal('bdf_order.csv', 'scene,integrator\n'),
+    /bdf_order\.csv:1: column 'label'/,
+  );
+  assert.match(refusal('x.csv', ''), /x\.csv:1: empty/);
+  assert.match(refusal('x.csv', 'a,a\n1,2\n'), /x\.csv:1: column 'a' appears twice/);
+  assert.match(refusal('x.csv', 'a,b\n1,"2\n'), /x\.csv:2: a quote is opened/);
+});
+
+test('BadArguments_ExitWithTwo', () => {
+  assert.equal(run_report().status, 2);
+  assert.equal(run_report('/nonexistent/results').status, 2);
+  assert.equal(run_report(directory, '--nope').status, 2);
+  const { status, stderr } = run_report(directory, '--out', '/nonexistent/report.html');
+  assert.equal(status, 2);
+  assert.match(stderr, /\/nonexistent\/report\.html: cannot write/);
+});
+
+test('Findings_FollowTheTables', () => {
+  const path = join(directory, 'constraint_drift.csv');
+  const text = readFileSync(path, 'utf8');
+  const answer = () => {
+    run_report(directory);
+    const page = readFileSync(join(directory, 'report.html'), 'utf8');
+    return /id="answer-drift">(.*?)<\/dd>/.exec(page)[1].replace(/<[^>]*>/g, '');
+  };
+  const first = answer();
+  assert.match(first, /drift by up to 0\.68 m \(bead on helix, explicit_euler\)/);
+  writeFileSync(
+    path,
+    text.replace(/^(formulation,bead_on_circle,acceleration,rk4,.*?,)5e-11,/m, '$17.25,'),
+  );
+  assert.match(answer(), /drift by up to 7\.25 m \(bead on circle, rk4\)/);
+  writeFileSync(path, text);
+});
+
+test('BdfFinding_StatesTheRatioOfTheRows', () => {
+  const page = readFileSync(join(directory, 'report.html'), 'utf8').replace(
+    /<\/?span[^>]*>/g,
+    '',
+  );
+  assert.match(
+    page,
+    /maximum order 5 takes 16800 steps where order 2 takes 231 \(72\.7 times/,
+  );
+});
+
+test('Csv_ReadsQuotesAndSpecialNumbers', () => {
+  const { columns, rows } = parse_csv(
+    'a,b\r\n1e-3,"x, ""y""\nz"\nnan,\n-inf,q\n',
+    'f.csv',
+  );
+  assert.deepEqual(
+    columns.map((c) => c.numeric),
+    [true, false],
+  );
+  assert.deepEqual(rows, [
+    [1e-3, 'x, "y"\nz'],
+    ['nan', ''],
+    ['-inf', 'q'],
+  ]);
+});
+
+test('Manifest_MustBeJson', () => {
+  const path = join(directory, 'bdf_order.meta.json');
+  const text = readFileSync(path, 'utf8');
+  writeFileSync(path, '{');
+  const { status, stderr } = run_report(directory);
+  assert.equal(status, 2);
+  assert.match(stderr, /bdf_order\.meta\.json: not valid JSON/);
+  rmSync(path);
+  assert.equal(run_report(directory).status, 0);
+  writeFileSync(path, text);
+});
