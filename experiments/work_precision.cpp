@@ -45,9 +45,7 @@ void measure(const Problem& problem, std::string_view integrator, const Options&
              int repeat, Row& row) {
   const auto system = problem.make();
   const State start = initial_state(*system);
-  const auto begin = std::chrono::steady_clock::now();
   const Simulation run = simulate(integrator, *system, options, start, problem.t_end);
-  double wall = seconds_since(begin);
   row.set("elements", system->layout().coordinates).set("solver", run.stats.solver);
   row.set("steps", run.stats.steps).set("rejected", run.stats.rejected);
   row.set("residuals", run.stats.residuals);
