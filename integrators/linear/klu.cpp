@@ -38,7 +38,6 @@ KluSolver::KluSolver(const Pattern& pattern)
   // by 1.1 to 1.8.
   klu_->common.btf = 0;
   klu_->common.ordering = 0;  // AMD
-  if (getenv("KTOL")) klu_->common.tol = atof(getenv("KTOL"));
   Pattern copy = pattern;  // KLU takes pointers to non-const and does not write
   klu_->symbolic =
       klu_analyze(copy.cols, copy.start.data(), copy.row.data(), &klu_->common);
