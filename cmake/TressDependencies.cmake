@@ -6,21 +6,19 @@ if(TRESS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 set(TRESS_SUNDIALS_ROOT "$ENV{TRESS_SUNDIALS_ROOT}" CACHE PATH "Release build of SUNDIALS")
-if(TRESS_SUNDIALS_ROOT)
-  list(PREPEND CMAKE_PREFIX_PATH ${TRESS_SUNDIALS_ROOT})
+set(TRESS_SUNDIALS_COMPONENTS ida cvode arkode nvecserial)
+if(TRESS_SUNDIALS_ROOT AND NOT "${SUNDIALS_DIR}" MATCHES "^${TRESS_SUNDIALS_ROOT}/")
+  unset(SUNDIALS_DIR CACHE)  # an earlier answer to another question
 endif()
-find_package(SUNDIALS 6.4 REQUIRED COMPONENTS ida cvode arkode nvecserial)
+find_package(SUNDIALS 6.4 REQUIRED COMPONENTS ${TRESS_SUNDIALS_COMPONENTS}
+             HINTS ${TRESS_SUNDIALS_ROOT})
+if(NOT TRESS_SUNDIALS_ROOT)
+  message(WARNING "SUNDIALS from ${SUNDIALS_DIR}: Debian's binary is compiled at -O0, do not "
+                  "compare timings. `./tress setup` builds a Release copy.")
+endif()
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(GSL 2.7 REQUIRED)
-
-find_library(TRESS_KLU_LIBRARY klu REQUIRED)
-find_path(TRESS_KLU_INCLUDE klu.h PATH_SUFFIXES suitesparse REQUIRED)
-if(NOT TARGET tress_klu)
-  add_library(tress_klu INTERFACE)
-  target_link_libraries(tress_klu INTERFACE ${TRESS_KLU_LIBRARY})
-  target_include_directories(tress_klu SYSTEM INTERFACE ${TRESS_KLU_INCLUDE})
-  set_target_properties(tress_klu PROPERTIES EXPORT_NAME klu)
-endif()
+find_package(KLU REQUIRED)
 
 if(TRESS_EXPERIMENTS OR TRESS_TESTS)
   find_package(fmt REQUIRED)

@@ -1,1 +1,21 @@
+# `cmake --install` and `find_package(tress)`. Headers keep their paths below include/tress,
+# so that #include "models/system.h" reads the same inside and outside this repository.
+# Nothing installed names a folder of the build: the libraries that static linking needs are
+# found again by tressConfig.cmake, and Eigen is used in our .cpp files only.
 include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS tress_models tress_linear tress_integrators EXPORT tressTargets)
+install(DIRECTORY models integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
+        FILES_MATCHING PATTERN "*.h")
+
+set(tress_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tress)
+install(EXPORT tressTargets NAMESPACE tress:: DESTINATION ${tress_config_dir})
+configure_package_config_file(cmake/tressConfig.cmake.in ${PROJECT_BINARY_DIR}/tressConfig.cmake
+  INSTALL_DESTINATION ${tress_config_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tressConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tressConfig.cmake
+              ${PROJECT_BINARY_DIR}/tressConfigVersion.cmake
+              cmake/FindKLU.cmake
+        DESTINATION ${tress_config_dir})

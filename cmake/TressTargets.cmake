@@ -10,7 +10,8 @@ function(tress_warnings target)
   endif()
 endfunction()
 
-# tress_library(name source...): tress_<name>, also known as tress::<name>.
+# tress_library(name source...): tress_<name>, also known as tress::<name>. Link Eigen as
+# $<BUILD_INTERFACE:Eigen3::Eigen>: users of the installed library do not need it.
 function(tress_library name)
   add_library(tress_${name} STATIC ${ARGN})
   add_library(tress::${name} ALIAS tress_${name})
@@ -25,7 +26,7 @@ endfunction()
 # tress_test(name source... ): an executable whose GoogleTest cases ctest runs one by one.
 function(tress_test name)
   add_executable(test_${name} ${ARGN})
-  target_link_libraries(test_${name} PRIVATE tress::models tress::integrators tress_harness
+  target_link_libraries(test_${name} PRIVATE tress_harness tress::integrators tress::models
                         GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE
                              TRESS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

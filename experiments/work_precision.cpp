@@ -90,7 +90,7 @@ std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, boo
   for (const Formulation formulation : preference) {
     if (refusal(entry, system, formulation).empty()) list.push_back(formulation);
   }
-  if (!full && list.size() > 1) list.resize(1);
+  if (!full && list.size() > 1) list.erase(list.begin() + 1, list.end());
   return list;
 }
 

@@ -99,11 +99,18 @@ void parse_settings(const std::vector<std::string>& given, CommandLine& line) {
   }
 }
 
-void interpret(const Raw& raw, CommandLine& line) {
-  const auto given = [&line](const std::string& text, const std::string& option) {
-    if (!text.empty()) line.places.emplace(option, "--" + option);
-    return !text.empty();
+void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
+  const auto given = [&app, &line](const std::string& text, const std::string& option) {
+    if (app.count("--" + option) == 0) return false;
+    if (text.empty()) {
+      throw InputError("empty value", "--" + option,
+                       "give a value or leave the option out");
+    }
+    line.places.emplace(option, "--" + option);
+    return true;
   };
+  if (given(raw.scene, "scene")) line.scene = raw.scene;
+  if (given(raw.out, "out")) line.out = raw.out;
   if (given(raw.models, "models")) line.models = split(raw.models, ',', "--models");
   if (given(raw.integrators, "integrators")) {
     line.integrators = split(raw.integrators, ',', "--integrators");
@@ -170,10 +177,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
     refuse(app, name, argc, argv, error);
   }
   line.argv.assign(argv, argv + argc);
-  interpret(raw, line);
-  line.scene = raw.scene;
-  line.out = raw.out;
-  if (!raw.out.empty()) line.places.emplace("out", "--out");
+  interpret(app, raw, line);
   if (!line.scene.empty()) read_scene_options(line.scene, line);
   if (line.out.empty()) {
     line.out = line.shard_count == 1 ? fmt::format("results/{}.csv", name)

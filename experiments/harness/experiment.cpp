@@ -128,6 +128,7 @@ int report(const Experiment& experiment, const CommandLine& line,
   bool held = true;
   for (const auto& [claim, holds, value] : verdicts.all()) {
     held = held && holds;
+    if (line.progress == ProgressMode::json) continue;  // the manifest has them
     tell("{}: {} {} ({:.3g})\n", experiment.name, holds ? "PASS" : "FAIL", claim, value);
   }
   if (line.progress != ProgressMode::none || failed != nullptr) {
@@ -162,8 +163,8 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
-  const Manifest manifest(experiment, line);
   const Merged merged = merge(line.merge, experiment.columns);
+  const Manifest manifest(experiment, line);
   const int code = finish(experiment, line, merged.rows, manifest, merged.rows.size());
   for (const std::string& conflict : merged.conflicts) {
     tell("{}: conflict: {}\n", experiment.name, conflict);
@@ -246,7 +247,8 @@ int answer(const Experiment& experiment, int argc, char** argv) {
                                               experiment.example, argc, argv);
   const Settings checked(line, experiment.settings);
   if (line.list) {
-    write_all(STDOUT_FILENO, catalogue_text(experiment.settings), "standard output");
+    write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),
+              "standard output");
     return done;
   }
   if (!line.merge.empty()) {

@@ -129,8 +129,8 @@ const Field fields[] = {
       .choices = "every_iteration|every_step|when_slow"},
      choice<&Options::refresh, Refresh>},
     {{.name = "newton_coefficient",
-      .help = "SUNDIALS' nonlinear coefficient, 0: default",
-      .number = 0,
+      .help = "SUNDIALS' nonlinear coefficient, 0: SUNDIALS' default",
+      .number = Options{}.newton_coefficient,
       .min = 0,
       .max = 1},
      real<&Options::newton_coefficient>},
@@ -146,7 +146,9 @@ const Field fields[] = {
      real<&Options::multiplier_atol>},
     {{.name = "linear", .help = "linear solver", .choices = "automatic|klu|banded|dense"},
      choice<&Options::linear, LinearKind>},
-    {{.name = "table", .help = "arkode: a SUNDIALS Butcher table by name (free word)"},
+    {{.name = "table",
+      .help = "arkode: a SUNDIALS Butcher table by name",
+      .choices = "default"},
      nullptr},
 };
 
@@ -163,8 +165,8 @@ std::span<const Parameter> integrator_options() {
 
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where) {
-  if (key == "table") {  // the names belong to SUNDIALS, which checks them
-    options.table = value;
+  if (key == "table") {  // the other names belong to SUNDIALS, which checks them
+    options.table = value == "default" ? std::string_view{} : value;
     return;
   }
   Parameters parameters(integrator_options(), where);

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "experiments/harness/integrator_options.h"
-#include "integrators/catalogue.h"
-#include "models/catalogue.h"
 
 namespace tress {
 namespace {
@@ -89,27 +87,28 @@ std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& n
   return works.empty() || gaps.empty() ? works + gaps : works + ' ' + gaps;
 }
 
-std::string matrix() {
+std::string matrix(std::span<const ModelEntry> models,
+                   std::span<const IntegratorEntry> integrators) {
   Footnotes notes;
-  std::vector<std::vector<std::string>> columns;
-  std::vector<std::string>& names = columns.emplace_back(1, "");
-  for (const IntegratorEntry& integrator : integrators())
-    names.emplace_back(integrator.id);
-  for (const ModelEntry& model : models()) {
+  std::vector<std::vector<std::string>> columns(1, {""});
+  for (const IntegratorEntry& integrator : integrators) {
+    columns[0].emplace_back(integrator.id);
+  }
+  for (const ModelEntry& model : models) {
     std::vector<std::string>& column = columns.emplace_back(1, std::string(model.id));
     try {
       const std::unique_ptr<System> system =
           model.make(Parameters(model.parameters, fmt::format("model {}", model.id)));
-      for (const IntegratorEntry& integrator : integrators()) {
+      for (const IntegratorEntry& integrator : integrators) {
         column.push_back(cell(integrator, *system, notes));
       }
     } catch (const std::exception& error) {
       const std::string note = std::to_string(notes.number(error.what()));
-      column.resize(integrators().size() + 1, note);
+      column.resize(integrators.size() + 1, note);
     }
   }
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i <= integrators.size(); ++i) {
     std::string line = "  ";
     for (const std::vector<std::string>& column : columns) {
       std::size_t width = 0;
@@ -124,14 +123,16 @@ std::string matrix() {
 
 }  // namespace
 
-std::string catalogue_text(std::span<const Parameter> experiment_settings) {
+std::string catalogue_text(std::span<const ModelEntry> models,
+                           std::span<const IntegratorEntry> integrators,
+                           std::span<const Parameter> experiment_settings) {
   std::string text = "MODELS (parameters by --set key=value, [default])\n";
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : models) {
     text += fmt::format("  {:<20} {} ({})\n", model.id, model.summary, model.source);
     text += parameter_lines(model.parameters);
   }
   text += "\nINTEGRATORS\n";
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrators) {
     std::string letters;
     for (const Formulation formulation : entry.formulations)
       letters += letter(formulation);
@@ -143,7 +144,7 @@ std::string catalogue_text(std::span<const Parameter> experiment_settings) {
   if (!experiment_settings.empty()) {
     text += "\nKEYS OF THIS EXPERIMENT\n" + parameter_lines(experiment_settings);
   }
-  return text + matrix();
+  return text + matrix(models, integrators);
 }
 
 }  // namespace tress

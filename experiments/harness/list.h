@@ -3,6 +3,8 @@
 #include <span>
 #include <string>
 
+#include "integrators/catalogue.h"
+#include "models/catalogue.h"
 #include "models/parameters.h"
 
 namespace tress {
@@ -10,6 +12,8 @@ namespace tress {
 /// What --list prints: models with their parameters, integrators, the experiment's and
 /// the integrators' keys, and which integrator drives which model under which formulation
 /// of the constraints, every gap with its reason.
-std::string catalogue_text(std::span<const Parameter> experiment_settings);
+std::string catalogue_text(std::span<const ModelEntry> models,
+                           std::span<const IntegratorEntry> integrators,
+                           std::span<const Parameter> experiment_settings);
 
 }  // namespace tress

@@ -27,6 +27,8 @@ std::string settings_text(const CommandLine& line) {
   auto sorted = line.set;
   std::sort(sorted.begin(), sorted.end());
   std::string text = fmt::format("seed={}", line.seed);
+  if (line.quick) text += " quick";
+  if (line.full) text += " full";
   for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
   return text;
 }
@@ -43,6 +45,11 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
         "{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
         "nothing; './tress setup' builds a Release one\n",
         experiment.name, sundials_ratio_);
+  }
+  const int cpus = machine().cpus;
+  if (load_[0] > cpus) {
+    tell("{}: warning: the machine is busy (load {:.1f} on {} CPUs): timings are noisy\n",
+         experiment.name, load_[0], cpus);
   }
 }
 
@@ -68,6 +75,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"schema", schema_version},
       {"tress_version", TRESS_VERSION},
       {"argv", line_.argv},
+      {"merged_from", line_.merge},
       {"settings", settings_text(line_)},
       {"scene", line_.scene},
       {"seed", line_.seed},

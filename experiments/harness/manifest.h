@@ -12,7 +12,7 @@ namespace tress {
 class Manifest {
  public:
   /// Looks at machine, source tree and SUNDIALS now, before the work; warns on standard
-  /// error when SUNDIALS is a slow build.
+  /// error when SUNDIALS is a slow build or the machine is busy.
   Manifest(const Experiment& experiment, const CommandLine& line);
 
   /// The JSON text, with end time, load and the counts of `rows`.

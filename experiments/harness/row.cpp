@@ -77,7 +77,7 @@ std::string describe(const Row& identity) {
   std::string text;
   for (const auto& [column, cell] : identity.cells()) {
     if (!text.empty()) text += ' ';
-    text += column + '=' + cell;
+    text += fmt::format("{}={}", column, cell);
   }
   return text;
 }

@@ -128,10 +128,11 @@ Status Dynamics::solve(InOut r, InOut c) noexcept {
 }
 
 Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr,
-                             Out dc) noexcept {
+                             Out dc, Base base) noexcept {
   const double length = std::max(scaled_norm(dq, q_typ_), scaled_norm(dv, v_typ_));
   std::fill(dr.begin(), dr.end(), 0.0);
   std::fill(dc.begin(), dc.end(), 0.0);
+  if (base == Base::fresh) base_ready_ = false;
   if (length == 0) return Status::ok;
   const double size_of_state =
       1 + std::max(scaled_norm(q, q_typ_), scaled_norm(v, v_typ_));
@@ -141,8 +142,10 @@ Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv
     q_shift_[i] = q[i] + e * dq[i];
     v_shift_[i] = v[i] + e * dv[i];
   }
-  if (const Status s = residual(t, q, v, a, lambda, r_base_, c_base_); s != Status::ok) {
-    return s;
+  if (!base_ready_) {
+    const Status s = residual(t, q, v, a, lambda, r_base_, c_base_);
+    if (s != Status::ok) return s;
+    base_ready_ = true;
   }
   const Status s = residual(t, q_shift_, v_shift_, a, lambda, dr, dc);
   for (std::size_t i = 0; i < dr.size(); ++i) dr[i] = (dr[i] - r_base_[i]) / e;

@@ -40,11 +40,14 @@ class Dynamics {
   /// (r, c) -> (x, y): S x - G^T y = r and (dc) x = c, as linearize() left the matrix.
   Status solve(InOut r, InOut c) noexcept;
 
+  /// Whether directional() comes to a new state, or to that of its last call.
+  enum class Base { fresh, kept };
+
   /// Derivative of (r, c) along (dq, dv) at fixed a and lambda, by a forward difference:
-  /// one residual, error about 1e-8 relative, enough for the right-hand side of a Newton
-  /// correction. All zero directions cost nothing.
-  Status directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr,
-                     Out dc) noexcept;
+  /// one residual (two with a fresh base), error about 1e-8 relative, enough for the
+  /// right-hand side of a Newton correction. All zero directions cost nothing.
+  Status directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr, Out dc,
+                     Base base = Base::fresh) noexcept;
 
   /// a and lambda that satisfy r = 0 and g'' = -alpha g - beta g' at (t, q, v); leaves
   /// the mass matrix with the constraints of this state factored for solve().
@@ -65,6 +68,7 @@ class Dynamics {
   ConstraintForm* constraints_;
   ExplicitForm* explicit_;
   bool position_level_;
+  bool base_ready_ = false;
   double alpha_ = 0, beta_ = 0;
   Weights weights_;
   std::optional<Kkt> kkt_;

@@ -13,19 +13,29 @@ constexpr const char* standard_table = "ARKODE_ESDIRK436L2SA_6_3_4";
 constexpr const char* no_explicit_table = "ARKODE_ERK_NONE";
 
 // SUNDIALS offers no list of its names, and prints when asked for an unknown one.
-constexpr std::array<std::string_view, 23> tables{
-    "ARKODE_SDIRK_2_1_2",           "ARKODE_BILLINGTON_3_3_2",
-    "ARKODE_TRBDF2_3_3_2",          "ARKODE_KVAERNO_4_2_3",
-    "ARKODE_ARK324L2SA_DIRK_4_2_3", "ARKODE_CASH_5_2_4",
-    "ARKODE_CASH_5_3_4",            "ARKODE_SDIRK_5_3_4",
-    "ARKODE_KVAERNO_5_3_4",         "ARKODE_ARK436L2SA_DIRK_6_3_4",
-    "ARKODE_KVAERNO_7_4_5",         "ARKODE_ARK548L2SA_DIRK_8_4_5",
-    "ARKODE_ARK437L2SA_DIRK_7_3_4", "ARKODE_ARK548L2SAb_DIRK_8_4_5",
-    "ARKODE_ESDIRK324L2SA_4_2_3",   "ARKODE_ESDIRK325L2SA_5_2_3",
-    "ARKODE_ESDIRK32I5L2SA_5_2_3",  "ARKODE_ESDIRK436L2SA_6_3_4",
-    "ARKODE_ESDIRK43I6L2SA_6_3_4",  "ARKODE_QESDIRK436L2SA_6_3_4",
-    "ARKODE_ESDIRK437L2SA_7_3_4",   "ARKODE_ESDIRK547L2SA_7_4_5",
-    "ARKODE_ESDIRK547L2SA2_7_4_5"};
+constexpr std::array<std::string_view, 23> tables{"ARKODE_SDIRK_2_1_2",
+                                                  "ARKODE_BILLINGTON_3_3_2",
+                                                  "ARKODE_TRBDF2_3_3_2",
+                                                  "ARKODE_KVAERNO_4_2_3",
+                                                  "ARKODE_ARK324L2SA_DIRK_4_2_3",
+                                                  "ARKODE_CASH_5_2_4",
+                                                  "ARKODE_CASH_5_3_4",
+                                                  "ARKODE_SDIRK_5_3_4",
+                                                  "ARKODE_KVAERNO_5_3_4",
+                                                  "ARKODE_ARK436L2SA_DIRK_6_3_4",
+                                                  "ARKODE_KVAERNO_7_4_5",
+                                                  "ARKODE_ARK548L2SA_DIRK_8_4_5",
+                                                  "ARKODE_ARK437L2SA_DIRK_7_3_4",
+                                                  "ARKODE_ARK548L2SAb_DIRK_8_4_5",
+                                                  "ARKODE_ESDIRK324L2SA_4_2_3",
+                                                  "ARKODE_ESDIRK325L2SA_5_2_3",
+                                                  "ARKODE_ESDIRK32I5L2SA_5_2_3",
+                                                  "ARKODE_ESDIRK436L2SA_6_3_4",
+                                                  "ARKODE_ESDIRK43I6L2SA_6_3_4",
+                                                  "ARKODE_QESDIRK436L2SA_6_3_4",
+                                                  "ARKODE_ESDIRK437L2SA_7_3_4",
+                                                  "ARKODE_ESDIRK547L2SA_7_4_5",
+                                                  "ARKODE_ESDIRK547L2SA2_7_4_5"};
 
 InputError unknown_table(const std::string& table) {
   std::string known = "choose one of";

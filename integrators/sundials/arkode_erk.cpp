@@ -1,5 +1,7 @@
 #include "integrators/sundials/arkode_erk.h"
 
+#include <cmath>
+
 #include "integrators/sundials/factories.h"
 
 namespace tress {
@@ -7,6 +9,8 @@ namespace {
 
 constexpr std::string_view id = "arkode_erk";
 constexpr int standard_order = 5;
+constexpr double shrink = 0.25;          // of a step that the model has refused
+constexpr double shortest_step = 1e-15;  // relative to t: below it, refusal is final
 
 }  // namespace
 
@@ -28,6 +32,8 @@ ArkodeErk::ArkodeErk(System& system, const Options& options)
 }
 
 int ArkodeErk::restart() {
+  const int code = ERKStepSetInitStep(memory_.get(), 0);  // its own choice again
+  if (code < 0) return code;
   return ERKStepReInit(memory_.get(), &FirstOrder::rate_callback, time_, y_.handle());
 }
 
@@ -35,6 +41,15 @@ int ArkodeErk::step(double t_end, double& t) {
   const int code = ERKStepSetStopTime(memory_.get(), t_end);
   if (code < 0) return code;
   return ERKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+}
+
+bool ArkodeErk::recover(int code) {
+  if (code != ARK_UNREC_RHSFUNC_ERR) return false;
+  double h = 0;
+  if (ERKStepGetCurrentStep(memory_.get(), &h) < 0) return false;
+  h *= shrink;
+  return h > shortest_step * std::abs(time_) && restart() >= 0 &&
+         ERKStepSetInitStep(memory_.get(), h) >= 0;
 }
 
 Stats ArkodeErk::counters() const {

@@ -5,9 +5,11 @@
 
 namespace tress {
 
-/// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS' defaults
-/// by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound by the
-/// fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+/// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS'
+/// defaults by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound
+/// by the fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+///
+/// ERKStep ends the run when the model asks for a smaller step; we begin anew with one.
 class ArkodeErk final : public Driver {
  public:
   ArkodeErk(System& system, const Options& options);
@@ -15,6 +17,7 @@ class ArkodeErk final : public Driver {
  private:
   int restart() override;
   int step(double t_end, double& t) override;
+  bool recover(int code) override;
   Stats counters() const override;
   Stats work() const override { return equations_.work(); }
   std::string reason(int code) const override;

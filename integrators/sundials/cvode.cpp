@@ -21,12 +21,18 @@ Cvode::Cvode(std::string_view id, System& system, const Options& options,
   }
 }
 
-int Cvode::restart() { return CVodeReInit(memory_.get(), time_, y_.handle()); }
+int Cvode::restart() {
+  equations_.begin();
+  return CVodeReInit(memory_.get(), time_, y_.handle());
+}
 
 int Cvode::step(double t_end, double& t) {
-  const int code = CVodeSetStopTime(memory_.get(), t_end);
+  int code = CVodeSetStopTime(memory_.get(), t_end);
   if (code < 0) return code;
-  return CVode(memory_.get(), t_end, y_.handle(), &t, CV_ONE_STEP);
+  code = CVode(memory_.get(), t_end, y_.handle(), &t, CV_ONE_STEP);
+  // The fixed-point iteration of 6.4 takes any failure of the model for a recoverable
+  // one.
+  return code >= 0 && equations_.gave_up() ? CV_RHSFUNC_FAIL : code;
 }
 
 Stats Cvode::counters() const {

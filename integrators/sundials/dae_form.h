@@ -23,13 +23,13 @@ class DaeForm {
 
   Status residual(double t, In y, In y_dot, Out f) noexcept;
 
-  /// Fills lambda, mu = 0 and y' = (v, a, 0) so that F = 0 when (q, v) satisfies g = 0 and
-  /// g' = 0, without a corrector of the initial values.
+  /// Fills lambda, mu = 0 and y' = (v, a, 0) so that F = 0 when (q, v) satisfies g = 0
+  /// and g' = 0, without a corrector of the initial values.
   Status consistent(double t, InOut y, Out y_dot) noexcept;
 
-  /// Typical sizes of the multipliers at a consistent y: of lambda the larger of its value
-  /// there and of the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|); of mu
-  /// v_typ / |G|.
+  /// Typical sizes of the multipliers at a consistent y: of lambda the larger of its
+  /// value there and of the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|);
+  /// of mu v_typ / |G|.
   Status multiplier_scale(double t, In y, Out typ) noexcept;
 
   /// 1 for differential unknowns (q and v), 0 for multipliers.

@@ -15,14 +15,16 @@ Status EliminatedNewton::factor(double t, In y, In y_dot, double cj) noexcept {
   std::ranges::copy(y.first(form_.n), q_.begin());
   std::ranges::copy(y.last(form_.n), v_.begin());
   std::ranges::copy(y_dot.last(form_.n), a_.begin());
+  base_ = Dynamics::Base::fresh;
   return form_.dynamics.linearize(t, q_, v_, a_, {}, {1, 1 / cj, 1 / (cj * cj)});
 }
 
 Status EliminatedNewton::solve(InOut b) noexcept {
   const InOut x_q = b.first(form_.n), x_v = b.last(form_.n);
   for (std::size_t i = 0; i < form_.n; ++i) dq_[i] = x_q[i] / cj_;
-  Status s = form_.dynamics.directional(t_, q_, v_, a_, {}, dq_, zero_, r_, {});
+  Status s = form_.dynamics.directional(t_, q_, v_, a_, {}, dq_, zero_, r_, {}, base_);
   if (s != Status::ok) return s;
+  base_ = Dynamics::Base::kept;
   for (std::size_t i = 0; i < form_.n; ++i) r_[i] = x_v[i] - r_[i];
   if (s = form_.dynamics.solve(r_, {}); s != Status::ok) return s;
   for (std::size_t i = 0; i < form_.n; ++i) {

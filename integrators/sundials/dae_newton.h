@@ -27,6 +27,7 @@ class EliminatedNewton final : public DaeNewton {
  private:
   DaeForm& form_;
   double t_ = 0, cj_ = 0;
+  Dynamics::Base base_ = Dynamics::Base::fresh;
   std::vector<double> q_, v_, a_, dq_, zero_, r_;
 };
 
@@ -41,10 +42,10 @@ class EliminatedNewton final : public DaeNewton {
 /// Index 1: H_q = R(v') + beta R(v) + alpha G (without third derivatives of g),
 /// H_v = (cj + beta) G + 2 R(v). Index 3: H_q = G, H_v = 0. GGL: H_q = R(v), H_v = G.
 ///
-/// cj and the mass unit s are taken out, so that the condition number does not grow as the
-/// step shrinks: unknowns (cj x_q, x_v, x_lambda / (cj s), x_mu), second row / (cj s), rows
-/// of g'' / cj, rows of g times cj. [Bottasso, Bauchau, Cardona, SIAM J. Sci. Comput. 29
-/// (2007) 397] scales index 3 in the same way.
+/// cj and the mass unit s are taken out, so that the condition number does not grow as
+/// the step shrinks: unknowns (cj x_q, x_v, x_lambda / (cj s), x_mu), second row / (cj
+/// s), rows of g'' / cj, rows of g times cj. [Bottasso, Bauchau, Cardona, SIAM J. Sci.
+/// Comput. 29 (2007) 397] scales index 3 in the same way.
 class AssembledNewton final : public DaeNewton {
  public:
   AssembledNewton(DaeForm& form, const Options& options);

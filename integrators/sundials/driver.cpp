@@ -14,6 +14,11 @@ namespace {
 // SUNDIALS refuses to take it.
 constexpr double shortest_stretch = 100 * std::numeric_limits<double>::epsilon();
 
+// An integrator that keeps failing creeps on with ever smaller steps instead of stopping:
+// this many steps in a row below the resolution of time, and it is stuck.
+constexpr double time_resolution = 4 * std::numeric_limits<double>::epsilon();
+constexpr int most_lost_steps = 100;
+
 std::string text(double x) {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
@@ -31,18 +36,18 @@ Driver::Driver(std::string_view id, System& system, const Options& options,
       system_(system),
       n_(static_cast<std::size_t>(system.layout().coordinates)) {
   if (std::ranges::find(formulations, options.formulation) == formulations.end()) {
-    const bool projected = options.formulation == Formulation::projection;
     throw InputError(id_ + " cannot solve this formulation of constraints",
                      std::string(name(options.formulation)),
-                     projected ? "projecting between its steps would spoil its history; "
-                                 "cvode_bdf and the one-step methods can"
-                               : "choose one that its list of formulations names");
+                     options.formulation == Formulation::projection
+                         ? "SUNDIALS projects in cvode_bdf only; ida has index2_ggl"
+                         : "choose one that --list shows for it");
   }
   const Out y = y_.values();
   system.initial_state(y.first(n_), y.subspan(n_, n_));
   const Out atol = atol_.values();
   system.scale(atol.first(n_), atol.subspan(n_, n_));
   for (double& entry : atol.first(2 * n_)) entry *= options.atol;
+  last_.resize(y.size());
 }
 
 Status Driver::start(double t, In q, In v) {
@@ -58,6 +63,7 @@ Status Driver::start(double t, In q, In v) {
 
 Status Driver::begin() {
   context_.messages.clear();
+  restarted_ = true;
   const int code = restart();
   return code < 0 ? fail_with(code) : Status::ok;
 }
@@ -66,6 +72,7 @@ Status Driver::advance(double t_end, const Observer& each_step) {
   if (!failure_.empty()) return Status::fatal;
   if (t_end < time_) return fail("the end " + text(t_end) + " s lies in the past");
   const In positions = q(), velocities = v();
+  int lost = 0;
   for (long taken = 0; time_ < t_end; ++taken) {
     if (t_end - time_ <= shortest_stretch * std::max(std::abs(t_end), std::abs(time_))) {
       time_ = t_end;
@@ -75,11 +82,24 @@ Status Driver::advance(double t_end, const Observer& each_step) {
       return fail("max_steps = " + std::to_string(options_.max_steps) +
                   " used up before " + text(t_end) + " s");
     }
+    std::ranges::copy(y_.values(), last_.begin());
     double reached = time_;
     const int code = step(t_end, reached);
-    if (code < 0) return fail_with(code);
+    if (code < 0) {  // y_ may hold a trial state
+      std::ranges::copy(last_, y_.values().begin());
+      const Stats counted = added_counters();
+      if (!recover(code)) return fail_with(code);
+      carried_ = counted;
+      ++carried_.rejected;
+      restarted_ = true;
+      continue;
+    }
+    const double length = reached - time_;
     time_ = reached;
     ++steps_;
+    restarted_ = false;
+    lost = length > time_resolution * std::abs(time_) ? 0 : lost + 1;
+    if (lost > most_lost_steps) return fail("stuck: steps below the resolution of time");
     const Out y = y_.values();
     if (system_.accept(time_, y.first(n_), y.subspan(n_, n_))) {
       carried_ = added_counters();
@@ -106,7 +126,7 @@ Status Driver::fail_with(int code) {
 }
 
 Stats Driver::added_counters() const {
-  Stats sum = counters();
+  Stats sum = restarted_ ? Stats{} : counters();
   sum.rejected += carried_.rejected;
   sum.newton_iterations += carried_.newton_iterations;
   return sum;

@@ -9,7 +9,8 @@ namespace tress {
 
 /// What all SUNDIALS integrators share: the state y = (q, v, ...) in our memory, absolute
 /// tolerances atol * System::scale, one internal step at a time with the end of the
-/// interval as stop time, System::accept and the observer after each, and failures as text.
+/// interval as stop time, System::accept and the observer after each, and failures as
+/// text.
 ///
 /// Options.refresh: SUNDIALS never rebuilds inside a step. `every_step` forces a rebuild
 /// in each; the other two leave SUNDIALS' own rule (when gamma or cj has drifted, when
@@ -33,6 +34,9 @@ class Driver : public Integrator {
   virtual int restart() = 0;
   /// One internal step into y_ that does not pass t_end.
   virtual int step(double t_end, double& t) = 0;
+  /// After a failed step, with y_ back at the last good state: true when the method has
+  /// begun anew there with a smaller step.
+  virtual bool recover(int /*code*/) { return false; }
   /// Rejected steps and Newton iterations since the last restart().
   virtual Stats counters() const = 0;
   /// Residuals, linearizations and solves since construction, and the solver.
@@ -53,9 +57,11 @@ class Driver : public Integrator {
   const std::string id_;
   System& system_;
   const std::size_t n_;
+  std::vector<double> last_;  // y after the last good step
   long steps_ = 0;
-  Stats carried_;     // counters of the stretches before the last restart
-  Stats work_before_;  // work() at start()
+  bool restarted_ = true;  // no step since: ARKODE has not reset its counters yet
+  Stats carried_;          // counters of the stretches before the last restart
+  Stats work_before_;      // work() at start()
   std::string failure_ = "not started";
 };
 

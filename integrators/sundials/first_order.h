@@ -16,8 +16,8 @@ namespace tress {
 ///
 ///     x_v = b_v + z,    x_q = b_q + gamma x_v = (b_q + gamma b_v) + gamma z.
 ///
-/// Differentiating r(t, q, v, a, lambda) = 0 and c(t, q, v, a) = 0 along that change, times
-/// gamma, with nu = gamma dlambda and the known part of (x_q, x_v) on the right:
+/// Differentiating r(t, q, v, a, lambda) = 0 and c(t, q, v, a) = 0 along that change,
+/// times gamma, with nu = gamma dlambda and the known part of (x_q, x_v) on the right:
 ///
 ///     S z - G^T nu = -gamma D r,   H z = -gamma D c,   w = (1, gamma, gamma^2),
 ///     D = derivative along dq = b_q + gamma b_v, dv = b_v at fixed a and lambda,
@@ -25,9 +25,11 @@ namespace tress {
 /// which is one Dynamics::directional and one Dynamics::solve of size n + m. No 2n matrix
 /// and no derivative of M^-1 is ever formed.
 ///
-/// accelerate() factors the mass matrix in its own Dynamics. Where both share the one
-/// factorisation that System::linearize keeps (no constraints, no explicit form), the
-/// Newton matrix is rebuilt at its old state when accelerate() has overwritten it.
+/// accelerate() factors the mass matrix in its own Dynamics. A system without constraints
+/// and without an explicit form keeps one factorisation for both (System::linearize), and
+/// rates come between every two Newton corrections. So its Newton matrix is factored from
+/// its sparse form by a solver of ours; a system without that form either has the Newton
+/// matrix rebuilt at its old state whenever a rate has overwritten it.
 class FirstOrder final : public NewtonMatrix {
  public:
   FirstOrder(System& system, const Options& options);
@@ -40,21 +42,32 @@ class FirstOrder final : public NewtonMatrix {
   /// leave the constraints are removed, as the projected state cannot have them.
   Status project(double t, In y, Out correction, InOut error) noexcept;
 
+  /// Whether the model has answered `fatal` since begin().
+  bool gave_up() const { return gave_up_; }
+  void begin() { gave_up_ = false; }
+
   Stats work() const;
 
   /// CVRhsFn and ARKRhsFn; user data: a FirstOrder.
-  static int rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot, void* self) noexcept;
+  static int rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot,
+                           void* self) noexcept;
 
  private:
   Status newton_matrix() noexcept;
+  Status newton_solve() noexcept;
   Status project_error(double t, In y, InOut error) noexcept;
 
   Dynamics rates_, newton_;
   std::optional<Projection> projection_;
   const std::size_t n_;
-  const bool shared_;             // both Dynamics use System::linearize
-  bool newton_current_ = false;  // what is factored there is the Newton matrix
-  double t_ = 0, gamma_ = 0;     // of the Newton matrix, with the state below
+  const bool shared_;  // both Dynamics would use System::linearize
+  SparseForm* const sparse_;
+  std::unique_ptr<LinearSolver> own_;  // of the Newton matrix, when shared_ and sparse_
+  std::vector<double> own_values_;
+  bool gave_up_ = false;
+  bool newton_current_ = false;  // what is factored is the Newton matrix
+  Dynamics::Base base_ = Dynamics::Base::fresh;
+  double t_ = 0, gamma_ = 0;  // of the Newton matrix, with the state below
   std::vector<double> q_, v_, a_, lambda_;
   std::vector<double> dq_, r_, c_, multipliers_;  // scratch
   std::vector<double> g_dot_, g_dot_0_;

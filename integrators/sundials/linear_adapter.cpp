@@ -33,7 +33,8 @@ int ida_jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector y_dot, N_Ve
   return factor(t, y, y_dot, cj, matrix);
 }
 
-int solve(SUNLinearSolver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype) noexcept {
+int solve(SUNLinearSolver, SUNMatrix matrix, N_Vector x, N_Vector b,
+          sunrealtype) noexcept {
   const In right = entries(b);
   const Out solution = entries(x);
   std::copy(right.begin(), right.end(), solution.begin());
@@ -47,7 +48,9 @@ LinearAdapter::LinearAdapter(const SundialsContext& context, NewtonMatrix& newto
       solver_(require(SUNLinSolNewEmpty(context.handle()), "SUNLinSolNewEmpty")) {
   matrix_->content = &newton_matrix;
   matrix_->ops->getid = [](SUNMatrix) noexcept { return SUNMATRIX_CUSTOM; };
-  matrix_->ops->zero = [](SUNMatrix) noexcept { return 0; };  // IDA asks before every factor
+  matrix_->ops->zero = [](SUNMatrix) noexcept {
+    return 0;
+  };  // IDA asks before every factor
   solver_->ops->gettype = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_DIRECT; };
   solver_->ops->getid = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_CUSTOM; };
   solver_->ops->initialize = [](SUNLinearSolver) noexcept { return 0; };

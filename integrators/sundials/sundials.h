@@ -43,8 +43,8 @@ constexpr int linear_solver_code(Status status) noexcept {
                                    : unrecoverable;
 }
 
-/// For calls that set up an integrator: they fail only by a mistake of ours or for lack of
-/// memory, so they throw. Never used inside a callback.
+/// For calls that set up an integrator: they fail only by a mistake of ours or for lack
+/// of memory, so they throw. Never used inside a callback.
 inline void require(int code, const char* call) {
   if (code >= 0) return;
   throw std::runtime_error(std::string("SUNDIALS refused ") + call + " with code " +

@@ -53,7 +53,8 @@ BeadOnWire::State BeadOnWire::state(In q, In v) const noexcept {
   at.p = setup_.curve->at(q[0]);
   store3(at.p.c, at.x);
   store3(v[0] * at.p.d1, at.u);
-  if (needs_.tangent) store3((1 / std::sqrt(dot(at.p.d1, at.p.d1))) * at.p.d1, at.tangent);
+  if (needs_.tangent)
+    store3((1 / std::sqrt(dot(at.p.d1, at.p.d1))) * at.p.d1, at.tangent);
   return at;
 }
 
@@ -78,8 +79,7 @@ double BeadOnWire::tangent(double t, In q, In v, In a, Weights w) const noexcept
   double s = w.acc * m * dot(d1, d1);
   if (setup_.tangent == Tangent::exact) {
     s += w.vel * 2 * m * dot(d1, d2) * v[0];
-    s += w.pos * m *
-         (2 * dot(d1, d2) * a[0] + (dot(d2, d2) + dot(d1, d3)) * v[0] * v[0]);
+    s += w.pos * m * (2 * dot(d1, d2) * a[0] + (dot(d2, d2) + dot(d1, d3)) * v[0] * v[0]);
   }
   s -= w.pos * dot(d2, load(t, at));
   if (!needs_.derivatives) return s;
@@ -140,7 +140,9 @@ double BeadOnWire::power(double t, In q, In v) {
   return sum;
 }
 
-void BeadOnWire::positions(double, In q, Out x) { store3(setup_.curve->at(q[0]).c, &x[0]); }
+void BeadOnWire::positions(double, In q, Out x) {
+  store3(setup_.curve->at(q[0]).c, &x[0]);
+}
 
 void BeadOnWire::velocities(double, In q, In v, Out u) {
   store3(v[0] * setup_.curve->at(q[0]).d1, &u[0]);

@@ -16,8 +16,8 @@ namespace tress {
 ///
 ///     r = c'.(m (c' s'' + c'' s'^2) - f(t, x, x')),    x' = c' s',    M = m |c'|^2,
 ///
-/// with the exact tangent (c''' included) or the stiff one, which drops the derivatives of
-/// the inertia terms m c'.(c' s'' + c'' s'^2) by s and s' and keeps those of the load.
+/// with the exact tangent (c''' included) or the stiff one, which drops the derivatives
+/// of the inertia terms m c'.(c' s'' + c'' s'^2) by s and s' and keeps those of the load.
 /// The implicit form (x, lambda) is a ParticleSystem with one module of on_curve.h.
 /// Units: s in the curve's unit (rad for those built here). All O(1).
 class BeadOnWire final : public System,
@@ -28,17 +28,18 @@ class BeadOnWire final : public System,
  public:
   struct Setup {
     std::shared_ptr<const Curve> curve;
-    double mass = 1;         // kg, > 0
-    double length = 1;       // m of strand that drag acts on
-    double start = 0;        // s at t = 0
-    double start_speed = 0;  // m/s along increasing s
+    double mass = 1;           // kg, > 0
+    double length = 1;         // m of strand that drag acts on
+    double start = 0;          // s at t = 0
+    double start_speed = 0;    // m/s along increasing s
     double extent = 1;         // m, typical size
     double typical_speed = 1;  // m/s
     bool uniform = false;      // |c'| is the same everywhere: M is constant
     Tangent tangent = Tangent::exact;
   };
 
-  /// Throws InputError on a mass that is not positive or a curve with c' = 0 at the start.
+  /// Throws InputError on a mass that is not positive or a curve with c' = 0 at the
+  /// start.
   BeadOnWire(Setup setup, Effects effects);
 
   Layout layout() const override { return {1, 0}; }

@@ -22,28 +22,28 @@ struct Node {
 inline constexpr int max_constraint_inputs = 9;
 inline constexpr int max_constraint_rows = 3;
 
-/// One modular constraint C(z) = 0, local: z are the numbers of its nodes, in their order.
-/// These three functions give everything the assembly (constraint_set.h) needs:
+/// One modular constraint C(z) = 0, local: z are the numbers of its nodes, in their
+/// order. These three functions give everything the assembly (constraint_set.h) needs:
 ///
 ///     C' = (dC/dz) z',   C'' - G a = z'^T H z' + (dC/dz) p'',   dC'/dz = H z',
 ///
-/// with H the second derivatives. Time enters only through anchors p(t), which are part of
-/// z, so no module has time derivatives of its own. Pure, no allocation.
-/// [Witkin 1997] A. Witkin, Physically Based Modeling: Constrained Dynamics, SIGGRAPH
-/// course notes, section 4.
+/// with H the second derivatives. Time enters only through anchors p(t), which are part
+/// of z, so no module has time derivatives of its own. Pure, no allocation. [Witkin 1997]
+/// A. Witkin, Physically Based Modeling: Constrained Dynamics, SIGGRAPH course notes,
+/// section 4.
 class Constraint {
  public:
   virtual ~Constraint() = default;
   virtual std::span<const Node> nodes() const = 0;
-  virtual int inputs() const = 0;  // numbers in z
-  virtual int rows() const = 0;    // 1 to 3
+  virtual int inputs() const = 0;   // numbers in z
+  virtual int rows() const = 0;     // 1 to 3
   virtual bool linear() const = 0;  // H = 0: hessian() is not called
   /// Typical size of C (m, or rad) in a scene of the given extent (m).
   virtual double scale(double extent) const = 0;
-  virtual void value(In z, Out c) const noexcept = 0;            // (rows)
-  virtual void gradient(In z, Out g) const noexcept = 0;         // (rows x inputs)
-  virtual void hessian(In z, In w, Out h) const noexcept = 0;    // (inputs x inputs)
-                                                                 // sum_k w_k H_k
+  virtual void value(In z, Out c) const noexcept = 0;          // (rows)
+  virtual void gradient(In z, Out g) const noexcept = 0;       // (rows x inputs)
+  virtual void hessian(In z, In w, Out h) const noexcept = 0;  // (inputs x inputs)
+                                                               // sum_k w_k H_k
 };
 
 using Constraints = std::vector<std::unique_ptr<const Constraint>>;

@@ -41,8 +41,8 @@ double product(const double* a, const double* b, int count) {
 
 }  // namespace
 
-ConstraintSet::ConstraintSet(Constraints modules, std::vector<Anchor> anchors, int particles,
-                             int parameters, double extent)
+ConstraintSet::ConstraintSet(Constraints modules, std::vector<Anchor> anchors,
+                             int particles, int parameters, double extent)
     : modules_(std::move(modules)),
       anchors_(std::move(anchors)),
       particles_(particles),
@@ -286,7 +286,8 @@ Status ConstraintSet::add_curvature(double t, In q, In lambda, double factor,
                                                 static_cast<std::size_t>(item.rows)));
     const int* place = &coupling_[static_cast<std::size_t>(item.first_coupling)];
     for (int i = 0; i < item.inputs * item.inputs; ++i) {
-      if (place[i] >= 0) s[static_cast<std::size_t>(place[i])] += factor * local.hessian[i];
+      if (place[i] >= 0)
+        s[static_cast<std::size_t>(place[i])] += factor * local.hessian[i];
     }
   }
   return Status::ok;

@@ -8,17 +8,18 @@
 
 namespace tress {
 
-/// A point whose place is prescribed: fixed at x, or moving as `motion` says (then x unused).
+/// A point whose place is prescribed: fixed at x, or moving as `motion` says (then x
+/// unused).
 struct Anchor {
   Vec x;
   std::shared_ptr<const Curve> motion;
 };
 
 /// Assembles modules into g(t, q) = 0 with block-sparse G. The numbers of particle i are
-/// q[3i..3i+2], of parameter j q[3 particles + j]; anchors follow as prescribed inputs p(t),
-/// from which the time derivatives of g come. Rows stand in the order of the modules, so a
-/// chain whose particles and links are added from one end to the other has a banded KKT
-/// matrix once q and lambda are interleaved. Everything is O(modules).
+/// q[3i..3i+2], of parameter j q[3 particles + j]; anchors follow as prescribed inputs
+/// p(t), from which the time derivatives of g come. Rows stand in the order of the
+/// modules, so a chain whose particles and links are added from one end to the other has
+/// a banded KKT matrix once q and lambda are interleaved. Everything is O(modules).
 class ConstraintSet final : public ConstraintForm {
  public:
   /// Throws InputError when a module names an unknown node, or one node twice.
@@ -27,7 +28,8 @@ class ConstraintSet final : public ConstraintForm {
 
   int rows() const { return gradient_.cols; }
 
-  /// Adds to `columns` (one list of rows per column of S) every pair that curvature couples.
+  /// Adds to `columns` (one list of rows per column of S) every pair that curvature
+  /// couples.
   void couple(std::vector<std::vector<int>>& columns) const;
   /// Looks up where curvature goes in S; call once, before add_curvature.
   void bind(const Pattern& s);
@@ -70,8 +72,9 @@ class ConstraintSet final : public ConstraintForm {
   double extent_;
   Pattern gradient_;  // of G^T
   std::vector<Item> items_;
-  std::vector<int> input_;     // per local input: coordinate, or coordinates + 3 anchor + axis
-  std::vector<int> rank_;      // per local input: place in its column of G^T, -1: prescribed
+  std::vector<int>
+      input_;  // per local input: coordinate, or coordinates + 3 anchor + axis
+  std::vector<int> rank_;  // per local input: place in its column of G^T, -1: prescribed
   std::vector<int> coupling_;  // per local pair: place in S, -1: prescribed
   std::vector<double> place_, velocity_, acceleration_;  // (3 anchors)
 };

@@ -39,9 +39,8 @@ std::unique_ptr<FourierCurve> helix(Vec centre, Vec a, Vec b, Vec rise) {
 std::unique_ptr<FourierCurve> trefoil(double size) {
   const double u = size / 3;
   FourierCurve::Shape shape;
-  shape.harmonics = {{{0, u, 0}, {u, 0, 0}},
-                     {{0, -2 * u, 0}, {2 * u, 0, 0}},
-                     {{0, 0, 0}, {0, 0, -u}}};
+  shape.harmonics = {
+      {{0, u, 0}, {u, 0, 0}}, {{0, -2 * u, 0}, {2 * u, 0, 0}}, {{0, 0, 0}, {0, 0, -u}}};
   return std::make_unique<FourierCurve>(std::move(shape));
 }
 

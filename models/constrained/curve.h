@@ -13,17 +13,17 @@ struct CurvePoint {
   Vec c, d1, d2, d3;
 };
 
-/// A smooth curve in space. As a wire its parameter is any s; as a prescribed motion of an
-/// anchor its parameter is the time (s). Callers may pass their own.
+/// A smooth curve in space. As a wire its parameter is any s; as a prescribed motion of
+/// an anchor its parameter is the time (s). Callers may pass their own.
 class Curve {
  public:
   virtual ~Curve() = default;
   virtual CurvePoint at(double s) const noexcept = 0;
 };
 
-/// c(s) = origin + drift w + sum_{k=1} cosine_k cos(k w) + sine_k sin(k w),  w = rate s + phase.
-/// One harmonic gives circles, ellipses, helices (with drift), shaking and circular motion;
-/// three give the trefoil knot.
+/// c(s) = origin + drift w + sum_{k=1} cosine_k cos(k w) + sine_k sin(k w),  w = rate s +
+/// phase. One harmonic gives circles, ellipses, helices (with drift), shaking and
+/// circular motion; three give the trefoil knot.
 class FourierCurve final : public Curve {
  public:
   struct Harmonic {
@@ -57,7 +57,8 @@ class FourierCurve final : public Curve {
   Shape shape_;
 };
 
-/// centre + a cos(s) + b sin(s): a circle when a and b are orthogonal and of equal length.
+/// centre + a cos(s) + b sin(s): a circle when a and b are orthogonal and of equal
+/// length.
 std::unique_ptr<FourierCurve> ellipse(Vec centre, Vec a, Vec b);
 /// The same, rising by `rise` (m) per radian.
 std::unique_ptr<FourierCurve> helix(Vec centre, Vec a, Vec b, Vec rise);

@@ -8,18 +8,18 @@
 
 namespace tress {
 
-/// A hanging strand of n rigid massless links of length L/n with point masses m/n at their
-/// ends, as particles and distance constraints.
+/// A hanging strand of n rigid massless links of length L/n with point masses m/n at
+/// their ends, as particles and distance constraints.
 ///
-/// Open: pivot at the origin, straight along x, n particles, n rows; released horizontally.
-/// Closed: a regular polygon of perimeter L in the x-z plane beside its first particle,
-/// which is fixed at the origin: n particles, n + 3 rows.
-/// Both may spin about the vertical through the origin, a rigid motion and so consistent.
+/// Open: pivot at the origin, straight along x, n particles, n rows; released
+/// horizontally. Closed: a regular polygon of perimeter L in the x-z plane beside its
+/// first particle, which is fixed at the origin: n particles, n + 3 rows. Both may spin
+/// about the vertical through the origin, a rigid motion and so consistent.
 struct ChainShape {
   int links = 10;  // n: >= 1 open, >= 3 closed
   bool closed = false;
-  double mass = 1;      // m, kg, whole strand
-  double length = 1;    // L, m
+  double mass = 1;        // m, kg, whole strand
+  double length = 1;      // L, m
   double gravity = 9.81;  // m/s^2, along -z
   double drag = 0;        // nu, kg/(m s), on the strand's length
   double spin = 0;        // rad/s
@@ -28,9 +28,10 @@ struct ChainShape {
 /// Throws InputError on sizes out of range.
 ParticleScene inextensible_chain(const ChainShape& shape);
 
-/// Gravity and drag as a scene asks for them: what is zero is not built. `height` (m) sets
-/// the typical speed sqrt(g height).
-void add_gravity_and_drag(ParticleScene& scene, double gravity, double drag, double height);
+/// Gravity and drag as a scene asks for them: what is zero is not built. `height` (m)
+/// sets the typical speed sqrt(g height).
+void add_gravity_and_drag(ParticleScene& scene, double gravity, double drag,
+                          double height);
 
 /// Gives every particle the velocity of a rigid rotation about the z axis (rad/s).
 void spin_about_z(ParticleScene& scene, double spin);

@@ -133,8 +133,8 @@ void ParticleSystem::build_pattern() {
       const auto column = static_cast<std::size_t>(j);
       const auto begin = pattern_.row.begin() + pattern_.start[column];
       const auto end = pattern_.row.begin() + pattern_.start[column + 1];
-      block_.push_back(static_cast<int>(std::lower_bound(begin, end, i) -
-                                        pattern_.row.begin()));
+      block_.push_back(
+          static_cast<int>(std::lower_bound(begin, end, i) - pattern_.row.begin()));
     }
   }
 }

@@ -23,8 +23,8 @@ namespace tress {
 /// constraint_set.h. Modules: joints.h, on_curve.h, angles.h, or the caller's own.
 struct ParticleScene {
   struct Particle {
-    double mass;  // kg, > 0
-    Vec x, v;     // at t = 0, m and m/s
+    double mass;    // kg, > 0
+    Vec x, v;       // at t = 0, m and m/s
     double length;  // strand length carried, m (what drag acts on)
   };
   struct MasslessParameter {
@@ -53,8 +53,9 @@ struct ParticleScene {
 /// particles through Points, computed as far as they need; without effects f = 0 costs
 /// nothing. residual is O(N), linearize and solve invert 3x3 blocks. With parameters M is
 /// singular (traits().regular_mass false, linearize is `fatal`) while the KKT matrix is
-/// regular: use a constrained formulation, which reads sparse_form() and constraint_form().
-/// The work of moving anchors is not in power(): it depends on the multipliers.
+/// regular: use a constrained formulation, which reads sparse_form() and
+/// constraint_form(). The work of moving anchors is not in power(): it depends on the
+/// multipliers.
 class ParticleSystem final : public System,
                              private SparseForm,
                              private ExplicitForm,
@@ -106,8 +107,8 @@ class ParticleSystem final : public System,
   Pattern pattern_;
   std::vector<int> block_;  // (9 particles) places of the 3x3 blocks in pattern_
   std::vector<double> mass_, length_;
-  std::vector<double> load_;    // (3 particles)
-  std::vector<double> blocks_;  // (9 particles) S(w), row-major
+  std::vector<double> load_;     // (3 particles)
+  std::vector<double> blocks_;   // (9 particles) S(w), row-major
   std::vector<double> inverse_;  // (9 particles)
 };
 

@@ -19,19 +19,40 @@ constexpr int least_size[] = {1, 3, 1, 1, 1};
 constexpr int largest_size[] = {100'000, 100'000, 300, 16, 10'000};
 
 constexpr Parameter declared[] = {
-    {.name = "structure", .help = "what to build", .choices = "chain|ring|net|tree|truss"},
-    {.name = "size", .help = "links, side particles, levels or bays", .number = 4, .min = 1,
-     .max = 100'000, .whole = true},
-    {.name = "mass_kg", .help = "mass of all particles together (kg)", .number = 1,
-     .min = 1e-12, .max = 1e6},
-    {.name = "length_m", .help = "length of the structure (m)", .number = 1, .min = 1e-6,
+    {.name = "structure",
+     .help = "what to build",
+     .choices = "chain|ring|net|tree|truss"},
+    {.name = "size",
+     .help = "links, side particles, levels or bays",
+     .number = 4,
+     .min = 1,
+     .max = 100'000,
+     .whole = true},
+    {.name = "mass_kg",
+     .help = "mass of all particles together (kg)",
+     .number = 1,
+     .min = 1e-12,
      .max = 1e6},
-    {.name = "gravity_m_s2", .help = "gravity along -z (m/s^2)", .number = 9.81, .min = 0,
+    {.name = "length_m",
+     .help = "length of the structure (m)",
+     .number = 1,
+     .min = 1e-6,
      .max = 1e6},
-    {.name = "drag_kg_m_s", .help = "air drag per length nu (kg/(m s))", .number = 0,
-     .min = 0, .max = 1e6},
-    {.name = "spin_rad_s", .help = "initial rotation about the vertical (rad/s)",
-     .number = 0, .min = -1e6, .max = 1e6},
+    {.name = "gravity_m_s2",
+     .help = "gravity along -z (m/s^2)",
+     .number = 9.81,
+     .min = 0,
+     .max = 1e6},
+    {.name = "drag_kg_m_s",
+     .help = "air drag per length nu (kg/(m s))",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "spin_rad_s",
+     .help = "initial rotation about the vertical (rad/s)",
+     .number = 0,
+     .min = -1e6,
+     .max = 1e6},
 };
 
 /// Adds structure to a scene whose particles are all alike.
@@ -98,7 +119,8 @@ void build_tree(Builder& b, int levels, double height) {
   }
 }
 
-/// A triangular prism of s bays along x, every bar of every bay: 3 along, 6 across, 3 round.
+/// A triangular prism of s bays along x, every bar of every bay: 3 along, 6 across, 3
+/// round.
 void build_truss(Builder& b, int bays, double length) {
   const double bay = length / bays;
   const auto triangle = [&b, bay](double x) {
@@ -108,10 +130,9 @@ void build_truss(Builder& b, int bays, double length) {
   };
   std::array<Node, 3> from = triangle(0);
   b.scene.constraints.push_back(fixed_point(from[0], b.scene.add_anchor(Vec{})));
-  b.scene.constraints.push_back(
-      rigid_triangle(from[0], from[1], from[2],
-                     {b.gap(from[0], from[1]), b.gap(from[1], from[2]),
-                      b.gap(from[2], from[0])}));
+  b.scene.constraints.push_back(rigid_triangle(
+      from[0], from[1], from[2],
+      {b.gap(from[0], from[1]), b.gap(from[1], from[2]), b.gap(from[2], from[0])}));
   for (int i = 1; i <= bays; ++i) {
     const std::array<Node, 3> to = triangle(i * bay);
     for (const Node& near : from) {
@@ -124,10 +145,14 @@ void build_truss(Builder& b, int bays, double length) {
 
 int particle_count(Structure structure, int size) {
   switch (structure) {
-    case Structure::net: return size * size;
-    case Structure::tree: return (1 << size) - 1;
-    case Structure::truss: return 3 * (size + 1);
-    default: return size;
+    case Structure::net:
+      return size * size;
+    case Structure::tree:
+      return (1 << size) - 1;
+    case Structure::truss:
+      return 3 * (size + 1);
+    default:
+      return size;
   }
 }
 
@@ -138,8 +163,8 @@ ParticleScene tinkertoys(const ToyShape& shape) {
   if (shape.size < least_size[kind] || shape.size > largest_size[kind]) {
     throw InputError("size = " + std::to_string(shape.size) + " does not make a " +
                          std::string(structure_names[kind]),
-                     "tinkertoys", "give a size between " +
-                         std::to_string(least_size[kind]) + " and " +
+                     "tinkertoys",
+                     "give a size between " + std::to_string(least_size[kind]) + " and " +
                          std::to_string(largest_size[kind]));
   }
   if (shape.structure == Structure::chain || shape.structure == Structure::ring) {

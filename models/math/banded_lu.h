@@ -15,8 +15,8 @@ class BandedLu {
 
   void clear();
   double& at(int i, int j) { return band_[index(i, j)]; }  // (i, j) inside the band
-  bool factor() noexcept;                                  // false: singular or not finite
-  void solve(std::span<double> x) const noexcept;          // b in, x out
+  bool factor() noexcept;                          // false: singular or not finite
+  void solve(std::span<double> x) const noexcept;  // b in, x out
 
  private:
   std::size_t index(int i, int j) const {

@@ -5,8 +5,8 @@
 
 namespace tress {
 
-/// Forward-mode derivative number: a value with its derivatives along n directions. A kernel
-/// written once for any scalar and called with Dual returns the exact directional
+/// Forward-mode derivative number: a value with its derivatives along n directions. A
+/// kernel written once for any scalar and called with Dual returns the exact directional
 /// derivatives of what it computes. Cost: n + 1 multiplications for one.
 template <int n>
 struct Dual {
@@ -49,7 +49,9 @@ struct Dual {
   }
   friend Dual operator-(const Dual& x) { return -1.0 * x; }
   friend Dual sin(const Dual& x) { return x.chain(std::sin(x.value), std::cos(x.value)); }
-  friend Dual cos(const Dual& x) { return x.chain(std::cos(x.value), -std::sin(x.value)); }
+  friend Dual cos(const Dual& x) {
+    return x.chain(std::cos(x.value), -std::sin(x.value));
+  }
   friend Dual sqrt(const Dual& x) {
     const double root = std::sqrt(x.value);
     return x.chain(root, 0.5 / root);

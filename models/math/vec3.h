@@ -14,8 +14,9 @@ struct Vec3 {
   constexpr Vec3() = default;
   constexpr Vec3(T x0, T y0, T z0) : x(x0), y(y0), z(z0) {}
   template <class U>
-    requires(!std::same_as<U, T> && std::convertible_to<U, T>)
-  constexpr Vec3(const Vec3<U>& u) : x(u.x), y(u.y), z(u.z) {}
+  requires(!std::same_as<U, T> &&
+           std::convertible_to<U, T>) constexpr Vec3(const Vec3<U>& u)
+      : x(u.x), y(u.y), z(u.z) {}
 
   friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};

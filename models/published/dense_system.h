@@ -14,7 +14,8 @@ namespace tress {
 ///
 ///     kernel.residual(t, q, v, a, r)     r = M a - f
 ///     kernel.inertia(q, x, r)            r = M(q) x
-///     kernel.elastic(q, r)               r += dV/dq of its springs (only for Tangent::stiff)
+///     kernel.elastic(q, r)               r += dV/dq of its springs (only for
+///     Tangent::stiff)
 ///
 /// and S(w) follows exactly: column k is the derivative of the residual along
 /// (a_k, v_k, q_k) = (w.acc, w.vel, w.pos), taken with derivative numbers. Cost O(n)
@@ -30,7 +31,9 @@ class DenseSystem : public System, public SparseForm {
   }
 
   Layout layout() const override { return {n, 0}; }
-  Traits traits() const override { return {.constant_mass = false, .regular_mass = true}; }
+  Traits traits() const override {
+    return {.constant_mass = false, .regular_mass = true};
+  }
 
   Status residual(double t, In q, In v, In a, Out r) noexcept override {
     kernel_.residual(t, q.data(), v.data(), a.data(), r.data());

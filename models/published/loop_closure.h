@@ -17,10 +17,10 @@ struct LoopTerm {
   int j = -1;  // -1: the angle is q_i alone
 };
 
-/// Closure of planar linkages, g_k(q) = sum_terms length trig(q_i [+ q_j]) - target_k = 0.
-/// Every derivative of a term is the same term turned by quarter turns, so value, gradient,
-/// rate, bias and curvature all read one table. The system's tangent must be stored full
-/// (n x n, compressed columns). Cost O(terms).
+/// Closure of planar linkages, g_k(q) = sum_terms length trig(q_i [+ q_j]) - target_k =
+/// 0. Every derivative of a term is the same term turned by quarter turns, so value,
+/// gradient, rate, bias and curvature all read one table. The system's tangent must be
+/// stored full (n x n, compressed columns). Cost O(terms).
 class LoopClosure final : public ConstraintForm {
  public:
   LoopClosure(int coordinates, std::span<const LoopTerm> terms,
@@ -34,7 +34,8 @@ class LoopClosure final : public ConstraintForm {
   Status rate(double t, In q, In v, Out g_dot) noexcept override;
   Status bias(double t, In q, In v, Out b) noexcept override;
   Status rate_gradient(double t, In q, In v, Out values) noexcept override;
-  Status add_curvature(double t, In q, In lambda, double factor, InOut s) noexcept override;
+  Status add_curvature(double t, In q, In lambda, double factor,
+                       InOut s) noexcept override;
 
  private:
   struct Slots {

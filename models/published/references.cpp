@@ -13,6 +13,9 @@ constexpr std::array<double, 7> squeezer_v = {0.1139920302151208e4, -0.142437929
                                               0.1103291221937134e2, 0.1929337464421385e2,
                                               0.5735699284790808,   -0.1929337464421385e2,
                                               0.3231791658026955};
+constexpr std::array<double, 7> squeezer_a = {
+    -2.463176316945196e4, 5.185037701610329e4,  3.241025686413781e5, 5.667493645176213e5,
+    1.674362929479361e4,  -5.667493645176222e5, 9.826520791458422e3};
 constexpr std::array<double, 6> squeezer_lambda = {
     -0.1991753333731910e3, 0.2975531228015052e2,  -0.2306654119098399e2,
     -0.3145271365475927e2, -0.2264249232082739e2, -0.1161740700019673e2};
@@ -25,6 +28,13 @@ constexpr std::array<double, 7> crank_v = {1.500000000000000e2,   6.025346682645
                                            -8.753116989887888,    -3.005536801092212e-2,
                                            -5.500488291932075e-3, 4.978243404809343e-4,
                                            1.104933470696396e-3};
+constexpr std::array<double, 7> crank_a = {0,
+                                           6.488722210234531e3,
+                                           2.167924253080623e3,
+                                           3.391435115267547e1,
+                                           1.699107480197843e-1,
+                                           -1.415799354959001,
+                                           9.903251655235532e-1};
 constexpr std::array<double, 3> crank_lambda = {6.232893262533717e1, 1.637910131687472e2,
                                                 -2.529853213732781e1};
 
@@ -60,11 +70,11 @@ constexpr std::array<double, 40> beam_v = {
     0.1186724615113034e1};
 
 constexpr std::array<PublishedEnd, 3> ends = {{
-    {"andrews_squeezer", .03, squeezer_q, squeezer_v, squeezer_lambda, 8, 8,
+    {"andrews_squeezer", .03, squeezer_q, squeezer_v, squeezer_a, squeezer_lambda, 9, 7,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem andrews: "
      "PSIDE, "
      "Cray C90 double precision, rtol = atol = 1e-14"},
-    {"slider_crank", .1, crank_q, crank_v, crank_lambda, 6, 6,
+    {"slider_crank", .1, crank_q, crank_v, crank_a, crank_lambda, 5, 3,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem crank: linear "
      "elasticity, no damping, smooth start"},
     {"beam",
@@ -72,8 +82,9 @@ constexpr std::array<PublishedEnd, 3> ends = {{
      beam_q,
      beam_v,
      {},
-     8,
-     8,
+     {},
+     11,
+     9,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem beam: RADAU, "
      "rtol = atol = 1.1e-18"},
 }};

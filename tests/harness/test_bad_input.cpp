@@ -50,6 +50,8 @@ const BadInput bad_inputs[] = {
     {"WordOutsideChoices", "--set linear=kul", "(--set linear=kul)",
      "use one of: automatic"},
     {"SettingWithoutValue", "--set dt", "(--set dt)", "give key=value"},
+    {"EmptyOutput", "--out ''", "(--out)", "leave the option out"},
+    {"EmptyModels", "--models ''", "(--models)", "leave the option out"},
     {"SettingTwice", "--set dt=1 --set dt=0.5", "(--set dt=0.5)", "set it once"},
     {"OutputIsADirectory", "--out .", "(--out .)", "give a file name"},
     {"OutputDirectoryMissing", "--out none/toy.csv", "(--out none/toy.csv)", "mkdir -p"},
@@ -93,6 +95,7 @@ TEST(BadInput, FullDeviceOnStandardOutputIsSeenBeforeAnyWork) {
   const Toy::Result result = toy.run("--out -", "", "/dev/full");
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.error_lines(), 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("free space"));
   EXPECT_THAT(toy.executed(), IsEmpty());
 }
 

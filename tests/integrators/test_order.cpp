@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,10 @@ struct Method {
   }
 };
 
+void PrintTo(const Method& method, std::ostream* out) {
+  *out << method.name();
+}  // NOLINT
+
 std::vector<Method> methods(bool adaptive) {
   std::vector<Method> all;
   for (const IntegratorEntry& entry : integrators()) {
@@ -49,7 +55,7 @@ std::unique_ptr<System> bead(Formulation formulation) {
 }
 
 struct Outcome {
-  double position_error;  // m
+  double position_error;  // m, largest over the run: at a single time errors may cancel
   double violation;       // m, largest over the run
 };
 
@@ -60,27 +66,27 @@ Outcome run(const Method& method, const Options& base) {
   const auto integrator = make_integrator(method.entry->id, *system, options);
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
   const auto m = static_cast<std::size_t>(system->layout().constraints);
-  std::vector<double> q(n), v(n), g(m);
+  std::vector<double> q(n), v(n), g(m), x(3);
   system->initial_state(q, v);
-  double violation = 0;
+  const PendulumReference reference(std::sqrt(gravity / radius), {M_PI / 2, 0});
+  Outcome outcome{};
   EXPECT_EQ(integrator->start(0, q, v), Status::ok) << integrator->failure();
   const Status status = integrator->advance(end_time, [&](double t, In at, In) {
-    if (m > 0) {
-      EXPECT_EQ(system->constraint_form()->value(t, at, g), Status::ok);
-      for (const double entry : g) violation = std::max(violation, std::abs(entry));
+    system->material_points()->positions(t, at, x);
+    const auto exact = reference.at(t);
+    const double error = std::hypot(x[0] - radius * std::sin(exact.angle),
+                                    x[2] + radius * std::cos(exact.angle));
+    outcome.position_error = std::max(outcome.position_error, error);
+    if (m == 0) return true;
+    EXPECT_EQ(system->constraint_form()->value(t, at, g), Status::ok);
+    for (const double entry : g) {
+      outcome.violation = std::max(outcome.violation, std::abs(entry));
     }
     return true;
   });
   EXPECT_EQ(status, Status::ok) << integrator->failure();
   EXPECT_DOUBLE_EQ(integrator->time(), end_time);
-
-  std::vector<double> x(3);
-  system->material_points()->positions(end_time, integrator->q(), x);
-  const auto exact =
-      PendulumReference(std::sqrt(gravity / radius), {M_PI / 2, 0}).at(end_time);
-  return {std::hypot(x[0] - radius * std::sin(exact.angle),
-                     x[2] + radius * std::cos(exact.angle)),
-          violation};
+  return outcome;
 }
 
 class FixedStepOrder : public testing::TestWithParam<Method> {};
@@ -117,11 +123,27 @@ TEST_P(AdaptiveTolerance, ErrorFollowsTheTolerance) {
     options.atol = rtol;
     options.alpha = 100;
     options.beta = 20;
+    if (GetParam().entry->id == "cvode_bdf") options.max_order = 5;  // see OrderTwoBdf
     const double error = run(GetParam(), options).position_error;
     EXPECT_LE(error, 100 * rtol) << "rtol " << rtol;
-    EXPECT_LT(error, previous) << "rtol " << rtol;
+    // Falls from row to row until it is within ten times the tolerance.
+    EXPECT_LE(error, std::max(previous, 10 * rtol)) << "rtol " << rtol;
     previous = error;
   }
+}
+
+TEST(OrderTwoBdf, ErrorFallsAsTheToleranceToTheTwoThirds) {
+  // Local errors h^3 held at rtol leave h^2 = rtol^(2/3) per unit time: what the default
+  // cap at order 2 costs on smooth problems (bdf_order shows what it saves on rods).
+  const Method method{&find_integrator("cvode_bdf"), Formulation::parametric};
+  std::vector<double> tolerances, errors;
+  for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+    Options options;
+    options.rtol = options.atol = rtol;
+    tolerances.push_back(rtol);
+    errors.push_back(run(method, options).position_error);
+  }
+  EXPECT_NEAR(fitted_order(tolerances, errors), 2. / 3, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveTolerance, testing::ValuesIn(methods(true)),

@@ -24,11 +24,15 @@ struct Jet {
     return r;
   }
 
-  friend Jet operator+(const Jet& a, const Jet& b) { return combine(a, b, a.v + b.v, T(1), T(1)); }
+  friend Jet operator+(const Jet& a, const Jet& b) {
+    return combine(a, b, a.v + b.v, T(1), T(1));
+  }
   friend Jet operator-(const Jet& a, const Jet& b) {
     return combine(a, b, a.v - b.v, T(1), T(-1));
   }
-  friend Jet operator*(const Jet& a, const Jet& b) { return combine(a, b, a.v * b.v, b.v, a.v); }
+  friend Jet operator*(const Jet& a, const Jet& b) {
+    return combine(a, b, a.v * b.v, b.v, a.v);
+  }
   friend Jet operator/(const Jet& a, const Jet& b) {
     const T q = a.v / b.v;
     return combine(a, b, q, T(1) / b.v, T(-1) * q / b.v);

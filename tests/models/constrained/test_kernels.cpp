@@ -5,7 +5,7 @@
 
 #include "models/constrained/angles.h"
 #include "models/constrained/on_curve.h"
-#include "support/jet.h"
+#include "tests/support/jet.h"
 
 namespace tress {
 namespace {
@@ -27,25 +27,39 @@ const Vec e3 = cross(e1, e2);
 template <class Kernel>
 Kernel example();
 template <>
-Difference<Coincidence> example() { return {}; }
+Difference<Coincidence> example() {
+  return {};
+}
 template <>
-Difference<Distance> example() { return {{0.7}}; }
+Difference<Distance> example() {
+  return {{0.7}};
+}
 template <>
-Difference<OnPlane> example() { return {{e2}}; }
+Difference<OnPlane> example() {
+  return {{e2}};
+}
 template <>
-Difference<OnEllipse> example() { return {{e1, e2, e3, 1.3, 0.4}}; }
+Difference<OnEllipse> example() {
+  return {{e1, e2, e3, 1.3, 0.4}};
+}
 template <>
-Difference<OnHelix> example() { return {{e1, e2, e3, 0.8, 0.3}}; }
+Difference<OnHelix> example() {
+  return {{e1, e2, e3, 0.8, 0.3}};
+}
 template <>
-Angle example() { return {std::cos(0.9), std::sin(0.9)}; }
+Angle example() {
+  return {std::cos(0.9), std::sin(0.9)};
+}
 template <>
-Triangle example() { return {{0.7, 0.9, 1.1}}; }
+Triangle example() {
+  return {{0.7, 0.9, 1.1}};
+}
 
 template <class Kernel>
 struct KernelDerivatives : ::testing::Test {};
-using Kernels = ::testing::Types<Difference<Coincidence>, Difference<Distance>,
-                                 Difference<OnPlane>, Difference<OnEllipse>,
-                                 Difference<OnHelix>, Angle, Triangle>;
+using Kernels =
+    ::testing::Types<Difference<Coincidence>, Difference<Distance>, Difference<OnPlane>,
+                     Difference<OnEllipse>, Difference<OnHelix>, Angle, Triangle>;
 TYPED_TEST_SUITE(KernelDerivatives, Kernels);
 
 TYPED_TEST(KernelDerivatives, AgreeWithNestedJetsAtRandomPlaces) {

@@ -76,7 +76,8 @@ TEST(LinearDrag, DerivativeBlocksAreTheDifferenceOfTheLoad) {
       const auto f0 = load(drag, at);
       const auto f1 = load(drag, moved);
       for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(blocks[9 * p + 3 * i + j], 2 * (f1[3 * p + i] - f0[3 * p + i]), 1e-14);
+        EXPECT_NEAR(blocks[9 * p + 3 * i + j], 2 * (f1[3 * p + i] - f0[3 * p + i]),
+                    1e-14);
       }
     }
   }

@@ -55,8 +55,8 @@ TEST_P(PublishedConstraints, GradientIsTheDerivativeOfTheValue) {
   const State s = random_state(*system_, 1);
   const Matrix gt = gradient(s.t, s.q);
   for (int i = 0; i < n_; ++i) {
-    const Vector column =
-        derivative([&](double h) { return value(s.t, s.q + h * Vector::Unit(n_, i)); }, step);
+    const Vector column = derivative(
+        [&](double h) { return value(s.t, s.q + h * Vector::Unit(n_, i)); }, step);
     EXPECT_LE((gt.row(i).transpose() - column).norm(), tolerance * (gt.norm() + 1));
   }
 }
@@ -97,7 +97,8 @@ TEST_P(PublishedConstraints, CurvatureIsTheDerivativeOfTheConstraintForce) {
   const Pattern& pattern = system_->sparse_form()->pattern();
   Vector values = Vector::Ones(pattern.nonzeros());
   const double factor = -1.7;
-  ASSERT_EQ(form_.add_curvature(s.t, in(s.q), in(lambda), factor, out(values)), Status::ok);
+  ASSERT_EQ(form_.add_curvature(s.t, in(s.q), in(lambda), factor, out(values)),
+            Status::ok);
   const Matrix actual = dense(pattern, in(values)) - Matrix::Ones(n_, n_);
   for (int i = 0; i < n_; ++i) {
     const Vector column = derivative(

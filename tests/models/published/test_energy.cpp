@@ -35,8 +35,8 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedEnergy,
                          testing::Values("andrews_squeezer", "beam", "double_pendulum"),
                          [](const auto& param) { return std::string(param.param); });
 
-// The crank's equations come from T = v.M v / 2 and V = q.K q / 2; the same law, with M and
-// K read from the tangent.
+// The crank's equations come from T = v.M v / 2 and V = q.K q / 2; the same law, with M
+// and K read from the tangent.
 TEST(SliderCrank, InertiaForcesComeFromTheKineticEnergy) {
   const auto system = make_model("slider_crank", {{"tangent", "stiff"}});
   SparseForm& form = *system->sparse_form();
@@ -50,7 +50,8 @@ TEST(SliderCrank, InertiaForcesComeFromTheKineticEnergy) {
     const double h = 1e-3 / std::max(s.v.norm(), std::sqrt(s.a.norm()));
     const double growth = derivative(
         [&](double dt) -> Vector {
-          const State moved{s.t, s.q + dt * s.v + 0.5 * dt * dt * s.a, s.v + dt * s.a, s.a};
+          const State moved{s.t, s.q + dt * s.v + 0.5 * dt * dt * s.a, s.v + dt * s.a,
+                            s.a};
           const double kinetic = moved.v.dot(matrix(moved, {1, 0, 0}) * moved.v);
           const double potential = moved.q.dot(matrix(moved, {0, 0, 1}) * moved.q);
           return Vector::Constant(1, 0.5 * (kinetic + potential));
@@ -95,7 +96,8 @@ TEST(Points, VelocitiesAreTheRatesOfPositionsAndCarryTheKineticEnergy) {
 }
 
 TEST(DoublePendulum, SmallOscillationsHaveTheTextbookFrequencies) {
-  // Equal masses and lengths: omega^2 = (2 -+ sqrt 2) g / l, Landau & Lifshitz section 23.
+  // Equal masses and lengths: omega^2 = (2 -+ sqrt 2) g / l, Landau & Lifshitz
+  // section 23.
   const auto system = make_model("double_pendulum", {{"angle_1", "0"}, {"angle_2", "0"}});
   const State s = start_of(*system);
   const Matrix mass = tangent_of(*system, s, {1, 0, 0});

@@ -9,10 +9,10 @@ namespace tress {
 namespace {
 
 constexpr Weights method_weights[] = {
-    {1, 0, 0},          // mass alone
-    {1, 1e-3, 1e-6},    // backward Euler, h = 1 ms
+    {1, 0, 0},           // mass alone
+    {1, 1e-3, 1e-6},     // backward Euler, h = 1 ms
     {1, .5e-2, 2.5e-5},  // Newmark, h = 10 ms
-    {1e6, 1e3, 1},      // IDA, c_j = 1000
+    {1e6, 1e3, 1},       // IDA, c_j = 1000
 };
 
 // |S x - b| / (|S| |x|) with x = solve(b) and S x the derivative of the residual along
@@ -32,8 +32,8 @@ double tangent_error(System& system, const State& s, Weights w, unsigned seed) {
   reach = std::max(reach, (w.acc * x).cwiseQuotient(a_typ).lpNorm<Eigen::Infinity>());
   const Vector difference = derivative(
       [&](double h) {
-        return residual_of(system, {s.t, s.q + h * w.pos * x, s.v + h * w.vel * x,
-                                    s.a + h * w.acc * x});
+        return residual_of(
+            system, {s.t, s.q + h * w.pos * x, s.v + h * w.vel * x, s.a + h * w.acc * x});
       },
       1e-3 / reach);
   return (difference - b).norm() / (matrix.norm() * x.norm());
@@ -46,7 +46,8 @@ TEST_P(PublishedTangent, SolveInvertsTheDerivativeOfTheResidual) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const State s = random_state(*system, seed);
     for (const Weights& w : method_weights) {
-      EXPECT_LE(tangent_error(*system, s, w, seed), 1e-7) << "seed " << seed << " " << w.acc;
+      EXPECT_LE(tangent_error(*system, s, w, seed), 1e-7)
+          << "seed " << seed << " " << w.acc;
     }
   }
 }

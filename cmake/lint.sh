@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# cmake/lint.sh format | shellcheck | tidy BUILD_TREE: status 0 when the sources are clean.
+# cmake/lint.sh fix: formats them.
+set -euo pipefail
+cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.."
+
+sources() {
+  find models integrators experiments tests -name node_modules -prune -o \
+    \( -name '*.h' -o -name '*.cpp' \) -print0
+}
+
+case ${1:-} in
+  format) sources | xargs -0 clang-format --dry-run -Werror ;;
+  fix) sources | xargs -0 clang-format -i ;;
+  shellcheck) shellcheck tress .ci/run cmake/*.sh tests/commands/*.sh ;;
+  tidy)
+    run-clang-tidy -quiet -p "${2:?build tree}" "$PWD/(models|integrators|experiments|tests)/" ;;
+  *) echo "usage: cmake/lint.sh format|fix|shellcheck|tidy BUILD_TREE" >&2; exit 2 ;;
+esac

@@ -1,0 +1,53 @@
+// Writes dist/: report.mjs (command), render.mjs (SVG in Node), page.html (template), notices.
+// Developers who change the page run `npm ci && npm run build` and commit dist/.
+import { build } from 'esbuild';
+import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { sources_hash } from './src/sources_hash.mjs';
+
+const base = fileURLToPath(new URL('.', import.meta.url));
+const at = (path) => `${base}${path}`;
+const hash = sources_hash(base);
+
+const common = {
+  bundle: true, write: false, metafile: true, minify: true, charset: 'utf8', format: 'esm',
+  legalComments: 'none', absWorkingDir: base, define: { TRESS_SOURCES: JSON.stringify(hash) },
+};
+const node = { ...common, platform: 'node', target: 'node18' };
+
+const report = await build({ ...node, entryPoints: ['src/report.mjs'], external: ['./render.mjs'] });
+const render = await build({ ...node, entryPoints: ['src/render.mjs'] });
+const page = await build({ ...common, entryPoints: ['src/browser/main.mjs'], platform: 'browser',
+  target: 'es2022', format: 'iife' });
+
+// Licence texts of every bundled package, each text once.
+function notices(inputs) {
+  const packages = [...new Set(inputs.flatMap((path) =>
+    [...path.matchAll(/.*node_modules\/((?:@[^/]+\/)?[^/]+)/g)].map((match) => match[1])))].sort();
+  const texts = new Map();
+  for (const name of packages) {
+    const folder = at(`node_modules/${name}/`);
+    const file = existsSync(folder) &&
+      readdirSync(folder).find((entry) => /^licen[cs]e/i.test(entry));
+    if (!file) throw new Error(`${name}: no licence file`);
+    const text = readFileSync(folder + file, 'utf8').trim();
+    texts.set(text, [...(texts.get(text) ?? []), name]);
+  }
+  return [...texts].map(([text, names]) => `${names.join(', ')}\n\n${text}\n`)
+    .join(`\n${'-'.repeat(72)}\n\n`);
+}
+
+const inputs = [report, render, page].flatMap(({ metafile }) => Object.keys(metafile.inputs));
+const notice = notices(inputs);
+const script = page.outputFiles[0].text.replaceAll('</script', '<\\/script');
+const html = readFileSync(at('src/browser/page.html'), 'utf8')
+  .replace('TRESS_SOURCES_VALUE', () => hash)
+  .replace('/*TRESS_STYLE*/', () => readFileSync(at('src/browser/style.css'), 'utf8'))
+  .replace('/*TRESS_PROGRAM*/', () => script)
+  .replace('TRESS_NOTICES_VALUE', () => notice.replaceAll('<', '&lt;').replaceAll('--', '- -'));
+
+mkdirSync(at('dist'), { recursive: true });
+writeFileSync(at('dist/report.mjs'), report.outputFiles[0].text);
+writeFileSync(at('dist/render.mjs'), render.outputFiles[0].text);
+writeFileSync(at('dist/page.html'), html);
+writeFileSync(at('dist/NOTICES.txt'), notice);

@@ -1,0 +1,20 @@
+// The figures in reading order.
+import { bdf_order } from './bdf_order.mjs';
+import { drift_cost } from './drift_cost.mjs';
+import { drift_heatmap } from './drift_heatmap.mjs';
+import { drift_recovery } from './drift_recovery.mjs';
+import { work_precision } from './work_precision.mjs';
+
+export const figures = [drift_cost, drift_heatmap, drift_recovery, work_precision, bdf_order];
+
+// A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.
+export function figure_spec(figure, tables, options) {
+  if (figure.rows(tables).length === 0) return undefined;
+  return {
+    $schema: 'https://vega.github.io/schema/vega-lite/v6.json',
+    description: figure.describe(tables).replace(/\s+/g, ' '),
+    padding: 4,
+    autosize: { type: 'pad', contains: 'padding' },
+    ...figure.spec(tables, options),
+  };
+}

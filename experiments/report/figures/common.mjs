@@ -1,0 +1,131 @@
+// Parts every figure shares: theme, log axes, panels laid out for the width at hand, legends.
+import { is_positive } from '../src/tables.mjs';
+
+// The browser passes CSS variables, so light, dark and print need no redraw.
+export const paper_theme = {
+  text: '#1d2127', muted: '#5c6470', grid: '#e3e6ea', axis: '#8b939e', background: '#ffffff',
+  bad: '#c2c7ce',
+};
+export const page_theme = {
+  text: 'var(--text)', muted: 'var(--muted)', grid: 'var(--grid)', axis: 'var(--axis)',
+  background: 'var(--card)', bad: 'var(--bad)',
+};
+
+const font = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
+
+export const vega_config = (theme) => ({
+  background: theme.background,
+  font,
+  view: { stroke: null },
+  title: { color: theme.text, fontSize: 13, fontWeight: 600, anchor: 'start', offset: 8 },
+  axis: {
+    labelColor: theme.muted, titleColor: theme.text, gridColor: theme.grid,
+    domainColor: theme.axis, tickColor: theme.axis, labelFontSize: 11, titleFontSize: 12,
+    titleFontWeight: 500, titlePadding: 8,
+  },
+  legend: {
+    labelColor: theme.text, titleColor: theme.text, labelFontSize: 12, titleFontSize: 12,
+    titleFontWeight: 600, labelLimit: 210, rowPadding: 3, symbolSize: 70,
+    symbolStrokeWidth: 1.8, titleLimit: 300,
+  },
+  text: { color: theme.text, font },
+});
+
+// Decade ticks (1-2-5 below one decade) and a padded domain for positive `values`.
+export function log_extent(values, max_ticks = 7) {
+  const positive = values.filter(is_positive);
+  if (positive.length === 0) return { domain: [0.1, 10], ticks: [0.1, 1, 10] };
+  const low = Math.log10(Math.min(...positive));
+  const high = Math.log10(Math.max(...positive));
+  const pad = Math.max(0.06 * (high - low), 0.08);
+  const domain = [10 ** (low - pad), 10 ** (high + pad)];
+  const first = Math.ceil(low - pad);
+  const last = Math.floor(high + pad);
+  if (last - first < 1) {
+    const ticks = [];
+    for (let e = Math.floor(low - pad); e <= high + pad; ++e) {
+      for (const m of [1, 2, 5]) ticks.push(Number(`${m}e${e}`));
+    }
+    return { domain, ticks: ticks.filter((t) => t >= domain[0] && t <= domain[1]) };
+  }
+  const stride = Math.ceil((last - first + 1) / max_ticks);
+  const ticks = [];
+  for (let e = first; e <= last; e += stride) ticks.push(Number(`1e${e}`));
+  return { domain, ticks };
+}
+
+const label_expression =
+  "datum.value == 0 || (abs(datum.value) >= 0.01 && abs(datum.value) < 10000) " +
+  "? format(datum.value, '~g') : replace(format(datum.value, '.0e'), '+', '')";
+
+export function log_channel(field, title, { domain, ticks }, axis = {}) {
+  return {
+    field, type: 'quantitative', title,
+    scale: { type: 'log', domain, nice: false },
+    axis: { values: ticks, labelExpr: label_expression, ...axis },
+  };
+}
+
+export function linear_channel(field, title, axis = {}) {
+  return { field, type: 'quantitative', title, axis: { tickCount: 5, ...axis } };
+}
+
+const axis_room = 74;
+const panel_gap = 28;
+const legend_room = 215;
+
+// How many panels of what width fit, and where the legend goes.
+export function layout(width, panel_count, { legend = true, columns_max = 3 } = {}) {
+  const beside = legend && width >= 720;
+  const room = width - (beside ? legend_room : 0) - 12;
+  const fit = Math.max(1, Math.floor((room + panel_gap) / (250 + axis_room + panel_gap)));
+  const columns = Math.min(panel_count, columns_max, fit);
+  const panel_width = Math.floor((room - (columns - 1) * panel_gap) / columns - axis_room);
+  const legend_columns = beside ? 1 : Math.max(1, Math.floor(width / 178));
+  return {
+    columns,
+    panel_width: Math.max(200, Math.min(panel_width, 760)),
+    legend: beside ? { orient: 'right', offset: 16 }
+      : { orient: 'bottom', columns: legend_columns, offset: 14, labelLimit: 150 },
+  };
+}
+
+// Selection by legend: a legend click keeps one entry and dims the rest (shift-click adds).
+export const legend_selection = (name, field) =>
+  ({ name, select: { type: 'point', fields: [field] }, bind: 'legend' });
+
+export const dimmed_unless = (names, value = 1, dim = 0.08) =>
+  ({ condition: { test: { and: names.map((param) => ({ param })) }, value }, value: dim });
+
+// Colour, shape and dash of one series field as one merged legend.
+export function series_channels(field, title, style, legend) {
+  const scale = (range) => ({ domain: style.domain, range });
+  const shared = { field, type: 'nominal', title };
+  return {
+    color: { ...shared, scale: scale(style.colours), legend },
+    shape: { ...shared, scale: scale(style.shapes), legend },
+    strokeDash: { ...shared, scale: scale(style.dashes), legend },
+  };
+}
+
+// Panels side by side, wrapped to the width. Selection parameters must sit in the first layer of
+// the first panel: on a layered chart's top level they collide, in later layers clicks are lost.
+export function panels(list, columns) {
+  if (list.length === 1) return list[0];
+  return {
+    concat: list, columns, spacing: panel_gap,
+    resolve: { scale: { color: 'shared', shape: 'shared', strokeDash: 'shared' },
+      legend: { color: 'shared', shape: 'shared', strokeDash: 'shared' } },
+  };
+}
+
+export const with_parameters = (list, parameters) =>
+  list.map((panel, i) => (i > 0 ? panel : {
+    ...panel,
+    layer: panel.layer.map((layer, k) => (k > 0 ? layer : { ...layer, params: parameters })),
+  }));
+
+export const tooltips = (fields) =>
+  fields.map(([field, title, format]) => ({
+    field, title, ...(format ? { type: 'quantitative', format } : { type: 'nominal' }),
+  }));

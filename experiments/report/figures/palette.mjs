@@ -1,0 +1,81 @@
+// Colours and marks of the series. Hue says the family (Okabe-Ito based, safe for colour-blind
+// readers, legible on white and on near-black); shape and dash tell its members apart.
+
+const polygon = (corners, radius = 1, turn = 0) =>
+  Array.from({ length: corners }, (_, k) => {
+    const r = Array.isArray(radius) ? radius[k % radius.length] : radius;
+    const angle = (2 * Math.PI * k) / corners + turn - Math.PI / 2;
+    return `${k ? 'L' : 'M'}${(r * Math.cos(angle)).toFixed(3)},${(r * Math.sin(angle)).toFixed(3)}`;
+  }).join('') + 'Z';
+
+export const shapes = [
+  'circle', 'square', 'triangle-up', 'diamond', 'cross', 'triangle-down', polygon(10, [1, 0.45]),
+  polygon(4, [1, 0.3], Math.PI / 4), polygon(6), 'triangle-right', polygon(6, [1, 0.4]),
+  'triangle-left', 'M-0.9,-0.9L0.9,-0.9L-0.9,0.9L0.9,0.9Z', polygon(5),
+  'M-0.9,-0.9L0.9,0.9L0.9,-0.9L-0.9,0.9Z', polygon(16, [1, 0.55]),
+  'M-1,-0.35L1,-0.35L1,0.35L-1,0.35Z', 'M-0.35,-1L0.35,-1L0.35,1L-0.35,1Z',
+];
+
+const dashes = [[1, 0], [6, 3], [2, 2], [9, 3, 2, 3], [4, 4], [1, 3]];
+
+export const families = [
+  { name: 'explicit, fixed step', colours: ['#0072B2', '#56B4E9'],
+    members: ['explicit_euler', 'symplectic_euler', 'velocity_verlet', 'rk4'] },
+  { name: 'explicit, adaptive', colours: ['#009E73', '#4FC9A4'],
+    members: ['gsl_rkf45', 'gsl_rk8pd', 'arkode_erk'] },
+  { name: 'Adams', colours: ['#9C8500', '#C9B03A'], members: ['gsl_msadams', 'cvode_adams'] },
+  { name: 'implicit, fixed step', colours: ['#D55E00', '#E69F00'],
+    members: ['semi_implicit_euler', 'backward_euler', 'implicit_midpoint', 'bdf2', 'newmark',
+      'generalized_alpha'] },
+  { name: 'implicit, adaptive', colours: ['#B6407F', '#DB8DBB'],
+    members: ['cvode_bdf', 'arkode_dirk', 'ida', 'gsl_bsimp'] },
+  { name: 'structure preserving', colours: ['#7A7F87'], members: ['rattle'] },
+  { name: 'other', colours: ['#8E6CC9', '#B9A3E0'], members: [] },
+];
+
+// 'ida' matches 'ida', 'ida_index3', 'ida (order 2)'; the longest member name wins.
+function family_of(name) {
+  let best = { index: families.length - 1, member: -1, length: 0 };
+  families.forEach((family, index) => family.members.forEach((id, member) => {
+    const matches = name === id || (name.startsWith(id) && !/[a-z0-9]/i.test(name[id.length]));
+    if (matches && id.length > best.length) best = { index, member, length: id.length };
+  }));
+  return best;
+}
+
+// {domain, colours, shapes, dashes} for integrator names, ordered by family.
+export function series_style(names) {
+  const sorted = [...new Set(names)]
+    .map((name) => ({ name, ...family_of(name) }))
+    .sort((a, b) => a.index - b.index || a.member - b.member || a.name.localeCompare(b.name));
+  const used = new Map();
+  const entries = sorted.map(({ name, index }) => {
+    const k = used.get(index) ?? 0;
+    used.set(index, k + 1);
+    const { colours } = families[index];
+    return { name, colour: colours[k % colours.length], dash: dashes[k % dashes.length] };
+  });
+  return {
+    domain: entries.map((e) => e.name),
+    colours: entries.map((e) => e.colour),
+    shapes: entries.map((_, i) => shapes[i % shapes.length]),
+    dashes: entries.map((e) => e.dash),
+  };
+}
+
+const formulation_order = ['acceleration', 'baumgarte', 'projection', 'index2_ggl', 'index3',
+  'rattle', 'parametric'];
+const formulation_colours = ['#D55E00', '#E69F00', '#0072B2', '#009E73', '#B6407F', '#56B4E9',
+  '#7A7F87', '#8E6CC9', '#9C8500'];
+
+export function formulation_style(names) {
+  const rank = (name) => {
+    const i = formulation_order.findIndex((prefix) => name.startsWith(prefix));
+    return i < 0 ? formulation_order.length : i;
+  };
+  const domain = [...new Set(names)].sort((a, b) => rank(a) - rank(b) || a.localeCompare(b));
+  return { domain, colours: domain.map((_, i) => formulation_colours[i % formulation_colours.length]) };
+}
+
+// Sequential ramp for max order 1..5 (light to dark is not used: it must read on both themes).
+export const order_colours = ['#F2B134', '#E8743B', '#C9366F', '#8E3FB0', '#4C5BD4'];

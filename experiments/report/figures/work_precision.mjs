@@ -1,0 +1,122 @@
+// Figure 4: work-precision diagrams, one panel per scene, Pareto front marked.
+import { distinct, group_by, is_positive, is_set, succeeded } from '../src/tables.mjs';
+import {
+  dimmed_unless, layout, legend_selection, log_channel, log_extent, panels, series_channels,
+  tooltips, with_parameters,
+} from './common.mjs';
+import { series_style } from './palette.mjs';
+
+// Guides of error ~ time^-p from the lower left corner: what order p looks like.
+function order_guides(members) {
+  const [left, right] = log_extent(members.map((r) => r.wall_s_per_sim_s)).domain.map(Math.log10);
+  const [bottom, top] = log_extent(members.map((r) => r.error_rel)).domain.map(Math.log10);
+  const height = 0.3 * (top - bottom);
+  const reach = 0.24 * (right - left);
+  return [1, 2, 4].flatMap((order) => {
+    const run = Math.min(reach, height / order);
+    const end = bottom + height + 0.02 * (top - bottom) - order * run;
+    const start = { x: 10 ** (left + 0.02 * (right - left)),
+      y: 10 ** (bottom + height + 0.02 * (top - bottom)) };
+    return [{ order, ...start, i: 0 },
+      { order, x: 10 ** (Math.log10(start.x) + run), y: 10 ** end, i: 1, text: `${order}` }];
+  });
+}
+
+// One curve: same integrator under the same settings, from loose to tight.
+const curve = (row) =>
+  [row.model, row.integrator, row.solver, row.elements, row.max_order, row.error_kind].join('|');
+
+export function pareto_rows(members) {
+  if (members.some((row) => is_set(row.pareto))) return members.filter((r) => is_set(r.pareto));
+  return members.filter((row) => !is_set(row.below_reference) && !members.some((other) =>
+    other !== row && other.error_rel <= row.error_rel &&
+    other.wall_s_per_sim_s < row.wall_s_per_sim_s));
+}
+
+const counts = [['integrator', 'integrator'], ['model', 'model'], ['solver', 'linear solver'],
+  ['elements', 'elements'], ['dt_s', 'dt (s)'], ['rtol', 'rtol'], ['max_order', 'max order'],
+  ['error_kind', 'error'], ['error_rel', 'relative error', '.3e'], ['scd', 'correct digits'],
+  ['wall_s_per_sim_s', 'wall time per simulated s', '.3e'], ['wall_s', 'wall time (s)', '.3e'],
+  ['steps', 'steps'], ['rejected', 'rejected'], ['residuals', 'residuals'],
+  ['linearizations', 'linearizations'], ['solves', 'solves'], ['order_fit', 'fitted order'],
+  ['pareto_text', 'on the Pareto front'], ['below', 'below the reference']];
+
+function panel(scene, members, { panel_width, legend, style, theme }) {
+  const x = log_channel('wall_s_per_sim_s', 'wall time per simulated second (s/s)',
+    log_extent(members.map((row) => row.wall_s_per_sim_s), 5));
+  const y = log_channel('error_rel', 'relative error', log_extent(members.map((r) => r.error_rel)));
+  const series = series_channels('integrator', 'integrator', style, legend);
+  const opacity = dimmed_unless(['pick_integrator']);
+  const front = pareto_rows(members);
+  const guides = order_guides(members);
+  const guide_xy = { x: { ...x, field: 'x' }, y: { ...y, field: 'y' } };
+  return {
+    title: scene.replaceAll('_', ' '), width: panel_width, height: 330,
+    layer: [{
+      data: { values: members },
+      mark: { type: 'line', strokeWidth: 1.6 },
+      encoding: { x, y, ...series, shape: undefined, detail: { field: 'curve' },
+        order: { field: 'rank', type: 'quantitative' }, opacity },
+    }, {
+      data: { values: front },
+      mark: { type: 'line', strokeWidth: 7, stroke: theme.axis, strokeOpacity: 0.35,
+        strokeCap: 'round', strokeJoin: 'round' },
+      encoding: { x, y, order: { field: 'wall_s_per_sim_s', type: 'quantitative' } },
+    }, ...['no', 'yes'].map((below) => ({
+      data: { values: members.filter((row) => row.below === below) },
+      mark: { type: 'point', size: 55, strokeWidth: 1.6, filled: below === 'no' },
+      encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip: tooltips(counts) },
+    })), {
+{
+      data: { values: front },
+      mark: { type: 'point', shape: 'circle', size: 170, strokeWidth: 1.5, stroke: theme.text,
+        filled: false },
+      encoding: { x, y },
+    }, {
+      data: { values: guides },
+      mark: { type: 'line', stroke: theme.muted, strokeWidth: 1, strokeDash: [3, 2] },
+      encoding: { ...guide_xy, detail: { field: 'order' }, order: { field: 'i' } },
+    }, {
+      data: { values: guides.filter((g) => g.i === 1) },
+      mark: { type: 'text', align: 'left', dx: 3, fontSize: 10, color: theme.muted },
+      encoding: { ...guide_xy, text: { field: 'text' } },
+    }],
+  };
+}
+
+export const work_precision = {
+  id: 'work_precision',
+  title: 'What accuracy costs in time',
+  table: 'work_precision',
+  caption: `Relative error against wall time per simulated second; down and left is better. Each
+    line is one integrator from loose to tight. Ringed points joined by the grey band are the
+    Pareto front: nothing else is both faster and more accurate. Hollow points lie below the
+    accuracy of the reference and prove nothing. The dashed fan shows the slopes of orders 1, 2
+    and 4. Click a legend entry to keep that integrator and dim the others. Made from
+    work_precision.csv; failed runs are in the table only.`,
+
+  rows: (tables) => (tables.work_precision ?? []).filter((row) => succeeded(row) &&
+    is_positive(row.error_rel) && is_positive(row.wall_s_per_sim_s)).map((row) => ({
+    ...row, curve: curve(row), below: is_set(row.below_reference) ? 'yes' : 'no',
+    pareto_text: is_set(row.pareto) ? 'yes' : 'no',
+    rank: row.rtol !== null && row.rtol !== undefined ? -Math.log10(row.rtol)
+      : -Math.log10(row.dt_s ?? row.error_rel),
+  })),
+
+  spec(tables, { width, theme }) {
+    const rows = this.rows(tables);
+    const groups = [...group_by(rows, (row) => row.scene)];
+    const { columns, panel_width, legend } = layout(width, groups.length, { columns_max: 2 });
+    const style = series_style(rows.map((row) => row.integrator));
+    return panels(with_parameters(groups.map(([scene, members]) =>
+      panel(scene, members, { panel_width, legend, style, theme })),
+    [legend_selection('pick_integrator', 'integrator')]), columns);
+  },
+
+  describe(tables) {
+    const rows = this.rows(tables);
+    return `Log-log work-precision diagrams for ${distinct(rows.map((r) => r.scene)).length} scenes
+      and ${distinct(rows.map((r) => r.integrator)).length} integrators: relative error against
+      wall time per simulated second, with the Pareto front marked.`;
+  },
+};

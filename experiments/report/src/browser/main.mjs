@@ -1,0 +1,65 @@
+// Draws the figures and opens the tables of the page.
+import embed from 'vega-embed';
+import { expressionInterpreter } from 'vega-interpreter';
+import { figures, figure_spec } from '../../figures/all.mjs';
+import { page_theme, vega_config } from '../../figures/common.mjs';
+import { as_objects } from '../csv.mjs';
+import { fill_table } from './table.mjs';
+
+const tables = JSON.parse(document.getElementById('data').textContent);
+const objects = Object.fromEntries(Object.entries(tables).map(([name, table]) =>
+  [name, as_objects(table)]));
+
+const views = new Map();
+const drawn_width = new Map();
+
+async function draw(place) {
+  const width = Math.floor(place.clientWidth);
+  if (width === 0 || drawn_width.get(place) === width) return;
+  drawn_width.set(place, width);
+  const figure = figures.find(({ id }) => id === place.dataset.figure);
+  const spec = figure_spec(figure, objects, { width, theme: page_theme });
+  views.get(place)?.finalize();
+  views.set(place, await embed(place, spec, {
+    mode: 'vega-lite', renderer: 'svg', actions: false, ast: true, expr: expressionInterpreter,
+    config: vega_config(page_theme), tooltip: { theme: 'custom' },
+  }));
+}
+
+// The drawn figure as a file: the page's colour variables become the colours now shown.
+async function save(place) {
+  const style = getComputedStyle(document.documentElement);
+  const svg = (await views.get(place).view.toSVG())
+    .replace(/var\((--[\w-]+)\)/g, (_, name) => style.getPropertyValue(name).trim());
+  const link = document.createElement('a');
+  link.href = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
+  link.download = `${place.dataset.figure}.svg`;
+  link.click();
+}
+
+function add_tools(place) {
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.textContent = 'Save as SVG';
+  button.addEventListener('click', () => save(place));
+  document.querySelector(`[data-tools="${place.dataset.figure}"]`).append(button);
+}
+
+const places = [...document.querySelectorAll('[data-figure]')];
+places.forEach(add_tools);
+
+let pending = 0;
+new ResizeObserver(() => {
+  clearTimeout(pending);
+  pending = setTimeout(() => places.forEach(draw), 120);
+}).observe(document.body);
+
+for (const details of document.querySelectorAll('[data-table]')) {
+  details.addEventListener('toggle', () => {
+    if (details.open) fill_table(details, tables[details.dataset.table]);
+  }, { once: true });
+}
+
+Promise.all(places.map(draw)).then(() => {
+  document.documentElement.dataset.ready = 'yes';
+});

@@ -1,0 +1,115 @@
+// What constraint_drift.csv and drift_boundary.csv say, as sentences computed from their rows.
+import {
+  distinct, group_by, is_number, is_positive, is_set, minimum_by, succeeded,
+} from '../tables.mjs';
+import { format_number, format_ratio } from '../format.mjs';
+import { damping_ratio } from '../../figures/drift_recovery.mjs';
+
+const metres = (value) => (value === 0 ? 'exactly zero' : `${format_number(value)} m`);
+const spaced = (name) => name.replaceAll('_', ' ');
+
+// Acceleration level against the best feedback pair for one system, integrator and step.
+export function feedback_gains(rows) {
+  const runs = rows.filter((row) => row.study !== 'recovery' && succeeded(row) &&
+    is_number(row.g_max) && !is_positive(row.violation));
+  return [...group_by(runs, (r) => [r.system, r.integrator, r.dt_s, r.t_end_s].join('|')).values()]
+    .flatMap((members) => {
+      const without = members.find((row) => row.formulation === 'acceleration');
+      const best = minimum_by(members.filter((row) => row.formulation === 'baumgarte'),
+        (row) => row.g_max);
+      if (!without || !best || !is_positive(without.g_max) || !is_positive(best.g_max)) return [];
+      return [{ system: without.system, integrator: without.integrator, without, best,
+        gain: without.g_max / best.g_max, cost: best.wall_s / without.wall_s }];
+    });
+}
+
+// "<system>, <integrator>: the best Baumgarte pair ..." with the direction read off the ratio.
+function feedback_sentence({ system, integrator, without, best, gain, cost }) {
+  const pair = `alpha = ${format_number(best.alpha)}, beta = ${format_number(best.beta)}`;
+  const change = gain >= 1 ? `${format_ratio(gain)} smaller than` : `${format_ratio(1 / gain)} larger than`;
+  return `${spaced(system)}, ${integrator}: the best Baumgarte pair (${pair}) leaves ` +
+    `${metres(best.g_max)}, ${change} acceleration level (${metres(without.g_max)}), for ` +
+    `${format_ratio(cost)} the time${gain < 1 ? ': feedback hurts here' : ''}.`;
+}
+
+function exact_sentences(rows) {
+  return ['projection', 'rattle', 'parametric'].flatMap((formulation) => {
+    const runs = rows.filter((row) => row.study === 'formulation' && succeeded(row) &&
+      row.formulation === formulation && is_number(row.g_max));
+    if (runs.length === 0) return [];
+    const worst = Math.max(...runs.map((row) => row.g_max));
+    return [`${formulation}: ${worst === 0 ? 'exactly zero' : `at most ${metres(worst)}`} ` +
+      `over ${runs.length} run${runs.length === 1 ? '' : 's'}.`];
+  });
+}
+
+function index2_sentences(rows) {
+  const runs = rows.filter((row) => row.formulation === 'index2_ggl' && succeeded(row) &&
+    is_positive(row.steps));
+  return [...group_by(runs, (row) => [row.system, row.integrator].join('|')).values()]
+    .flatMap((members) => {
+      const out = members.find((row) => is_set(row.suppress_algebraic));
+      const kept = members.find((row) => row.suppress_algebraic !== '' &&
+        !is_set(row.suppress_algebraic));
+      if (!out || !kept) return [];
+      return [`${spaced(out.system)}, ${out.integrator} on the stabilised index 2 form: ` +
+        `${metres(out.g_max)} in ${out.steps} steps with the algebraic variables out of the ` +
+        `error test; ${kept.steps} steps (${format_ratio(kept.steps / out.steps)}) with them in.`];
+    });
+}
+
+export function boundary_sentences(rows) {
+  return [...group_by(rows.filter((row) => is_number(row.rel_gap)), (row) => row.integrator)]
+    .map(([integrator, members]) => {
+      const worst = Math.max(...members.map((row) => Math.abs(row.rel_gap)));
+      return `${integrator}: the measured stability boundary is within ` +
+        `${format_number(100 * worst, 2)} % of the predicted one at ${members.length} damping ` +
+        `ratio${members.length === 1 ? '' : 's'}${worst > 0.05 ? ', outside the 5 % wanted' : ''}.`;
+    });
+}
+
+export function recovery_sentences(rows) {
+  const runs = rows.filter((row) => row.study === 'recovery' && succeeded(row) &&
+    is_positive(row.recovery_time_s) && is_positive(row.alpha));
+  return [...group_by(runs, (r) => [r.system, r.integrator, r.alpha, r.dt_s].join('|')).values()]
+    .map((members) => minimum_by(members, (row) => row.recovery_time_s))
+    .map((best) => `${spaced(best.system)}, ${best.integrator}, ` +
+      `alpha = ${format_number(best.alpha)} 1/s²: fastest recovery at ` +
+      `beta²/(4 alpha) = ${format_number(damping_ratio(best))}, in ` +
+      `${format_number(best.recovery_time_s)} s.`);
+}
+
+export function failure_sentence(rows) {
+  const failed = rows.filter((row) => !succeeded(row));
+  if (failed.length === 0) return [];
+  const kinds = [...group_by(failed, (row) => row.status)]
+    .map(([status, members]) => `${members.length} ${status || 'without status'}`).join(', ');
+  return [`${failed.length} of ${rows.length} runs did not finish (${kinds}); each is a row of ` +
+    'the table, with its reason.'];
+}
+
+export function drift_findings({ constraint_drift: rows = [] }) {
+  const formulation_rows = rows.filter((row) => row.study !== 'grid' || row.status === 'ok');
+  const gains = feedback_gains(formulation_rows).sort((a, b) => b.gain - a.gain);
+  return [...gains.map(feedback_sentence), ...exact_sentences(rows), ...index2_sentences(rows),
+    ...failure_sentence(rows.filter((row) => row.study !== 'grid' && row.study !== 'recovery'))];
+}
+
+// The one-sentence answer to "how far, and at what cost".
+export function drift_answer({ constraint_drift: rows = [] }) {
+  const gains = feedback_gains(rows);
+  if (gains.length === 0) return undefined;
+  const worst = minimum_by(gains, (g) => -g.without.g_max);
+  const helped = gains.filter((g) => g.gain > 1).length;
+  const rival = minimum_by(rows.filter((row) => row.study === 'formulation' && succeeded(row) &&
+    row.system === worst.system && row.formulation === 'projection' &&
+    row.integrator === worst.integrator && is_number(row.g_max)), (row) => row.g_max);
+  const projected = rival ? ` Projection leaves ${metres(rival.g_max)} for ` +
+    `${format_ratio(rival.wall_s / worst.without.wall_s)} the time.` : '';
+  return `Left alone at acceleration level, constraints drift by up to ` +
+    `${metres(worst.without.g_max)} (${spaced(worst.system)}, ${worst.integrator}). The best ` +
+    `feedback brings that run to ${metres(worst.best.g_max)} for ${format_ratio(worst.cost)} ` +
+    `the time.${projected} Feedback helps in ${helped} of the ${gains.length} combinations of ` +
+    `${distinct(gains.map((g) => g.system)).length} systems and ` +
+    `${distinct(gains.map((g) => g.integrator)).length} integrators.`;
+}

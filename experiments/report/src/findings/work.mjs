@@ -1,0 +1,97 @@
+// What work_precision.csv and bdf_order.csv say, as sentences computed from their rows.
+import {
+  distinct, group_by, is_positive, is_set, minimum_by, succeeded,
+} from '../tables.mjs';
+import { format_number, format_ratio, format_time } from '../format.mjs';
+import { failure_sentence } from './drift.mjs';
+
+const levels = [1e-2, 1e-4, 1e-6];
+const spaced = (name) => name.replaceAll('_', ' ');
+
+const usable = (rows) => rows.filter((row) => succeeded(row) && is_positive(row.error_rel) &&
+  is_positive(row.wall_s_per_sim_s) && !is_set(row.below_reference));
+
+const cheapest = (rows, level) => minimum_by(rows.filter((row) => row.error_rel <= level),
+  (row) => row.wall_s_per_sim_s);
+
+function cheapest_sentences(rows) {
+  return [...group_by(usable(rows), (row) => row.scene)].map(([scene, members]) => {
+    const parts = levels.flatMap((level) => {
+      const best = cheapest(members, level);
+      return best ? [`${format_number(level)}: ${best.integrator}, ` +
+        `${format_time(best.wall_s_per_sim_s)} per simulated second`] : [];
+    });
+    return parts.length > 0 ? `${spaced(scene)}, cheapest run at or below error ${parts.join('; ')}.`
+      : `${spaced(scene)}: no run reaches an error of ${levels[0]}.`;
+  });
+}
+
+function order_sentences(rows) {
+  const fits = rows.filter((row) => succeeded(row) && is_positive(row.order_fit));
+  const parts = [...group_by(fits, (row) => row.integrator)].map(([integrator, members]) => {
+    const orders = members.map((row) => row.order_fit);
+    const [low, high] = [Math.min(...orders), Math.max(...orders)].map((v) => v.toFixed(2));
+    return `${integrator} ${low === high ? low : `${low} to ${high}`}`;
+  });
+  return parts.length > 0 ? [`Fitted orders: ${parts.join(', ')}.`] : [];
+}
+
+function digits_sentences(rows) {
+  const scored = rows.filter((row) => succeeded(row) && is_positive(row.scd));
+  return [...group_by(scored, (row) => row.scene)].map(([scene, members]) => {
+    const best = minimum_by(members, (row) => -row.scd);
+    return `${spaced(scene)}: most correct digits ${best.scd.toFixed(1)} (${best.integrator}).`;
+  });
+}
+
+function reference_sentence(rows) {
+  const below = rows.filter((row) => succeeded(row) && is_set(row.below_reference));
+  return below.length === 0 ? [] : [`${below.length} runs agree with the reference better than ` +
+    'the references agree with each other; they are drawn hollow and left out of the findings.'];
+}
+
+export function work_findings({ work_precision: rows = [] }) {
+  return [...cheapest_sentences(rows), ...order_sentences(rows), ...digits_sentences(rows),
+    ...reference_sentence(rows), ...failure_sentence(rows)];
+}
+
+export function work_answer({ work_precision: rows = [] }) {
+  const scenes = [...group_by(usable(rows), (row) => row.scene)];
+  const winners = scenes.flatMap(([scene, members]) => {
+    const best = cheapest(members, 1e-4);
+    return best ? [`${best.integrator} on ${spaced(scene)} ` +
+      `(${format_time(best.wall_s_per_sim_s)})`] : [];
+  });
+  if (winners.length === 0) return undefined;
+  const same = distinct(winners.map((w) => w.split(' ')[0])).length === 1;
+  return `For a relative error of 1e-4 the cheapest integrator per simulated second is ` +
+    `${winners.join(', ')}${scenes.length > 1 && !same ? ': no single method wins everywhere' : ''}.`;
+}
+
+// Lowest and highest BDF order at the loosest tolerance both finished.
+export function bdf_comparison(rows, low, high) {
+  const of = (order) => rows.filter((row) => succeeded(row) && row.integrator === 'cvode_bdf' &&
+    row.max_order === order && is_positive(row.steps) && is_positive(row.rtol));
+  const pairs = of(low).flatMap((a) => of(high)
+    .filter((b) => b.rtol === a.rtol && b.scene === a.scene).map((b) => ({ low: a, high: b })));
+  const wanted = pairs.find((pair) => pair.low.rtol === 1e-3);
+  return wanted ?? minimum_by(pairs, (pair) => -pair.low.rtol);
+}
+
+export function bdf_findings({ bdf_order: rows = [] }) {
+  const comparisons = [3, 4, 5].flatMap((order) => {
+    const pair = bdf_comparison(rows, 2, order);
+    if (!pair) return [];
+    const ratio = pair.high.steps / pair.low.steps;
+    return [`rtol ${format_number(pair.low.rtol)}: maximum order ${order} takes ` +
+      `${pair.high.steps} steps where order 2 takes ${pair.low.steps} ` +
+      `(${ratio >= 1 ? `${format_ratio(ratio)} as many` : `${format_ratio(1 / ratio)} fewer`}).`];
+  });
+  const done = rows.filter((row) => succeeded(row) && is_positive(row.error_rel));
+  const best = levels.flatMap((level) => {
+    const row = minimum_by(done.filter((r) => r.error_rel <= level), (r) => r.wall_s);
+    return row ? [`Cheapest at or below error ${format_number(level)}: ${row.label}, ` +
+      `${row.steps} steps, ${format_time(row.wall_s)}.`] : [];
+  });
+  return [...comparisons, ...best, ...failure_sentence(rows)];
+}

@@ -1,0 +1,93 @@
+// The text of the page: answers, sections, findings, places for figures and tables.
+import { figures } from '../figures/all.mjs';
+import { escape_html } from './format.mjs';
+import {
+  boundary_sentences, drift_answer, drift_findings, recovery_sentences,
+} from './findings/drift.mjs';
+import { bdf_findings, work_answer, work_findings } from './findings/work.mjs';
+import { manifest_html } from './manifest.mjs';
+import { known_tables } from './tables.mjs';
+
+// Each section: the question, its figure, what its findings are, its tables.
+const sections = [
+  { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
+  { figure: 'drift_heatmap', findings: ({ drift_boundary = [] }) =>
+    boundary_sentences(drift_boundary), tables: ['drift_boundary', 'drift_region'] },
+  { figure: 'drift_recovery', findings: ({ constraint_drift = [] }) =>
+    recovery_sentences(constraint_drift), tables: [] },
+  { figure: 'work_precision', findings: work_findings, tables: ['work_precision'] },
+  { figure: 'bdf_order', findings: bdf_findings, tables: ['bdf_order'] },
+];
+
+const one_line = (text) => text.replace(/\s+/g, ' ').trim();
+
+function missing_html(name) {
+  const { command, program } = known_tables[name];
+  return `<p class="missing"><strong>${name}.csv is not there yet.</strong> Produce it with ` +
+    `<code>${command}</code>, or alone with <code>build/release/experiments/${program} --out ` +
+    `results/${name}.csv</code>, then <code>./tress report</code>.</p>`;
+}
+
+const table_html = (name, title, rows) =>
+  `<details class="data" data-table="${escape_html(name)}"><summary>${escape_html(title)}: ` +
+  `${rows} row${rows === 1 ? '' : 's'} (${escape_html(name)}.csv)</summary></details>`;
+
+const list_html = (sentences, visible = 8) => {
+  const item = (sentence) => `<li>${escape_html(sentence)}</li>`;
+  if (sentences.length === 0) return '';
+  const rest = sentences.slice(visible);
+  return `<ul class="findings">${sentences.slice(0, visible).map(item).join('')}</ul>` +
+    (rest.length > 0 ? `<details class="more"><summary>${rest.length} more findings</summary>` +
+      `<ul class="findings">${rest.map(item).join('')}</ul></details>` : '');
+};
+
+function section_html(section, tables, objects) {
+  const figure = figures.find(({ id }) => id === section.figure);
+  const present = figure.table in tables;
+  const drawn = present && figure.rows(objects).length > 0;
+  const caption_id = `${figure.id}-caption`;
+  const body = !present ? missing_html(figure.table) : !drawn
+    ? `<p class="missing">${figure.table}.csv holds no rows for this figure.</p>`
+    : `<figure class="card"><div class="plot" id="plot-${figure.id}" data-figure="${figure.id}" ` +
+      `aria-describedby="${caption_id}"></div><figcaption id="${caption_id}">` +
+      `${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
+      '</span></figcaption></figure>';
+  const listed = section.tables.flatMap((name) => {
+    if (name in tables) return [table_html(name, known_tables[name].title, tables[name].rows.length)];
+    return name === figure.table || known_tables[name].optional ? [] : [missing_html(name)];
+  });
+  return `<section id="${figure.id}"><h2>${escape_html(figure.title)}</h2>\n` +
+    `${list_html(section.findings(objects))}\n${body}\n${listed.join('\n')}</section>`;
+}
+
+function header_html(objects) {
+  const none = (name) => `No answer yet: ${name}.csv is missing or holds no finished runs.`;
+  return `<header><p class="kicker">tress report</p>
+<h1>Constraint drift, and the price of accuracy</h1>
+<dl class="answers">
+<dt>How far do constraints drift, and what does stopping the drift cost?</dt>
+<dd id="answer-drift">${escape_html(drift_answer(objects) ?? none('constraint_drift'))}</dd>
+<dt>What does accuracy cost in time, per integrator?</dt>
+<dd id="answer-work">${escape_html(work_answer(objects) ?? none('work_precision'))}</dd>
+</dl>
+<p class="note">Every sentence with a number on this page is computed from the tables below.</p>
+</header>
+<nav aria-label="Sections">${figures.map(({ id, title }) =>
+    `<a href="#${id}">${escape_html(title)}</a>`).join('')}<a href="#made">How this was made</a></nav>`;
+}
+
+// `tables` as load_results returns them, `objects` the same rows as objects.
+export function body_html(tables, objects) {
+  const extra = Object.keys(tables).filter((name) => !(name in known_tables));
+  return [
+    header_html(objects),
+    '<main>',
+    '<noscript><p class="missing">Scripts are off: the text stands, figures lie beside this file ' +
+      'as SVG, tables as CSV.</p></noscript>',
+    ...sections.map((section) => section_html(section, tables, objects)),
+    extra.length > 0 ? '<section id="other"><h2>Other tables</h2>' +
+      `${extra.map((name) => table_html(name, name, tables[name].rows.length)).join('\n')}</section>` : '',
+    '</main>',
+    `<footer id="made"><h2>How this was made</h2>\n${manifest_html(tables)}\n</footer>`,
+  ].join('\n');
+}

@@ -1,0 +1,82 @@
+// report.mjs RESULTS [--out FILE]: one self-contained page, one SVG per figure beside the CSVs.
+import { createHash } from 'node:crypto';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { as_objects, InputError } from './csv.mjs';
+import { load_results } from './load.mjs';
+import { body_html } from './page.mjs';
+
+export const sources = TRESS_SOURCES;
+
+const usage = `usage: node report.mjs RESULTS [--out FILE]
+  RESULTS     directory that holds the CSV files; the SVG figures are written there
+  --out FILE  the page (default RESULTS/report.html)
+example: node experiments/report/dist/report.mjs results/ --out results/report.html`;
+
+function options_of(argv) {
+  const options = { directory: undefined, out: undefined };
+  for (let i = 0; i < argv.length; ++i) {
+    if (argv[i] === '--help' || argv[i] === '-h') return { help: true };
+    if (argv[i] === '--out') {
+      if (argv[i + 1] === undefined) throw new InputError('--out: no file given');
+      options.out = argv[++i];
+    } else if (argv[i].startsWith('-')) {
+      throw new InputError(`${argv[i]}: unknown option; known are --out and --help`);
+    } else if (options.directory === undefined) {
+      options.directory = argv[i];
+    } else {
+      throw new InputError(`${argv[i]}: a second directory; give one`);
+    }
+  }
+  if (options.directory === undefined) throw new InputError('no results directory given; see --help');
+  return { ...options, out: options.out ?? join(options.directory, 'report.html') };
+}
+
+function write(path, text) {
+  try {
+    writeFileSync(path, text);
+  } catch (error) {
+    throw new InputError(`${path}: cannot write (${error.code}); choose another place with --out`);
+  }
+}
+
+// '<' must not end the script element that carries the data.
+const embedded_json = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
+
+const script_hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+
+// The page: the template with policy, text and data filled in.
+export function page_html(template, tables, objects) {
+  const script = /<script id="program">([\s\S]*?)<\/script>/.exec(template)[1];
+  const policy = "default-src 'none'; base-uri 'none'; form-action 'none'; " +
+    `img-src data:; style-src 'unsafe-inline'; script-src ${script_hash(script)}`;
+  const data = Object.fromEntries(Object.entries(tables).map(([name, { columns, rows }]) =>
+    [name, { columns, rows }]));
+  const values = { POLICY: policy, BODY: body_html(tables, objects), DATA: embedded_json(data) };
+  return template.replace(/<!--TRESS_(POLICY|BODY|DATA)-->|TRESS_(POLICY)_VALUE/g,
+    (_, slot, attribute) => values[slot ?? attribute]);
+}
+
+async function main(argv) {
+  const { help, directory, out } = options_of(argv);
+  if (help) {
+    console.log(usage);
+    return;
+  }
+  const tables = load_results(directory);
+  const objects = Object.fromEntries(Object.entries(tables).map(([name, table]) =>
+    [name, as_objects(table)]));
+  const template = readFileSync(fileURLToPath(new URL('./page.html', import.meta.url)), 'utf8');
+  const { render_figures } = await import('./render.mjs');
+  const drawn = await render_figures(objects);
+  for (const { id, svg } of drawn) write(join(directory, `${id}.svg`), svg);
+  write(out, page_html(template, tables, objects));
+  console.error(`${out}: ${Object.keys(tables).length} tables, ${drawn.length} figures`);
+}
+
+main(process.argv.slice(2)).catch((error) => {
+  if (!(error instanceof InputError)) throw error;
+  console.error(`report: ${error.message}`);
+  process.exitCode = 2;
+});

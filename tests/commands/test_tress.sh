@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# test_tress.sh usage | list REPOSITORY: what ./tress promises on the command line. Programs
+# that would change the machine are replaced by stand-ins first on the PATH.
+set -euo pipefail
+what=$1 repository=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin" "$work/a b"
+
+# stand_in NAME: reads the program's body from standard input.
+stand_in() {
+  { echo '#!/usr/bin/env bash'; cat; } >"$work/bin/$1"
+  chmod +x "$work/bin/$1"
+}
+stand_in apt-get <<<"touch '$work/apt_was_called'; exit 1"
+stand_in sudo <<<'exit 1'
+# shellcheck disable=SC2016  # the stand-in expands it
+everything_installed() { stand_in dpkg-query <<<'printf "installed %s\n" "${@:3}"'; }
+nothing_installed() { stand_in dpkg-query <<<'exit 1'; }
+
+# expect CODE PATTERN COMMAND...: exit code and, somewhere in all output, the pattern.
+expect() {
+  local code=$1 pattern=$2 rc=0
+  shift 2
+  (cd "$work/a b" && PATH="$work/bin:$PATH" "$@") >"$work/out" 2>&1 </dev/null || rc=$?
+  if ((rc != code)) || ! grep -qE -- "$pattern" "$work/out"; then
+    echo "FAILED: $* gave $rc, expected $code and '$pattern'; output:"
+    cat "$work/out"
+    exit 1
+  fi
+}
+expect_one_line() {
+  [[ $(wc -l <"$work/out") == 1 ]] || { echo "not one line:"; cat "$work/out"; exit 1; }
+}
+
+usage() {
+  everything_installed
+  expect 2 "unknown command 'frobnicate'.*tress help" "$repository/tress" frobnicate
+  expect_one_line
+  expect 2 "unknown option '--fast'" "$repository/tress" run --fast
+  expect_one_line
+  expect 2 "unknown option '--fast'" "$repository/tress" test --fast
+  expect 0 './tress setup' "$repository/tress" help
+  expect 0 './tress setup' "$repository/tress"
+
+  ln -s "$repository/tress" "$work/a b/linked"
+  expect 0 './tress setup' "$work/a b/linked" help
+
+  # Neither root nor sudo: the command to type, and nothing is touched.
+  nothing_installed
+  stand_in id <<<'echo 1000'
+  expect 2 'run: sudo apt-get update && sudo apt-get install .*ninja-build' \
+    env TRESS_CACHE="$work/cache" "$repository/tress" setup
+  expect_one_line
+  [[ ! -e $work/apt_was_called ]] || { echo "apt-get was called without rights"; exit 1; }
+
+  # As root, a failing apt-get ends setup with its log's path.
+  stand_in id <<<'echo 0'
+  expect 1 "apt-get failed; log: $work/cache/packages.log" \
+    env TRESS_CACHE="$work/cache" "$repository/tress" setup
+
+  sources
+}
+
+# Source-package entries come from the distribution's own suites only.
+sources() {
+  cat >"$work/machine.sources" <<'END'
+# a comment
+Types: deb
+URIs: mirror://one
+Suites: bookworm bookworm-updates
+ bookworm-backports
+Components: main
+Signed-By: /usr/share/keyrings/a.gpg
+
+Types: deb
+URIs: mirror://other
+Suites: nodistro
+Components: main
+
+Enabled: no
+Types: deb
+URIs: mirror://off
+Suites: bookworm
+Components: main
+END
+  expect 0 'URIs: mirror://one' \
+    awk -v codename=bookworm -f "$repository/cmake/deb_src.awk" RS= "$work/machine.sources"
+  diff - "$work/out" <<'END'
+Types: deb-src
+URIs: mirror://one
+Suites: bookworm bookworm-updates
+Components: main
+Signed-By: /usr/share/keyrings/a.gpg
+
+END
+}
+
+list() {
+  everything_installed
+  expect 0 '^experiments:' "$repository/tress" list
+}
+
+"$what"

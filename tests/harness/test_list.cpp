@@ -1,0 +1,88 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "experiments/harness/list.h"
+
+namespace tress {
+namespace {
+
+using testing::HasSubstr;
+
+/// A free particle on a line: enough for an integrator to accept or refuse.
+class Point final : public System {
+ public:
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {.constant_mass = true}; }
+  void initial_state(Out q, Out v) const override { q[0] = v[0] = 0; }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double, In, In, In a, Out r) noexcept override {
+    r[0] = a[0];
+    return Status::ok;
+  }
+  Status linearize(double, In, In, In, Weights) noexcept override { return Status::ok; }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0];
+    return Status::ok;
+  }
+};
+
+constexpr Parameter parameters[] = {{.name = "mass", .help = "mass (kg)", .number = 2}};
+constexpr Formulation parametric[] = {Formulation::parametric};
+
+const ModelEntry models_listed[] = {
+    {"point", "one particle", "Newton 1687", parameters,
+     [](const Parameters&) -> std::unique_ptr<System> {
+       return std::make_unique<Point>();
+     }},
+    {"other_point", "another", "Newton 1687", parameters,
+     [](const Parameters&) -> std::unique_ptr<System> {
+       return std::make_unique<Point>();
+     }},
+    {"broken", "cannot be made", "nobody", parameters,
+     [](const Parameters&) -> std::unique_ptr<System> {
+       throw std::runtime_error("lacks its parts");
+     }},
+};
+
+const IntegratorEntry integrators_listed[] = {
+    {"willing", "drives all", "Euler 1768", 1, false, parametric,
+     [](System&, Formulation) { return std::string(); }, nullptr},
+    {"choosy", "drives none", "Gear 1971", 2, true, parametric,
+     [](System&, Formulation) { return std::string("needs a longer rope"); }, nullptr},
+};
+
+std::vector<std::string> words_of_line(const std::string& text,
+                                       const std::string& first) {
+  const std::size_t begin = text.rfind("\n  " + first + ' ');
+  std::istringstream line(text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1));
+  std::vector<std::string> words;
+  for (std::string word; line >> word;) words.push_back(word);
+  return words;
+}
+
+TEST(List, MatrixShowsWhatWorksAndEachReasonOnce) {
+  const std::string text = catalogue_text(models_listed, integrators_listed, {});
+  const std::string matrix = text.substr(text.find("WHAT DRIVES WHAT"));
+  EXPECT_THAT(words_of_line(matrix, "willing"),
+              testing::ElementsAre("willing", "p", "p", "2"));
+  EXPECT_THAT(words_of_line(matrix, "choosy"),
+              testing::ElementsAre("choosy", "1", "1", "2"));
+  const std::string reason = "needs a longer rope";
+  EXPECT_NE(matrix.find(reason), std::string::npos);
+  EXPECT_EQ(matrix.find(reason), matrix.rfind(reason));
+  EXPECT_THAT(matrix, HasSubstr("2  lacks its parts"));
+}
+
+TEST(List, ShowsModelsWithParametersAndIntegratorsWithOrder) {
+  const std::string text = catalogue_text(models_listed, integrators_listed, {});
+  EXPECT_THAT(text, HasSubstr("one particle (Newton 1687)"));
+  EXPECT_THAT(text, HasSubstr("mass (kg) [2]"));
+  EXPECT_THAT(text, HasSubstr("order 2, adaptive, drives none [p] (Gear 1971)"));
+}
+
+}  // namespace
+}  // namespace tress
