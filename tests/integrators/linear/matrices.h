@@ -72,7 +72,9 @@ class Random {
   /// Each entry is kept with the given probability.
   Eigen::MatrixXd thinned(int rows, int cols, double probability) {
     std::bernoulli_distribution keep(probability);
-    return matrix(rows, cols).unaryExpr([&](double a) { return keep(engine_) ? a : 0.0; });
+    return matrix(rows, cols).unaryExpr([&](double a) {
+      return keep(engine_) ? a : 0.0;
+    });
   }
   std::vector<int> permutation(int n) {
     std::vector<int> order(static_cast<std::size_t>(n));

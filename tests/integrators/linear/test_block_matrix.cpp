@@ -53,7 +53,8 @@ TEST(BlockMatrix, RowsAscendWithoutRepetition) {
   EXPECT_EQ(p.nonzeros(), 8);
   for (std::size_t j = 0; j < 5; ++j) {
     for (int k = p.start[j] + 1; k < p.start[j + 1]; ++k) {
-      EXPECT_LT(p.row[static_cast<std::size_t>(k - 1)], p.row[static_cast<std::size_t>(k)]);
+      EXPECT_LT(p.row[static_cast<std::size_t>(k - 1)],
+                p.row[static_cast<std::size_t>(k)]);
     }
   }
 }
