@@ -21,7 +21,8 @@ struct BandOrdering {
 BandOrdering reverse_cuthill_mckee(const Pattern& pattern);
 
 /// Banded LU with partial pivoting in a reverse Cuthill-McKee ordering: n kl (kl + ku)
-/// multiply-adds, n (2 kl + ku + 1) doubles. The KKT matrix of a chain has half-bandwidth 4.
+/// multiply-adds, n (2 kl + ku + 1) doubles. The KKT matrix of a chain has
+/// half-bandwidth 4.
 class BandedSolver final : public DirectSolver {
  public:
   explicit BandedSolver(const Pattern& pattern);

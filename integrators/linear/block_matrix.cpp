@@ -25,7 +25,8 @@ BlockMatrix::BlockMatrix(int rows, int cols) {
 int BlockMatrix::add_block(const Pattern& block, int row0, int col0, bool transposed) {
   const int height = transposed ? block.cols : block.rows;
   const int width = transposed ? block.rows : block.cols;
-  if (row0 < 0 || col0 < 0 || row0 + height > pattern_.rows || col0 + width > pattern_.cols) {
+  if (row0 < 0 || col0 < 0 || row0 + height > pattern_.rows ||
+      col0 + width > pattern_.cols) {
     throw std::invalid_argument("block matrix: a block sticks out of the matrix");
   }
   std::vector<Entry>& entries = entries_.emplace_back();
@@ -34,7 +35,8 @@ int BlockMatrix::add_block(const Pattern& block, int row0, int col0, bool transp
     const auto column = static_cast<std::size_t>(j);
     for (int p = block.start[column]; p < block.start[column + 1]; ++p) {
       const int i = block.row[static_cast<std::size_t>(p)];
-      entries.push_back(transposed ? Entry{row0 + j, col0 + i} : Entry{row0 + i, col0 + j});
+      entries.push_back(transposed ? Entry{row0 + j, col0 + i}
+                                   : Entry{row0 + i, col0 + j});
     }
   }
   return static_cast<int>(entries_.size()) - 1;
@@ -43,7 +45,8 @@ int BlockMatrix::add_block(const Pattern& block, int row0, int col0, bool transp
 void BlockMatrix::finish() {
   std::vector<std::vector<int>> columns(static_cast<std::size_t>(pattern_.cols));
   for (const auto& entries : entries_) {
-    for (const Entry& e : entries) columns[static_cast<std::size_t>(e.col)].push_back(e.row);
+    for (const Entry& e : entries)
+      columns[static_cast<std::size_t>(e.col)].push_back(e.row);
   }
   pattern_.start.assign(1, 0);
   pattern_.row.clear();

@@ -8,15 +8,15 @@ namespace tress {
 
 Pattern identity_pattern(int n);
 
-/// A sparse matrix assembled from blocks of fixed pattern, placed anywhere, overlapping or
-/// not: A = sum_b factor_b place_b(block_b or its transpose). Places are found once in
+/// A sparse matrix assembled from blocks of fixed pattern, placed anywhere, overlapping
+/// or not: A = sum_b factor_b place_b(block_b or its transpose). Places are found once in
 /// finish(); afterwards clear() and add() only write numbers, O(nonzeros of the block).
 class BlockMatrix {
  public:
   BlockMatrix(int rows, int cols);
 
-  /// Upper left corner of the block at (row0, col0); returns the block's id. `transposed`:
-  /// values arrive in the order of `block` and land in its transpose.
+  /// Upper left corner of the block at (row0, col0); returns the block's id.
+  /// `transposed`: values arrive in the order of `block` and land in its transpose.
   int add_block(const Pattern& block, int row0, int col0, bool transposed = false);
   void finish();
 

@@ -9,7 +9,7 @@ namespace tress {
 
 /// Dense LU with partial pivoting, 2/3 n^3 operations: for a few unknowns, and the
 /// reference of the others. Eigen's blocked kernel allocates packing buffers of its own
-/// above a few hundred unknowns; below, nothing allocates after the first factorisation.
+/// from some 500 unknowns on; below, nothing allocates after the first factorisation.
 class DenseSolver final : public DirectSolver {
  public:
   explicit DenseSolver(const Pattern& pattern);

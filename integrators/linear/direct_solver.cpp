@@ -12,9 +12,14 @@ namespace tress {
 namespace {
 
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-/// Rounding leaves the last pivot of a singular matrix at a small multiple of the roundoff
-/// that grows with n but not beyond what elimination mixes; 128 roundoffs = 1.4e-14.
+/// Rounding leaves the last pivot of a singular matrix at a small multiple of the
+/// roundoff that grows with n but not beyond what elimination mixes; 128 roundoffs
+/// = 1.4e-14.
 constexpr double singular_pivot = 128;
+/// Three sweeps undo units over 24 decades between neighbours in D P D, P Poisson's
+/// matrix, to within a factor 20 of P's condition; four to within 2. Dividing rows, then
+/// columns, leaves a factor 1e15.
+constexpr int symmetric_sweeps = 3;
 
 double length(In x) {
   double largest = 0;
@@ -40,47 +45,64 @@ DirectSolver::DirectSolver(const Pattern& pattern)
       scaled_(static_cast<std::size_t>(pattern.nonzeros())),
       row_scale_(static_cast<std::size_t>(pattern.rows)),
       column_scale_(static_cast<std::size_t>(pattern.cols)),
+      row_factor_(static_cast<std::size_t>(pattern.rows)),
+      column_factor_(static_cast<std::size_t>(pattern.cols)),
+      row_largest_(static_cast<std::size_t>(pattern.rows)),
       probe_(static_cast<std::size_t>(pattern.rows)) {
   if (pattern.rows != pattern.cols) {
     throw std::invalid_argument("linear solver: the matrix must be square");
   }
 }
 
-bool DirectSolver::scale(In values) noexcept {
-  if (!all_finite(values)) return false;
-  const std::size_t n = row_scale_.size();
-  std::ranges::fill(row_scale_, 0.0);
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    double& largest = row_scale_[static_cast<std::size_t>(pattern_.row[p])];
-    largest = std::max(largest, std::abs(values[p]));
-  }
-  for (double& r : row_scale_) {
-    if (r == 0) return false;
-    r = 1 / r;
-  }
+/// Multiplies by row_factor_ and column_factor_ and leaves there the largest magnitude of
+/// each row and column of the result; norm_ is its 1-norm.
+void DirectSolver::sweep() noexcept {
+  std::ranges::fill(row_largest_, 0.0);
   norm_ = 0;
-  for (std::size_t j = 0; j < n; ++j) {
-    const auto first = static_cast<std::size_t>(pattern_.start[j]);
-    const auto last = static_cast<std::size_t>(pattern_.start[j + 1]);
+  for (std::size_t j = 0; j < column_factor_.size(); ++j) {
     double largest = 0;
     double sum = 0;
-    for (std::size_t p = first; p < last; ++p) {
-      scaled_[p] = values[p] * row_scale_[static_cast<std::size_t>(pattern_.row[p])];
-      largest = std::max(largest, std::abs(scaled_[p]));
-      sum += std::abs(scaled_[p]);
+    for (auto p = static_cast<std::size_t>(pattern_.start[j]);
+         p < static_cast<std::size_t>(pattern_.start[j + 1]); ++p) {
+      const auto i = static_cast<std::size_t>(pattern_.row[p]);
+      scaled_[p] *= row_factor_[i] * column_factor_[j];
+      const double size = std::abs(scaled_[p]);
+      row_largest_[i] = std::max(row_largest_[i], size);
+      largest = std::max(largest, size);
+      sum += size;
     }
-    if (largest == 0) return false;
-    column_scale_[j] = 1 / largest;
-    for (std::size_t p = first; p < last; ++p) scaled_[p] *= column_scale_[j];
-    norm_ = std::max(norm_, sum / largest);
+    norm_ = std::max(norm_, sum);
+    row_scale_[j] *= row_factor_[j];
+    column_scale_[j] *= column_factor_[j];
+    column_factor_[j] = largest;
   }
+  row_factor_.swap(row_largest_);
+}
+
+bool DirectSolver::scale(In values) noexcept {
+  if (!all_finite(values)) return false;
+  std::ranges::copy(values, scaled_.begin());
+  for (auto* v : {&row_scale_, &column_scale_, &row_factor_, &column_factor_}) {
+    std::ranges::fill(*v, 1.0);
+  }
+  const auto is_zero = [](double largest) { return largest == 0; };
+  for (int i = 0; i < symmetric_sweeps; ++i) {
+    sweep();
+    if (std::ranges::any_of(row_factor_, is_zero)) return false;
+    if (std::ranges::any_of(column_factor_, is_zero)) return false;
+    for (double& r : row_factor_) r = 1 / std::sqrt(r);
+    for (double& c : column_factor_) c = 1 / std::sqrt(c);
+  }
+  sweep();
+  std::ranges::fill(row_factor_, 1.0);
+  for (double& c : column_factor_) c = 1 / c;
+  sweep();
   return true;
 }
 
 Status DirectSolver::factor(In values) noexcept {
   condition_ = 0;
-  factored_ = scale(values) &&
-              factor_scaled(scaled_) > singular_pivot * unit_roundoff;
+  factored_ = scale(values) && factor_scaled(scaled_) > singular_pivot * unit_roundoff;
   return factored_ ? Status::ok : Status::retry;
 }
 

@@ -8,16 +8,18 @@ namespace tress {
 
 /// What every direct solver shares: scaling, the test for singularity, the condition.
 ///
-/// The factored matrix is R A C: R divides each row, then C each column, by its largest
-/// magnitude. Every column of R A C then has size one, so a pivot can be read as it
-/// stands: below `singular_pivot` times the unit roundoff the matrix counts as singular,
-/// however badly A itself was scaled. O(nonzeros) on top of the factorisation.
+/// The factored matrix is R A C: rows and columns are divided by the roots of their
+/// largest magnitudes, three times, then columns by their largest [Ruiz 2001,
+/// RAL-TR-2001-034]. It keeps symmetry, so mixed units and masses (D A D) drop out. Every
+/// column of R A C has size one and a pivot can be read as it stands: below
+/// `singular_pivot` unit roundoffs the matrix counts as singular. O(nonzeros) on top of
+/// the factorisation.
 ///
-/// condition() estimates |R A C| |(R A C)^-1|, computed on request by two solves (the power
-/// method on the inverse from a scattered start). It is a lower bound of the product of the
-/// 1-norm and the inverse's 2-norm; the first solve alone reaches |inverse| / sqrt(n) in the
-/// mean, so the right order of magnitude is promised and no more. klu_condest was not used:
-/// it takes up to ten solves and measures A unscaled.
+/// condition() estimates |R A C| |(R A C)^-1|, computed on request by two solves (the
+/// power method on the inverse from a scattered start). It is a lower bound of the
+/// product of the 1-norm and the inverse's 2-norm; the first solve alone reaches
+/// |inverse| / sqrt(n) in the mean, so the right order of magnitude is promised and no
+/// more. klu_condest was not used: it takes up to ten solves and measures A unscaled.
 class DirectSolver : public LinearSolver {
  public:
   explicit DirectSolver(const Pattern& pattern);
@@ -35,12 +37,14 @@ class DirectSolver : public LinearSolver {
   virtual void solve_scaled(InOut b) const noexcept = 0;
 
   bool scale(In values) noexcept;
+  void sweep() noexcept;
   double amplification(InOut x) const noexcept;
 
   Pattern pattern_;
   std::vector<double> scaled_;
   std::vector<double> row_scale_;
   std::vector<double> column_scale_;
+  std::vector<double> row_factor_, column_factor_, row_largest_;  // of one sweep
   mutable std::vector<double> probe_;
   mutable double condition_ = 0;  // 0: not computed since the last factorisation
   double norm_ = 0;               // 1-norm of R A C

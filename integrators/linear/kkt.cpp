@@ -12,7 +12,8 @@ namespace {
 /// A constraint that adds `dependence` to the others makes a condition of its inverse
 /// square, 1e16; the estimate may be low by some powers of ten.
 constexpr double suspicious_condition = 1e11;
-/// Independent constraints found at a high condition: look again when it is this much higher.
+/// Independent constraints found at a high condition: look again when it is this much
+/// higher.
 constexpr double suspicion_growth = 100;
 /// delta leaves eight digits to each pass over eigenvalues of A near one (all are at most
 /// the number of constraints that meet in a coordinate).
@@ -92,8 +93,8 @@ void Kkt::scale(In s, In gt, In ht) noexcept {
   reciprocal_lengths(ht, row_scale_);
 }
 
-/// Coordinates without a diagonal in S: their largest coupling to a coordinate that has one
-/// becomes 1; failing that, their largest share in a constraint.
+/// Coordinates without a diagonal in S: their largest coupling to a coordinate that has
+/// one becomes 1; failing that, their largest share in a constraint.
 void Kkt::scale_massless(In s, In gt) noexcept {
   const std::size_t n = diagonal_.size();
   std::vector<double>& d = column_scale_;
@@ -210,11 +211,14 @@ Status Kkt::solve(InOut b, InOut c) noexcept {
   for (std::size_t k = 0; k < c.size(); ++k) right_[n + k] = row_scale_[n + k] * c[k];
   unknown_ = right_;
   Status status = solver_->solve(unknown_);
-  if (getenv("KREF") && status == Status::ok) { subtract_product(); status = solver_->solve(residual_); for (std::size_t i = 0; i < unknown_.size(); ++i) unknown_[i] += residual_[i]; }
+  // Without redundancy one solve is enough: a refinement step was measured to gain less
+  // than a factor 4 in x and y on chains with conditions from 10 to 1e10, for 0.2 of the
+  // time.
   if (redundant && status == Status::ok) status = refine();
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < n; ++i) b[i] = column_scale_[i] * unknown_[i];
-  for (std::size_t k = 0; k < c.size(); ++k) c[k] = column_scale_[n + k] * unknown_[n + k];
+  for (std::size_t k = 0; k < c.size(); ++k)
+    c[k] = column_scale_[n + k] * unknown_[n + k];
   if (redundant) null_g_->project_out(c);
   return Status::ok;
 }

@@ -25,11 +25,12 @@ struct KktReport {
 /// to unit length in that metric, so neither the units nor a mass of 1e-8 kg look like
 /// missing rank. Cost: one sparse factorisation, two solves for the condition.
 ///
-/// Redundant constraints (G of deficient rank) are solved in the least-squares sense: with
-/// A = H S^-1 G^T, the y of least norm among those that minimise |A y - (c - H S^-1 b)|.
-/// c loses its part in null(H^T), y its part in null(G^T), and what remains is solved with
-/// delta added to the (2,2) block and refined against the unmodified matrix. Each such
-/// factorisation allocates and repeats the QR of rank.h, since null spaces move with G.
+/// Redundant constraints (G of deficient rank) are solved in the least-squares sense:
+/// with A = H S^-1 G^T, the y of least norm among those that minimise |A y - (c - H S^-1
+/// b)|. c loses its part in null(H^T), y its part in null(G^T), and what remains is
+/// solved with delta added to the (2,2) block and refined against the unmodified matrix.
+/// Each such factorisation allocates and repeats the QR of rank.h, since null spaces move
+/// with G.
 class Kkt {
  public:
   /// `gt` (n x m): column k holds the gradient of constraint k; m = 0 is allowed.
@@ -55,14 +56,14 @@ class Kkt {
   BlockMatrix matrix_;
   int s_block_, g_block_, h_block_, delta_block_;
   std::unique_ptr<LinearSolver> solver_;
-  std::vector<int> diagonal_;                         // (n) entry of s, -1 where absent
-  std::vector<double> scaled_;                        // equilibrated values of matrix_
-  std::vector<double> row_scale_, column_scale_;      // (n + m): D F and D E
-  std::vector<double> delta_;                         // (m)
-  std::vector<double> right_, residual_, unknown_;    // (n + m), equilibrated
-  std::unique_ptr<NullSpace> null_g_, null_h_;        // while constraints are redundant
-  double shift_ = 0;                                  // delta in the factored matrix
-  double suspicious_;                                 // condition that calls for a QR
+  std::vector<int> diagonal_;                       // (n) entry of s, -1 where absent
+  std::vector<double> scaled_;                      // equilibrated values of matrix_
+  std::vector<double> row_scale_, column_scale_;    // (n + m): D F and D E
+  std::vector<double> delta_;                       // (m)
+  std::vector<double> right_, residual_, unknown_;  // (n + m), equilibrated
+  std::unique_ptr<NullSpace> null_g_, null_h_;      // while constraints are redundant
+  double shift_ = 0;                                // delta in the factored matrix
+  double suspicious_;                               // condition that calls for a QR
   KktReport report_;
 };
 

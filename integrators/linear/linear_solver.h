@@ -7,7 +7,8 @@
 
 namespace tress {
 
-/// `structured` is a model's own solve (System::linearize and solve), reported by name only.
+/// `structured` is a model's own solve (System::linearize and solve), reported by name
+/// only.
 enum class LinearKind { automatic, klu, banded, dense };
 
 /// Direct solver of A x = b for a fixed pattern; serves our Newton methods and SUNDIALS.

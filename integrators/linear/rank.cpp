@@ -25,8 +25,9 @@ Eigen::Map<const Vector> mapped(In x) {
 
 NullSpace::NullSpace(const Pattern& pattern, In gt, In rows, In columns)
     : basis_(std::make_unique<Basis>()) {
-  Sparse a = Eigen::Map<const Sparse>(pattern.rows, pattern.cols, pattern.nonzeros(),
-                                      pattern.start.data(), pattern.row.data(), gt.data());
+  Sparse a =
+      Eigen::Map<const Sparse>(pattern.rows, pattern.cols, pattern.nonzeros(),
+                               pattern.start.data(), pattern.row.data(), gt.data());
   a = mapped(rows).asDiagonal() * a * mapped(columns).asDiagonal();
   a.makeCompressed();
 
