@@ -68,10 +68,10 @@ void add(std::vector<Case>& all, std::string_view integrator, const std::string&
 
 std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
-  const int tightest = line.full ? 8 : 6;
-  for (int digits = 3; digits <= tightest; ++digits) {
+  const int points = line.full ? 11 : 7;
+  for (int level = 0; level < points; ++level) {  // two per decade from 1e-3
     Options options;
-    options.rtol = options.atol = std::pow(10, -digits);
+    options.rtol = options.atol = std::pow(10, -3 - 0.5 * level);
     for (int order = 1; order <= 5; ++order) {
       options.max_order = order;
       add(all, "cvode_bdf", "cvode_bdf, order up to " + std::to_string(order), options,
@@ -102,10 +102,11 @@ double steps_of(const std::vector<Row>& rows, int order, double rtol) {
 }
 
 void check(const std::vector<Row>& rows, Verdicts& verdicts) {
-  const double second = steps_of(rows, 2, 1e-3), fifth = steps_of(rows, 5, 1e-3);
-  verdicts.check(
-      "BDF up to order 5 needs over ten times the steps of order 2 at rtol 1e-3",
-      fifth > 10 * second, fifth / second);
+  // At 1e-3 the outcome hangs on how far Newton's iteration goes: 100 steps or 10 000.
+  const double second = steps_of(rows, 2, 1e-4);
+  const double fifth = steps_of(rows, 5, 1e-4);
+  verdicts.check("BDF up to order 5 needs over ten times the steps of order 2 at rtol 1e-4",
+                 fifth > 10 * second, fifth / second);
 }
 
 /// A run that does not finish is the point: high orders crawl.
