@@ -105,8 +105,9 @@ void check(const std::vector<Row>& rows, Verdicts& verdicts) {
   // At 1e-3 the outcome hangs on how far Newton's iteration goes: 100 steps or 10 000.
   const double second = steps_of(rows, 2, 1e-4);
   const double fifth = steps_of(rows, 5, 1e-4);
-  verdicts.check("BDF up to order 5 needs over ten times the steps of order 2 at rtol 1e-4",
-                 fifth > 10 * second, fifth / second);
+  verdicts.check(
+      "BDF up to order 5 needs over ten times the steps of order 2 at rtol 1e-4",
+      fifth > 10 * second, fifth / second);
 }
 
 /// A run that does not finish is the point: high orders crawl.

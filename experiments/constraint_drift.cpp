@@ -15,7 +15,7 @@ namespace tress {
 namespace {
 
 constexpr Column columns[] = {
-    {"study", "formulation, gains or recovery"},
+    {"study", "formulation, grid (of gains) or recovery"},
     {"system", "what is simulated"},
     {"formulation", "how the constraint enters"},
     {"integrator", "method"},
@@ -181,7 +181,7 @@ void add_formulations(const CommandLine& line, const Settings& user,
         study.options.formulation = formulation;
         // IDA drags itself along when its multipliers are in the error test; enough steps
         // to see by how much, then the row says so.
-        study.options.max_steps = std::min(base.max_steps, 500'000L);
+        study.options.max_steps = std::min(base.max_steps, 200'000L);
         const auto add_steps = [&] {
           for (const double value : entry.adaptive ? tolerances : steps) {
             (entry.adaptive ? study.options.rtol : study.options.step) = value;
@@ -218,14 +218,14 @@ std::vector<double> geometric(double from, double to, double ratio) {
   return values;
 }
 
-void add_gains(const CommandLine& line, const Settings& user,
-               std::vector<Study>& studies) {
+void add_grid(const CommandLine& line, const Settings& user,
+              std::vector<Study>& studies) {
   const double ratio = line.full ? std::pow(10, 0.25) : std::sqrt(10);
   const Scene scene = circle_bead(user);
   for (const std::string_view id :
        {"explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"}) {
-    Study study{"gains", scene.name,     scene.model, scene.parameters,
-                id,      user.options(), 10};
+    Study study{"grid", scene.name,     scene.model, scene.parameters,
+                id,     user.options(), 10};
     study.options.formulation = Formulation::acceleration;
     studies.push_back(study);
     study.options.formulation = Formulation::baumgarte;
@@ -273,7 +273,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const Settings user(line, {});
   std::vector<Study> studies;
   add_formulations(line, user, studies);
-  add_gains(line, user, studies);
+  add_grid(line, user, studies);
   add_recovery(user, studies);
   std::vector<Case> all;
   for (const Study& study : studies) {
@@ -306,7 +306,7 @@ const Row* find(const std::vector<Row>& rows, std::string_view study,
 double best_feedback(const std::vector<Row>& rows, std::string_view integrator) {
   double best = std::numeric_limits<double>::infinity();
   for (const Row& row : rows) {
-    if (row.text("study") == "gains" && row.text("integrator") == integrator &&
+    if (row.text("study") == "grid" && row.text("integrator") == integrator &&
         row.text("formulation") == "baumgarte" && row.ok()) {
       best = std::min(best, row.number("g_max"));
     }
@@ -316,7 +316,7 @@ double best_feedback(const std::vector<Row>& rows, std::string_view integrator) 
 
 void check(const std::vector<Row>& rows, Verdicts& verdicts) {
   const Row* drifting =
-      find(rows, "gains", "circle bead", "acceleration", "symplectic_euler");
+      find(rows, "grid", "circle bead", "acceleration", "symplectic_euler");
   if (drifting != nullptr) {
     const double gain =
         drifting->number("g_max") / best_feedback(rows, "symplectic_euler");
