@@ -52,6 +52,7 @@ const curve = (row) =>
     row.elements,
     row.max_order,
     row.error_kind,
+    row.formulation,
   ].join('|');
 
 export function pareto_rows(members) {
@@ -72,6 +73,7 @@ export function pareto_rows(members) {
 const counts = [
   ['integrator', 'integrator'],
   ['model', 'model'],
+  ['formulation', 'formulation'],
   ['solver', 'linear solver'],
   ['elements', 'elements'],
   ['dt_s', 'dt (s)'],
