@@ -202,6 +202,7 @@ export const work_precision = {
       )
       .map((row) => ({
         ...row,
+        formulation: row.formulation ?? '',
         curve: curve(row),
         below: is_set(row.below_reference) ? 'yes' : 'no',
         pareto_text: is_set(row.pareto) ? 'yes' : 'no',
