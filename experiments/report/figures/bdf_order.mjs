@@ -60,7 +60,7 @@ export const bdf_order = {
   rows: (tables) =>
     (tables.bdf_order ?? [])
       .filter((row) => succeeded(row) && is_positive(row.error_rel))
-      .map((row) => ({ ...row, tightness: row.rtol ?? row.dt_s })),
+      .map((row) => ({ dt_s: null, ...row, tightness: row.rtol ?? row.dt_s })),
 
   spec(tables, { width }) {
     const rows = this.rows(tables);

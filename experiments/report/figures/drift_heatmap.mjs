@@ -212,9 +212,9 @@ export const drift_heatmap = {
   caption: `Colour is the largest violation max |g| of one run with feedback g'' = -alpha
     g - beta g' (dark is small). Grey cells with a cross diverged. The solid white line is
     the boundary predicted for the integrator from the test equation; white dots are
-    measured boundary points; the dotted line is critical damping, beta² = 4 alpha. Made
-    from the rows of constraint_drift.csv whose study is "gains", with drift_region.csv and
-    baumgarte_limit.csv drawn over them.`,
+    measured boundary points; the dotted line is critical damping, beta² = 4 alpha. Made from
+    the rows of constraint_drift.csv whose study is "gains"; the boundary is from
+    baumgarte_limit.csv, or from drift_region.csv where there is one.`,
 
   rows: (tables) =>
     (tables.constraint_drift ?? []).filter(
