@@ -58,9 +58,9 @@ export const bdf_order = {
     only.`,
 
   rows: (tables) =>
-    (tables.bdf_order ?? []).filter(
-      (row) => succeeded(row) && is_positive(row.error_rel),
-    ),
+    (tables.bdf_order ?? [])
+      .filter((row) => succeeded(row) && is_positive(row.error_rel))
+      .map((row) => ({ dt_s: null, ...row, tightness: row.rtol ?? row.dt_s })),
 
   spec(tables, { width }) {
     const rows = this.rows(tables);
@@ -106,7 +106,7 @@ export const bdf_order = {
                 ...series,
                 shape: undefined,
                 opacity,
-                order: { field: 'rtol', type: 'quantitative' },
+                order: { field: 'tightness', type: 'quantitative' },
               },
             },
             {
@@ -123,6 +123,7 @@ export const bdf_order = {
                   ['integrator', 'integrator'],
                   ['max_order', 'max order'],
                   ['rtol', 'rtol'],
+                  ['dt_s', 'dt (s)'],
                   ['error_rel', 'relative error', '.3e'],
                   ['scd', 'correct digits'],
                   ['steps', 'steps'],

@@ -49,7 +49,6 @@ export const drift_cost = {
       columns_max: 2,
       labels: [...formulations.domain, ...integrators],
     });
-    const zero = rows.some((row) => row.g_max === 0);
     const list = groups.map(([system, members]) => ({
       title: system.replaceAll('_', ' '),
       width: panel_width,
@@ -110,7 +109,7 @@ export const drift_cost = {
             ]),
           },
         },
-        ...(zero
+        ...(members.some((row) => row.g_max === 0)
           ? [
               {
                 data: { values: [{ g: floor, text: 'exactly zero' }] },

@@ -7,7 +7,7 @@ import { cell_axis } from './grid.mjs';
 const keys = ['system', 'integrator', 'dt_s'];
 
 // The predicted boundary as polylines: drift_region.csv, else the points of
-// drift_boundary.csv through alpha = (omega h / dt)^2, beta = 2 zeta omega.
+// baumgarte_limit.csv through alpha = (omega h / dt)^2, beta = 2 zeta omega.
 function predicted(tables, integrator, dt) {
   const region = (tables.drift_region ?? []).filter(
     (row) => row.integrator === integrator && row.dt_s === dt,
@@ -19,7 +19,7 @@ function predicted(tables, integrator, dt) {
 }
 
 function boundary_points(tables, integrator, dt, column) {
-  return (tables.drift_boundary ?? [])
+  return (tables.baumgarte_limit ?? [])
     .filter((row) => row.integrator === integrator && is_positive(row[column]))
     .map((row) => {
       const omega = row[column] / dt;
@@ -212,13 +212,17 @@ export const drift_heatmap = {
   caption: `Colour is the largest violation max |g| of one run with feedback g'' = -alpha
     g - beta g' (dark is small). Grey cells with a cross diverged. The solid white line is
     the boundary predicted for the integrator from the test equation; white dots are
-    measured boundary points; the dotted line is critical damping, beta² = 4 alpha. Made
-    from the rows of constraint_drift.csv whose study is "grid", with drift_region.csv and
-    drift_boundary.csv drawn over them.`,
+    measured boundary points; the dotted line is critical damping, beta² = 4 alpha. Made from
+    the rows of constraint_drift.csv whose study is "gains"; the boundary is from
+    baumgarte_limit.csv, or from drift_region.csv where there is one.`,
 
   rows: (tables) =>
     (tables.constraint_drift ?? []).filter(
-      (row) => row.study === 'grid' && is_number(row.alpha) && is_number(row.beta),
+      (row) =>
+        ['gains', 'grid'].includes(row.study) &&
+        row.formulation === 'baumgarte' &&
+        is_number(row.alpha) &&
+        is_number(row.beta),
     ),
 
   spec(tables, { width, theme }) {

@@ -52,6 +52,7 @@ const curve = (row) =>
     row.elements,
     row.max_order,
     row.error_kind,
+    row.formulation,
   ].join('|');
 
 export function pareto_rows(members) {
@@ -72,6 +73,7 @@ export function pareto_rows(members) {
 const counts = [
   ['integrator', 'integrator'],
   ['model', 'model'],
+  ['formulation', 'formulation'],
   ['solver', 'linear solver'],
   ['elements', 'elements'],
   ['dt_s', 'dt (s)'],
@@ -200,6 +202,7 @@ export const work_precision = {
       )
       .map((row) => ({
         ...row,
+        formulation: row.formulation ?? '',
         curve: curve(row),
         below: is_set(row.below_reference) ? 'yes' : 'no',
         pareto_text: is_set(row.pareto) ? 'yes' : 'no',

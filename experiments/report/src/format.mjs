@@ -24,7 +24,7 @@ export function format_number(value, digits = 3) {
 // "3.2 times", "1.05 times": a ratio in words' company.
 export function format_ratio(ratio) {
   if (ratio >= 1e4) return `${format_number(ratio, 2)} times`;
-  return `${Number(ratio.toPrecision(ratio < 10 ? 2 : 3))} times`;
+  return `${ratio < 10 ? ratio.toPrecision(2) : Number(ratio.toPrecision(3))} times`;
 }
 
 // Inline SI time; the tables keep seconds.

@@ -19,8 +19,23 @@ const facts = [
   ['compiler', /(^|[._])compiler([._](name|version|id))?$/i],
   ['flags', /flags$/i],
   ['SUNDIALS speed ratio', /sundials.*ratio|ratio.*sundials/i],
-  ['date', /(^|[._])(date|time|started)$/i],
+  ['date', /(^|[._])(date|start)$/i],
 ];
+
+// Claims the experiment itself checked, the ones that did not hold spelled out.
+function checks_html(name, { checks }) {
+  if (!Array.isArray(checks) || checks.length === 0) return '';
+  const failed = checks.filter(({ held }) => !held);
+  const items = failed.map(
+    ({ claim, value }) =>
+      `<li>Did not hold: ${escape_html(claim)} (measured ${format_number(value)})</li>`,
+  );
+  return (
+    `<p>${escape_html(name)}: ${checks.length - failed.length} of ${checks.length} ` +
+    `claims checked by the experiment held.</p>` +
+    (items.length > 0 ? `<ul class="findings">${items.join('')}</ul>` : '')
+  );
+}
 
 export function manifest_html(tables) {
   const made = Object.entries(tables).filter(([, table]) => table.manifest !== undefined);
@@ -56,6 +71,7 @@ export function manifest_html(tables) {
           .map((name) => `${escape_html(name)}.csv`)
           .join(', ')}.</p>`
       : '',
+    ...made.map(([name, { manifest }]) => checks_html(name, manifest)),
     ...full,
   ].join('\n');
 }

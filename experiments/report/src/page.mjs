@@ -16,8 +16,8 @@ const sections = [
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {
     figure: 'drift_heatmap',
-    findings: ({ drift_boundary = [] }) => boundary_sentences(drift_boundary),
-    tables: ['drift_boundary', 'drift_region'],
+    findings: ({ baumgarte_limit = [] }) => boundary_sentences(baumgarte_limit),
+    tables: ['baumgarte_limit', 'drift_region'],
   },
   {
     figure: 'drift_recovery',
@@ -31,7 +31,7 @@ const sections = [
 // A number and its unit stay on one line.
 const prose_html = (text) =>
   escape_html(text).replace(
-    /\d[\d.]*(?:e-?\d+)?(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
+    /(?<![\w.])\d[\d.]*(?:e-?\d+)?(?![\w])(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
     '<span class="number">$&</span>',
   );
 

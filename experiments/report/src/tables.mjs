@@ -34,7 +34,7 @@ export const known_tables = {
     command: './tress run',
     program: 'constraint_drift',
   },
-  drift_boundary: {
+  baumgarte_limit: {
     title: 'Measured and predicted stability boundary',
     required: [
       'integrator',
@@ -47,7 +47,7 @@ export const known_tables = {
     ],
     numeric: ['zeta', 'omega_h_predicted', 'omega_h_measured', 'rel_gap', 'dt_s'],
     command: './tress run',
-    program: 'constraint_drift',
+    program: 'baumgarte_limit',
   },
   drift_region: {
     title: 'Predicted stability region',

@@ -11,6 +11,16 @@ const objects = Object.fromEntries(
   Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
 );
 
+// Only what the row has: an adaptive run has no dt, a fixed-step run no rtol.
+const tooltip_html = (fields, escape) =>
+  `<table>${Object.entries(fields)
+    .filter(([, value]) => !['', 'null', 'undefined', 'NaN'].includes(String(value)))
+    .map(
+      ([key, value]) =>
+        `<tr><td class="key">${escape(key)}</td><td class="value">${escape(value)}</td></tr>`,
+    )
+    .join('')}</table>`;
+
 const views = new Map();
 const drawn_width = new Map();
 
@@ -30,7 +40,7 @@ async function draw(place) {
       ast: true,
       expr: expressionInterpreter,
       config: vega_config(page_theme),
-      tooltip: { theme: 'custom' },
+      tooltip: { theme: 'custom', formatTooltip: tooltip_html },
     }),
   );
 }

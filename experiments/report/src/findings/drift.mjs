@@ -1,4 +1,4 @@
-// What constraint_drift.csv and drift_boundary.csv say, as sentences computed from their
+// What constraint_drift.csv and baumgarte_limit.csv say, as sentences computed from their
 // rows.
 import {
   distinct,
@@ -13,7 +13,11 @@ import { format_number, format_ratio } from '../format.mjs';
 import { damping_ratio } from '../../figures/drift_recovery.mjs';
 
 const metres = (value) => (value === 0 ? 'exactly zero' : `${format_number(value)} m`);
+const is_given = (value) => value !== null && value !== undefined && value !== '';
 const spaced = (name) => name.replaceAll('_', ' ');
+
+// Relative difference below which two drifts count as equal.
+const indifferent = 0.05;
 
 // Acceleration level against the best feedback pair for one system, integrator and step.
 export function feedback_gains(rows) {
@@ -26,7 +30,7 @@ export function feedback_gains(rows) {
   );
   return [
     ...group_by(runs, (r) =>
-      [r.system, r.integrator, r.dt_s, r.t_end_s].join('|'),
+      [r.system, r.integrator, r.dt_s, r.rtol, r.t_end_s].join('|'),
     ).values(),
   ].flatMap((members) => {
     const without = members.find((row) => row.formulation === 'acceleration');
@@ -53,14 +57,16 @@ export function feedback_gains(rows) {
 // ratio.
 function feedback_sentence({ system, integrator, without, best, gain, cost }) {
   const pair = `alpha = ${format_number(best.alpha)}, beta = ${format_number(best.beta)}`;
-  const change =
-    gain >= 1
+  const same = Math.abs(gain - 1) < indifferent;
+  const change = same
+    ? 'about the same as'
+    : gain > 1
       ? `${format_ratio(gain)} smaller than`
       : `${format_ratio(1 / gain)} larger than`;
   return (
     `${spaced(system)}, ${integrator}: the best Baumgarte pair (${pair}) leaves ` +
     `${metres(best.g_max)}, ${change} acceleration level (${metres(without.g_max)}), for ` +
-    `${format_ratio(cost)} the time${gain < 1 ? ': feedback hurts here' : ''}.`
+    `${format_ratio(cost)} the time${gain < 1 && !same ? ': feedback hurts here' : ''}.`
   );
 }
 
@@ -87,11 +93,11 @@ function index2_sentences(rows) {
     (row) => row.formulation === 'index2_ggl' && succeeded(row) && is_positive(row.steps),
   );
   return [
-    ...group_by(runs, (row) => [row.system, row.integrator].join('|')).values(),
+    ...group_by(runs, (row) => [row.system, row.integrator, row.rtol].join('|')).values(),
   ].flatMap((members) => {
     const out = members.find((row) => is_set(row.suppress_algebraic));
     const kept = members.find(
-      (row) => row.suppress_algebraic !== '' && !is_set(row.suppress_algebraic),
+      (row) => is_given(row.suppress_algebraic) && !is_set(row.suppress_algebraic),
     );
     if (!out || !kept) return [];
     return [
