@@ -22,7 +22,6 @@ find_package(KLU REQUIRED)
 
 if(TRESS_EXPERIMENTS OR TRESS_TESTS)
   find_package(fmt REQUIRED)
-  find_package(spdlog REQUIRED)
   find_package(CLI11 REQUIRED)
   find_package(tomlplusplus REQUIRED)
   find_package(nlohmann_json REQUIRED)

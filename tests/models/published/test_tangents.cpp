@@ -84,12 +84,12 @@ TEST_P(PublishedTangent, SparseFormAgreesWithSolve) {
   }
 }
 
-// The gap between the tangents shows that the first test notices a missing term.
+// The gap between the tangents is above the first test's bound: it notices a missing term.
 TEST_P(PublishedTangent, DroppedTermsAreNoticed) {
   if (GetParam() == std::string_view("double_pendulum")) GTEST_SKIP() << "one tangent";
   const auto system = make_model(GetParam(), {{"tangent", "stiff"}});
   const State s = random_state(*system, 1);
-  EXPECT_GT(tangent_error(*system, s, {1, .5e-2, 2.5e-5}, 1), 1e-6);
+  EXPECT_GT(tangent_error(*system, s, {1, .5e-2, 2.5e-5}, 1), 1e-7);
 }
 
 TEST_P(PublishedTangent, ExplicitAccelerationMakesTheResidualVanish) {
