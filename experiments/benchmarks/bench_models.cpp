@@ -68,18 +68,16 @@ constexpr Operation operations[] = {
 struct Sized {
   std::string_view model;
   ModelSettings (*settings)(int size);
-  std::vector<int> sizes;
+  std::span<const int> sizes;
 };
 
 ModelSettings beam(int segments) { return {{"segments", std::to_string(segments)}}; }
 
-const std::vector<Sized>& sized_models() {
-  static const std::vector<Sized> table = {
-      {"inextensible_chain", spinning_chain, {10, 100, 1000, 10'000}},
-      {"beam", beam, {10, 40, 160, 640, 1280}},
-  };
-  return table;
-}
+constexpr std::array beam_segments = {10, 40, 160, 640, 1280};
+constexpr std::array sized_models = {
+    Sized{"inextensible_chain", spinning_chain, chain_links},
+    Sized{"beam", beam, beam_segments},
+};
 
 void run(benchmark::State& state, const Operation& operation, Moving& moving) {
   if (moving.status != Status::ok ||
@@ -91,8 +89,8 @@ void run(benchmark::State& state, const Operation& operation, Moving& moving) {
 }
 
 void register_model(const ModelEntry& entry) {
-  const auto sized = std::ranges::find(sized_models(), entry.id, &Sized::model);
-  const bool fixed = sized == sized_models().end();
+  const auto sized = std::ranges::find(sized_models, entry.id, &Sized::model);
+  const bool fixed = sized == sized_models.end();
   const auto family = fixed ? std::make_shared<MovingFamily>(
                                   entry.id, [](int) { return ModelSettings{}; })
                             : std::make_shared<MovingFamily>(entry.id, sized->settings);

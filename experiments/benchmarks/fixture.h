@@ -2,10 +2,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/harness/simulation.h"
@@ -31,7 +34,7 @@ Moving set_in_motion(std::string_view model, const ModelSettings& settings);
 
 /// An inextensible chain released horizontally while it spins about the vertical.
 ModelSettings spinning_chain(int links);
-inline constexpr int chain_links[] = {10, 100, 1000, 10'000};
+inline constexpr std::array chain_links = {10, 100, 1000, 10'000};
 
 /// Systems in motion by size, each made when first asked for and kept for all benchmarks.
 class MovingFamily {
