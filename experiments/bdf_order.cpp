@@ -36,19 +36,17 @@ const Problem& beam() {
 }
 
 void measure(std::string_view integrator, const Options& options, Row& row) {
-  const auto system = beam().make();
   const auto begin = std::chrono::steady_clock::now();
-  const Simulation run =
-      simulate(integrator, *system, options, initial_state(*system), beam().t_end);
+  const ProblemRun run = run_problem(beam(), integrator, options);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  row.set("steps", run.stats.steps).set("rejected", run.stats.rejected);
-  row.set("linearizations", run.stats.linearizations).set("wall_s", wall.count());
-  if (run.status != Status::ok) {
-    row.failed("solver_error", run.failure);
+  const Stats& stats = run.end.stats;
+  row.set("steps", stats.steps).set("rejected", stats.rejected);
+  row.set("linearizations", stats.linearizations).set("wall_s", wall.count());
+  if (run.end.status != Status::ok) {
+    row.failed("solver_error", run.end.failure);
     return;
   }
-  const ProblemError error = beam().error(*system, run.state);
-  row.set("error_rel", error.relative).set("scd", error.scd);
+  row.set("error_rel", run.error.relative).set("scd", run.error.scd);
 }
 
 void add(std::vector<Case>& all, std::string_view integrator, const std::string& label,

@@ -17,6 +17,12 @@ struct Free {
   void operator()(gsl_odeiv2_driver* driver) const { gsl_odeiv2_driver_free(driver); }
 };
 
+// eps^(1/3): balances truncation and rounding of a central difference.
+constexpr double difference = 6e-6;
+
+// More steps in a row than any start-up needs.
+constexpr int most_tiny_steps = 1000;
+
 int gsl_code(Status s) {
   switch (s) {
     case Status::ok:
@@ -65,13 +71,18 @@ class GslOdeiv2 final : public Integrator {
 
   Status advance(double t_end, const Observer& each_step) override {
     const long limit = dynamics_.stats.steps + options_.max_steps;
+    const double too_small = 1e-12 * (t_end - t_);
+    int stuck = 0;
     while (t_ < t_end) {
       if (dynamics_.stats.steps >= limit) return fail("more than max_steps steps needed");
       if (options_.max_step > 0) h_ = std::min(h_, options_.max_step);
+      const double before = t_;
       const int code = gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &ode_,
                                                &t_, t_end, &h_, y_.data());
       if (code != GSL_SUCCESS) return fail(gsl_strerror(code));
       ++dynamics_.stats.steps;
+      stuck = t_ - before < too_small ? stuck + 1 : 0;
+      if (stuck > most_tiny_steps) return fail("stuck: steps below 1e-12 of the run");
       if (!(h_ > 0) || !std::isfinite(y_[0])) return fail("state not finite");
       if (projection_ && projection_->project(t_, q_part(), v_part()) != Status::ok) {
         return fail("projection onto the constraints failed");
@@ -118,8 +129,9 @@ class GslOdeiv2 final : public Integrator {
         t, state.first(self.n_), state.last(self.n_), rate.last(self.n_), self.lambda_));
   }
 
-  /// Forward differences of the acceleration, column by column; bsimp needs all of it,
-  /// dense.
+  /// Central differences of the acceleration, column by column: bsimp wants all of it,
+  /// dense. Its extrapolation in h^2 rests on an accurate Jacobian; one-sided
+  /// differences, eight digits, stall it at tolerances below 1e-6.
   static int jacobian(double t, const double* y, double* dfdy, double* dfdt,
                       void* pointer) {
     auto& self = *static_cast<GslOdeiv2*>(pointer);
@@ -128,31 +140,37 @@ class GslOdeiv2 final : public Integrator {
     std::fill(dfdy, dfdy + 4 * n * n, 0.0);
     std::fill(dfdt, dfdt + 2 * n, 0.0);
     std::copy(y, y + 2 * n, self.shifted_.begin());
-    const In q = In(self.shifted_).first(n), v = In(self.shifted_).last(n);
-    const auto acceleration = [&](double time, Out a) {
-      return self.dynamics_.accelerate(time, q, v, a, self.lambda_);
-    };
-    Status s = acceleration(t, self.a_);
-    if (s != Status::ok) return gsl_code(s);
     for (std::size_t j = 0; j < 2 * n; ++j) {
       const double typical =
           j < n ? self.dynamics_.q_typ()[j] : self.dynamics_.v_typ()[j - n];
-      const double e = 1.5e-8 * std::max(std::abs(y[j]), typical);
-      self.shifted_[j] = y[j] + e;
-      s = acceleration(t, self.a_shifted_);
+      const double e = difference * std::max(std::abs(y[j]), typical);
+      const Status s = self.difference_of_acceleration(
+          [&](double side) {
+            self.shifted_[j] = y[j] + side * e;
+            return t;
+          },
+          e);
       self.shifted_[j] = y[j];
       if (s != Status::ok) return gsl_code(s);
-      for (std::size_t i = 0; i < n; ++i) {
-        dfdy[(n + i) * 2 * n + j] = (self.a_shifted_[i] - self.a_[i]) / e;
-      }
+      for (std::size_t i = 0; i < n; ++i) dfdy[(n + i) * 2 * n + j] = self.a_[i];
     }
     for (std::size_t i = 0; i < n; ++i) dfdy[i * 2 * n + n + i] = 1;
-    const double e = 1.5e-8 * std::max(1.0, std::abs(t));
-    s = acceleration(t + e, self.a_shifted_);
-    for (std::size_t i = 0; i < n; ++i) {
-      dfdt[n + i] = (self.a_shifted_[i] - self.a_[i]) / e;
-    }
+    const double e = difference * std::max(1.0, std::abs(t));
+    const Status s =
+        self.difference_of_acceleration([&](double side) { return t + side * e; }, e);
+    std::copy(self.a_.begin(), self.a_.end(), dfdt + n);
     return gsl_code(s);
+  }
+
+  /// a_ = (a(+1) - a(-1)) / 2e, where move(side) shifts the state and returns the time.
+  template <class Move>
+  Status difference_of_acceleration(Move move, double e) {
+    const In q = In(shifted_).first(n_), v = In(shifted_).last(n_);
+    const Status forward = dynamics_.accelerate(move(1), q, v, a_, lambda_);
+    if (forward != Status::ok) return forward;
+    const Status backward = dynamics_.accelerate(move(-1), q, v, a_shifted_, lambda_);
+    for (std::size_t i = 0; i < n_; ++i) a_[i] = (a_[i] - a_shifted_[i]) / (2 * e);
+    return backward;
   }
 
   Options options_;

@@ -14,7 +14,8 @@ std::vector<std::string_view> words_of(std::string_view choices) {
   while (!choices.empty()) {
     const std::size_t bar = choices.find('|');
     words.push_back(choices.substr(0, bar));
-    choices = bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
+    choices =
+        bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
   }
   return words;
 }
@@ -55,8 +56,8 @@ double parse_number(const Parameter& declared, std::string_view text,
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
   const std::string name(declared.name);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x)) {
-    throw InputError(name + " = '" + std::string(text) + "' is not a finite number", where,
-                     "give a number: " + std::string(declared.help));
+    throw InputError(name + " = '" + std::string(text) + "' is not a finite number",
+                     where, "give a number: " + std::string(declared.help));
   }
   if (x < declared.min || x > declared.max) {
     throw InputError(name + " = " + std::string(text) + " is out of range", where,
@@ -120,13 +121,15 @@ void Parameters::set(std::string_view key, std::string_view value) {
   }
   const auto words = words_of(declared.choices);
   if (std::find(words.begin(), words.end(), value) == words.end()) {
-    throw InputError(std::string(key) + " = '" + std::string(value) + "' is unknown", where_,
-                     "use one of: " + join(words));
+    throw InputError(std::string(key) + " = '" + std::string(value) + "' is unknown",
+                     where_, "use one of: " + join(words));
   }
   values_[i].word = value;
 }
 
-double Parameters::number(std::string_view key) const { return values_[index(key)].number; }
+double Parameters::number(std::string_view key) const {
+  return values_[index(key)].number;
+}
 
 int Parameters::whole(std::string_view key) const {
   return static_cast<int>(values_[index(key)].number);

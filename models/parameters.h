@@ -26,8 +26,8 @@ class Parameters {
   /// `where` names the owner in messages, e.g. "model bead_on_wire".
   Parameters(std::span<const Parameter> declared, std::string where);
 
-  /// Throws InputError on an unknown key, a malformed or non-finite number, a number out of
-  /// range or a word not among the choices; the message lists what would be accepted.
+  /// Throws InputError on an unknown key, a malformed or non-finite number, a number out
+  /// of range or a word not among the choices; the message lists what would be accepted.
   void set(std::string_view key, std::string_view value);
   bool knows(std::string_view key) const;
 
@@ -48,6 +48,7 @@ class Parameters {
 };
 
 /// The candidate nearest to `word` by edit distance, or empty when none is near.
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+std::string_view nearest(std::string_view word,
+                         std::span<const std::string_view> candidates);
 
 }  // namespace tress

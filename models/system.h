@@ -20,9 +20,9 @@ using In = std::span<const double>;
 using Out = std::span<double>;
 using InOut = std::span<double>;
 
-/// Outcome of a call inside a step: `retry` asks for a smaller step, `fatal` ends the run.
-/// Values agree with SUNDIALS' 0 / +1 / -1 through `sundials_code`.
-enum class [[nodiscard]] Status { ok, retry, fatal };
+/// Outcome of a call inside a step: `retry` asks for a smaller step, `fatal` ends the
+/// run. Values agree with SUNDIALS' 0 / +1 / -1 through `sundials_code`.
+enum class [[nodiscard]] Status{ok, retry, fatal};
 
 struct Layout {
   int coordinates = 0;  // n
@@ -42,8 +42,8 @@ struct Weights {
 };
 
 /// Which terms dr/dq and dr/dv carry: everything (full Newton), or only mass, damping and
-/// elastic stiffness (the semi-implicit Newton of the seed papers). An option of a model's
-/// constructor, for those whose two tangents differ.
+/// elastic stiffness (the semi-implicit Newton of the seed papers). An option of a
+/// model's constructor, for those whose two tangents differ.
 enum class Tangent { exact, stiff };
 
 /// Structure of a sparse matrix in compressed columns; rows ascend inside a column.
@@ -64,25 +64,27 @@ class SparseForm {
   virtual Status values(double t, In q, In v, In a, Weights w, Out s) noexcept = 0;
 };
 
-/// a = a(t, q, v) at the cost of the model's own solve of M. Only of unconstrained systems.
+/// a = a(t, q, v) at the cost of the model's own solve of M. Only of unconstrained
+/// systems.
 class ExplicitForm {
  public:
   virtual ~ExplicitForm() = default;
   virtual Status acceleration(double t, In q, In v, Out a) noexcept = 0;
 };
 
-/// Position constraints g(t, q) = 0 in the units of the model (lengths in m, angles in rad).
+/// Position constraints g(t, q) = 0 in the units of the model (lengths in m, angles in
+/// rad).
 class ConstraintForm {
  public:
   virtual ~ConstraintForm() = default;
 
   /// Of G^T (n x m): column k holds the gradient of constraint k. Fixed for life.
   virtual const Pattern& pattern() const = 0;
-  virtual void scale(Out g_typ) const = 0;                                    // (m)
-  virtual Status value(double t, In q, Out g) noexcept = 0;                   // (m)
-  virtual Status gradient(double t, In q, Out gt) noexcept = 0;               // G^T
-  virtual Status rate(double t, In q, In v, Out g_dot) noexcept = 0;          // G v + g_t
-  virtual Status bias(double t, In q, In v, Out b) noexcept = 0;              // g'' - G a
+  virtual void scale(Out g_typ) const = 0;                            // (m)
+  virtual Status value(double t, In q, Out g) noexcept = 0;           // (m)
+  virtual Status gradient(double t, In q, Out gt) noexcept = 0;       // G^T
+  virtual Status rate(double t, In q, In v, Out g_dot) noexcept = 0;  // G v + g_t
+  virtual Status bias(double t, In q, In v, Out b) noexcept = 0;      // g'' - G a
   /// (d(G v + g_t)/dq)^T on pattern(): the derivative of the rate.
   virtual Status rate_gradient(double t, In q, In v, Out values) noexcept = 0;
   /// s += factor d(G^T lambda)/dq on the pattern of the system's SparseForm.
@@ -100,7 +102,8 @@ class Energetics {
  public:
   virtual ~Energetics() = default;
   virtual Energy energy(double t, In q, In v) = 0;
-  /// Rate of work (W) of every force that `energy` does not account for: drag is negative.
+  /// Rate of work (W) of every force that `energy` does not account for: drag is
+  /// negative.
   virtual double power(double t, In q, In v) = 0;
 };
 
@@ -121,14 +124,15 @@ class System {
 
   virtual Layout layout() const = 0;
   virtual Traits traits() const = 0;
-  virtual void initial_state(Out q, Out v) const = 0;  // satisfies g = 0 and G v + g_t = 0
+  virtual void initial_state(Out q,
+                             Out v) const = 0;  // satisfies g = 0 and G v + g_t = 0
   virtual void scale(Out q_typ, Out v_typ) const = 0;  // typical sizes, > 0; angles <= 1
   virtual Status residual(double t, In q, In v, In a, Out r) noexcept = 0;
   virtual Status linearize(double t, In q, In v, In a, Weights w) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // S(w) x = b; b and x may be the same
 
-  /// Called once after every accepted step; may move frames or contact sets and adjust the
-  /// state to them. True: the equations changed, multistep methods must restart.
+  /// Called once after every accepted step; may move frames or contact sets and adjust
+  /// the state to them. True: the equations changed, multistep methods must restart.
   virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
 
   // Optional forms, null when absent; asked for once.

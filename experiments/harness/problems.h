@@ -12,8 +12,14 @@
 namespace tress {
 
 struct ProblemError {
-  double relative;  // largest error over the problem's length scale
+  double relative;  // largest error over the scale of its entry
   double scd;       // -log10 of the largest entry-wise relative error
+};
+
+/// The state at one time of a run.
+struct Checkpoint {
+  double t;
+  std::vector<double> values;  // of what the problem compares
 };
 
 /// A problem whose end state is known: exactly, as published, or from two integrators of
@@ -22,18 +28,26 @@ struct Problem {
   std::string_view name;
   std::string_view model;
   ModelSettings settings;
-  double t_end;        // s
-  double coarse_step;  // s, the loosest fixed step worth trying
-  double scale;        // of the compared values
-  std::vector<double> reference;
-  double reference_gap;  // relative to scale
+  double t_end;                       // s
+  double coarse_step;                 // s, the loosest fixed step worth trying
+  std::vector<double> scale;          // of the compared values: one each, or one for all
+  std::vector<Checkpoint> reference;  // the last one at t_end
+  double reference_gap;               // relative to scale
 
   /// What is compared: coordinates, or material points where form must not matter.
   std::function<std::vector<double>(System&, const State&)> compared;
 
   std::unique_ptr<System> make() const { return make_model(model, settings); }
-  ProblemError error(System& system, const State& end) const;
 };
+
+/// A run that stops at every checkpoint, so that errors which happen to cancel at one
+/// time do not pass for accuracy.
+struct ProblemRun {
+  Simulation end;
+  ProblemError error;  // over all checkpoints reached
+};
+ProblemRun run_problem(const Problem& problem, std::string_view integrator,
+                       const Options& options);
 
 /// Made once, at the first call; the doubly computed references take about a second.
 std::span<const Problem> problems();

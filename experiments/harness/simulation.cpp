@@ -1,5 +1,7 @@
 #include "experiments/harness/simulation.h"
 
+#include <algorithm>
+
 namespace tress {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
@@ -17,16 +19,25 @@ State initial_state(const System& system) {
 }
 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
-                    const State& start, double t_end, const Observer& each_step) {
+                    const State& start, std::span<const double> stops,
+                    const std::function<void(const State&)>& at_stop,
+                    const Observer& each_step) {
   const auto method = make_integrator(integrator, system, options);
+  State state = start;
   Status status = method->start(0, start.q, start.v);
-  if (status == Status::ok) status = method->advance(t_end, each_step);
-  const In q = method->q(), v = method->v();
-  return {status,
-          method->failure(),
-          method->time(),
-          {{q.begin(), q.end()}, {v.begin(), v.end()}},
-          method->stats()};
+  for (const double t : stops) {
+    if (status == Status::ok) status = method->advance(t, each_step);
+    std::ranges::copy(method->q(), state.q.begin());
+    std::ranges::copy(method->v(), state.v.begin());
+    if (status != Status::ok) break;
+    if (at_stop) at_stop(state);
+  }
+  return {status, method->failure(), method->time(), std::move(state), method->stats()};
+}
+
+Simulation simulate(std::string_view integrator, System& system, const Options& options,
+                    const State& start, double t_end, const Observer& each_step) {
+  return simulate(integrator, system, options, start, {&t_end, 1}, {}, each_step);
 }
 
 }  // namespace tress

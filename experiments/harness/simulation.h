@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +33,13 @@ struct Simulation {
   State state;
   Stats stats;
 };
+
+/// One run from `start` at t = 0 through all `stops` (ascending), which are landed on
+/// exactly; `at_stop` sees the state at each.
+Simulation simulate(std::string_view integrator, System& system, const Options& options,
+                    const State& start, std::span<const double> stops,
+                    const std::function<void(const State&)>& at_stop,
+                    const Observer& each_step = {});
 
 /// One run from `start` at t = 0 to t_end with a fresh integrator.
 Simulation simulate(std::string_view integrator, System& system, const Options& options,

@@ -31,19 +31,16 @@ Timing time_it(int repeats, F&& f) {
   return summarize(seconds);
 }
 
-/// Median wall time (s) of a whole run that has been made once already (caches are warm):
-/// one more if that takes long, up to `repeats` if it does not.
+/// Median wall time (s) of whole runs: one if it takes long, `repeats` if it does not,
+/// after a first one that warms the caches and does not count.
 template <typename F>
 double time_run(int repeats, F&& f) {
   constexpr double long_run = 0.2;  // s; beyond it one interruption is a small part
   using Clock = std::chrono::steady_clock;
-  std::vector<double> seconds;
-  do {
-    const auto start = Clock::now();
-    f();
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-  } while (seconds.back() < long_run && static_cast<int>(seconds.size()) < repeats);
-  return median(seconds);
+  const auto start = Clock::now();
+  f();
+  const double first = std::chrono::duration<double>(Clock::now() - start).count();
+  return first > long_run ? first : time_it(repeats, f).median_s;
 }
 
 }  // namespace tress

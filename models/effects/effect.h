@@ -8,7 +8,8 @@
 
 namespace tress {
 
-/// The material points that an effect acts on; spans an effect does not need may be empty.
+/// The material points that an effect acts on; spans an effect does not need may be
+/// empty.
 struct Points {
   int count = 0;
   In x;        // (3 count) position, m
@@ -30,8 +31,8 @@ struct Needs {
   }
 };
 
-/// A force on material points that never sees degrees of freedom. Called once per block of
-/// points, never per point; an effect that a scene does not name is not built.
+/// A force on material points that never sees degrees of freedom. Called once per block
+/// of points, never per point; an effect that a scene does not name is not built.
 class Effect {
  public:
   virtual ~Effect() = default;

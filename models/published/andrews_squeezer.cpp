@@ -133,8 +133,7 @@ constexpr std::array<double, coordinates> start = {
     0.487364979543842550225598953530,   -0.222668390165885884674473185609,
     1.23054744454982119249735015568};
 // Sizes seen over the published run, for norms and absolute tolerances.
-constexpr std::array<double, coordinates> angle_size = {1, 1, .5, .5,
-                                                        .5, .5, 1};  // rad
+constexpr std::array<double, coordinates> angle_size = {1, 1, .5, .5, .5, .5, 1};  // rad
 constexpr std::array<double, coordinates> speed_size = {1e3, 1e3, 20, 20,
                                                         20,  20,  20};  // rad/s
 
