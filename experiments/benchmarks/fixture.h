@@ -1,0 +1,83 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/harness/simulation.h"
+
+/// What the benchmark programs share: systems in motion, and one way to run and report.
+namespace tress {
+
+/// A system some steps into its own motion, so that velocities, accelerations and
+/// multipliers are those of a real step. `status` is not ok when it did not get there.
+struct Moving {
+  std::unique_ptr<System> system;
+  Status status = Status::ok;
+  double t = 0;  // s
+  State state;
+  std::vector<double> a, lambda;  // (n), (m): of the equations at this state
+  std::vector<double> out;        // scratch, as long as the longest result of any call
+
+  Out first(std::size_t count) { return Out(out).first(count); }
+};
+
+/// 10 steps of 1 ms from the initial state with backward Euler (index 3).
+Moving set_in_motion(std::string_view model, const ModelSettings& settings);
+
+/// An inextensible chain released horizontally while it spins about the vertical.
+ModelSettings spinning_chain(int links);
+inline constexpr std::array chain_links = {10, 100, 1000, 10'000};
+
+/// Systems in motion by size, each made when first asked for and kept for all benchmarks.
+class MovingFamily {
+ public:
+  using Settings = std::function<ModelSettings(int size)>;
+  MovingFamily(std::string_view model, Settings settings)
+      : model_(model), settings_(std::move(settings)) {}
+
+  Moving& at(int size);
+
+ private:
+  std::string model_;
+  Settings settings_;
+  std::map<int, Moving> made_;
+};
+
+/// Runs `call` (returns Status) until the time is known; a call that fails voids it.
+template <typename Call>
+void measure(benchmark::State& state, Call&& call) {
+  for ([[maybe_unused]] auto _ : state) {
+    if (call() != Status::ok) {
+      state.SkipWithError("the call did not return Status::ok");
+      break;
+    }
+    benchmark::ClobberMemory();
+  }
+}
+
+/// Time (s) of one call over the number of links, segments and the like.
+void count_per_element(benchmark::State& state, int elements);
+
+/// Registers the sizes of a family and the fit of time against size.
+void with_sizes(benchmark::internal::Benchmark* registered, std::span<const int> sizes);
+
+/// What a program measured, by "name/size": CPU time of one call in s, the median when
+/// there were repetitions.
+struct Measured {
+  int exit_code = 0;  // 2: bad flags; 3: a benchmark failed
+  std::map<std::string, double> seconds;
+};
+
+/// Google Benchmark's main(), with the state of source, build and libraries put into the
+/// JSON context and only medians, spreads and fits on the console when repeating.
+Measured run_benchmarks(int argc, char** argv);
+
+}  // namespace tress
