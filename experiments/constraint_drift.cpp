@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/drift_claims.h"
 #include "experiments/harness/drift_monitor.h"
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/settings.h"
@@ -288,62 +289,6 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-// ---- what the table must show
-// -------------------------------------------------------------
-
-const Row* find(const std::vector<Row>& rows, std::string_view study,
-                std::string_view system, std::string_view formulation,
-                std::string_view integrator) {
-  for (const Row& row : rows) {
-    if (row.text("study") == study && row.text("system") == system &&
-        row.text("formulation") == formulation && row.text("integrator") == integrator) {
-      return &row;
-    }
-  }
-  return nullptr;
-}
-
-double best_feedback(const std::vector<Row>& rows, std::string_view integrator) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const Row& row : rows) {
-    if (row.text("study") == "grid" && row.text("integrator") == integrator &&
-        row.text("formulation") == "baumgarte" && row.ok()) {
-      best = std::min(best, row.number("g_max"));
-    }
-  }
-  return best;
-}
-
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
-  const Row* drifting =
-      find(rows, "grid", "circle bead", "acceleration", "symplectic_euler");
-  if (drifting != nullptr) {
-    const double gain =
-        drifting->number("g_max") / best_feedback(rows, "symplectic_euler");
-    verdicts.check("symplectic_euler: the best Baumgarte pair drifts 30 x less",
-                   gain >= 30, gain);
-  }
-  for (const Row& row : rows) {
-    if (row.text("study") != "formulation" || !row.ok()) continue;
-    const std::string what =
-        std::string(row.text("system")) + ", " + std::string(row.text("integrator"));
-    if (row.text("system") == "circle bead" && (row.text("formulation") == "projection" ||
-                                                row.text("formulation") == "rattle")) {
-      verdicts.check(what + ", projected: drift at most 1e-10 m",
-                     row.number("g_max") <= 1e-10, row.number("g_max"));
-    }
-    if (row.text("formulation") == "parametric") {
-      verdicts.check(what + ", parametric: no drift", row.number("g_max") <= 1e-15,
-                     row.number("g_max"));
-    }
-    if (row.text("formulation") == "index2_ggl" &&
-        row.text("suppress_algebraic") == "true" && row.text("system") == "circle bead") {
-      verdicts.check(what + ", index 2: drift at most 10 rtol",
-                     row.number("g_max") <= 10 * row.number("rtol"), row.number("g_max"));
-    }
-  }
-}
-
 /// Divergence beyond a limit is what the gains are for; IDA on index 3, or with
 /// multipliers in its error test, is shown with its known failures.
 bool finding(const Row& row) {
@@ -362,7 +307,7 @@ int main(int argc, char** argv) {
       .example = "--integrators rk4,rattle --set step=5e-4",
       .columns = columns,
       .cases = cases,
-      .checks = check,
+      .checks = check_drift_claims,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

@@ -66,8 +66,9 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
     if (s != Status::ok) return s;
     rate = correction / previous;
     // The error left is the sum of the corrections to come: rate / (1 - rate) of this
-    // one.
-    const double error_left = rate < 1 ? correction * rate / (1 - rate) : correction;
+    // one. The first correction has no rate yet.
+    const double error_left =
+        i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
     if (correction <= tolerance_ || error_left <= 0.1 * tolerance_) return Status::ok;
     if (rate > 0.5 && i >= 2 && correction <= stagnation_factor * tolerance_) {
       return Status::ok;

@@ -157,7 +157,7 @@ TEST_P(HeldConstraints, ViolationStaysAtRounding) {
   options.step = 1e-3;
   // Newton and projection stop at a few units in the last place of coordinates of size 1
   // m.
-  EXPECT_LE(run(GetParam(), options).violation, 1e-10);
+  EXPECT_LE(run(GetParam(), options).violation, 1e-12);
 }
 
 std::vector<Method> holding() {
