@@ -4,6 +4,14 @@
 #include <cmath>
 
 namespace tress {
+namespace {
+
+/// Put on the multipliers' diagonal (whose Schur complement G G^T is of order one in the
+/// scaled matrix) when constraints are redundant: the corrections of q and v keep eight
+/// digits, those of the multipliers are the shortest that will do.
+constexpr double regularisation = 1e-8;
+
+}  // namespace
 
 EliminatedNewton::EliminatedNewton(DaeForm& form) : form_(form) {
   for (auto* x : {&q_, &v_, &a_, &dq_, &zero_, &r_}) x->resize(form.n);
@@ -60,6 +68,9 @@ AssembledNewton::AssembledNewton(DaeForm& form, const Options& options)
     q_mu_ = matrix_.add_block(gt, 0, mu);
     mu_q_ = matrix_.add_block(gt, mu, 0, true);
   }
+  const int multipliers = DaeForm::multipliers(form.dynamics.system(), form.formulation);
+  multiplier_diagonal_ = matrix_.add_block(identity_pattern(multipliers), lambda, lambda);
+  shift_.assign(static_cast<std::size_t>(multipliers), regularisation);
   matrix_.finish();
   solver_ = make_linear_solver(options.linear, matrix_.pattern());
   s_.resize(static_cast<std::size_t>(s.nonzeros()));
@@ -74,9 +85,39 @@ Status AssembledNewton::factor(double t, In y, In y_dot, double cj) noexcept {
   matrix_.clear();
   if (const Status s = add_motion(t, y, y_dot); s != Status::ok) return s;
   if (const Status s = add_constraints(t, y, y_dot); s != Status::ok) return s;
-  const Status s = solver_->factor(matrix_.values());
-  if (s == Status::ok) condition_ = std::max(condition_, solver_->condition());
+  if (rank_deficiency_ > 0 && has_redundant_constraints()) {
+    matrix_.add(multiplier_diagonal_, 1, shift_);
+  }
+  Status s = solver_->factor(matrix_.values());
+  const bool suspicious = s == Status::retry || solver_->condition() > suspicious_;
+  if (suspicious && rank_deficiency_ == 0 && has_redundant_constraints()) {
+    matrix_.add(multiplier_diagonal_, 1, shift_);
+    s = solver_->factor(matrix_.values());
+  }
+  if (s != Status::ok) return s;
+  const double condition = solver_->condition();
+  condition_ = std::max(condition_, condition);
+  // Independent constraints at a high condition: look again when it is much higher.
+  if (suspicious) suspicious_ = std::max(suspicious_, 100 * condition);
   return s;
+}
+
+/// Expects gt_ at the state of factor(). Allocates; called when a matrix was singular.
+bool AssembledNewton::has_redundant_constraints() {
+  const std::vector<double> unit(form_.m, 1.0);
+  const Pattern& pattern = form_.dynamics.constraints()->pattern();
+  null_space_ = std::make_unique<NullSpace>(pattern, gt_, ones_, unit);
+  rank_deficiency_ = std::max(rank_deficiency_, null_space_->dimension());
+  return null_space_->dimension() > 0;
+}
+
+/// Takes what redundant constraints cannot tell apart out of the rows or entries of the
+/// multipliers: rounding there would come back divided by `regularisation`.
+void AssembledNewton::project_multipliers(InOut b) const {
+  if (rank_deficiency_ == 0) return;
+  for (std::size_t at = 2 * form_.n; at < b.size(); at += form_.m) {
+    null_space_->project_out(b.subspan(at, form_.m));
+  }
 }
 
 /// The first two rows.
@@ -135,6 +176,7 @@ Status AssembledNewton::add_constraints(double t, In y, In y_dot) noexcept {
 
 Status AssembledNewton::solve(InOut b) noexcept {
   ++solves_;
+  project_multipliers(b);
   const std::size_t n = form_.n, m = form_.m;
   const bool ggl = form_.formulation == Formulation::index2_ggl;
   const double force = cj_ * mass_unit_;
@@ -146,6 +188,7 @@ Status AssembledNewton::solve(InOut b) noexcept {
   scale(b.subspan(2 * n, m), row);
   if (ggl) scale(b.last(m), cj_);
   const Status s = solver_->solve(b);
+  project_multipliers(b);
   scale(b.first(n), 1 / cj_);
   scale(b.subspan(2 * n, m), force);
   return s;
@@ -156,6 +199,7 @@ Stats AssembledNewton::work() const {
   all.linearizations += factors_;
   all.solves += solves_;
   all.solver = solver_->name();
+  all.rank_deficiency = std::max(all.rank_deficiency, rank_deficiency_);
   all.condition = std::max(all.condition, condition_);
   return all;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrators/linear/block_matrix.h"
+#include "integrators/linear/rank.h"
 #include "integrators/sundials/dae_form.h"
 #include "integrators/sundials/linear_adapter.h"
 
@@ -56,6 +57,8 @@ class AssembledNewton final : public DaeNewton {
  private:
   Status add_motion(double t, In y, In y_dot) noexcept;
   Status add_constraints(double t, In y, In y_dot) noexcept;
+  bool has_redundant_constraints();
+  void project_multipliers(InOut b) const;
 
   DaeForm& form_;
   const double alpha_, beta_;
@@ -63,8 +66,12 @@ class AssembledNewton final : public DaeNewton {
   std::unique_ptr<LinearSolver> solver_;
   int qq_ = 0, q_mu_ = 0, q_unit_ = 0, qv_unit_ = 0, vq_ = 0, vv_ = 0, v_lambda_ = 0;
   int lambda_q_ = 0, lambda_v_ = 0, mu_q_ = 0;  // blocks by row and column
+  int multiplier_diagonal_ = 0;
+  int rank_deficiency_ = 0;  // redundant constraints met
+  std::unique_ptr<NullSpace> null_space_;
+  double suspicious_ = 1e11;  // condition above which they are looked for
   double cj_ = 0, mass_unit_ = 0;
-  std::vector<double> s_, gt_, rate_gt_, ones_;
+  std::vector<double> s_, gt_, rate_gt_, ones_, shift_;
   long factors_ = 0, solves_ = 0;
   double condition_ = 0;
 };

@@ -84,7 +84,8 @@ TEST_P(PublishedTangent, SparseFormAgreesWithSolve) {
   }
 }
 
-// The gap between the tangents is above the first test's bound: it notices a missing term.
+// The gap between the tangents is above the first test's bound: it notices a missing
+// term.
 TEST_P(PublishedTangent, DroppedTermsAreNoticed) {
   if (GetParam() == std::string_view("double_pendulum")) GTEST_SKIP() << "one tangent";
   const auto system = make_model(GetParam(), {{"tangent", "stiff"}});
