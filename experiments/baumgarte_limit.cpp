@@ -1,6 +1,5 @@
 // How large may Baumgarte's gains be before the feedback itself diverges, and does the
 // linear theory of each method predict it?
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -88,11 +87,7 @@ std::vector<Case> cases(const CommandLine& line) {
   for (const std::string_view id :
        {"explicit_euler", "symplectic_euler", "velocity_verlet", "rk4",
         "semi_implicit_euler", "backward_euler", "bdf2", "implicit_midpoint"}) {
-    if (!line.integrators.empty() &&
-        std::find(line.integrators.begin(), line.integrators.end(), id) ==
-            line.integrators.end()) {
-      continue;
-    }
+    if (!wanted(line.integrators, id)) continue;
     for (int i = 0; i <= 6 * per_decade; ++i) {
       const double zeta = 0.001 * std::pow(10, static_cast<double>(i) / per_decade);
       Row identity;

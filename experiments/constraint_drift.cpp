@@ -266,10 +266,6 @@ void add_recovery(const Settings& user, std::vector<Study>& studies) {
   }
 }
 
-bool wanted(const std::vector<std::string>& list, std::string_view id) {
-  return list.empty() || std::find(list.begin(), list.end(), id) != list.end();
-}
-
 std::vector<Case> cases(const CommandLine& line) {
   const Settings user(line, {});
   std::vector<Study> studies;

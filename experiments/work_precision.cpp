@@ -9,6 +9,7 @@
 
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/problems.h"
+#include "experiments/harness/reference.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/simulation.h"
 #include "experiments/harness/timing.h"
@@ -63,7 +64,7 @@ void measure(const Problem& problem, std::string_view integrator, const Options&
   }
   row.set("error_kind", "time").set("error_rel", error).set("scd", run->error.scd);
   row.set("reference_gap", problem.reference_gap);
-  row.set("below_reference", error < 10 * problem.reference_gap);
+  row.set("below_reference", error < ReferenceGap::margin * problem.reference_gap);
   row.set("wall_s", wall).set("wall_s_per_sim_s", wall / problem.t_end);
 }
 
@@ -79,10 +80,6 @@ std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, boo
   }
   if (!full && list.size() > 1) list.erase(list.begin() + 1, list.end());
   return list;
-}
-
-bool wanted(const std::vector<std::string>& list, std::string_view id) {
-  return list.empty() || std::find(list.begin(), list.end(), id) != list.end();
 }
 
 std::vector<Case> cases(const CommandLine& line) {

@@ -20,8 +20,7 @@ class BackwardEuler final : public FixedStep {
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h, v_);
     const Status s = stage_.solve(t + h, q_bar_, v_, {1, h, h * h}, a_, lambda_);
-    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
-    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    take(stage_.q(), stage_.v());
     return s;
   }
 

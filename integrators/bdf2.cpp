@@ -39,8 +39,7 @@ class Bdf2 final : public FixedStep {
     q_previous_ = q_;
     v_previous_ = v_;
     h_previous_ = h;
-    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
-    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    take(stage_.q(), stage_.v());
     return s;
   }
 

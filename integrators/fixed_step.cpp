@@ -23,9 +23,13 @@ FixedStep::FixedStep(System& system, const Options& options)
   if (options.formulation == Formulation::projection) projection_.emplace(dynamics_);
 }
 
-Status FixedStep::start(double t, In q, In v) {
+void FixedStep::take(In q, In v) {
   std::copy(q.begin(), q.end(), q_.begin());
   std::copy(v.begin(), v.end(), v_.begin());
+}
+
+Status FixedStep::start(double t, In q, In v) {
+  take(q, v);
   std::fill(lambda_.begin(), lambda_.end(), 0.0);
   t_ = t;
   failure_.clear();

@@ -31,6 +31,9 @@ class FixedStep : public Integrator {
   /// Moves q_, v_ from t to t + h.
   virtual Status step(double t, double h) = 0;
 
+  /// q_ = q, v_ = v.
+  void take(In q, In v);
+
   std::vector<double> vector_n() const { return std::vector<double>(q_.size()); }
 
   Options options_;

@@ -52,8 +52,7 @@ class GeneralizedAlpha final : public FixedStep {
     const Weights w{1, h * k_.gamma * ratio, h * h * k_.beta * ratio};
     const Status s = stage_.solve(t + h, q_bar_, v_bar_, w, u_, lambda_);
     for (std::size_t i = 0; i < q_.size(); ++i) a_[i] = a_known_[i] + ratio * u_[i];
-    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
-    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    take(stage_.q(), stage_.v());
     return s;
   }
 

@@ -22,8 +22,7 @@ class SemiImplicitEuler final : public FixedStep {
     shifted(q_bar_, q_, h, v_);
     std::fill(a_.begin(), a_.end(), 0.0);
     const Status s = stage_.single_step(t + h, q_bar_, v_, {1, h, h * h}, a_, lambda_);
-    std::copy(stage_.q().begin(), stage_.q().end(), q_.begin());
-    std::copy(stage_.v().begin(), stage_.v().end(), v_.begin());
+    take(stage_.q(), stage_.v());
     return s;
   }
 

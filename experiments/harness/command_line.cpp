@@ -158,6 +158,10 @@ void check_combinations(const CommandLine& line) {
 
 }  // namespace
 
+bool wanted(const std::vector<std::string>& chosen, std::string_view id) {
+  return chosen.empty() || std::find(chosen.begin(), chosen.end(), id) != chosen.end();
+}
+
 std::string CommandLine::place(std::string_view option) const {
   const auto found = places.find(option);
   return found == places.end() ? "--" + std::string(option) : found->second;

@@ -35,6 +35,9 @@ struct CommandLine {
   std::string place(std::string_view option) const;
 };
 
+/// Whether a choice such as --models leaves `id` in; an empty one leaves everything in.
+bool wanted(const std::vector<std::string>& chosen, std::string_view id);
+
 /// The user asked for help or the version: print `what()` and leave with 0.
 class Answer : public std::runtime_error {
  public:
