@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/math/frame.h"
+#include "models/strand/material.h"
+#include "models/strand/root_motion.h"
+
+namespace tress {
+
+/// One piece of a strand: starts at the tip of `parent`, or at the root.
+struct Segment {
+  int parent = -1;     // index of an earlier segment, -1: the root
+  double length = 0;   // m
+  Frame mount;         // of this segment's start, seen from the tip of the parent
+  CrossSection section;
+  Vec natural;         // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
+  Vec initial;         // the same at t = 0
+};
+
+/// The root is clamped to a prescribed motion, or free to move from an initial state.
+struct FreeRoot {
+  Vec position;  // m
+  Frame frame;
+  Vec velocity;  // m/s
+  Vec spin;      // rad/s, world components
+};
+
+/// A strand, or a tree of them, as every strand model takes it: what it is made of, how it
+/// is cut into segments, its shape at rest, and what its root does.
+struct Strand {
+  Material material;
+  std::vector<Segment> segments;  // parents before children
+  RootMotion root;
+  std::optional<FreeRoot> free_root;  // when set, `root` is not used
+
+  double length() const;  // longest way from the root to a tip, m
+  double mass() const;    // kg
+};
+
+/// The Darboux vector (twist, curvature about e1, curvature about e2) of a shape over arc
+/// length s in [0, length], 1/m.
+using Shape = std::function<Vec(double s)>;
+Shape uniform_shape(Vec darboux);
+/// A helix of given radius and pitch (rise per turn, m): curvature radius/(radius^2 + c^2)
+/// and twist c/(radius^2 + c^2) with c = pitch/(2 pi).
+Shape helix_shape(double radius, double pitch);
+/// A planar wave: curvature about e1 of a cosine, amplitude 1/m.
+Shape wavy_shape(double amplitude, double wavelength);
+
+/// How an unbranched strand is cut: n segments, the last `grading` times as long as the
+/// first (geometric series).
+struct Discretisation {
+  int elements = 20;
+  double length = 0.1;  // m
+  double grading = 1;
+};
+
+/// A chain of segments; natural shapes are averaged over each segment (Gauss-Legendre, 8
+/// points); `initial` is the natural shape unless given. Throws InputError on no
+/// elements, lengths that are not positive, and numbers that are not finite.
+Strand make_strand(const Material& material, const CrossSection& section,
+                   const Discretisation& cut, const Shape& natural,
+                   const Shape& initial = {});
+
+/// Throws InputError naming the segment unless parents precede children, lengths are
+/// positive, mounts are rotations and all numbers finite.
+void check(const Strand& strand);
+
+}  // namespace tress
