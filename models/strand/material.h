@@ -10,8 +10,8 @@ struct Material {
   double density = 1300;         // kg/m^3
   double youngs_modulus = 3e9;   // Pa
   double shear_modulus = 1.0e9;  // Pa
-  /// gamma: the moment gamma d(kappa)/dt opposes bending and twisting (kg m^3/s) [Bertails
-  /// et al. 2006]; EI/gamma is a relaxation rate.
+  /// gamma: the moment gamma d(kappa)/dt opposes bending and twisting (kg m^3/s)
+  /// [Bertails et al. 2006]; EI/gamma is a relaxation rate.
   double internal_friction = 0;
 
   /// G = E / (2 (1 + nu)).
@@ -26,11 +26,11 @@ struct CrossSection {
   double a1 = 40e-6;  // m
   double a2 = 40e-6;  // m
 
-  double area() const;     // pi a1 a2, m^2
-  double inertia1() const; // about e1: pi a1 a2^3/4, m^4
-  double inertia2() const; // about e2: pi a1^3 a2/4, m^4
-  double torsion() const;  // J = pi a1^3 a2^3/(a1^2 + a2^2), m^4 (Saint-Venant)
-  double polar() const;    // I1 + I2: rotational inertia about the tangent per density
+  double area() const;      // pi a1 a2, m^2
+  double inertia1() const;  // about e1: pi a1 a2^3/4, m^4
+  double inertia2() const;  // about e2: pi a1^3 a2/4, m^4
+  double torsion() const;   // J = pi a1^3 a2^3/(a1^2 + a2^2), m^4 (Saint-Venant)
+  double polar() const;     // I1 + I2: rotational inertia about the tangent per density
 };
 
 /// Throw InputError naming `where` unless every number makes sense (positive density,

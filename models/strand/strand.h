@@ -13,12 +13,12 @@ namespace tress {
 
 /// One piece of a strand: starts at the tip of `parent`, or at the root.
 struct Segment {
-  int parent = -1;     // index of an earlier segment, -1: the root
-  double length = 0;   // m
-  Frame mount;         // of this segment's start, seen from the tip of the parent
+  int parent = -1;    // index of an earlier segment, -1: the root
+  double length = 0;  // m
+  Frame mount;        // of this segment's start, seen from the tip of the parent
   CrossSection section;
-  Vec natural;         // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
-  Vec initial;         // the same at t = 0
+  Vec natural;  // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
+  Vec initial;  // the same at t = 0
 };
 
 /// The root is clamped to a prescribed motion, or free to move from an initial state.
@@ -29,8 +29,8 @@ struct FreeRoot {
   Vec spin;      // rad/s, world components
 };
 
-/// A strand, or a tree of them, as every strand model takes it: what it is made of, how it
-/// is cut into segments, its shape at rest, and what its root does.
+/// A strand, or a tree of them, as every strand model takes it: what it is made of, how
+/// it is cut into segments, its shape at rest, and what its root does.
 struct Strand {
   Material material;
   std::vector<Segment> segments;  // parents before children
@@ -45,8 +45,8 @@ struct Strand {
 /// length s in [0, length], 1/m.
 using Shape = std::function<Vec(double s)>;
 Shape uniform_shape(Vec darboux);
-/// A helix of given radius and pitch (rise per turn, m): curvature radius/(radius^2 + c^2)
-/// and twist c/(radius^2 + c^2) with c = pitch/(2 pi).
+/// A helix of given radius and pitch (rise per turn, m): curvature radius/(radius^2 +
+/// c^2) and twist c/(radius^2 + c^2) with c = pitch/(2 pi).
 Shape helix_shape(double radius, double pitch);
 /// A planar wave: curvature about e1 of a cosine, amplitude 1/m.
 Shape wavy_shape(double amplitude, double wavelength);
