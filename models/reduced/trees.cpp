@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "models/input_error.h"
+#include "models/math/helix.h"
 #include "models/parameters.h"
 
 namespace tress {
@@ -22,19 +23,14 @@ const double golden_angle = pi * (3 - std::sqrt(5.0));  // rad, between successi
 constexpr double radians(double degrees) { return degrees * pi / 180; }
 double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
 
-/// Turns by `angle` (rad) about `axis`, whose length must be 1 (Rodrigues).
-Frame rotation(const Vec& axis, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  const auto turn = [&](const Vec& e) {
-    return c * e + s * cross(axis, e) + ((1 - c) * dot(axis, e)) * axis;
+/// exp([turn]x): turns by |turn| (rad) about its direction.
+Frame turned_by(const Vec& turn) {
+  const auto f = helix_functions(1.0, dot(turn, turn), 1);
+  const auto turned = [&](const Vec& e) {
+    const Vec across = cross(turn, e);
+    return e + f.S * across + f.A * cross(turn, across);
   };
-  return {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})};
-}
-
-/// By |turn| about its direction.
-Frame rotation(const Vec& turn) {
-  const double angle = norm(turn);
-  return angle == 0 ? Frame{} : rotation(1 / angle * turn, angle);
+  return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
 }
 
 /// The least turn that takes the tangent e0 to the direction `to` (not opposite to e0).
@@ -42,7 +38,7 @@ Frame least_rotation(const Vec& to) {
   const Vec e0{1, 0, 0};
   const Vec axis = cross(e0, to);
   const double sine = norm(axis);
-  return sine == 0 ? Frame{} : rotation(1 / sine * axis, std::atan2(sine, dot(e0, to)));
+  return sine == 0 ? Frame{} : turned_by(std::atan2(sine, dot(e0, to)) / sine * axis);
 }
 
 /// A run of equal elements. Directions are those of the world, for a root that is
@@ -71,7 +67,7 @@ class Grower {
       const Vec natural = start.back(bend);
       segments_.push_back(
           {parent, length, mount, {limb.radius, limb.radius}, natural, natural});
-      tips_.push_back(start * rotation(length * natural));
+      tips_.push_back(start * turned_by(length * natural));
       parent = static_cast<int>(segments_.size()) - 1;
       heading = {};
     }
@@ -162,7 +158,7 @@ std::vector<Segment> complex_tree() {
       shoot(2, twig - 1, 50, {.length = 0.4});
     }
   }
-  return std::move(g).with_pipe_radii(1.2e-4);
+  return std::move(g).with_pipe_radii(2e-4);
 }
 
 void grow_arm(Grower& g, int chest, double side) {
@@ -177,7 +173,7 @@ void grow_arm(Grower& g, int chest, double side) {
   const Vec along{0.2, side, -1.6};
   const int hand = g.grow(wrist, {.length = 0.09, .heading = along, .radius = 0.025});
   for (int finger = 0; finger < 5; ++finger) {
-    const Vec spread{1.4 - 0.6 * finger, 0, 0};
+    const Vec spread{1.5 - 0.75 * finger, 0, 0};
     g.grow(hand, {.elements = 2,
                   .length = finger == 0 || finger == 4 ? 0.06 : 0.09,
                   .heading = along + spread,
@@ -188,10 +184,10 @@ void grow_arm(Grower& g, int chest, double side) {
 
 void grow_leg(Grower& g, double side) {
   const int hip =
-      g.grow(root, {.length = 0.12, .heading = {0, side, -0.5}, .radius = 0.06});
+      g.grow(root, {.length = 0.12, .heading = {0, side, -0.5}, .radius = 0.05});
   const int knee = g.grow(
       hip,
-      {.elements = 2, .length = 0.42, .heading = {0.1, 0.1 * side, -1}, .radius = 0.055});
+      {.elements = 2, .length = 0.42, .heading = {0.1, 0.1 * side, -1}, .radius = 0.05});
   const int ankle = g.grow(
       knee,
       {.elements = 2, .length = 0.4, .heading = {-0.1, 0.05 * side, -1}, .radius = 0.04});
@@ -200,10 +196,10 @@ void grow_leg(Grower& g, double side) {
 
 std::vector<Segment> man() {
   Grower g;
-  const int chest = g.grow(root, {.elements = 4, .length = 0.5, .radius = 0.07});
+  const int chest = g.grow(root, {.elements = 4, .length = 0.5, .radius = 0.055});
   for (const double side : {1.0, -1.0}) grow_arm(g, chest, side);
   for (const double side : {1.0, -1.0}) grow_leg(g, side);
-  const int neck = g.grow(chest, {.length = 0.1, .radius = 0.05});
+  const int neck = g.grow(chest, {.length = 0.1, .radius = 0.04});
   // the outline of the head: one half of a circle to the crown, one back to the neck
   const Limb face{.length = 0.33, .turn = {pi, 0, 0}, .radius = 0.02};
   Limb first = face;
@@ -269,7 +265,7 @@ std::span<const TreeEntry> trees() {
   static const std::array entries = {
       TreeEntry{"palm_tree", palm_tree, wood(1)},
       TreeEntry{"algae", algae, isotropic(1050, 2e7, 0.5, 1e-5)},
-      TreeEntry{"complex_tree", complex_tree, wood(1e-2)},
+      TreeEntry{"complex_tree", complex_tree, wood(3e-2)},
       TreeEntry{"man", man, isotropic(1100, 1e7, 0.5, 1e-6)},
       TreeEntry{"willow", willow, wood(6e-3)},
   };

@@ -10,16 +10,18 @@ namespace tress {
 /// The five trees of [Bertails-Descoubes 2010, "Performance results"]. The source gives
 /// names and element counts; the geometry is ours.
 ///
-/// | name         | elements | what it is                                        | height
+/// | name         | elements | what it is                                        | top, m
 /// |
 /// |--------------|----------|---------------------------------------------------|--------|
-/// | palm_tree    | 8        | bent trunk of 2, 6 drooping fronds of 1           | 3 m |
-/// | algae        | 10       | short stalk, 3 wavy stems of 3                    | 0.4 m
-/// | | complex_tree | 50       | trunk of 5, 5 branches of 3, each with 2 of 2,    | 4 m
-/// | |              |          | each of those with 1 of 1; golden-angle azimuths  | | |
-/// man          | 81       | spine 4, neck, head 2, arms 16 each with five     | 1.7 m  |
-/// |              |          | fingers of 2, legs 6 each, 10 hairs of 3          | | |
-/// willow       | 242      | trunk of 4, 7 limbs of 4, each with 6 twigs of 5  | 4 m    |
+/// | palm_tree    | 8        | bent trunk of 2, 6 drooping fronds of 1           | 3.4 |
+/// | algae        | 10       | short stalk, 3 wavy stems of 3                    | 0.41 |
+/// | complex_tree | 50       | trunk of 5, 5 branches of 3, each with 2 of 2,    | 4.0 |
+/// |              |          | each of those with 1 of 1; golden-angle azimuths  | | |
+/// man          | 81       | spine of 4, neck, head of 2; 2 arms of 6, each    | 0.81   |
+/// |              |          | with 5 fingers of 2; 2 legs of 6; 10 hairs of 3;  | | | |
+/// | the root is the pelvis, 1.7 m from sole to crown  |        | | willow       | 242 |
+/// trunk of 4, 7 limbs of 4, each with 6 hanging     | 4.1    | |              | | twigs
+/// of 5                                        |        |
 ///
 /// Sections are circles. Those of the plants follow the pipe model [Shinozaki et al.
 /// 1964; da Vinci's rule]: the area is proportional to the length of all that grows
@@ -27,8 +29,8 @@ namespace tress {
 /// rise do so by the tropism of [Prusinkiewicz & Lindenmayer 1990, section 1.10].
 /// `initial` is the natural shape: at t = 0 gravity has not bent anything yet.
 ///
-/// The geometry is meant for a root of frame `upright()`, also for what starts at the
-/// root in other directions (the man's legs).
+/// The geometry is meant for a root of frame `upright()`. More than one segment may start
+/// at the root: the man's spine and both hips do.
 inline constexpr std::string_view tree_choices =
     "palm_tree|algae|complex_tree|man|willow";
 
@@ -36,9 +38,11 @@ inline constexpr std::string_view tree_choices =
 /// name.
 std::vector<Segment> tree_segments(std::string_view name);
 
-/// A material with which the tree stands under gravity: green wood, kelp, or the rubber
-/// of a doll. Internal friction is one number for all sections: it is chosen for the
-/// thinnest, thick ones are damped less. Throws InputError on another name.
+/// A material with which the tree stands under gravity, isotropic, of plausible size:
+/// green wood (E = 6 GPa, nu = 0.3), kelp (20 MPa, 0.5) and soft rubber for the man
+/// (10 MPa, 0.5). Internal friction gamma is one number for all sections: about 10 ms EI
+/// of the thinnest one; thick ones relax faster and are damped less. Throws InputError on
+/// another name.
 Material tree_material(std::string_view name);
 
 /// The root frame: tangent up (e0 = z), e1 = y, e2 = -x. The man faces x.

@@ -10,6 +10,7 @@
 
 #include "models/input_error.h"
 #include "models/reduced/trees.h"
+#include "tests/models/reduced/placed_tree.h"
 
 namespace tress {
 namespace {
@@ -19,76 +20,10 @@ using std::numbers::pi;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double g = 9.81;  // m/s^2
 
-double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-double area(const Segment& s) { return pi * s.section.a1 * s.section.a1; }
-double inertia(const Segment& s) { return area(s) * s.section.a1 * s.section.a1 / 4; }
-
-/// Where a tree is at rest: frames and positions by 64 midpoint steps per segment.
-struct Tree {
-  explicit Tree(std::string_view name)
-      : segments(tree_segments(name)), material(tree_material(name)) {
-    for (const Segment& s : segments) {
-      const bool first = s.parent < 0;
-      Frame frame = (first ? upright() : tip_frames[at(s.parent)]) * s.mount;
-      Vec x = first ? Vec{} : tips[at(s.parent)];
-      start_tangents.push_back(frame.e0);
-      constexpr int steps = 64;
-      for (int k = 0; k < steps; ++k) {
-        if (k == steps / 2) {
-          mids.push_back(x);
-          mid_frames.push_back(frame);
-        }
-        const double h = s.length / steps;
-        const Vec bend = frame * s.natural;
-        const auto turned = [&](const Vec& e) {  // by h bend, second order
-          return e + h * cross(bend, e + h / 2 * cross(bend, e));
-        };
-        x = x + h / 2 * (frame.e0 + turned(frame.e0));
-        frame = {turned(frame.e0), turned(frame.e1), turned(frame.e2)};
-      }
-      tips.push_back(x);
-      tip_frames.push_back(frame);
-      top = std::max(top, x.z);
-    }
-  }
-
-  double weight(std::size_t i) const {
-    return material.density * g * area(segments[i]) * segments[i].length;
-  }
-  std::vector<int> children(int i) const {
-    std::vector<int> all;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-      if (segments[k].parent == i) all.push_back(static_cast<int>(k));
-    }
-    return all;
-  }
-  std::vector<int> free_ends() const {
-    std::vector<int> all;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-      if (children(static_cast<int>(k)).empty()) all.push_back(static_cast<int>(k));
-    }
-    return all;
-  }
-  /// From a segment to the root.
-  std::vector<int> way_down(int i) const {
-    std::vector<int> all;
-    for (; i >= 0; i = segments[at(i)].parent) all.push_back(i);
-    return all;
-  }
-
-  std::vector<Segment> segments;
-  Material material;
-  std::vector<Vec> start_tangents, mids, tips;
-  std::vector<Frame> mid_frames, tip_frames;
-  double top = 0;  // m
-};
-
 struct Expected {
   std::string name;
   std::size_t elements;
-  double height;  // m, as trees.h says
+  double height;  // m, of the highest tip, as trees.h says
   bool pipe;      // sections by the pipe model
 };
 
@@ -101,7 +36,7 @@ class TreeTest : public testing::TestWithParam<Expected> {
 
 TEST_P(TreeTest, HasTheElementsOfTheSourceAndTheHeightItDocuments) {
   EXPECT_EQ(tree.segments.size(), GetParam().elements);
-  EXPECT_NEAR(tree.top, GetParam().height, 0.05 * GetParam().height);  // two digits
+  EXPECT_NEAR(tree.top, GetParam().height, 0.02 * GetParam().height);  // two digits
 }
 
 TEST_P(TreeTest, ParentsComeFirstAndNumbersMakeSense) {
@@ -123,11 +58,11 @@ TEST_P(TreeTest, MountsAreRotations) {
     const Vec axes[] = {s.mount.e0, s.mount.e1, s.mount.e2};
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        // a few products and sums of numbers up to 1, each rounded
-        EXPECT_NEAR(dot(axes[i], axes[j]), i == j ? 1 : 0, 8 * eps);
+        // S and A to 5 eps, then some products and sums of numbers up to 1
+        EXPECT_NEAR(dot(axes[i], axes[j]), i == j ? 1 : 0, 30 * eps);
       }
     }
-    EXPECT_NEAR(dot(cross(s.mount.e0, s.mount.e1), s.mount.e2), 1, 16 * eps);
+    EXPECT_NEAR(dot(cross(s.mount.e0, s.mount.e1), s.mount.e2), 1, 45 * eps);
   }
 }
 
@@ -155,7 +90,7 @@ TEST_P(TreeTest, NoTwoBranchesCoincide) {
   for (const int i : ends) {
     for (const int k : ends) {
       if (i >= k) continue;
-      const double apart = norm(tree.tips[at(i)] - tree.tips[at(k)]);
+      const double apart = norm(tree.tips[at(i)].x - tree.tips[at(k)].x);
       EXPECT_GT(apart, tree.segments[at(i)].section.a1 + tree.segments[at(k)].section.a1)
           << i << " and " << k;
     }
@@ -165,7 +100,7 @@ TEST_P(TreeTest, NoTwoBranchesCoincide) {
       for (const int b : tree.children(i)) {
         if (a >= b) continue;
         // fingers are nearest: 0.36 rad
-        EXPECT_LT(dot(tree.start_tangents[at(a)], tree.start_tangents[at(b)]),
+        EXPECT_LT(dot(tree.starts[at(a)].frame.e0, tree.starts[at(b)].frame.e0),
                   std::cos(0.25))
             << a << " and " << b;
       }
@@ -180,7 +115,7 @@ std::vector<int> trunk_of(const Tree& tree) {
     int next = -1;
     for (const int k : tree.children(i)) {
       const double radius = tree.segments[at(k)].section.a1;
-      const bool rises = tree.start_tangents[at(k)].z > 0.9;
+      const bool rises = tree.starts[at(k)].frame.e0.z > 0.9;
       if (rises && (next < 0 || radius > tree.segments[at(next)].section.a1)) next = k;
     }
     if (next < 0) return trunk;
@@ -195,13 +130,13 @@ TEST_P(TreeTest, TrunkStandsUnderItsOwnWeightAndThatOfTheCrown) {
   double thinnest = std::numeric_limits<double>::infinity();
   for (const int i : trunk) {
     height += tree.segments[at(i)].length;
-    own += tree.weight(at(i));
+    own += g * tree.mass(at(i));
     thinnest = std::min(thinnest, tree.segments[at(i)].section.a1);
   }
   for (std::size_t i = 0; i < tree.segments.size(); ++i) {
     bool above = false;
     for (const int k : tree.way_down(static_cast<int>(i))) above |= k == trunk.front();
-    if (above) all += tree.weight(i);
+    if (above) all += g * tree.mass(i);
   }
   const double stiffness = tree.material.youngs_modulus * pi * std::pow(thinnest, 4) / 4;
   // Greenhill 1881: a clamped column buckles at w L^3/EI = 7.8373; Euler: at P L^2/EI =
@@ -210,8 +145,6 @@ TEST_P(TreeTest, TrunkStandsUnderItsOwnWeightAndThatOfTheCrown) {
   // of the crown at the top make it safe.
   const double greenhill = own * height * height / (7.837347438943484 * stiffness);
   const double euler = (all - own) * height * height / (pi * pi / 4 * stiffness);
-  RecordProperty("greenhill", std::to_string(greenhill));
-  RecordProperty("euler", std::to_string(euler));
   EXPECT_LT(greenhill + euler, 1);
 }
 
@@ -225,34 +158,31 @@ TEST_P(TreeTest, GravityBendsItLessThanHalfOfTheWayToEachTip) {
   std::vector<Vec> turn(n);
   for (std::size_t i = n; i-- > 0;) {
     const Segment& s = tree.segments[i];
-    const Vec& x = tree.mids[i];
-    const Frame& frame = tree.mid_frames[i];
+    const Vec& x = tree.mids[i].x;
+    const Frame& frame = tree.mids[i].frame;
     // the outer half of the segment itself at three quarters of its length
-    const double half = tree.weight(i) / 2;
+    const double half = g * tree.mass(i) / 2;
     const Vec lever =
-        first_moment[i] - load[i] * x + half * (0.5 * (x + tree.tips[i]) - x);
+        first_moment[i] - load[i] * x + half * (0.5 * (x + tree.tips[i].x) - x);
     const Vec moment = frame.back(cross(lever, Vec{0, 0, -1}));
     const double bending = tree.material.youngs_modulus * inertia(s);
     const double twisting = tree.material.shear_modulus * 2 * inertia(s);
     turn[i] = s.length *
               (frame * Vec{moment.x / twisting, moment.y / bending, moment.z / bending});
     if (s.parent < 0) continue;
-    load[at(s.parent)] += load[i] + tree.weight(i);
+    load[at(s.parent)] += load[i] + g * tree.mass(i);
     first_moment[at(s.parent)] =
-        first_moment[at(s.parent)] + first_moment[i] + tree.weight(i) * x;
+        first_moment[at(s.parent)] + first_moment[i] + g * tree.mass(i) * x;
   }
-  double worst = 0;
   for (const int end : tree.free_ends()) {
     Vec moved;
     double way = 0;
     for (const int i : tree.way_down(end)) {
-      moved = moved + cross(turn[at(i)], tree.tips[at(end)] - tree.mids[at(i)]);
+      moved = moved + cross(turn[at(i)], tree.tips[at(end)].x - tree.mids[at(i)].x);
       way += tree.segments[at(i)].length;
     }
-    worst = std::max(worst, norm(moved) / way);
     EXPECT_LT(norm(moved), way / 2) << "tip of " << end;
   }
-  RecordProperty("worst", std::to_string(worst));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TreeTest,
@@ -267,31 +197,30 @@ TEST(Man, IsSymmetricButForHisHair) {
   const Tree man("man");
   for (const int i : man.free_ends()) {
     if (man.segments[at(i)].section.a1 < 0.005) continue;  // hair
-    const Vec& x = man.tips[at(i)];
+    const Vec& x = man.tips[at(i)].x;
     double nearest = std::numeric_limits<double>::infinity();
     for (const int k : man.free_ends()) {
-      const Vec mirrored{man.tips[at(k)].x, -man.tips[at(k)].y, man.tips[at(k)].z};
+      const Vec mirrored{man.tips[at(k)].x.x, -man.tips[at(k)].x.y, man.tips[at(k)].x.z};
       nearest = std::min(nearest, norm(mirrored - x));
     }
-    // the head closes its circle on the plane only up to the walk's error: (pi/64)^2/24
-    // of 0.33 m each half
-    EXPECT_LT(nearest, 1e-4);
+    // 9 segments from the root to a finger, each with some roundings of numbers up to 1
+    EXPECT_LT(nearest, 100 * eps);
   }
 }
 
 TEST(Willow, HangsItsTwigs) {
   const Tree willow("willow");
   for (const int i : willow.free_ends()) {
-    EXPECT_LT(willow.tip_frames[at(i)].e0.z, -0.9) << i;
+    EXPECT_LT(willow.tips[at(i)].frame.e0.z, -0.9) << i;
   }
 }
 
 TEST(ComplexTree, SpreadsToAllSides) {
   const Tree tree("complex_tree");
   Vec low, high;
-  for (const Vec& x : tree.tips) {
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), 0};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y), 0};
+  for (const Pose& tip : tree.tips) {
+    low = {std::min(low.x, tip.x.x), std::min(low.y, tip.x.y), 0};
+    high = {std::max(high.x, tip.x.x), std::max(high.y, tip.x.y), 0};
   }
   for (const double side : {-low.x, -low.y, high.x, high.y}) {
     EXPECT_GT(side, 0.2 * tree.top);
