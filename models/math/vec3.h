@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <concepts>
 
 namespace tress {
@@ -36,6 +37,10 @@ struct Vec3 {
 };
 
 using Vec = Vec3<double>;
+
+inline bool is_finite(const Vec& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 template <class T>
 Vec3<T> load3(const T* p) {
