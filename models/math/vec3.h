@@ -5,7 +5,7 @@
 
 namespace tress {
 
-/// Three numbers over any scalar (double, or a jet in tests).
+/// Three numbers over any scalar (double, or a derivative number).
 template <class T>
 struct Vec3 {
   T x{};
