@@ -20,13 +20,12 @@ std::vector<Parameter> with_material_parameters(std::span<const Parameter> own);
 Material material(const Parameters& parameters);
 
 /// The clamp, at rest at the origin: e0 along root_tangent, e1 = y, so that curvature
-/// about e1 bends in the x-z plane. "Sideways" is y for root_tangent x, else x. With f =
-/// frequency_hz:
+/// about e1 bends in the x-z plane (positive: towards -e2, down for root_tangent x).
+/// "Sideways" is y for root_tangent x, else x. With f = frequency_hz:
 ///
 ///     fixed, free    at rest (free: see free_root)
 ///     shake          amplitude_m sin(2 pi f t) sideways
-///     rotate         head_angle_rad sin(2 pi f t) about the vertical that lies
-///     head_radius_m
+///     rotate         head_angle_rad sin(2 pi f t) about a vertical axis, head_radius_m
 ///                    behind the root (towards -x)
 ///     shake_rotate   both
 ///     swing          amplitude_m (1 - cos 2 pi f t) along y
