@@ -74,13 +74,13 @@ HelixFunctions<T> series(const T& s, double x2) {
 /// By the closed forms for one s; accurate for ws >= 3 or so.
 HelixFunctions<double> closed_forms(double s, double x2) noexcept;
 
-// Nine terms leave out less than eps of the value up to ws = 1.5, eighteen up to 4, where
-// the alternating sums lose 3 bits; from there on the closed forms are the better.
+// Nine terms leave out less than eps of the value up to ws = 1.5, sixteen up to 4.5,
+// where the alternating sums lose 4 bits; from there on the closed forms are the better.
 inline constexpr double short_end = 1.5 * 1.5;  // of X = (ws)^2
-inline constexpr double long_end = 4.0 * 4.0;
+inline constexpr double long_end = 4.5 * 4.5;
 
 inline HelixFunctions<double> one_by_one(double s, double x2) noexcept {
-  return x2 * (s * s) <= long_end ? series<18>(s, x2) : closed_forms(s, x2);
+  return x2 * (s * s) <= long_end ? series<16>(s, x2) : closed_forms(s, x2);
 }
 
 inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
@@ -105,17 +105,17 @@ inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
 /// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa; longest
 /// is the largest |s| of the element, so that all its points take the same way.
 ///
-/// Errors: with eps = 2^-52, at most 5 eps relative while ws <= 2. Beyond, where the
-/// functions have zeros, relative to the size of their oscillation s^p / (ws)^m, m = 1,
-/// 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 8 eps up to ws = 4,
-/// then (8 + ws) eps, as ws itself is rounded: 1e-14 at ws = 50. Cost: three ways, chosen
-/// by w longest: below 1.5 and 4 (a turn is 6.3) power series without branches, beyond
-/// four scalar evaluations.
+/// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
+/// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
+/// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to
+/// ws = 4.5, then 20 eps, and ws eps from ws = 20 on, as ws itself is rounded: 1e-14
+/// at 45. Cost: one of three ways, chosen by w longest: below 1.5 and 4.5 (a turn is 6.3)
+/// power series without branches, beyond every lane by itself.
 template <class T>
 HelixFunctions<T> helix_functions(const T& s, double x2, double longest) noexcept {
   const double x = x2 * (longest * longest);
   if (x <= helix::short_end) return helix::series<9>(s, x2);
-  if (x <= helix::long_end) return helix::series<18>(s, x2);
+  if (x <= helix::long_end) return helix::series<16>(s, x2);
   return helix::one_by_one(s, x2);
 }
 
