@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -13,13 +12,6 @@ namespace tress {
 
 inline double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-inline double area(const Segment& s) {
-  return std::numbers::pi * s.section.a1 * s.section.a1;
-}
-inline double inertia(const Segment& s) {
-  return area(s) * s.section.a1 * s.section.a1 / 4;
-}
 
 /// Position and frame at s along a segment, from its start.
 struct Pose {
@@ -57,7 +49,7 @@ struct Tree {
   }
 
   double mass(std::size_t i) const {
-    return material.density * area(segments[i]) * segments[i].length;
+    return material.density * segments[i].section.area() * segments[i].length;
   }
   std::vector<int> children(int i) const {
     std::vector<int> all;
