@@ -36,8 +36,8 @@ constexpr Column columns[] = {
     {"us_per_step", "the same per step", true},
     {"tip_error_rel",
      "rms over the run of the tip's distance from the same peer's finest run, over L; "
-     "understated within a factor of 4 of the finest step"},
-    {"largest_stable", "no larger step is stable, nor any between", false},
+     "of first order understated by the ratio of the finest step to dt_s"},
+    {"largest_stable", "the largest step with none unstable below it"},
     {"cheapest_1pct", "fastest run with a tip error of at most 1 %", true},
     {"cheapest_0p1pct", "fastest run with a tip error of at most 0.1 %", true},
     {"apart_mm",

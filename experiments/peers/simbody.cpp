@@ -80,9 +80,17 @@ class Simbody : public Peer {
     integrator_->stepTo(SimTK::Infinity);  // reports the start
   }
 
-  void step(double /*t*/) override { integrator_->stepTo(SimTK::Infinity); }
+  void step(double /*t*/) override {
+    if (gave_up_) return;
+    try {
+      integrator_->stepTo(SimTK::Infinity);
+    } catch (const SimTK::Exception::Base&) {  // on numbers that are not finite
+      gave_up_ = true;
+    }
+  }
 
   Motion motion() override {
+    if (gave_up_) return {.tip = {SimTK::NaN, 0, 0}};
     const SimTK::State& state = integrator_->getState();
     system_.realize(state, SimTK::Stage::Velocity);
     const SimTK::Vec3 tip =
@@ -108,6 +116,7 @@ class Simbody : public Peer {
   SimTK::SimbodyMatterSubsystem matter_;
   SimTK::GeneralForceSubsystem forces_;
   std::unique_ptr<SimTK::Integrator> integrator_;
+  bool gave_up_ = false;
 };
 
 template <class Integrator>
