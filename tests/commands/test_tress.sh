@@ -52,6 +52,9 @@ usage() {
   expect 2 'run: sudo apt-get update && sudo apt-get install .*ninja-build' \
     env TRESS_CACHE="$work/cache" "$repository/tress" setup
   expect_one_line
+  expect 2 'sudo apt-get install .*libode-dev' \
+    env TRESS_CACHE="$work/cache" "$repository/tress" peers
+  expect_one_line
   [[ ! -e $work/apt_was_called ]] || { echo "apt-get was called without rights"; exit 1; }
 
   # As root, a failing apt-get ends setup with its log's path.

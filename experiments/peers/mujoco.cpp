@@ -1,0 +1,131 @@
+// MuJoCo: joint coordinates, composite inertia with a sparse L^T D L factor;
+// semi-implicit Euler, or implicit in velocity. Ball joints, or universal joints as two
+// hinges.
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiments/peers/peer.h"
+
+namespace tress::peers {
+namespace {
+
+enum class Joint { ball, universal };
+
+std::string joints(Joint joint, double stiffness) {
+  if (joint == Joint::ball) {
+    return fmt::format("<joint type='ball' stiffness='{}'/>", stiffness);
+  }
+  return fmt::format(
+      "<joint type='hinge' axis='0 1 0' stiffness='{0}'/>"
+      "<joint type='hinge' axis='0 0 1' stiffness='{0}'/>",
+      stiffness);
+}
+
+/// The strand in MuJoCo's own format: links nested from the clamp outwards.
+std::string description(const Swing& swing, double dt, Joint joint,
+                        std::string_view integrator) {
+  std::string text = fmt::format(
+      "<mujoco><compiler angle='radian'/><option timestep='{}' integrator='{}'>"
+      "<flag constraint='disable' contact='disable'/></option><worldbody>",
+      dt, integrator);
+  const double l = swing.link_length();
+  for (int i = 0; i < swing.links; ++i) {
+    text += fmt::format("<body pos='{} 0 0'>{}", i == 0 ? 0 : l,
+                        joints(joint, swing.stiffness(i)));
+    text += fmt::format("<inertial pos='{0} 0 0' mass='{1}' diaginertia='{2} {2} {2}'/>",
+                        l / 2, swing.mass(), swing.moment());
+  }
+  for (int i = 0; i < swing.links; ++i) text += "</body>";
+  return text + "</worldbody></mujoco>";
+}
+
+struct Free {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+std::unique_ptr<mjModel, Free> compile(const std::string& text) {
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  constexpr const char* name = "strand.xml";
+  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size()));
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], text.data(),
+              text.size());
+  char error[500] = "";
+  std::unique_ptr<mjModel, Free> model(
+      mj_loadXML(name, files.get(), error, sizeof error));
+  mj_deleteVFS(files.get());
+  if (!model) throw std::runtime_error(fmt::format("MuJoCo: {}", error));
+  return model;
+}
+
+class Mujoco : public Peer {
+ public:
+  Mujoco(const Swing& swing, double dt, Joint joint, std::string_view integrator)
+      : swing_(swing),
+        model_(compile(description(swing, dt, joint, integrator))),
+        data_(mj_makeData(model_.get())),
+        momentum_(static_cast<std::size_t>(model_->nv)) {
+    mju_user_warning = [](const char*) {};  // else it writes a log file where it stands
+  }
+
+  void step(double t) override {
+    const Vec g = Swing::gravity(t);
+    store3(g, model_->opt.gravity);
+    mj_step1(model_.get(), data_.get());
+    // Damping of every body by its mass and moment is damping by the mass matrix.
+    mj_mulM(model_.get(), data_.get(), momentum_.data(), data_->qvel);
+    mju_scl(data_->qfrc_applied, momentum_.data(), -Swing::damping, model_->nv);
+    mj_step2(model_.get(), data_.get());
+  }
+
+  Motion motion() override {
+    if (gave_up()) return {.tip = {std::numeric_limits<double>::quiet_NaN(), 0, 0}};
+    mj_fwdPosition(model_.get(), data_.get());
+    mj_mulM(model_.get(), data_.get(), momentum_.data(), data_->qvel);
+    const double energy = mju_dot(momentum_.data(), data_->qvel, model_->nv) / 2;
+    const mjtNum end[3] = {swing_.link_length(), 0, 0};
+    mjtNum tip[3];
+    mju_rotVecMat(tip, end, data_->xmat + 9 * swing_.links);  // body 0 is the world
+    mju_addTo3(tip, data_->xpos + 3 * swing_.links);
+    return {load3(tip), energy};
+  }
+
+ private:
+  /// On bad numbers MuJoCo warns and starts over from the initial state.
+  bool gave_up() const {
+    for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+      if (data_->warning[kind].number > 0) return true;
+    }
+    return false;
+  }
+
+  const Swing swing_;
+  const std::unique_ptr<mjModel, Free> model_;
+  const std::unique_ptr<mjData, Free> data_;
+  std::vector<mjtNum> momentum_;
+};
+
+template <Joint joint, bool implicit>
+std::unique_ptr<Peer> make(const Swing& swing, double dt) {
+  return std::make_unique<Mujoco>(swing, dt, joint, implicit ? "implicit" : "Euler");
+}
+
+constexpr Method methods[] = {
+    {"ball joints: Euler", 1, make<Joint::ball, false>},
+    {"universal joints: Euler", 1, make<Joint::universal, false>},
+    {"universal joints: implicit", 1, make<Joint::universal, true>},
+};
+
+}  // namespace
+
+std::span<const Method> mujoco_methods() { return methods; }
+
+}  // namespace tress::peers
