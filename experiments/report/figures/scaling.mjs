@@ -106,9 +106,9 @@ export const scaling = {
   title: 'Cost against the number of elements',
   table: 'scaling',
   finding: scaling_finding,
-  caption: `Left: cost of one time step against the number of elements of a straight
+  caption: `First: cost of one time step against the number of elements of a straight
     strand, one line per solver, with the slope fitted by the experiment; hollow diamonds
-    are the five trees. Right: how many times the recursive step the composite one costs;
+    are the five trees. Second: how many times the recursive step the composite one costs;
     diamonds are trees, squares what the source's frames per second say (rounded there,
     and equal at one and two elements). Its hardware was of 2008, so its frames per second
     are not comparable with ours, the ratio is. Click a legend entry to keep it and dim

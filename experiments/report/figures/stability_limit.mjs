@@ -28,7 +28,9 @@ const cap_ms = 1e3 * scan_end_s;
 const frame_ms = 1e3 * frame_s;
 const lane_factor = 1.42;
 const gap = 14;
-const axis_room = 62;
+const axis_room = 72;
+// What marks and tick labels at the ends of x reach beyond a panel.
+const overhang = 6;
 
 const grouped = ['recursive', 'composite'];
 
@@ -102,7 +104,13 @@ function panel(
   ]);
   const stable = members.filter((row) => row.dt_ms !== null);
   return {
-    title: `${spaced(members[0].scene)}, ${damping_name(members[0])}`,
+    title: {
+      text: spaced(members[0].scene),
+      subtitle: damping_name(members[0]),
+      subtitleColor: theme.muted,
+      subtitleFontSize: 12,
+      offset: 6,
+    },
     width: panel_width,
     height,
     layer: [
@@ -192,7 +200,7 @@ export const stability_limit = {
     const full = groups.length === scenes.length * dampings && dampings > 1;
     const wanted = full ? dampings : Math.min(3, groups.length);
     const columns = width >= 150 * wanted + axis_room + 100 ? wanted : 1;
-    const room = width - axis_room - 12 - (columns - 1) * gap;
+    const room = width - axis_room - 8 - columns * overhang - (columns - 1) * gap;
     const { legend } = layout(width, groups.length, {
       labels: style.domain,
       above: true,

@@ -268,7 +268,7 @@ export const swing = {
     joins the runs of one integrator that none of its other runs beats in both. Grey ticks
     at 1 % and 0.1 %, and the rows below, are other simulators as published: time error
     against their own finest run at 20 elements, measured on another machine of the same
-    class, so trust ratios. Black rings are the targets, 20 ms and 50 ms. Errors under
+    class, so trust ratios. Large rings are the targets, 20 ms and 50 ms. Errors under
     1e-5 % and over 100 % are not drawn. Made from
     swing.csv and peers_swing.csv; failed runs are in the tables only.`,
 
