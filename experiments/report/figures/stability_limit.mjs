@@ -4,6 +4,7 @@ import {
   damping_name,
   damping_rank,
   frame_s,
+  has_limit,
   is_capped,
   principal_runs,
   run_name,
@@ -47,7 +48,7 @@ function with_places(rows, domain) {
       ...row,
       dt_ms: is_capped(row)
         ? cap_ms * lane_factor ** (lane(row.method) + 0.85)
-        : is_positive(row.dt_max_s)
+        : has_limit(row)
           ? 1e3 * row.dt_max_s
           : null,
     })),
@@ -165,8 +166,8 @@ export const stability_limit = {
     end of the scan, 100 ms; the height inside the band means nothing. The dashed line is
     33 ms, one frame at 30 frames/s. A cross at the bottom: no stable step was found. The
     step is the papers' semi-implicit one unless the legend says otherwise. Made from
-    stability_limit.csv, up to 40 elements; other solvers, integrators and modes are in
-    the tables only.`,
+    stability_limit.csv, up to 40 elements; other solvers, integrators and modes, and
+    searches that ran out of time, are in the tables only.`,
 
   rows: (tables) =>
     principal_runs(
@@ -174,7 +175,8 @@ export const stability_limit = {
         (row) =>
           is_positive(row.elements) &&
           row.elements <= elements_end &&
-          (is_positive(row.dt_max_s) || is_positive(row.dt_first_unstable_s)),
+          (has_limit(row) ||
+            (row.status === 'unstable' && is_positive(row.dt_first_unstable_s))),
       ),
     ).map((row) => ({ ...row, method: run_name(row) })),
 
@@ -193,12 +195,18 @@ export const stability_limit = {
         (row) => `${row.scene}|${row.damping}`,
       ).values(),
     ];
+    // Columns are dampings where they fit: scenes that have all of them come first, and
+    // only the first column carries the labels of y.
     const scenes = distinct(rows.map((row) => row.scene));
-    groups.sort((a, b) => scenes.indexOf(a[0].scene) - scenes.indexOf(b[0].scene));
-    // Columns are dampings where they fit; then only the first carries the labels of y.
-    const dampings = distinct(rows.map((row) => row.damping)).length;
-    const full = groups.length === scenes.length * dampings && dampings > 1;
-    const wanted = full ? dampings : Math.min(3, groups.length);
+    const panels_of = (group) => groups.filter(([row]) => row.scene === group[0].scene);
+    const wanted = Math.max(
+      Math.min(3, groups.length),
+      ...groups.map((group) => panels_of(group).length),
+    );
+    const place = (group) =>
+      (panels_of(group).length === wanted ? 0 : scenes.length) +
+      scenes.indexOf(group[0].scene);
+    groups.sort((a, b) => place(a) - place(b));
     const columns = width >= 150 * wanted + axis_room + 100 ? wanted : 1;
     const room = width - axis_room - 8 - columns * overhang - (columns - 1) * gap;
     const { legend } = layout(width, groups.length, {

@@ -38,18 +38,16 @@ export function run_name(row) {
 export const is_capped = (row) =>
   is_positive(row.dt_max_s) && row.dt_max_s >= scan_end_s * (1 - 1e-9);
 
-const damping_order = ['none', 'light'];
-export function damping_rank(row) {
-  if (typeof row.damping === 'number') return row.damping;
-  const known = damping_order.indexOf(row.damping);
-  return known < 0 ? damping_order.length : known;
-}
-export function damping_name({ damping }) {
-  if (damping === 'none' || damping === 0) return 'no damping';
-  return typeof damping === 'number'
-    ? `damping ${damping}`
-    : `${spaced(damping)} damping`;
-}
+// The search was done and found a step below which everything tested was stable.
+export const has_limit = (row) => succeeded(row) && is_positive(row.dt_max_s);
+
+const dampings = {
+  none: 'no damping',
+  light: 'light damping',
+  seed: "the source's damping",
+};
+export const damping_rank = ({ damping }) => Object.keys(dampings).indexOf(damping);
+export const damping_name = ({ damping }) => dampings[damping] ?? spaced(damping);
 
 // What the figure draws of one method: all modes, the papers' step (and backward Euler
 // beside it with the exact tangent), one solver where solvers share one name in it.

@@ -5,6 +5,7 @@ import {
   damping_name,
   damping_rank,
   fastest_at,
+  has_limit,
   is_capped,
   run_name,
   scan_end_s,
@@ -39,11 +40,11 @@ const element_marks = [1, 2, 5, 10, 20, 40];
 
 function limit_cell(row) {
   if (row === undefined) return '';
-  if (is_capped(row)) return `≥ ${1e3 * scan_end_s}`;
-  if (is_positive(row.dt_max_s)) return format_number(1e3 * row.dt_max_s);
-  return is_positive(row.dt_first_unstable_s)
+  if (has_limit(row))
+    return is_capped(row) ? `≥ ${1e3 * scan_end_s}` : format_number(1e3 * row.dt_max_s);
+  return row.status === 'unstable' && is_positive(row.dt_first_unstable_s)
     ? `< ${format_number(1e3 * row.dt_first_unstable_s)}`
-    : row.status;
+    : spaced(row.status);
 }
 
 export function stability_summary({ stability_limit: rows = [] }) {

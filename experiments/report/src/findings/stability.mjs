@@ -1,9 +1,10 @@
 // What stability_limit.csv says, as sentences computed from its rows.
-import { distinct, group_by, is_positive } from '../tables.mjs';
+import { distinct, group_by } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
 import {
   damping_name,
   frame_s,
+  has_limit,
   is_capped,
   principal_runs,
   run_name,
@@ -11,17 +12,16 @@ import {
 } from '../strand.mjs';
 import { failure_sentence } from './drift.mjs';
 
-// Two limits found by bisection count as equal within this.
-const equal_within = 0.02;
+// Two limits count as equal within the resolution of the search.
+const equal_within = 0.05;
 
 const limit = (row) => `${is_capped(row) ? 'at least ' : ''}${format_time(row.dt_max_s)}`;
 const place = (row) => `${spaced(row.scene)}, ${damping_name(row)}`;
-const limited = (rows) => rows.filter((row) => is_positive(row.dt_max_s));
 
 // Cases (scene, damping, elements, modes) in which both named runs have a limit.
 export function limit_pairs(rows, first, second) {
   return [
-    ...group_by(limited(rows), (row) =>
+    ...group_by(rows.filter(has_limit), (row) =>
       [row.scene, row.damping, row.elements, row.modes].join('|'),
     ).values(),
   ].flatMap((members) => {
@@ -95,7 +95,7 @@ function frame_sentence(rows) {
   const at_20 = principal_runs(rows.filter((row) => row.elements === 20));
   const parts = [...group_by(at_20, run_name)].map(([name, members]) => {
     const kept = members.filter(
-      (row) => is_positive(row.dt_max_s) && row.dt_max_s >= frame_s * (1 - 0.02),
+      (row) => has_limit(row) && row.dt_max_s >= frame_s * (1 - 1e-3),
     );
     return `${name} ${kept.length} of ${members.length}`;
   });
@@ -107,9 +107,9 @@ function frame_sentence(rows) {
 }
 
 function damping_sentences(rows) {
-  const plain = limited(rows).filter(
-    (row) => row.elements === 20 && run_name(row) === 'recursive',
-  );
+  const plain = rows
+    .filter(has_limit)
+    .filter((row) => row.elements === 20 && run_name(row) === 'recursive');
   return [...group_by(plain, (row) => row.scene)].flatMap(([scene, members]) =>
     members.length > 1
       ? [
