@@ -12,6 +12,9 @@ const figures = [
   'drift_recovery',
   'work_precision',
   'bdf_order',
+  'stability_limit',
+  'scaling',
+  'swing',
 ];
 let directory, browser, url;
 
@@ -97,6 +100,9 @@ for (const [figure, entry] of [
   ['drift_cost', 'symplectic_euler'],
   ['drift_recovery', 'velocity_verlet'],
   ['bdf_order', 'cvode_bdf max order 2'],
+  ['stability_limit', 'composite'],
+  ['scaling', 'recursive: slope 1.01'],
+  ['swing', 'implicit_midpoint'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
     await browser.open(url);
@@ -198,6 +204,42 @@ for (const width of [390, 768, 1400]) {
     assert.deepEqual(cut, []);
   });
 }
+
+// Boxes of the texts of a figure that are hidden by none and overlap another.
+const overlapping_texts = (figure) =>
+  browser.run(`
+  const boxes = [...document.querySelectorAll('#plot-${figure} svg text')]
+    .filter((t) => t.textContent !== '' && Number(t.getAttribute('opacity') ?? 1) > 0)
+    .map((t) => [t.textContent, t.getBoundingClientRect()])
+    .filter(([, box]) => box.width > 0);
+  const apart = (a, b) =>
+    a.right <= b.left + 1 || b.right <= a.left + 1 ||
+    a.bottom <= b.top + 3 || b.bottom <= a.top + 3;
+  // The outlined copy of a text lies under the text itself.
+  return boxes.flatMap(([text, box], i) => boxes.slice(i + 1)
+    .filter(([other, at]) => other !== text && !apart(box, at))
+    .map(([other]) => text + ' / ' + other));`);
+
+for (const width of [390, 1240]) {
+  test(`StrandFigures_KeepTheirLabelsApart_${width}`, async () => {
+    await browser.open(url, width);
+    for (const figure of ['stability_limit', 'scaling', 'swing', 'work_precision']) {
+      assert.deepEqual(await overlapping_texts(figure), [], figure);
+    }
+  });
+}
+
+test('Composite_IsDrawnOnTheLineOfRecursive', async () => {
+  await browser.open(url);
+  const [composite, recursive] = await browser.run(`
+    const places = (colour) =>
+      [...document.querySelectorAll('#plot-stability_limit path[aria-roledescription="point"]')]
+        .filter((p) => p.getAttribute('stroke')?.toUpperCase() === colour)
+        .map((p) => p.getAttribute('transform'));
+    return ['#E69F00', '#1F7FC2'].map(places);`);
+  assert.ok(composite.length > 80, `${composite.length} marks`);
+  assert.deepEqual(composite, recursive);
+});
 
 test('Figures_HaveDescriptions', async () => {
   await browser.open(url);

@@ -25,6 +25,9 @@ const figures = {
   drift_recovery: ['beta² / (4 alpha)', 'recovery time (s)'],
   work_precision: ['wall time per simulated second (s/s)', 'relative error'],
   bdf_order: ['relative error', 'steps', 'wall time (s)'],
+  stability_limit: ['largest stable dt (ms)', 'elements', '≥ 100', '33'],
+  scaling: ['cost per step (µs)', 'composite / recursive', 'composite: slope 2.62'],
+  swing: ['wall time (ms)', 'tip error (%)', '20 ms', '50 ms'],
 };
 
 // Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser
@@ -115,6 +118,9 @@ test('MissingTables_SayHowToProduceThem', () => {
     'baumgarte_limit',
     'work_precision',
     'bdf_order',
+    'stability_limit',
+    'scaling',
+    'swing',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);
   }
@@ -188,6 +194,95 @@ test('BdfFinding_StatesTheRatioOfTheRows', () => {
     page,
     /Steps at maximum order 5 against order 2: .*16800 against 231 at rtol 0\.001 \(72\.7 times\)/,
   );
+});
+
+// The page's text without tags; the fixture's numbers are what the sentences must say.
+const page_text = () =>
+  readFileSync(join(directory, 'report.html'), 'utf8')
+    .replace(/<script[\s\S]*/, '')
+    .replace(/<\/t[dh]>/g, ' | ')
+    .replace(/<[^>]*>/g, '');
+
+const with_changed = (name, change, check) => {
+  const path = join(directory, `${name}.csv`);
+  const text = readFileSync(path, 'utf8');
+  const changed = change(text);
+  assert.notEqual(changed, text);
+  writeFileSync(path, changed);
+  assert.equal(run_report(directory).status, 0);
+  check(page_text());
+  writeFileSync(path, text);
+  assert.equal(run_report(directory).status, 0);
+};
+
+test('StabilityFinding_CountsWhereTheSolversAgree', () => {
+  assert.match(page_text(), /same largest step in 90 of 90 cases\. Whip, no damping/);
+  with_changed(
+    'stability_limit',
+    (text) =>
+      text.replace(
+        /^(shake,super_helix,semi_implicit_euler,composite,stiff,bend_twist,20,none,)[^,]*/m,
+        '$10.0003',
+      ),
+    (page) => assert.match(page, /in 89 of 90 cases \(largest difference \d+ %\)/),
+  );
+});
+
+test('StabilityTable_MarksTheEndOfTheScan', () => {
+  assert.match(
+    page_text(),
+    /release \| no damping \| recursive \| ≥ 100 \| 41 \| 9\.9 \| 3\.38 \| 1\.16 \| 0\.394/,
+  );
+  assert.match(
+    page_text(),
+    /whip \| no damping \| less implicit[^\n]*?\| &lt; 0\.001 \|/,
+  );
+});
+
+test('ScalingTable_HasTheSourcesRatioBesideOurs', () => {
+  assert.match(page_text(), /straight \| 30 \| 1\.4 \| 37 \| 26\.4 \|/);
+  with_changed(
+    'scaling',
+    (text) =>
+      text.replace(
+        /^(straight,super_helix,composite,stiff,bend_twist,30,)[^,]*/m,
+        '$14e-3',
+      ),
+    (page) => assert.match(page, /costs 100 times the recursive one at 30 elements/),
+  );
+});
+
+test('SwingFinding_NamesTheTargetAndTheFastestPeer', () => {
+  assert.match(
+    page_text(),
+    /1 % time error: cvode_adams .* within the target of 20 ms; the fastest published simulator \(MuJoCo 3, universal joints, implicitfast\) 38 ms/,
+  );
+  with_changed(
+    'swing',
+    (text) => text.replace(/^super_helix.*,(cvode_\w+|ida),20,.*,time,.*\n/gm, ''),
+    (page) => assert.match(page, /1 % time error: .* not within the target of 20 ms/),
+  );
+});
+
+test('Swing_IsDrawnWithoutThePublishedRows', () => {
+  const path = join(directory, 'peers_swing.csv');
+  const text = readFileSync(path, 'utf8');
+  rmSync(path);
+  assert.equal(run_report(directory).status, 0);
+  const svg = readFileSync(join(directory, 'swing.svg'), 'utf8');
+  assert.ok(!svg.includes('Published simulators'));
+  assert.ok(mark_count(svg) > 10);
+  assert.doesNotMatch(page_text(), /peers_swing\.csv is not there/);
+  writeFileSync(path, text);
+  assert.equal(run_report(directory).status, 0);
+});
+
+test('WorkPrecision_TellsSolversAndKindsOfErrorApart', () => {
+  const svg = readFileSync(join(directory, 'work_precision.svg'), 'utf8');
+  for (const text of ['linear solver', 'composite', 'strand swing, total error']) {
+    assert.ok(svg.includes(`>${text}<`), text);
+  }
+  assert.match(page_text(), /strand swing, total error, cheapest per simulated second/);
 });
 
 test('Csv_ReadsQuotesAndSpecialNumbers', () => {

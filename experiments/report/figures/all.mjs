@@ -3,6 +3,9 @@ import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
+import { scaling } from './scaling.mjs';
+import { stability_limit } from './stability_limit.mjs';
+import { swing } from './swing.mjs';
 import { work_precision } from './work_precision.mjs';
 
 export const figures = [
@@ -11,6 +14,9 @@ export const figures = [
   drift_recovery,
   work_precision,
   bdf_order,
+  stability_limit,
+  scaling,
+  swing,
 ];
 
 // A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.

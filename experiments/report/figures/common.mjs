@@ -49,7 +49,10 @@ export const vega_config = (theme) => ({
     symbolSize: 70,
     symbolStrokeWidth: 1.8,
     titleLimit: 300,
-    layout: { bottom: { anchor: 'start', direction: 'vertical', margin: 14 } },
+    layout: {
+      bottom: { anchor: 'start', direction: 'vertical', margin: 14 },
+      top: { anchor: 'start', direction: 'vertical', margin: 14 },
+    },
   },
   text: { color: theme.text, font },
 });
@@ -99,9 +102,14 @@ const axis_room = 64;
 const panel_gap = 28;
 const legend_from = 720;
 
-// How many panels of what width fit, and where the legend goes.
-export function layout(width, panel_count, { labels = [], columns_max = 3 } = {}) {
-  const beside = width >= legend_from;
+// How many panels of what width fit, and where the legend goes: `above` when its labels
+// are long or the panels many, else beside, else below.
+export function layout(
+  width,
+  panel_count,
+  { labels = [], columns_max = 3, above = false } = {},
+) {
+  const beside = width >= legend_from && !above;
   const longest = Math.max(12, ...labels.map((label) => label.length));
   const room = width - (beside ? 56 + 7.2 * longest : 0) - 12;
   const fit = Math.max(1, Math.floor((room + panel_gap) / (250 + axis_room + panel_gap)));
@@ -118,8 +126,25 @@ export function layout(width, panel_count, { labels = [], columns_max = 3 } = {}
     panel_width: Math.max(200, Math.min(panel_width, 760)),
     legend: beside
       ? { orient: 'right', offset: 16 }
-      : { orient: 'bottom', columns: legend_columns, offset: 14 },
+      : {
+          orient: above ? 'top' : 'bottom',
+          columns: legend_columns,
+          offset: 14,
+          ...(above ? { labelLimit: 0 } : {}),
+        },
   };
+}
+
+// Text broken into lines of at most `width` pixels, at about 6.4 pixels a letter.
+export function lines_of(text, width, letter = 6.4) {
+  const lines = [];
+  for (const word of text.split(/\s+/)) {
+    const longer = lines.length > 0 ? `${lines.at(-1)} ${word}` : word;
+    if (lines.length > 0 && longer.length * letter <= width)
+      lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
 }
 
 // Selection by legend: a legend click keeps one entry and dims the rest (shift-click
@@ -149,14 +174,14 @@ export function series_channels(field, title, style, legend) {
 // Panels side by side, wrapped to the width. Selection parameters must sit in the first
 // layer of the first panel: on a layered chart's top level they collide, in later layers
 // clicks are lost.
-export function panels(list, columns) {
+export function panels(list, columns, { dashes = 'independent' } = {}) {
   return {
     concat: list,
     columns,
     spacing: panel_gap,
     resolve: {
-      scale: { color: 'shared', shape: 'shared', strokeDash: 'independent' },
-      legend: { color: 'shared', shape: 'shared' },
+      scale: { color: 'shared', shape: 'shared', strokeDash: dashes },
+      legend: { color: 'shared', shape: 'shared', strokeDash: dashes },
     },
   };
 }

@@ -111,6 +111,24 @@ export function series_style(names) {
   };
 }
 
+// {domain, range} of dashes for `compared` solvers, recursive solid; the other solvers of
+// `rows` had no rival and stay solid.
+export function solver_dashes(compared, rows) {
+  const ranked = [...compared].sort(
+    (a, b) => (b === 'recursive') - (a === 'recursive') || a.localeCompare(b),
+  );
+  const alone = [...new Set(rows.map((row) => row.solver))].filter(
+    (solver) => !compared.includes(solver),
+  );
+  return {
+    domain: [...ranked, ...alone],
+    range: [
+      ...ranked.map((_, i) => dashes[i % dashes.length]),
+      ...alone.map(() => dashes[0]),
+    ],
+  };
+}
+
 const formulation_order = [
   'acceleration',
   'baumgarte',
@@ -149,3 +167,35 @@ export function formulation_style(names) {
 // Sequential ramp for max order 1..5 (light to dark is not used: it must read on both
 // themes).
 export const order_colours = ['#F2B134', '#E8743B', '#C9366F', '#8E3FB0', '#4C5BD4'];
+
+// Solvers and tangents of the strand models; a later match of the same family takes the
+// next shade.
+const method_families = [
+  { match: /^recursive(?!.*exact)/, colours: ['#1F7FC2', '#6CC0EE', '#8FA6D8'] },
+  { match: /^composite(?!.*exact)/, colours: ['#E69F00', '#C9B03A', '#9C8500'] },
+  { match: /^sparse(?!.*exact)/, colours: ['#8E6CC9', '#B9A3E0'] },
+  { match: /^(?!articulated).*exact/, colours: ['#009E73', '#4FC9A4', '#7A9B2E'] },
+  { match: /^articulated/, colours: ['#B6407F', '#DB8DBB', '#8E5A75'] },
+  { match: /^less implicit/, colours: ['#D55E00'] },
+  { match: /^/, colours: ['#7A7F87', '#B0B5BC'] },
+];
+
+// {domain, colours, shapes, dashes} for method names, ordered by family.
+export function method_style(names) {
+  const family = (name) => method_families.findIndex(({ match }) => match.test(name));
+  const entries = method_families.flatMap(({ colours }, index) =>
+    [...new Set(names)]
+      .filter((name) => family(name) === index)
+      .map((name, k) => ({
+        name,
+        colour: colours[k % colours.length],
+        dash: dashes[k % dashes.length],
+      })),
+  );
+  return {
+    domain: entries.map((e) => e.name),
+    colours: entries.map((e) => e.colour),
+    shapes: entries.map((_, i) => shapes[i % shapes.length]),
+    dashes: entries.map((e) => e.dash),
+  };
+}

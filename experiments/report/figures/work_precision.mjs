@@ -1,5 +1,12 @@
 // Figure 4: work-precision diagrams, one panel per scene, Pareto front marked.
-import { distinct, group_by, is_positive, is_set, succeeded } from '../src/tables.mjs';
+import {
+  distinct,
+  group_by,
+  is_positive,
+  is_set,
+  problem_name,
+  succeeded,
+} from '../src/tables.mjs';
 import {
   dimmed_unless,
   layout,
@@ -11,7 +18,7 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { series_style } from './palette.mjs';
+import { series_style, solver_dashes } from './palette.mjs';
 
 // Guides of error ~ time^-p from the lower left corner: what order p looks like.
 function order_guides(members) {
@@ -41,6 +48,20 @@ function order_guides(members) {
       },
     ];
   });
+}
+
+// The solvers of the problems that were solved with several; none when each had one.
+export function compared_solvers(rows) {
+  const groups = group_by(rows, (row) => `${problem_name(row)}|${row.model}`);
+  return distinct(
+    [...groups.values()].flatMap((members) => {
+      const solvers = group_by(members, (row) => row.integrator);
+      const several = [...solvers.values()].some(
+        (runs) => distinct(runs.map((row) => row.solver)).length > 1,
+      );
+      return several ? members.map((row) => row.solver) : [];
+    }),
+  ).filter(Boolean);
 }
 
 // One curve: same integrator under the same settings, from loose to tight.
@@ -94,7 +115,7 @@ const counts = [
   ['below', 'below the reference'],
 ];
 
-function panel(scene, members, { panel_width, legend, style, theme }) {
+function panel(problem, members, { panel_width, legend, style, theme, dash }) {
   const x = log_channel(
     'wall_s_per_sim_s',
     'wall time per simulated second (s/s)',
@@ -108,24 +129,28 @@ function panel(scene, members, { panel_width, legend, style, theme }) {
     'relative error',
     log_extent(members.map((r) => r.error_rel)),
   );
-  const series = series_channels('integrator', 'integrator', style, legend);
+  const series = {
+    ...series_channels('integrator', 'integrator', style, legend),
+    ...(dash ? { strokeDash: dash } : {}),
+  };
   const opacity = dimmed_unless(['pick_integrator']);
   const front = pareto_rows(members);
   const guides = order_guides(members);
   const guide_xy = { x: { ...x, field: 'x' }, y: { ...y, field: 'y' } };
   return {
-    title: scene.replaceAll('_', ' '),
+    title: problem,
     width: panel_width,
     height: 330,
     layer: [
       {
         data: { values: members },
-        mark: { type: 'line', strokeWidth: 1.6 },
+        mark: { type: 'line' },
         encoding: {
           x,
           y,
           ...series,
           shape: undefined,
+          strokeWidth: { condition: { test: 'datum.rival', value: 0.9 }, value: 1.6 },
           detail: { field: 'curve' },
           order: { field: 'rank', type: 'quantitative' },
           opacity,
@@ -145,12 +170,13 @@ function panel(scene, members, { panel_width, legend, style, theme }) {
       },
       ...['no', 'yes'].map((below) => ({
         data: { values: members.filter((row) => row.below === below) },
-        mark: { type: 'point', size: 70, strokeWidth: 1.6, filled: below === 'no' },
+        mark: { type: 'point', strokeWidth: 1.6, filled: below === 'no' },
         encoding: {
           x,
           y,
           ...series,
           strokeDash: undefined,
+          size: { condition: { test: 'datum.rival', value: 16 }, value: 70 },
           opacity,
           tooltip: tooltips(counts),
         },
@@ -189,7 +215,8 @@ export const work_precision = {
     better. Each line is one integrator from loose to tight. Ringed points joined by the
     grey band are the Pareto front: nothing else is both faster and more accurate. Hollow
     points lie below the accuracy of the reference and prove nothing. The dashed fan shows
-    the slopes of orders 1, 2 and 4. Click a legend entry to keep that integrator and dim
+    the slopes of orders 1, 2 and 4. Where one problem was solved with several linear
+    solvers, dashes tell them apart and all but the first are thin. Click a legend entry to keep that integrator and dim
     the others. Made from work_precision.csv; failed runs are in the table only.`,
 
   rows: (tables) =>
@@ -203,6 +230,7 @@ export const work_precision = {
       .map((row) => ({
         ...row,
         formulation: row.formulation ?? '',
+        solver: row.solver ?? '',
         curve: curve(row),
         below: is_set(row.below_reference) ? 'yes' : 'no',
         pareto_text: is_set(row.pareto) ? 'yes' : 'no',
@@ -214,20 +242,35 @@ export const work_precision = {
 
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
-    const groups = [...group_by(rows, (row) => row.scene)];
+    const groups = [...group_by(rows, problem_name)];
+    const solvers = compared_solvers(rows);
     const style = series_style(rows.map((row) => row.integrator));
     const { columns, panel_width, legend } = layout(width, groups.length, {
       columns_max: 2,
       labels: style.domain,
     });
+    const dash = solvers.length > 0 && {
+      field: 'solver',
+      type: 'nominal',
+      title: 'linear solver',
+      scale: solver_dashes(solvers, rows),
+      legend: { ...legend, values: solvers, symbolType: 'stroke', symbolSize: 500 },
+    };
+    // Solvers give one error at different times: the first in full, its rivals thin.
+    const rivals = dash ? dash.scale.domain.slice(1, solvers.length) : [];
     return panels(
       with_parameters(
-        groups.map(([scene, members]) =>
-          panel(scene, members, { panel_width, legend, style, theme }),
+        groups.map(([problem, members]) =>
+          panel(
+            problem,
+            members.map((row) => ({ ...row, rival: rivals.includes(row.solver) })),
+            { panel_width, legend, style, theme, dash },
+          ),
         ),
         [legend_selection('pick_integrator', 'integrator')],
       ),
       columns,
+      { dashes: dash ? 'shared' : 'independent' },
     );
   },
 

@@ -7,11 +7,16 @@ import {
   drift_findings,
   recovery_sentences,
 } from './findings/drift.mjs';
+import { scaling_findings } from './findings/scaling.mjs';
+import { stability_answer, stability_findings } from './findings/stability.mjs';
+import { swing_answer, swing_findings } from './findings/swing.mjs';
 import { bdf_findings, work_answer, work_findings } from './findings/work.mjs';
 import { manifest_html } from './manifest.mjs';
+import { scaling_summary, stability_summary, swing_summary } from './summaries.mjs';
 import { known_tables } from './tables.mjs';
 
-// Each section: the question, its figure, what its findings are, its tables.
+// Each section: the question, its figure, what its findings are, its tables, and a table
+// of selected numbers where it has one.
 const sections = [
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {
@@ -26,12 +31,30 @@ const sections = [
   },
   { figure: 'work_precision', findings: work_findings, tables: ['work_precision'] },
   { figure: 'bdf_order', findings: bdf_findings, tables: ['bdf_order'] },
+  {
+    figure: 'stability_limit',
+    findings: stability_findings,
+    summary: stability_summary,
+    tables: ['stability_limit'],
+  },
+  {
+    figure: 'scaling',
+    findings: scaling_findings,
+    summary: scaling_summary,
+    tables: ['scaling'],
+  },
+  {
+    figure: 'swing',
+    findings: swing_findings,
+    summary: swing_summary,
+    tables: ['swing', 'peers_swing'],
+  },
 ];
 
 // A number and its unit stay on one line.
 const prose_html = (text) =>
   escape_html(text).replace(
-    /(?<![\w.])\d[\d.]*(?:e-?\d+)?(?![\w])(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
+    /(?<![\w.#])\d[\d.]*(?:e-?\d+)?(?![\w])(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
     '<span class="number">$&</span>',
   );
 
@@ -63,6 +86,12 @@ const list_html = (sentences, visible = 8) => {
   );
 };
 
+// A caption starts with what the figure shows, where that can be said in a sentence.
+function finding_html({ finding }, objects) {
+  const text = finding?.(objects) ?? '';
+  return text === '' ? '' : `<strong class="finding">${prose_html(text)}</strong> `;
+}
+
 function section_html(section, tables, objects) {
   const figure = figures.find(({ id }) => id === section.figure);
   const present = figure.table in tables;
@@ -74,7 +103,7 @@ function section_html(section, tables, objects) {
       ? `<p class="missing">${figure.table}.csv holds no rows for this figure.</p>`
       : `<figure class="card"><div class="plot" id="plot-${figure.id}" data-figure="${figure.id}" ` +
         `aria-describedby="${caption_id}"></div><figcaption id="${caption_id}">` +
-        `${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
+        `${finding_html(figure, objects)}${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
         '</span></figcaption></figure>';
   const listed = section.tables.flatMap((name) => {
     if (name in tables)
@@ -85,7 +114,8 @@ function section_html(section, tables, objects) {
   });
   return (
     `<section id="${figure.id}"><h2>${escape_html(figure.title)}</h2>\n` +
-    `${list_html(section.findings(objects))}\n${body}\n${listed.join('\n')}</section>`
+    `${list_html(section.findings(objects))}\n${body}\n` +
+    `${section.summary?.(objects) ?? ''}\n${listed.join('\n')}</section>`
   );
 }
 
@@ -93,12 +123,16 @@ function header_html(objects) {
   const none = (name) =>
     `No answer yet: ${name}.csv is missing or holds no finished runs.`;
   return `<header><p class="kicker">tress report</p>
-<h1>Constraint drift, and the price of accuracy</h1>
+<h1>Constraint drift, stable steps, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
 <dd id="answer-drift">${prose_html(drift_answer(objects) ?? none('constraint_drift'))}</dd>
 <dt>What does accuracy cost in time, per integrator?</dt>
 <dd id="answer-work">${prose_html(work_answer(objects) ?? none('work_precision'))}</dd>
+<dt>How large a time step does a strand bear?</dt>
+<dd id="answer-stability">${prose_html(stability_answer(objects) ?? none('stability_limit'))}</dd>
+<dt>How long does a strand take at a stated error, and how long do other simulators?</dt>
+<dd id="answer-swing">${prose_html(swing_answer(objects) ?? none('swing'))}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 </header>

@@ -86,6 +86,75 @@ export const known_tables = {
     command: './tress run',
     program: 'work_precision',
   },
+  stability_limit: {
+    title: 'Largest stable time step',
+    required: [
+      'scene',
+      'model',
+      'integrator',
+      'solver',
+      'tangent',
+      'elements',
+      'damping',
+      'dt_max_s',
+      'status',
+    ],
+    numeric: [
+      'elements',
+      'dt_max_s',
+      'dt_first_unstable_s',
+      'cost_per_step_s',
+      'realtime_factor',
+    ],
+    command: './tress run',
+    program: 'stability_limit',
+  },
+  scaling: {
+    title: 'Cost against elements',
+    required: ['structure', 'model', 'solver', 'elements', 'cost_per_step_s', 'status'],
+    numeric: [
+      'elements',
+      'cost_per_step_s',
+      'cost_per_element_step_s',
+      'exponent',
+      'dt_max_s',
+      'fps',
+      'seed_fps',
+    ],
+    command: './tress run',
+    program: 'scaling',
+  },
+  swing: {
+    title: 'Work and precision on the swinging strand',
+    required: [
+      'model',
+      'integrator',
+      'elements',
+      'error_kind',
+      'tip_error_rel',
+      'wall_s',
+      'status',
+    ],
+    numeric: ['elements', 'dt_s', 'rtol', 'tip_error_rel', 'wall_s', 'steps'],
+    command: './tress run',
+    program: 'swing',
+  },
+  peers_swing: {
+    title: 'Published rows of other simulators on the swinging strand',
+    required: ['peer', 'wall_1pct_s', 'wall_0p1pct_s'],
+    numeric: [
+      'stable_dt_n5_s',
+      'stable_dt_n20_s',
+      'stable_dt_n80_s',
+      'us_per_step_n20',
+      'wall_1pct_s',
+      'dt_1pct_s',
+      'wall_0p1pct_s',
+    ],
+    command: './tress run',
+    program: 'swing',
+    optional: true,
+  },
 };
 
 // Row predicates shared by figures and findings.
@@ -94,6 +163,10 @@ export const is_positive = (value) => is_number(value) && value > 0;
 export const succeeded = (row) => row.status === 'ok';
 export const is_set = (flag) => /^(1|true|yes)$/i.test(String(flag ?? ''));
 export const distinct = (values) => [...new Set(values)];
+
+// The problem a row of work_precision.csv belongs to: total errors apart from time errors.
+export const problem_name = (row) =>
+  row.scene.replaceAll('_', ' ') + (row.error_kind === 'total' ? ', total error' : '');
 
 export function group_by(rows, key) {
   const groups = new Map();

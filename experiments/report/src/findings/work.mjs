@@ -5,6 +5,7 @@ import {
   is_positive,
   is_set,
   minimum_by,
+  problem_name,
   succeeded,
 } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
@@ -29,7 +30,7 @@ const cheapest = (rows, level) =>
   );
 
 function cheapest_sentences(rows) {
-  return [...group_by(usable(rows), (row) => row.scene)].map(([scene, members]) => {
+  return [...group_by(usable(rows), problem_name)].map(([problem, members]) => {
     const parts = levels.flatMap((level) => {
       const best = cheapest(members, level);
       return best
@@ -40,8 +41,8 @@ function cheapest_sentences(rows) {
         : [];
     });
     return parts.length > 0
-      ? `${spaced(scene)}, cheapest per simulated second: ${parts.join(', ')}.`
-      : `${spaced(scene)}: no run reaches an error of ${levels[0]}.`;
+      ? `${problem}, cheapest per simulated second: ${parts.join(', ')}.`
+      : `${problem}: no run reaches an error of ${levels[0]}.`;
   });
 }
 
@@ -89,21 +90,18 @@ export function work_findings({ work_precision: rows = [] }) {
 }
 
 export function work_answer({ work_precision: rows = [] }) {
-  const scenes = [...group_by(usable(rows), (row) => row.scene)];
-  const winners = scenes.flatMap(([scene, members]) => {
+  const problems = [...group_by(usable(rows), problem_name)];
+  const winners = problems.flatMap(([problem, members]) => {
     const best = cheapest(members, 1e-4);
     return best
-      ? [
-          `${best.integrator} on ${spaced(scene)} ` +
-            `(${format_time(best.wall_s_per_sim_s)})`,
-        ]
+      ? [`${best.integrator} on ${problem} ` + `(${format_time(best.wall_s_per_sim_s)})`]
       : [];
   });
   if (winners.length === 0) return undefined;
   const same = distinct(winners.map((w) => w.split(' ')[0])).length === 1;
   return (
     `For a relative error of 1e-4 the cheapest integrator per simulated second is ` +
-    `${winners.join(', ')}${scenes.length > 1 && !same ? ': no single method wins everywhere' : ''}.`
+    `${winners.join(', ')}${problems.length > 1 && !same ? ': no single method wins everywhere' : ''}.`
   );
 }
 

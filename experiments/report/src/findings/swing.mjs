@@ -1,0 +1,52 @@
+// What swing.csv and peers_swing.csv say, as sentences computed from their rows.
+import { is_positive, minimum_by } from '../tables.mjs';
+import { format_number, format_ratio, format_time } from '../format.mjs';
+import { fastest_at, swing_levels, swing_runs } from '../strand.mjs';
+import { failure_sentence } from './drift.mjs';
+
+const step = (row) =>
+  is_positive(row.dt_s)
+    ? `dt ${format_time(row.dt_s)}`
+    : is_positive(row.rtol)
+      ? `rtol ${format_number(row.rtol)}`
+      : '';
+
+function best_peer(rows, { peer }) {
+  return minimum_by(
+    rows.filter((row) => is_positive(row[peer])),
+    (row) => row[peer],
+  );
+}
+
+function level_sentence({ swing = [], peers_swing = [] }, level, kind) {
+  const best = fastest_at(swing_runs(swing, kind), level.error);
+  const what = `${level.name} ${kind} error`;
+  if (best === undefined)
+    return swing_runs(swing, kind).length > 0 ? [`No run reaches ${what}.`] : [];
+  const setting = [step(best), `${best.elements} elements`].filter(Boolean).join(', ');
+  const ours = `${what}: ${best.series} (${setting}) takes ${format_time(best.wall_s)} for 2 simulated seconds`;
+  if (kind !== 'time') return [`${ours}.`];
+  const met = best.wall_s <= level.target_s;
+  const target = `, ${met ? 'within' : 'not within'} the target of ${format_time(level.target_s)}`;
+  const peer = best_peer(peers_swing, level);
+  const other = peer
+    ? `; the fastest published simulator (${peer.peer}) ${format_time(peer[level.peer])}, ` +
+      `${format_ratio(peer[level.peer] / best.wall_s)} ours`
+    : '';
+  return [`${ours}${target}${other}.`];
+}
+
+export const swing_finding = (tables) =>
+  swing_levels.flatMap((level) => level_sentence(tables, level, 'time')).join(' ');
+
+export function swing_findings(tables) {
+  return [
+    ...swing_levels.flatMap((level) => level_sentence(tables, level, 'total')),
+    ...failure_sentence(tables.swing ?? []),
+  ];
+}
+
+export function swing_answer(tables) {
+  const finding = swing_finding(tables);
+  return finding === '' ? undefined : finding;
+}
