@@ -28,6 +28,7 @@ std::span<const ModelEntry> models() {
       ModelEntry{"slider_crank", "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)", "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_parameters(), make_slider_crank},
       ModelEntry{"beam", "n angles of inextensible segments, clamped, pushed at the tip", "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_parameters(), make_beam},
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), make_super_helix},
+      ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), make_articulated_chain},
   };
   return entries;

@@ -108,9 +108,9 @@ inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
 /// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
 /// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
 /// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to
-/// ws = 4.5, then 20 eps, and ws eps from ws = 20 on, as ws itself is rounded: 1e-14
-/// at 45. Cost: one of three ways, chosen by w longest: below 1.5 and 4.5 (a turn is 6.3)
-/// power series without branches, beyond every lane by itself.
+/// ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50.
+/// Cost: one of three ways, chosen by w longest: below 1.5 and 4.5 (a turn is 6.3) power
+/// series without branches, beyond every lane by itself.
 template <class T>
 HelixFunctions<T> helix_functions(const T& s, double x2, double longest) noexcept {
   const double x = x2 * (longest * longest);

@@ -151,11 +151,9 @@ class ExactTangent {
     return seen;
   }
 
-  /// Sums of a column over the points of a segment.
-  struct Column {
-    Vec3<Pack> force, moment;
-    std::array<Pack, dofs> r{};
-  };
+  /// Variation of omega in the components of a frame that turns by `axis`, omega itself
+  /// staying as it is.
+  static Vec in_plane(const Vec& omega, const Vec& axis) { return cross(omega, axis); }
 
   void points(std::size_t i, Weights w, const EffectBlocks& effects,
               SegmentTangent<Shape>& tangent) const {
@@ -216,6 +214,12 @@ class ExactTangent {
         if (blocks) {
           by_phi = by_phi - by_x * lever - by_v * cross(e, u);
           by_omega = by_omega - by_v * lever;
+        }
+        if constexpr (dofs == 1) {
+          // omega within the plane is not among the states: it turns with the frame.
+          const Vec3<Pack> turned(in_plane(m.start.omega, Frames::axis(S::rotation[c])));
+          by_phi = by_phi + mass * (cross(turned, turning + Pack(2) * velocity) +
+                                    cross(omega, cross(turned, p)));
         }
         add(t + c, by_phi);
         add(size + t + c, by_omega);
@@ -299,6 +303,12 @@ class ExactTangent {
       }
       back(cross(e, cross(omega, g.position) + 2.0 * m.velocity) + cross(omega, lever),
            cross(e, m.turning), transfer.col(size + t + c), 2);
+      if constexpr (dofs == 1) {
+        const Vec turned = in_plane(omega, e);
+        back(cross(turned, cross(omega, g.position) + 2.0 * m.velocity) +
+                 cross(omega, cross(turned, g.position)),
+             {}, transfer.col(t + c), 2);
+      }
     }
 
     const Wrench& held = dynamics_.at_tip(i);

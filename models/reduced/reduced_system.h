@@ -93,7 +93,7 @@ class ReducedSystem final : public System,
     for (std::size_t i = 0; i < full_.segments.size(); ++i) {
       exact_tangent_.segment(i, w, effects, full_.segments[i]);
     }
-    if (full_.free_root) exact_tangent_.root(w, v, a, full_.root);
+    if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
     return full_solver_->factor(full_);
   }
 

@@ -1,6 +1,7 @@
 #include "models/reduced/super_helix.h"
 
 #include "models/reduced/reduced_system.h"
+#include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {
@@ -20,6 +21,31 @@ std::span<const Parameter> super_helix_parameters() {
 std::unique_ptr<System> make_super_helix(const Parameters& parameters) {
   return super_helix(strand(parameters), reduced_options(parameters),
                      strand_effects(parameters));
+}
+
+std::span<const Parameter> super_helix_tree_parameters() {
+  static const std::vector<Parameter> all = [] {
+    const std::span<const Parameter> solving = reduced_parameters();
+    std::vector<Parameter> own{{.name = "tree", .help = "which", .choices = tree_choices}};
+    // Branches leave the plane.
+    own.push_back({.name = "modes",
+                   .help = "unknowns a segment: two curvatures and twist, two curvatures",
+                   .choices = "bend_twist|bend"});
+    for (const Parameter& p : solving) {
+      if (p.name != "modes") own.push_back(p);
+    }
+    return with_material_parameters(own);
+  }();
+  return all;
+}
+
+std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters) {
+  Strand tree;
+  tree.material = material(parameters);
+  tree.segments = tree_segments(parameters.word("tree"));
+  tree.root = root_motion(parameters);
+  tree.free_root = free_root(parameters);
+  return super_helix(tree, reduced_options(parameters), strand_effects(parameters));
 }
 
 }  // namespace tress

@@ -24,4 +24,8 @@ std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& 
 std::span<const Parameter> super_helix_parameters();
 std::unique_ptr<System> make_super_helix(const Parameters& parameters);
 
+/// The trees of models/reduced/trees.h.
+std::span<const Parameter> super_helix_tree_parameters();
+std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters);
+
 }  // namespace tress

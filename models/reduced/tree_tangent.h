@@ -32,8 +32,9 @@ struct TreeShape {
 ///     [w; r] = local [s; x] + lift w_tip,     w_tip = tip s_tip + sum of the children's w
 ///
 /// and the equations to solve are r = b. Symmetric: lift = transfer^T, local and tip are
-/// symmetric. Exact: the blocks of transfer that take displacement to velocity or
-/// acceleration, and acceleration to anything else, are zero. `stiffness` is the diagonal
+/// symmetric. Exact: transfer takes displacement to displacement, velocity to velocity and
+/// acceleration, acceleration to acceleration; in the plane, where a turn changes the
+/// components of the clamp's omega, displacement to acceleration too. `stiffness` is the diagonal
 /// part of local that comes from friction and elasticity.
 template <class Shape>
 struct SegmentTangent {
@@ -60,6 +61,7 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
   };
   for (int level = 0; level < levels; ++level) add(level, level);
   if constexpr (levels == 3) add(2, 1);
+  if constexpr (levels == 3 && Shape::dofs == 1) add(2, 0);
   add_product<rows, Shape::states, Shape::dofs>(
       m.data(), rows, segment.transfer.data() + Shape::states * Shape::states,
       Shape::states, c.data() + rows * Shape::states, rows);
