@@ -14,8 +14,7 @@ namespace tress {
 ///   fronds of 1.
 /// - algae, 10 elements, 0.41 m: short stalk, 3 wavy stems of 3.
 /// - complex_tree, 50 elements, 4.0 m: trunk of 5, 5 branches of 3, each with 2 of 2,
-/// each
-///   of those with 1 of 1; golden-angle azimuths.
+///   each of those with 1 of 1; golden-angle azimuths.
 /// - man, 81 elements, 0.81 m above the pelvis, which is the root, 1.7 m from sole to
 ///   crown: spine of 4, neck, head of 2; 2 arms of 6, each with 5 fingers of 2; 2 legs of
 ///   6; 10 hairs of 3.
