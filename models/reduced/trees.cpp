@@ -1,9 +1,9 @@
 #include "models/reduced/trees.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 

@@ -10,18 +10,16 @@ namespace tress {
 /// The five trees of [Bertails-Descoubes 2010, "Performance results"]. The source gives
 /// names and element counts; the geometry is ours.
 ///
-/// | name         | elements | what it is                                        | top, m
-/// |
-/// |--------------|----------|---------------------------------------------------|--------|
-/// | palm_tree    | 8        | bent trunk of 2, 6 drooping fronds of 1           | 3.4 |
-/// | algae        | 10       | short stalk, 3 wavy stems of 3                    | 0.41 |
-/// | complex_tree | 50       | trunk of 5, 5 branches of 3, each with 2 of 2,    | 4.0 |
-/// |              |          | each of those with 1 of 1; golden-angle azimuths  | | |
-/// man          | 81       | spine of 4, neck, head of 2; 2 arms of 6, each    | 0.81   |
-/// |              |          | with 5 fingers of 2; 2 legs of 6; 10 hairs of 3;  | | | |
-/// | the root is the pelvis, 1.7 m from sole to crown  |        | | willow       | 242 |
-/// trunk of 4, 7 limbs of 4, each with 6 hanging     | 4.1    | |              | | twigs
-/// of 5                                        |        |
+/// - palm_tree, 8 elements, highest tip 3.4 m above the root: bent trunk of 2, 6 drooping
+///   fronds of 1.
+/// - algae, 10 elements, 0.41 m: short stalk, 3 wavy stems of 3.
+/// - complex_tree, 50 elements, 4.0 m: trunk of 5, 5 branches of 3, each with 2 of 2,
+///   each of those with 1 of 1; golden-angle azimuths.
+/// - man, 81 elements, 0.81 m above the pelvis, which is the root, 1.7 m from sole to
+///   crown: spine of 4, neck, head of 2; 2 arms of 6, each with 5 fingers of 2; 2 legs of
+///   6; 10 hairs of 3.
+/// - willow, 242 elements, 4.1 m: trunk of 4, 7 limbs of 4, each with 6 hanging twigs of
+///   5.
 ///
 /// Sections are circles. Those of the plants follow the pipe model [Shinozaki et al.
 /// 1964; da Vinci's rule]: the area is proportional to the length of all that grows
