@@ -138,10 +138,6 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
-  check_stability_claims(rows, StepSearch{}.resolution, verdicts);
-}
-
 /// A method without a stable step, or one that needs so many that nobody waits for them,
 /// is what is looked for.
 bool finding(const Row& row) {
@@ -160,7 +156,7 @@ int main(int argc, char** argv) {
       .columns = columns,
       .settings = stability_settings(),
       .cases = cases,
-      .checks = check,
+      .checks = check_stability_claims,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }
