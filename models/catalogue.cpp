@@ -12,6 +12,8 @@
 #include "models/published/beam.h"
 #include "models/published/double_pendulum.h"
 #include "models/published/slider_crank.h"
+#include "models/reduced/articulated_chain.h"
+#include "models/reduced/super_helix.h"
 
 namespace tress {
 
@@ -25,6 +27,8 @@ std::span<const ModelEntry> models() {
       ModelEntry{"andrews_squeezer", "7 angles, 6 loop closures; planar mechanism with one spring", "Test Set for IVP Solvers 2.4, andrews", andrews_squeezer_parameters(), make_andrews_squeezer},
       ModelEntry{"slider_crank", "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)", "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_parameters(), make_slider_crank},
       ModelEntry{"beam", "n angles of inextensible segments, clamped, pushed at the tip", "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_parameters(), make_beam},
+      ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), make_super_helix},
+      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), make_articulated_chain},
   };
   return entries;
 }

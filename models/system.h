@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -98,10 +99,17 @@ struct Energy {
   double total() const { return kinetic + potential; }
 };
 
+struct Momentum {
+  std::array<double, 3> linear{};   // kg m/s
+  std::array<double, 3> angular{};  // kg m^2/s, about the origin
+};
+
 class Energetics {
  public:
   virtual ~Energetics() = default;
   virtual Energy energy(double t, In q, In v) = 0;
+  /// False: the model does not keep count of its momentum.
+  virtual bool momentum(double, In, In, Momentum&) { return false; }
   /// Rate of work (W) of every force that `energy` does not account for: drag is
   /// negative.
   virtual double power(double t, In q, In v) = 0;

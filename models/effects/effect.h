@@ -19,15 +19,17 @@ struct Points {
   In length;   // (count) strand length carried by the point, m
 };
 
-/// What a model must compute before it calls an effect; the model computes the union.
+/// What a model must compute before it calls add_load, add_derivatives or power; the
+/// model computes the union. potential() reads positions whatever this says.
 struct Needs {
+  bool position = false;
   bool velocity = false;
   bool tangent = false;
   bool derivatives = false;  // add_derivatives does something
 
   Needs operator|(Needs other) const {
-    return {velocity || other.velocity, tangent || other.tangent,
-            derivatives || other.derivatives};
+    return {position || other.position, velocity || other.velocity,
+            tangent || other.tangent, derivatives || other.derivatives};
   }
 };
 
@@ -43,7 +45,8 @@ class Effect {
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;
-  virtual double potential(double t, const Points& p) const noexcept = 0;  // J
+  /// J; reads the positions of the points, for which needs() does not ask.
+  virtual double potential(double t, const Points& p) const noexcept = 0;
   /// W done by the part of the load that `potential` does not account for.
   virtual double power(double t, const Points& p) const noexcept = 0;
 };

@@ -6,7 +6,7 @@
 namespace tress {
 
 /// Uniform gravity: f = m g per point, potential energy -m g.x (zero at the origin).
-/// Reads mass and, for the potential, position. O(points).
+/// Reads mass and, for the potential only, position. O(points).
 class Gravity final : public Effect {
  public:
   /// `acceleration` in m/s^2. Throws InputError unless finite.

@@ -6,25 +6,31 @@
 #include "models/math/vec3.h"
 
 namespace tress {
+namespace {
 
-LinearDrag::LinearDrag(double nu) : nu_(nu) {
-  if (!std::isfinite(nu) || nu < 0) {
+bool finite_and_not_negative(double x) { return std::isfinite(x) && x >= 0; }
+
+}  // namespace
+
+LinearDrag::LinearDrag(double nu, double mass_damping)
+    : nu_(nu), mass_damping_(mass_damping) {
+  if (!finite_and_not_negative(nu) || !finite_and_not_negative(mass_damping)) {
     throw InputError("drag coefficient is negative or not finite", "effect linear_drag",
-                     "give nu >= 0 in kg/(m s)");
+                     "give nu >= 0 in kg/(m s) and mass damping >= 0 in 1/s");
   }
 }
 
 void LinearDrag::add_load(double, const Points& p, InOut f) const noexcept {
   for (std::size_t i = 0; i < p.length.size(); ++i) {
     double* load = &f[3 * i];
-    store3(load3(load) - nu_ * p.length[i] * load3(&p.v[3 * i]), load);
+    store3(load3(load) - rate(p, i) * load3(&p.v[3 * i]), load);
   }
 }
 
 void LinearDrag::add_derivatives(double, const Points& p, double, double vel,
                                  InOut blocks) const noexcept {
   for (std::size_t i = 0; i < p.length.size(); ++i) {
-    const double slope = -vel * nu_ * p.length[i];
+    const double slope = -vel * rate(p, i);
     double* block = &blocks[9 * i];
     block[0] += slope;
     block[4] += slope;
@@ -36,7 +42,7 @@ double LinearDrag::power(double, const Points& p) const noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < p.length.size(); ++i) {
     const Vec v = load3(&p.v[3 * i]);
-    sum -= nu_ * p.length[i] * dot(v, v);
+    sum -= rate(p, i) * dot(v, v);
   }
   return sum;
 }

@@ -4,13 +4,14 @@
 
 namespace tress {
 
-/// Viscous drag of still air on a thin strand: f = -nu l v per point, with l the strand
-/// length (m) that the point carries and nu in kg/(m s). It only dissipates:
-/// power = -nu l |v|^2, df/dv = -nu l I. O(points).
+/// Viscous drag of still air on a thin strand and damping in proportion to mass: f = -r v
+/// per point with r = nu l + c m, l the strand length (m) and m the mass (kg) that the
+/// point carries, nu in kg/(m s) and c in 1/s. It only dissipates: power = -r |v|^2,
+/// df/dv = -r I. On a uniform strand c is the same as nu = c rho A more. O(points).
 class LinearDrag final : public Effect {
  public:
-  /// Throws InputError unless nu is finite and >= 0.
-  explicit LinearDrag(double nu);
+  /// Throws InputError unless both are finite and >= 0.
+  explicit LinearDrag(double nu, double mass_damping = 0);
 
   std::string_view name() const override { return "linear_drag"; }
   Needs needs() const override { return {.velocity = true, .derivatives = true}; }
@@ -21,7 +22,12 @@ class LinearDrag final : public Effect {
   double power(double t, const Points& p) const noexcept override;
 
  private:
-  double nu_;
+  double rate(const Points& p, std::size_t i) const {
+    return nu_ * p.length[i] + mass_damping_ * p.mass[i];
+  }
+
+  double nu_;            // kg/(m s)
+  double mass_damping_;  // 1/s
 };
 
 }  // namespace tress

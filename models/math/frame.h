@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "models/math/vec3.h"
 
 namespace tress {
@@ -25,5 +27,18 @@ struct FrameOf {
 };
 
 using Frame = FrameOf<double>;
+
+/// Turns by `angle` (rad) about `axis`, whose length must be 1 (Rodrigues).
+inline Frame rotation(const Vec& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto turn = [&](const Vec& e) {
+    return c * e + s * cross(axis, e) + ((1 - c) * dot(axis, e)) * axis;
+  };
+  return {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})};
+}
+
+/// Whether the axes have length 1, are orthogonal (both to 1e-12, false on NaN) and
+/// right-handed.
+bool is_rotation(const Frame& frame);
 
 }  // namespace tress

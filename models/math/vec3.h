@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <concepts>
 
 namespace tress {
 
-/// Three numbers over any scalar (double, or a jet in tests).
+/// Three numbers over any scalar (double, or a derivative number).
 template <class T>
 struct Vec3 {
   T x{};
@@ -36,6 +37,10 @@ struct Vec3 {
 };
 
 using Vec = Vec3<double>;
+
+inline bool is_finite(const Vec& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 template <class T>
 Vec3<T> load3(const T* p) {

@@ -6,7 +6,7 @@
 
 #include "models/published/dense_system.h"
 #include "models/published/loop_closure.h"
-#include "models/published/tangent_choice.h"
+#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "models/math/banded_lu.h"
-#include "models/published/tangent_choice.h"
+#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "models/published/dense_system.h"
-#include "models/published/tangent_choice.h"
+#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,32 @@ std::vector<Parameter> with_strand_parameters(std::span<const Parameter> own);
 /// effects, no length, discretisation or shape.
 std::vector<Parameter> with_material_parameters(std::span<const Parameter> own);
 
+/// Throws InputError on poisson_ratio = -1.
 Material material(const Parameters& parameters);
+
+/// The clamp, at rest at the origin: e0 along root_tangent, e1 = y, so that curvature
+/// about e1 bends in the x-z plane (positive: towards -e2, down for root_tangent x).
+/// "Sideways" is y for root_tangent x, else x. With f = frequency_hz:
+///
+///     fixed, free    at rest (free: see free_root)
+///     shake          amplitude_m sin(2 pi f t) sideways
+///     rotate         head_angle_rad sin(2 pi f t) about a vertical axis, head_radius_m
+///                    behind the root (towards -x)
+///     shake_rotate   both
+///     swing          amplitude_m (1 - cos 2 pi f t) along y
+///     stop           sideways at stop_speed_m_s, from t = 0 to rest in stop_time_s
+///     drop_pull      down by amplitude_m in half a period, up again in the next half
 RootMotion root_motion(const Parameters& parameters);
-Effects strand_effects(const Parameters& parameters);  // gravity and drag, when not 0
-/// Everything above, the section, the cut, the shapes and the root, free or clamped.
+/// For root = free: at rest at the origin but for spin_rad_s about (1, 1, 1)/sqrt 3.
+std::optional<FreeRoot> free_root(const Parameters& parameters);
+
+/// Gravity along -z, and drag with damping in proportion to mass as one effect; none that
+/// is 0.
+Effects strand_effects(const Parameters& parameters);
+
+/// Material, section, cut, shapes and root. The section has half-axes radius_m
+/// sqrt(ellipticity) along e1 and radius_m / sqrt(ellipticity) along e2: its area does
+/// not depend on ellipticity.
 Strand strand(const Parameters& parameters);
 
 }  // namespace tress

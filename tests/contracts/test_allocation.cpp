@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "integrators/formulation/dynamics.h"
+#include "models/strand/root_motion.h"
 #include "tests/support/catalogue_cases.h"
 
 // Counts heap allocations by standing in for malloc and realloc; the sanitizers have
@@ -45,6 +46,17 @@ long count(F f) {
   const long before = allocations;
   f();
   return allocations - before;
+}
+
+TEST(RootMotionAllocation, PosesAllocateNothing) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  RootMotion motion;
+  motion.centre = Vec{-0.1, 0, 0};
+  motion.rotations = {{{0, 0, 1}, sine(0.5, 3)}, {{1, 0, 0}, one_minus_cosine(0.2, 1)}};
+  motion.translations = {{{0, 1, 0}, sum(smooth_step(1, 0, 1), stop(2, 0, 1))}};
+  EXPECT_EQ(count([&motion] { EXPECT_NE(motion.at(0.3).v.y, 0); }), 0);
 }
 
 TEST_P(Allocation, TheGuardSeesAnAllocation) {

@@ -7,12 +7,12 @@
 #include "models/constrained/constraint_set.h"
 #include "models/constrained/on_curve.h"
 #include "models/input_error.h"
-#include "tests/support/jet.h"
+#include "tests/support/variable.h"
 
 namespace tress {
 namespace {
 
-using testing::Jet;
+using testing::Dual2;
 using testing::variable2;
 
 constexpr Node particle0{Node::Kind::particle, 0};
@@ -22,13 +22,14 @@ constexpr Node anchor0{Node::Kind::anchor, 0};
 constexpr Node parameter0{Node::Kind::parameter, 0};
 
 // Three particles and one parameter: 10 coordinates; with time, 11 variables.
-constexpr std::size_t coordinates = 10;
-using Number = Jet<Jet<double, coordinates + 1>, coordinates + 1>;
+constexpr int coordinates = 10;
+using Number = Dual2<coordinates + 1>;
 
 const double now = 0.37;  // s
 
-/// One module on a moving anchor, and the same constraint evaluated on jets along the
-/// path q + v (t - now), whose derivatives are everything that a ConstraintForm gives.
+/// One module on a moving anchor, and the same constraint evaluated on derivative numbers
+/// along the path q + v (t - now), whose derivatives are everything that a ConstraintForm
+/// gives.
 class Assembled {
  public:
   template <class Evaluate>
@@ -77,19 +78,19 @@ class Assembled {
     const Eigen::MatrixXd dt = dense(set_->pattern(), rate_gradient);
     for (std::size_t k = 0; k < rows_; ++k) {
       const Number& exact = exact_[k];
-      near(g[k], exact.v.v, "value");
-      near(rate[k], exact.d[coordinates].v, "rate");
-      near(bias[k], exact.d[coordinates].d[coordinates], "bias");
+      near(g[k], exact.value.value, "value");
+      near(rate[k], exact.part[coordinates].value, "rate");
+      near(bias[k], exact.part[coordinates].part[coordinates], "bias");
       for (std::size_t i = 0; i < coordinates; ++i) {
-        near(gt(int(i), int(k)), exact.d[i].v, "gradient");
-        near(dt(int(i), int(k)), exact.d[coordinates].d[i], "rate gradient");
+        near(gt(int(i), int(k)), exact.part[i].value, "gradient");
+        near(dt(int(i), int(k)), exact.part[coordinates].part[i], "rate gradient");
       }
     }
     expect_curvature();
   }
 
  private:
-  /// Hand-written and jet arithmetic differ by a few hundred roundings: 1e3 eps = 2e-13.
+  /// Hand-written and dual arithmetic differ by a few hundred roundings: 1e3 eps = 2e-13.
   static void near(double got, double want, const char* what) {
     EXPECT_NEAR(got, want, 1e-12 * (10 + std::abs(want))) << what;
   }
@@ -129,7 +130,7 @@ class Assembled {
       for (std::size_t j = 0; j < coordinates; ++j) {
         double want = 0;
         for (std::size_t k = 0; k < rows_; ++k) {
-          want += factor * lambda[k] * exact_[k].d[i].d[j];
+          want += factor * lambda[k] * exact_[k].part[i].part[j];
         }
         near(got(int(i), int(j)), want, "curvature");
       }

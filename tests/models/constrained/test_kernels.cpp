@@ -5,17 +5,16 @@
 
 #include "models/constrained/angles.h"
 #include "models/constrained/on_curve.h"
-#include "tests/support/jet.h"
+#include "tests/support/variable.h"
 
 namespace tress {
 namespace {
 
-using testing::Jet;
-using testing::variable;
+using testing::Dual2;
 using testing::variable2;
 
-// Hand-written derivatives and jets differ by the rounding of a few hundred operations on
-// numbers of size `size`: 1e3 eps = 2e-13, kept at 1e-12.
+// Hand-written derivatives and derivative numbers differ by the rounding of a few hundred
+// operations on numbers of size `size`: 1e3 eps = 2e-13, kept at 1e-12.
 constexpr double rounding = 1e-12;
 
 Vec unit(Vec a) { return (1 / std::sqrt(dot(a, a))) * a; }
@@ -62,7 +61,7 @@ using Kernels =
                      Difference<OnEllipse>, Difference<OnHelix>, Angle, Triangle>;
 TYPED_TEST_SUITE(KernelDerivatives, Kernels);
 
-TYPED_TEST(KernelDerivatives, AgreeWithNestedJetsAtRandomPlaces) {
+TYPED_TEST(KernelDerivatives, AgreeWithNestedDualsAtRandomPlaces) {
   constexpr std::size_t n = TypeParam::inputs;
   constexpr std::size_t m = TypeParam::rows;
   const TypeParam kernel = example<TypeParam>();
@@ -72,24 +71,24 @@ TYPED_TEST(KernelDerivatives, AgreeWithNestedJetsAtRandomPlaces) {
   double largest_hessian = 0;
   for (int trial = 0; trial < 20; ++trial) {
     std::array<double, n> z;
-    std::array<Jet<Jet<double, n>, n>, n> jets;
+    std::array<Dual2<n>, n> duals;
     for (std::size_t i = 0; i < n; ++i) {
       z[i] = number(random);
-      jets[i] = variable2<n>(z[i], i);
+      duals[i] = variable2<n>(z[i], i);
     }
     std::array<double, m> weight, c;
     for (double& w : weight) w = number(random);
-    std::array<Jet<Jet<double, n>, n>, m> value;
+    std::array<Dual2<n>, m> value;
     std::array<double, m * n> g;
     std::array<double, n * n> h;
-    kernel.value(jets.data(), value.data());
+    kernel.value(duals.data(), value.data());
     kernel.value(z.data(), c.data());
     kernel.gradient(z.data(), g.data());
     kernel.hessian(z.data(), weight.data(), h.data());
     for (std::size_t k = 0; k < m; ++k) {
-      EXPECT_NEAR(c[k], value[k].v.v, rounding * (1 + std::abs(c[k])));
+      EXPECT_NEAR(c[k], value[k].value.value, rounding * (1 + std::abs(c[k])));
       for (std::size_t i = 0; i < n; ++i) {
-        const double exact = value[k].d[i].v;
+        const double exact = value[k].part[i].value;
         EXPECT_NEAR(g[k * n + i], exact, rounding * (1 + std::abs(exact)));
         largest_gradient = std::max(largest_gradient, std::abs(exact));
       }
@@ -97,7 +96,7 @@ TYPED_TEST(KernelDerivatives, AgreeWithNestedJetsAtRandomPlaces) {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         double exact = 0;
-        for (std::size_t k = 0; k < m; ++k) exact += weight[k] * value[k].d[i].d[j];
+        for (std::size_t k = 0; k < m; ++k) exact += weight[k] * value[k].part[i].part[j];
         EXPECT_NEAR(h[i * n + j], exact, 10 * rounding * (1 + std::abs(exact)));
         largest_hessian = std::max(largest_hessian, std::abs(exact));
       }
@@ -120,15 +119,13 @@ std::vector<NamedCurve> curves() {
           {"orbit", orbit({0, 0, 1}, {0.05, 0, 0}, {0, 0.1, 0}, 2)}};
 }
 
-TEST(CurveDerivatives, AgreeWithThreefoldJets) {
-  using One = Jet<double, 1>;
-  using Two = Jet<One, 1>;
-  using Three = Jet<Two, 1>;
+TEST(CurveDerivatives, AgreeWithThreefoldDuals) {
+  using Three = Dual<1, Dual2<1>>;
   for (const NamedCurve& named : curves()) {
     for (const double s : {-2.0, 0.1, 0.7, 3.0}) {
       Three w;
-      w.v = variable2<1>(s, 0);
-      w.d[0] = 1;
+      w.value = variable2<1>(s, 0);
+      w.part[0] = 1;
       const Vec3<Three> exact = named.curve->position(w);
       const CurvePoint p = named.curve->at(s);
       const double got[3][4] = {{p.c.x, p.d1.x, p.d2.x, p.d3.x},
@@ -137,7 +134,8 @@ TEST(CurveDerivatives, AgreeWithThreefoldJets) {
       const Three* axes[] = {&exact.x, &exact.y, &exact.z};
       for (int k = 0; k < 3; ++k) {
         const Three& x = *axes[k];
-        const double want[] = {x.v.v.v, x.d[0].v.v, x.d[0].d[0].v, x.d[0].d[0].d[0]};
+        const double want[] = {x.value.value.value, x.part[0].value.value,
+                               x.part[0].part[0].value, x.part[0].part[0].part[0]};
         for (int order = 0; order < 4; ++order) {
           // k-th derivatives of shake grow like (6 pi)^k; the argument 6 pi s itself is
           // rounded to 60 eps, hence the relative bound on the growing factor
@@ -150,7 +148,7 @@ TEST(CurveDerivatives, AgreeWithThreefoldJets) {
   }
 }
 
-TEST(OnCurve, DerivativesAgreeWithJetsThroughTheTrefoil) {
+TEST(OnCurve, DerivativesAgreeWithDualsThroughTheTrefoil) {
   const std::shared_ptr<const FourierCurve> knot = trefoil(1.5);
   const OnCurve kernel{knot};
   const double z[4] = {0.3, -0.2, 0.5, 1.1};
@@ -160,13 +158,13 @@ TEST(OnCurve, DerivativesAgreeWithJetsThroughTheTrefoil) {
   kernel.gradient(z, g);
   kernel.hessian(z, weight, h);
   const auto exact = knot->position(variable2<1>(z[3], 0));
-  const Jet<Jet<double, 1>, 1> axes[] = {exact.x, exact.y, exact.z};
+  const Dual2<1> axes[] = {exact.x, exact.y, exact.z};
   double curvature = 0;
   for (int k = 0; k < 3; ++k) {
-    EXPECT_NEAR(c[k], z[k] - axes[k].v.v, rounding);
-    EXPECT_NEAR(g[4 * k + 3], -axes[k].d[0].v, rounding);
+    EXPECT_NEAR(c[k], z[k] - axes[k].value.value, rounding);
+    EXPECT_NEAR(g[4 * k + 3], -axes[k].part[0].value, rounding);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(g[4 * k + i], i == k ? 1 : 0);
-    curvature -= weight[k] * axes[k].d[0].d[0];
+    curvature -= weight[k] * axes[k].part[0].part[0];
   }
   EXPECT_NEAR(h[15], curvature, 10 * rounding);
   EXPECT_GT(std::abs(curvature), 0.1);

@@ -50,7 +50,7 @@ void expect_power_balance(const Effect& effect) {
 TEST(Gravity, WorkIsThePotentialItLoses) { expect_power_balance(Gravity({1, 2, -9.81})); }
 
 TEST(LinearDrag, WorkIsItsPowerAndNegative) {
-  const LinearDrag drag(0.7);
+  const LinearDrag drag(0.7, 0.4);
   expect_power_balance(drag);
   EXPECT_LT(drag.power(0, Sample{}.points()), 0);
 }
@@ -64,8 +64,15 @@ TEST(Gravity, PullsByMassAndAddsToWhatIsThere) {
   EXPECT_DOUBLE_EQ(f[5], 1.0 - 1.7 * 9.81);
 }
 
+TEST(LinearDrag, DampsByLengthAndByMass) {
+  const Sample at;
+  const auto f = load(LinearDrag(0.7, 0.4), at);
+  EXPECT_DOUBLE_EQ(f[0], -(0.7 * 0.2 + 0.4 * 0.3) * 1.0);
+  EXPECT_DOUBLE_EQ(f[4], -(0.7 * 0.5 + 0.4 * 1.7) * 0.9);
+}
+
 TEST(LinearDrag, DerivativeBlocksAreTheDifferenceOfTheLoad) {
-  const LinearDrag drag(0.7);
+  const LinearDrag drag(0.7, 0.4);
   const Sample at;
   std::vector<double> blocks(18, 0.0);
   drag.add_derivatives(0, at.points(), 3.0, 2.0, blocks);
@@ -91,11 +98,15 @@ TEST(Needs, AreTheUnionOfTheEffects) {
   EXPECT_FALSE(needs(effects).velocity || needs(effects).derivatives);
   effects.push_back(std::make_unique<LinearDrag>(0.1));
   EXPECT_TRUE(needs(effects).velocity && needs(effects).derivatives);
-  EXPECT_FALSE(needs(effects).tangent);
+  EXPECT_FALSE(needs(effects).tangent || needs(effects).position);
+  EXPECT_TRUE((Needs{.position = true} | Needs{}).position);
+  EXPECT_TRUE((Needs{} | Needs{.position = true}).position);
 }
 
 TEST(Effects, RefuseNumbersOutsideTheirMeaning) {
   EXPECT_THROW(LinearDrag(-1), InputError);
+  EXPECT_THROW(LinearDrag(1, -1), InputError);
+  EXPECT_THROW(LinearDrag(1, std::nan("")), InputError);
   EXPECT_THROW(LinearDrag(std::nan("")), InputError);
   EXPECT_THROW(Gravity({0, std::nan(""), 0}), InputError);
 }

@@ -1,0 +1,26 @@
+#include "models/reduced/articulated_chain.h"
+
+#include "models/reduced/ball_link.h"
+#include "models/reduced/reduced_system.h"
+#include "models/strand/strand_parameters.h"
+
+namespace tress {
+
+std::unique_ptr<System> articulated_chain(const Strand& strand, const ReducedOptions& options,
+                                    Effects effects) {
+  return make_reduced_system<BallLink>(
+      reduced_strand(strand, Unknown::joint_angle, options, std::move(effects)),
+      options.dofs);
+}
+
+std::span<const Parameter> articulated_chain_parameters() {
+  static const std::vector<Parameter> all = with_strand_parameters(reduced_parameters());
+  return all;
+}
+
+std::unique_ptr<System> make_articulated_chain(const Parameters& parameters) {
+  return articulated_chain(strand(parameters), reduced_options(parameters),
+                     strand_effects(parameters));
+}
+
+}  // namespace tress

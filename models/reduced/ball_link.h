@@ -1,0 +1,84 @@
+#pragma once
+
+#include "models/reduced/helix.h"
+
+namespace tress {
+
+/// Kinematics of a rigid straight link behind a ball joint: with the rotation vector theta
+/// of the joint, E = exp([theta]x), the link points along E e0 and turns with W(1) theta'.
+/// A joint is a helix of length 1 that goes nowhere, so its rotation and its angular
+/// velocity are those of Helix; positions are s E e0. The rotation vector is regular for
+/// |theta| < 2 pi, which a joint between links never needs to leave.
+class BallLink {
+ public:
+  template <class T>
+  struct At {
+    T s;
+  };
+  /// Every vector of a rigid link grows with the distance from the joint.
+  struct Ray {
+    Vec direction;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return {p.s * T(direction.x), p.s * T(direction.y), p.s * T(direction.z)};
+    }
+  };
+
+  BallLink() = default;
+  BallLink(const Vec& theta, double length)
+      : joint_(theta, 1), at_(joint_.tip()), length_(length),
+        along_(joint_.rotated(at_, Helix::tangent)) {}
+
+  template <class T>
+  At<T> point(const T& s) const {
+    return {s};
+  }
+  At<double> tip() const { return {length_}; }
+
+  // Rotation of the joint; it does not depend on where on the link.
+  struct Turn {
+    Vec value;
+    Vec at(const At<double>&) const { return value; }
+  };
+  Turn W(const Vec& y) const { return {joint_.W(y).at(at_)}; }
+  Turn dW(const Vec& x, const Vec& y) const { return {joint_.dW(x, y).at(at_)}; }
+  Turn d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
+    return {joint_.d2W(x1, x2, y).at(at_)};
+  }
+
+  // With t = E e0: dt[x] = (W x) x t, and again.
+  Ray position() const { return {along_}; }
+  Ray first(const Vec& x) const { return {cross(w(x), along_)}; }
+  Ray second(const Vec& x1, const Vec& x2) const {
+    return {cross(dw(x2, x1), along_) + cross(w(x1), cross(w(x2), along_))};
+  }
+  Ray third(const Vec& x1, const Vec& x2, const Vec& x3) const {
+    const Vec t2 = cross(w(x2), along_), t3 = cross(w(x3), along_);
+    const Vec t23 = cross(dw(x3, x2), along_) + cross(w(x2), t3);
+    return {cross(d2W(x2, x3, x1).value, along_) + cross(dw(x2, x1), t3) +
+            cross(dw(x3, x1), t2) + cross(w(x1), t23)};
+  }
+
+  template <class T>
+  Vec3<T> rotated(const At<T>&, const Vec& y) const {
+    return joint_.rotated(at_, y);
+  }
+  Frame rotation(const At<double>&) const { return joint_.rotation(at_); }
+  Vec W_transposed(const At<double>&, const Vec& y) const {
+    return joint_.W_transposed(at_, y);
+  }
+  Vec dW_transposed(const At<double>&, const Vec& x, const Vec& y) const {
+    return joint_.dW_transposed(at_, x, y);
+  }
+
+ private:
+  Vec w(const Vec& x) const { return W(x).value; }
+  Vec dw(const Vec& x, const Vec& y) const { return dW(x, y).value; }
+
+  Helix joint_;
+  Helix::At<double> at_{};
+  double length_ = 0;
+  Vec along_;
+};
+
+}  // namespace tress

@@ -1,0 +1,42 @@
+#include "models/reduced/dense_factor.h"
+
+#include <cmath>
+
+namespace tress {
+
+DenseFactor::DenseFactor(int size, bool symmetric)
+    : matrix(size, size),
+      symmetric_(symmetric),
+      rhs_(size),
+      scale_(size),
+      cholesky_(size),
+      lu_(size) {}
+
+Status DenseFactor::factor() noexcept {
+  scale_ = matrix.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+  if (!scale_.allFinite()) return Status::retry;
+  matrix = scale_.asDiagonal() * matrix * scale_.asDiagonal();
+  if (symmetric_) {
+    cholesky_.compute(matrix);
+    return cholesky_.info() == Eigen::Success ? Status::ok : Status::retry;
+  }
+  lu_.compute(matrix);
+  const double least = lu_.matrixLU().diagonal().cwiseAbs().minCoeff();
+  return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
+}
+
+Status DenseFactor::solve(In b, Out x) noexcept {
+  const Eigen::Index n = rhs_.size();
+  rhs_ = scale_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
+  if (symmetric_) {
+    cholesky_.solveInPlace(rhs_);
+  } else {
+    rhs_ = lu_.permutationP() * rhs_;
+    lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(rhs_);
+    lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(rhs_);
+  }
+  Eigen::Map<Eigen::VectorXd>(x.data(), n) = scale_.cwiseProduct(rhs_);
+  return Status::ok;
+}
+
+}  // namespace tress

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "models/system.h"
+
+namespace tress {
+
+/// A dense matrix of mixed units, scaled to unit diagonal and factored: Cholesky when it is
+/// symmetric, LU otherwise. `matrix` is written by the caller and destroyed by factor().
+class DenseFactor {
+ public:
+  DenseFactor(int size, bool symmetric);
+  Status factor() noexcept;
+  Status solve(In b, Out x) noexcept;  // b and x may be the same
+
+  Eigen::MatrixXd matrix;
+
+ private:
+  bool symmetric_;
+  Eigen::VectorXd rhs_, scale_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+};
+
+}  // namespace tress

@@ -1,0 +1,382 @@
+#pragma once
+
+#include "models/reduced/inverse_dynamics.h"
+#include "models/reduced/mass_tangent.h"
+
+namespace tress {
+
+/// Every derivative of the residual of one segment (InverseDynamics), at the motion that
+/// Kinematics holds. States are variations of a frame in its own components: displacement
+/// (d, phi), then of its velocity (v, omega) and acceleration (a, alpha). With C the
+/// rotation to the tip, theta the turn of the tip by the unknowns, c a point's acceleration
+/// and f its load,
+///
+///     d(C^T y) = C^T (dy + y x theta),    dF = m dc + phi x f - df
+///
+/// and derivatives of shapes are those of Kernel. O(1) per segment.
+template <class Kernel, int dofs>
+class ExactTangent {
+ public:
+  using Shape = ExactShape<dofs>;
+
+  /// df/dx and df/dv of the effects at the points, (9) row-major each; empty: no effect
+  /// has any.
+  struct EffectBlocks {
+    In position, velocity;
+  };
+
+  ExactTangent(const Kinematics<Kernel, dofs>& kinematics,
+               const InverseDynamics<Kernel, dofs>& dynamics)
+      : kinematics_(kinematics), dynamics_(dynamics) {}
+
+  void segment(std::size_t i, Weights w, const EffectBlocks& effects,
+               SegmentTangent<Shape>& tangent) const {
+    const ReducedSegment& segment = kinematics_.segments()[i];
+    tangent.local.setZero();
+    tangent.transfer.setZero();
+    tangent.lift.setZero();
+    points(i, w, effects, tangent);
+    tip(i, w, tangent);
+    for (int k = 0; k < dofs; ++k) {
+      const Vec e = K::unit(k);
+      tangent.stiffness[k] =
+          w.pos * dot(e, segment.stiffness) + w.vel * dot(e, segment.friction);
+      tangent.local(size + k, 3 * size + k) += tangent.stiffness[k];
+    }
+    if constexpr (dofs > 1) {
+      rotor(segment.rotor, kinematics_.motion(i).tip.omega, tangent.tip);
+    } else {
+      tangent.tip.setZero();
+    }
+    if constexpr (dofs > 1) {
+      if (segment.mounted) Frames::mount(segment.mount, tangent);
+    }
+  }
+
+  void root(Weights w, In v, In a, RootTangent<Shape>& root) const {
+    if constexpr (dofs > 1) {
+      const FreeRootFrame& free = kinematics_.free_root();
+      const FrameMotion& m = kinematics_.root();
+      const Wrench& held = dynamics_.at_root();
+      const Helix& joint = free.joint();
+      const Frame rotation = joint.rotation(free.at());
+      const Vec rate{v[3], v[4], v[5]}, second{a[3], a[4], a[5]};
+      const Vec omega = joint.W(rate).at(free.at());
+      const Vec alpha = joint.W(second).at(free.at()) + joint.dW(rate, rate).at(free.at());
+      root.local.setZero();
+      root.transfer.setZero();
+      root.lift.setZero();
+      for (int c = 0; c < 3; ++c) {
+        const Vec e = Frames::axis(c);
+        const Vec back = free.frame().back(e);
+        auto x = root.transfer.col(c);
+        put(w.pos * back, {}, x, 0);
+        put(w.vel * back, {}, x, 1);
+        put(w.acc * back, {}, x, 2);
+
+        const Vec turn = joint.W(e).at(free.at());  // in the reference's components
+        const Vec phi = rotation.back(turn);
+        const Vec d_omega = joint.dW(e, rate).at(free.at()) + cross(omega, turn);
+        const Vec d_alpha = joint.dW(e, second).at(free.at()) +
+                            joint.d2W(e, rate, rate).at(free.at()) + cross(alpha, turn);
+        const Vec d_alpha_rate =
+            joint.dW(e, rate).at(free.at()) + joint.dW(rate, e).at(free.at());
+        auto theta = root.transfer.col(3 + c);
+        put({}, w.pos * phi, theta, 0);
+        put(w.pos * cross(m.v, phi), w.pos * rotation.back(d_omega) + w.vel * phi, theta,
+            1);
+        put(w.pos * cross(m.a, phi),
+            w.pos * rotation.back(d_alpha) + w.vel * rotation.back(d_alpha_rate) +
+                w.acc * phi,
+            theta, 2);
+
+        Frames::put(free.frame() * e, {}, root.lift.col(c));
+        root.lift.col(c).template tail<3>().setZero();
+        const Vec lifted = joint.W(e).at(free.at());
+        root.lift(3, 3 + c) = lifted.x;
+        root.lift(4, 3 + c) = lifted.y;
+        root.lift(5, 3 + c) = lifted.z;
+        const Vec force = free.frame() * cross(phi, held.force);
+        const Vec moment = joint.dW(e, held.moment).at(free.at());
+        root.local(0, 3 + c) = w.pos * force.x;
+        root.local(1, 3 + c) = w.pos * force.y;
+        root.local(2, 3 + c) = w.pos * force.z;
+        root.local(3, 3 + c) = w.pos * moment.x;
+        root.local(4, 3 + c) = w.pos * moment.y;
+        root.local(5, 3 + c) = w.pos * moment.z;
+      }
+      Eigen::Matrix<double, size, Shape::states> spin;
+      rotor(kinematics_.root_rotor(), m.omega, spin);
+      add_product(root.lift, product(spin, root.transfer), root.local);
+    }
+  }
+
+ private:
+  using K = Kinematics<Kernel, dofs>;
+  using Frames = SegmentFrames<Shape>;
+  using S = Space<dofs>;
+  static constexpr int t = S::translations, size = S::size;
+
+  template <class Column>
+  static void put(const Vec& translation, const Vec& rotation, Column&& column,
+                  int level) {
+    Frames::put(translation, rotation, column.template segment<size>(level * size));
+  }
+
+  /// A 3x3 block of each lane, in the components of the segment's start.
+  struct Blocks {
+    Vec3<Pack> column[3];
+    Vec3<Pack> operator*(const Vec3<Pack>& x) const {
+      return x.x * column[0] + x.y * column[1] + x.z * column[2];
+    }
+  };
+
+  static Blocks gathered(In blocks, std::size_t b, const Frame& f) {
+    const Vec3<Pack> axes[3] = {Vec3<Pack>(f.e0), Vec3<Pack>(f.e1), Vec3<Pack>(f.e2)};
+    Vec3<Pack> rows[3];  // of the block in world components
+    for (std::size_t r = 0; r < 3; ++r) {
+      Pack entry[3];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double* p = &blocks[9 * Pack::lanes * b + 3 * r + c];
+        entry[c] = Pack(Pack::Vector{p[0], p[9], p[18], p[27]});
+      }
+      rows[r] = {entry[0], entry[1], entry[2]};
+    }
+    Blocks seen;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3<Pack> world{dot(rows[0], axes[c]), dot(rows[1], axes[c]),
+                             dot(rows[2], axes[c])};
+      seen.column[c] = {dot(axes[0], world), dot(axes[1], world), dot(axes[2], world)};
+    }
+    return seen;
+  }
+
+  /// Sums of a column over the points of a segment.
+  struct Column {
+    Vec3<Pack> force, moment;
+    std::array<Pack, dofs> r{};
+  };
+
+  void points(std::size_t i, Weights w, const EffectBlocks& effects,
+              SegmentTangent<Shape>& tangent) const {
+    const ReducedSegment& segment = kinematics_.segments()[i];
+    const auto& g = kinematics_.geometry(i);
+    const auto& m = kinematics_.motion(i);
+    const Vec3<Pack> omega(m.start.omega), alpha(m.start.alpha);
+    const auto rate = g.kernel.first(m.rate);
+    using Second = decltype(g.kernel.second(Vec{}, Vec{}));
+    using Third = decltype(g.kernel.third(Vec{}, Vec{}, Vec{}));
+    std::array<Second, dofs> with_rate, with_acceleration;
+    std::array<std::array<Second, dofs>, dofs> curvature;
+    std::array<Third, dofs> with_rates;
+    for (int k = 0; k < dofs; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      with_rate[at] = g.kernel.second(m.rate, K::unit(k));
+      with_acceleration[at] = g.kernel.second(m.acceleration, K::unit(k));
+      with_rates[at] = g.kernel.third(m.rate, m.rate, K::unit(k));
+      for (int l = k; l < dofs; ++l) {
+        curvature[at][static_cast<std::size_t>(l)] =
+            g.kernel.second(K::unit(k), K::unit(l));
+      }
+    }
+    const bool blocks = !effects.velocity.empty();
+
+    for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+      const Pack& mass = kinematics_.blocks()[b].mass;
+      const auto& block = kinematics_.block_geometry(b);
+      const Vec3<Pack>& p = block.position;
+      const Vec3<Pack> velocity = rate.at(block.at);
+      const Vec3<Pack>& load = dynamics_.load(b);
+      const Vec3<Pack>& force = dynamics_.force(b);
+      const Vec3<Pack> turning = cross(omega, p);
+      Blocks by_x, by_v;
+      Vec3<Pack> u;  // velocity of the point
+      if (blocks) {
+        by_x = gathered(effects.position, b, m.start.frame);
+        by_v = gathered(effects.velocity, b, m.start.frame);
+        u = Vec3<Pack>(m.start.v) + turning + velocity;
+      }
+      const auto add = [&](int column, const Vec3<Pack>& dF) {
+        accumulate(block, dF, column, tangent);
+      };
+      for (int c = 0; c < t; ++c) {
+        const Vec3<Pack> e(Frames::axis(S::translation[c]));
+        if (blocks) {
+          add(c, Pack(-1) * (by_x * e));
+          add(size + c, Pack(-1) * (by_v * e));
+        }
+        add(2 * size + c, mass * e);
+      }
+      for (int c = 0; c < S::rotations; ++c) {
+        const Vec3<Pack> e(Frames::axis(S::rotation[c]));
+        const Vec3<Pack> lever = cross(e, p);
+        Vec3<Pack> by_phi = cross(e, load);
+        Vec3<Pack> by_omega =
+            mass * (cross(e, turning + Pack(2) * velocity) + cross(omega, lever));
+        if (blocks) {
+          by_phi = by_phi - by_x * lever - by_v * cross(e, u);
+          by_omega = by_omega - by_v * lever;
+        }
+        add(t + c, by_phi);
+        add(size + t + c, by_omega);
+        add(2 * size + t + c, mass * lever);
+      }
+      for (int k = 0; k < dofs; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        const Vec3<Pack>& slope = block.slope[at];
+        const Vec3<Pack> bent = with_rate[at].at(block.at);
+        const Vec3<Pack> carried = cross(omega, slope);
+        Vec3<Pack> dF =
+            mass * (Pack(w.acc) * slope + Pack(2 * w.vel) * (carried + bent) +
+                    Pack(w.pos) * (cross(alpha, slope) +
+                                   cross(omega, carried + Pack(2) * bent) +
+                                   with_acceleration[at].at(block.at) +
+                                   with_rates[at].at(block.at)));
+        if (blocks) {
+          dF = dF - Pack(w.pos) * (by_x * slope) -
+               by_v * (Pack(w.vel) * slope + Pack(w.pos) * (carried + bent));
+        }
+        add(3 * size + k, dF);
+        // The lever arms move under the force that is there already.
+        const Vec3<Pack> lever = cross(slope, force);
+        add_moment(Vec{sum(lever.x), sum(lever.y), sum(lever.z)}, w.pos, 3 * size + k,
+                   tangent);
+        for (int l = k; l < dofs; ++l) {
+          const double bend =
+              w.pos *
+              sum(dot(curvature[at][static_cast<std::size_t>(l)].at(block.at), force));
+          tangent.local(size + k, 3 * size + l) += bend;
+          if (l != k) tangent.local(size + l, 3 * size + k) += bend;
+        }
+      }
+    }
+  }
+
+  static void add_moment(const Vec& moment, double factor, int column,
+                         SegmentTangent<Shape>& tangent) {
+    const double from[3] = {moment.x, moment.y, moment.z};
+    for (int r = 0; r < S::rotations; ++r) {
+      tangent.local(t + r, column) += factor * from[S::rotation[r]];
+    }
+  }
+
+  static void accumulate(const typename K::BlockGeometry& block, const Vec3<Pack>& dF,
+                         int column, SegmentTangent<Shape>& tangent) {
+    const Vec3<Pack> moment = cross(block.position, dF);
+    const double force[3] = {sum(dF.x), sum(dF.y), sum(dF.z)};
+    for (int r = 0; r < t; ++r) tangent.local(r, column) += force[S::translation[r]];
+    add_moment({sum(moment.x), sum(moment.y), sum(moment.z)}, 1, column, tangent);
+    for (int k = 0; k < dofs; ++k) {
+      tangent.local(size + k, column) +=
+          sum(dot(block.slope[static_cast<std::size_t>(k)], dF));
+    }
+  }
+
+  /// State of the tip, and what the wrench on the tip does at the start.
+  void tip(std::size_t i, Weights w, SegmentTangent<Shape>& tangent) const {
+    const auto& g = kinematics_.geometry(i);
+    const auto& m = kinematics_.motion(i);
+    const Frame& f = g.rotation;
+    const Vec omega = m.start.omega, alpha = m.start.alpha;
+    const Vec tip_omega = omega + m.turning;
+    auto& transfer = tangent.transfer;
+    const auto back = [&](const Vec& translation, const Vec& rotation, auto&& column,
+                          int level) {
+      put(f.back(translation), f.back(rotation), column, level);
+    };
+
+    for (int c = 0; c < t; ++c) {
+      const Vec e = Frames::axis(S::translation[c]);
+      for (int level = 0; level < 3; ++level) {
+        back(e, {}, transfer.col(level * size + c), level);
+      }
+    }
+    for (int c = 0; c < S::rotations; ++c) {
+      const Vec e = Frames::axis(S::rotation[c]);
+      const Vec lever = cross(e, g.position);
+      for (int level = 0; level < 3; ++level) {
+        back(lever, e, transfer.col(level * size + t + c), level);
+      }
+      back(cross(e, cross(omega, g.position) + 2.0 * m.velocity) + cross(omega, lever),
+           cross(e, m.turning), transfer.col(size + t + c), 2);
+    }
+
+    const Wrench& held = dynamics_.at_tip(i);
+    const Vec force = f * held.force, moment = f * held.moment;
+    const auto at = g.tip;
+    for (int k = 0; k < dofs; ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      const Vec e = K::unit(k);
+      const Vec &slope = g.slope[index], &turn = g.turn[index];
+      const Vec bent = g.kernel.second(m.rate, e).at(at);
+      const Vec turned = g.kernel.dW(e, m.rate).at(at);  // d(W kappa')/dkappa_k
+      const Vec velocity = cross(omega, slope) + bent;
+      const Vec acceleration = cross(alpha, slope) +
+                               cross(omega, cross(omega, slope) + 2.0 * bent) +
+                               g.kernel.second(m.acceleration, e).at(at) +
+                               g.kernel.third(m.rate, m.rate, e).at(at);
+      const Vec spin = g.kernel.dW(e, m.acceleration).at(at) +
+                       g.kernel.d2W(e, m.rate, m.rate).at(at) + cross(omega, turned);
+      auto column = transfer.col(3 * size + k);
+      back(w.pos * slope, w.pos * turn, column, 0);
+      back(w.pos * (velocity + cross(m.tip_v, turn)) + w.vel * slope,
+           w.pos * (turned + cross(tip_omega, turn)) + w.vel * turn, column, 1);
+      back(w.pos * (acceleration + cross(m.tip_a, turn)) +
+               (2 * w.vel) * (cross(omega, slope) + bent) + w.acc * slope,
+           w.pos * (spin + cross(m.tip_alpha, turn)) +
+               w.vel * (turned + g.kernel.dW(m.rate, e).at(at) + cross(omega, turn)) +
+               w.acc * turn,
+           column, 2);
+
+      // The tip's wrench turns with the tip and acts on a lever that bends.
+      const Vec d_force = cross(turn, force), d_moment = cross(turn, moment);
+      const Vec at_start = cross(g.position, d_force) + cross(slope, force) + d_moment;
+      auto local = tangent.local.col(3 * size + k);
+      Eigen::Matrix<double, size, 1> wrench;
+      Frames::put(w.pos * d_force, w.pos * at_start, wrench);
+      local.template head<size>() += wrench;
+      const Vec by_turn = g.kernel.dW_transposed(at, e, moment);
+      for (int l = 0; l < dofs; ++l) {
+        const Vec other = K::unit(l);
+        local[size + l] +=
+            w.pos * (dot(g.slope[static_cast<std::size_t>(l)], d_force) +
+                     dot(g.turn[static_cast<std::size_t>(l)], d_moment) +
+                     dot(g.kernel.second(e, other).at(at), force) + dot(other, by_turn));
+      }
+    }
+
+    // Wrench columns: a unit force or moment on the tip, in the tip's components.
+    for (int c = 0; c < size; ++c) {
+      const bool is_force = c < t;
+      const int component = is_force ? S::translation[c] : S::rotation[c - t];
+      const Vec e = f * Frames::axis(component);
+      auto lift = tangent.lift.col(c);
+      if (is_force) {
+        Frames::put(e, cross(g.position, e), lift);
+      } else {
+        Frames::put({}, e, lift);
+      }
+      for (int k = 0; k < dofs; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        lift[size + k] = dot(is_force ? g.slope[index] : g.turn[index], e);
+      }
+    }
+  }
+
+  /// Derivatives of I (alpha_x, omega_x omega_z, -omega_x omega_y).
+  static void rotor(double inertia, const Vec& omega,
+                    Eigen::Matrix<double, size, Shape::states>& m) {
+    constexpr int spin = size + t;  // column of the variation of omega_x
+    m.setZero();
+    m(t, 2 * size + t) = inertia;
+    m(t + 1, spin) = inertia * omega.z;
+    m(t + 1, spin + 2) = inertia * omega.x;
+    m(t + 2, spin) = -inertia * omega.y;
+    m(t + 2, spin + 1) = -inertia * omega.x;
+  }
+
+  const Kinematics<Kernel, dofs>& kinematics_;
+  const InverseDynamics<Kernel, dofs>& dynamics_;
+};
+
+}  // namespace tress

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "models/reduced/helix.h"
+#include "models/strand/strand.h"
+#include "models/system.h"
+
+namespace tress {
+
+/// Motion of a frame: in its own components, relative to the world.
+struct FrameMotion {
+  Frame frame;  // seen from the world
+  Vec x;        // world components, m
+  Vec v, omega, a, alpha;
+};
+
+/// A root that moves freely, by 6 unknowns: its position (world components) and a rotation
+/// vector theta relative to a reference frame, frame = reference exp([theta]x). The
+/// reference follows the motion (rebase), so that theta stays far from 2 pi.
+class FreeRootFrame {
+ public:
+  explicit FreeRootFrame(const FreeRoot& start) : start_(start), reference_(start.frame) {}
+
+  void initial_state(Out q, Out v) const;  // (6), (6)
+  FrameMotion motion(In q, In v, In a);    // keeps what the calls below read
+  /// Generalised forces of a wrench at the root, in the root's components.
+  void residual(const Vec& force, const Vec& moment, Out r) const;
+  /// Moves the reference when theta has grown; true: q and v have changed.
+  bool rebase(InOut q, InOut v);
+
+  const Frame& frame() const { return frame_; }
+  const Helix& joint() const { return joint_; }
+  const Helix::At<double>& at() const { return at_; }
+  const Frame& reference() const { return reference_; }
+
+ private:
+  FreeRoot start_;
+  Frame reference_;
+  Helix joint_;
+  Helix::At<double> at_{};
+  Frame frame_;
+};
+
+}  // namespace tress

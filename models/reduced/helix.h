@@ -1,0 +1,154 @@
+#pragma once
+
+#include "models/math/frame.h"
+#include "models/math/helix.h"
+
+namespace tress {
+
+/// Kinematics of an element of constant Darboux vector kappa (twist, curvatures; in the
+/// material frame, e0 the tangent), seen from the frame at its start [Bertails et al.
+/// 2006]. With K = [kappa]x and the functions of math/helix.h at arc length s:
+///
+///     E(s) = exp(sK) = I + S K + A K^2           frame at s
+///     W(s) = int_0^s E = s I + A K + B K^2       angular velocity = W kappa'
+///     P(s) = W(s) e0                             position
+///
+/// Derivatives with respect to kappa are directional and multilinear: dW[x] y is the
+/// derivative of W y along x, d2W[x1, x2] y and d3W[x1, x2, x3] y the second and third
+/// ones; those of P follow with y = e0. Each is a few constant vectors weighted by the
+/// functions, so it is prepared once for an element and evaluated at any s (a number or a
+/// pack of them). Straight elements are no special case.
+class Helix {
+ public:
+  /// The functions at one arc length, or at a pack of them.
+  template <class T>
+  struct At {
+    T s;
+    HelixFunctions<T> f;
+  };
+
+  struct Zeroth {
+    Vec s, A, B;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.s, s) + weighted(p.f.A, A) + weighted(p.f.B, B);
+    }
+  };
+  struct First {
+    Vec A, A1, B, B1;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.B, B) +
+             weighted(p.f.B1, B1);
+    }
+  };
+  struct Second {
+    Vec A1, A2, B, B1, B2;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.B, B) +
+             weighted(p.f.B1, B1) + weighted(p.f.B2, B2);
+    }
+  };
+  struct Third {
+    Vec A1, A2, A3, B1, B2, B3;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
+             weighted(p.f.B1, B1) + weighted(p.f.B2, B2) + weighted(p.f.B3, B3);
+    }
+  };
+
+  Helix() = default;
+  Helix(const Vec& kappa, double length)
+      : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)) {}
+
+  template <class T>
+  At<T> point(const T& s) const {
+    return {s, helix_functions(s, x2_, length_)};
+  }
+  At<double> tip() const { return point(length_); }
+
+  Zeroth W(const Vec& y) const {
+    const Vec u = cross(kappa_, y);
+    return {y, u, cross(kappa_, u)};
+  }
+  First dW(const Vec& x, const Vec& y) const {
+    const Vec u = cross(kappa_, y), u_x = cross(x, y);
+    const double k_x = dot(kappa_, x);
+    return {u_x, k_x * u, cross(x, u) + cross(kappa_, u_x), k_x * cross(kappa_, u)};
+  }
+  Second d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
+    const Terms t(kappa_, y);
+    const double k1 = dot(kappa_, x1), k2 = dot(kappa_, x2), c = dot(x1, x2);
+    return {c * t.u + k1 * cross(x2, y) + k2 * cross(x1, y), (k1 * k2) * t.u,
+            t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1),
+            (k1 * k2) * t.z};
+  }
+  Third d3W(const Vec& x1, const Vec& x2, const Vec& x3, const Vec& y) const {
+    const Terms t(kappa_, y);
+    const double k1 = dot(kappa_, x1), k2 = dot(kappa_, x2), k3 = dot(kappa_, x3);
+    const double c12 = dot(x1, x2), c13 = dot(x1, x3), c23 = dot(x2, x3);
+    const double mixed = c12 * k3 + c13 * k2 + c23 * k1;
+    const Vec u1 = cross(x1, y), u2 = cross(x2, y), u3 = cross(x3, y);
+    const Vec z1 = t.z_of(x1), z2 = t.z_of(x2), z3 = t.z_of(x3);
+    return {c12 * u3 + c13 * u2 + c23 * u1,
+            mixed * t.u + (k1 * k2) * u3 + (k1 * k3) * u2 + (k2 * k3) * u1,
+            (k1 * k2 * k3) * t.u,
+            c12 * z3 + c13 * z2 + c23 * z1 + k1 * t.z_of(x2, x3) + k2 * t.z_of(x1, x3) +
+                k3 * t.z_of(x1, x2),
+            mixed * t.z + (k1 * k2) * z3 + (k1 * k3) * z2 + (k2 * k3) * z1,
+            (k1 * k2 * k3) * t.z};
+  }
+
+  // Positions of the element's points.
+  Zeroth position() const { return W(tangent); }
+  First first(const Vec& x) const { return dW(x, tangent); }
+  Second second(const Vec& x1, const Vec& x2) const { return d2W(x1, x2, tangent); }
+  Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
+    return d3W(x1, x2, x3, tangent);
+  }
+
+  /// E(s) y.
+  template <class T>
+  Vec3<T> rotated(const At<T>& p, const Vec& y) const {
+    const Vec u = cross(kappa_, y);
+    return weighted(T(1), y) + weighted(p.f.S, u) + weighted(p.f.A, cross(kappa_, u));
+  }
+  Frame rotation(const At<double>& p) const {
+    return {rotated(p, {1, 0, 0}), rotated(p, {0, 1, 0}), rotated(p, {0, 0, 1})};
+  }
+  /// The transposes W^T y and (dW[x])^T y: kappa changes sign in K.
+  Vec W_transposed(const At<double>& p, const Vec& y) const {
+    const Vec u = cross(kappa_, y);
+    return p.s * y - p.f.A * u + p.f.B * cross(kappa_, u);
+  }
+  Vec dW_transposed(const At<double>& p, const Vec& x, const Vec& y) const {
+    const First d = dW(x, y);
+    return p.f.B * d.B + p.f.B1 * d.B1 - p.f.A * d.A - p.f.A1 * d.A1;
+  }
+
+  static constexpr Vec tangent{1, 0, 0};
+
+ private:
+  template <class T>
+  static Vec3<T> weighted(const T& weight, const Vec& x) {
+    return {weight * T(x.x), weight * T(x.y), weight * T(x.z)};
+  }
+
+  /// u = K y, z = K^2 y and the derivatives of z along x, and along x1 and x2.
+  struct Terms {
+    Terms(const Vec& k, const Vec& y0) : kappa(k), y(y0), u(cross(k, y0)), z(cross(k, u)) {}
+    Vec z_of(const Vec& x) const { return cross(x, u) + cross(kappa, cross(x, y)); }
+    Vec z_of(const Vec& x1, const Vec& x2) const {
+      return cross(x1, cross(x2, y)) + cross(x2, cross(x1, y));
+    }
+    Vec kappa, y, u, z;
+  };
+
+  Vec kappa_;
+  double length_ = 0;
+  double x2_ = 0;
+};
+
+}  // namespace tress

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "models/math/pack.h"
+#include "models/reduced/free_root.h"
+#include "models/reduced/reduced_strand.h"
+#include "models/reduced/shapes.h"
+#include "models/strand/strand.h"
+#include "models/system.h"
+
+namespace tress {
+
+/// Where everything is and how it moves, for unknowns q, v, a: one sweep from the root to
+/// the free ends. What depends on q alone is kept and used again at the same q.
+template <class Kernel, int dofs>
+class Kinematics {
+ public:
+  template <class T>
+  using Point = typename Kernel::template At<T>;
+
+  struct BlockGeometry {
+    Point<Pack> at;
+    Vec3<Pack> position;
+    std::array<Vec3<Pack>, dofs> slope;  // dP/dq_k
+  };
+  struct SegmentGeometry {
+    Kernel kernel;
+    Point<double> tip{};
+    Vec position;  // of the tip
+    Frame rotation;
+    std::array<Vec, dofs> slope, turn;  // dP/dq_k and W e_k at the tip
+  };
+  struct SegmentMotion {
+    FrameMotion start, tip;
+    Vec rate, acceleration;  // kappa', kappa''
+    Vec velocity;            // P' at the tip
+    Vec turning;             // W kappa' at the tip
+    Vec tip_v, tip_a, tip_alpha;  // of the tip, in the components of the start
+  };
+
+  Kinematics(std::vector<ReducedSegment> segments, std::vector<PointBlock> blocks,
+             RootMotion root, std::optional<FreeRootFrame> free_root,
+             double root_rotor)
+      : segments_(std::move(segments)),
+        blocks_(std::move(blocks)),
+        root_motion_(std::move(root)),
+        free_root_(std::move(free_root)),
+        root_rotor_(root_rotor),
+        geometry_(segments_.size()),
+        block_geometry_(blocks_.size()),
+        motion_(segments_.size()) {}
+
+  int count() const { return static_cast<int>(segments_.size()); }
+  int unknowns() const { return count() * dofs + (free_root_ ? 6 : 0); }
+  const std::vector<ReducedSegment>& segments() const { return segments_; }
+  const std::vector<PointBlock>& blocks() const { return blocks_; }
+  const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
+  const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
+  const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }
+  const FrameMotion& root() const { return root_; }
+  bool free() const { return free_root_.has_value(); }
+  FreeRootFrame& free_root() { return *free_root_; }
+  const FreeRootFrame& free_root() const { return *free_root_; }
+  double root_rotor() const { return root_rotor_; }  // of a free root, kg m^2
+  bool moving_root() const { return !free_root_ && !root_motion_.fixed(); }
+
+  /// The unknowns of a segment as a vector (twist, curvature 1, curvature 2); components
+  /// that are not unknowns are 0.
+  static Vec components(In x, std::size_t i) {
+    const double* p = &x[dofs * i];
+    if constexpr (dofs == 3) return {p[0], p[1], p[2]};
+    if constexpr (dofs == 2) return {0, p[0], p[1]};
+    return {0, p[0], 0};
+  }
+  static Vec unit(int k) {
+    const int component = Space<dofs>::component(k);
+    return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
+  }
+
+  /// Shapes of all segments at q.
+  void shape(In q) {
+    if (std::ranges::equal(q, shaped_)) return;
+    for (std::size_t i = 0; i < segments_.size(); ++i) shape_segment(i, q);
+    shaped_.assign(q.begin(), q.end());
+  }
+
+  /// Frames and their motion; calls shape().
+  void move(double t, In q, In v, In a) {
+    shape(q);
+    root_ = free_root_ ? free_root_->motion(q.last(6), v.last(6), a.last(6))
+                       : clamped(root_motion_.at(t));
+    for (std::size_t i = 0; i < segments_.size(); ++i) move_segment(i, v, a);
+  }
+
+  /// The position of a segment's points and their velocity, world components; after
+  /// move().
+  Vec3<Pack> world(std::size_t i, const Vec3<Pack>& x) const {
+    const Frame& f = motion_[i].start.frame;
+    return x.x * Vec3<Pack>(f.e0) + x.y * Vec3<Pack>(f.e1) + x.z * Vec3<Pack>(f.e2);
+  }
+  Vec3<Pack> velocity(std::size_t i, std::size_t block) const {
+    const SegmentMotion& m = motion_[i];
+    const BlockGeometry& b = block_geometry_[block];
+    return Vec3<Pack>(m.start.v) + cross(Vec3<Pack>(m.start.omega), b.position) +
+           geometry_[i].kernel.first(m.rate).at(b.at);
+  }
+
+ private:
+  static FrameMotion clamped(const RootPose& pose) {
+    const Frame& f = pose.frame;
+    return {f, pose.x, f.back(pose.v), f.back(pose.omega), f.back(pose.a),
+            f.back(pose.alpha)};
+  }
+
+  void shape_segment(std::size_t i, In q) {
+    const ReducedSegment& segment = segments_[i];
+    SegmentGeometry& g = geometry_[i];
+    g.kernel = Kernel(segment.held + components(q, i), segment.length);
+    const auto position = g.kernel.position();
+    g.tip = g.kernel.tip();
+    g.position = position.at(g.tip);
+    g.rotation = g.kernel.rotation(g.tip);
+    std::array<decltype(g.kernel.first(Vec{})), dofs> slope;
+    for (int k = 0; k < dofs; ++k) {
+      slope[k] = g.kernel.first(unit(k));
+      g.slope[k] = slope[k].at(g.tip);
+      g.turn[k] = g.kernel.W(unit(k)).at(g.tip);
+    }
+    for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+      BlockGeometry& block = block_geometry_[b];
+      block.at = g.kernel.point(blocks_[b].s);
+      block.position = position.at(block.at);
+      for (int k = 0; k < dofs; ++k) block.slope[k] = slope[k].at(block.at);
+    }
+  }
+
+  void move_segment(std::size_t i, In v, In a) {
+    const ReducedSegment& segment = segments_[i];
+    const SegmentGeometry& g = geometry_[i];
+    SegmentMotion& m = motion_[i];
+    m.start = segment.parent < 0 ? root_
+                                 : motion_[static_cast<std::size_t>(segment.parent)].tip;
+    if (segment.mounted) mount(segment.mount, m.start);
+    m.rate = components(v, i);
+    m.acceleration = components(a, i);
+
+    const Vec omega = m.start.omega, alpha = m.start.alpha;
+    m.velocity = Vec{};
+    Vec p_bias = g.kernel.second(m.rate, m.rate).at(g.tip);
+    Vec turn_bias = g.kernel.dW(m.rate, m.rate).at(g.tip);
+    m.turning = Vec{};
+    for (int k = 0; k < dofs; ++k) {
+      const double rate = dot(unit(k), m.rate), second = dot(unit(k), m.acceleration);
+      m.velocity = m.velocity + rate * g.slope[k];
+      m.turning = m.turning + rate * g.turn[k];
+      p_bias = p_bias + second * g.slope[k];
+      turn_bias = turn_bias + second * g.turn[k];
+    }
+    m.tip_v = m.start.v + cross(omega, g.position) + m.velocity;
+    m.tip_a = m.start.a + cross(alpha, g.position) + p_bias +
+              cross(omega, cross(omega, g.position) + 2.0 * m.velocity);
+    m.tip_alpha = alpha + turn_bias + cross(omega, m.turning);
+
+    m.tip.frame = m.start.frame * g.rotation;
+    m.tip.x = m.start.x + m.start.frame * g.position;
+    m.tip.v = g.rotation.back(m.tip_v);
+    m.tip.omega = g.rotation.back(omega + m.turning);
+    m.tip.a = g.rotation.back(m.tip_a);
+    m.tip.alpha = g.rotation.back(m.tip_alpha);
+  }
+
+  static void mount(const Frame& mount, FrameMotion& m) {
+    m.frame = m.frame * mount;
+    for (Vec* x : {&m.v, &m.omega, &m.a, &m.alpha}) *x = mount.back(*x);
+  }
+
+  std::vector<ReducedSegment> segments_;
+  std::vector<PointBlock> blocks_;
+  RootMotion root_motion_;
+  std::optional<FreeRootFrame> free_root_;
+  double root_rotor_;
+  std::vector<SegmentGeometry> geometry_;
+  std::vector<BlockGeometry> block_geometry_;
+  std::vector<SegmentMotion> motion_;
+  FrameMotion root_;
+  std::vector<double> shaped_;  // the q of geometry_
+};
+
+}  // namespace tress

@@ -1,0 +1,170 @@
+#pragma once
+
+#include "models/reduced/kinematics.h"
+#include "models/reduced/tree_tangent.h"
+
+namespace tress {
+
+/// What tangents of both kinds do with a segment's frames.
+template <class Shape>
+class SegmentFrames {
+ public:
+  using S = Space<Shape::dofs>;
+
+  /// State of `states` 3-vectors seen from the mount instead: columns of transfer and
+  /// local, rows of local and lift.
+  static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
+    static_assert(S::size == 6);
+    Eigen::Matrix3d m;
+    for (int j = 0; j < 3; ++j) {
+      const Vec axis = j == 0 ? mount.e0 : j == 1 ? mount.e1 : mount.e2;
+      m.col(j) = Eigen::Vector3d(axis.x, axis.y, axis.z);
+    }
+    for (int k = 0; k < Shape::states; k += 3) {
+      tangent.transfer.template middleCols<3>(k) *= m.transpose();
+      tangent.local.template middleCols<3>(k) *= m.transpose();
+    }
+    for (int k = 0; k < Shape::wrench; k += 3) {
+      tangent.local.template middleRows<3>(k).applyOnTheLeft(m);
+      tangent.lift.template middleRows<3>(k).applyOnTheLeft(m);
+    }
+  }
+
+  /// Column of a frame's (translation, rotation), in the space's directions.
+  template <class Column>
+  static void put(const Vec& translation, const Vec& rotation, Column&& column) {
+    const double from[2][3] = {{translation.x, translation.y, translation.z},
+                               {rotation.x, rotation.y, rotation.z}};
+    for (int i = 0; i < S::translations; ++i) column[i] = from[0][S::translation[i]];
+    for (int i = 0; i < S::rotations; ++i) {
+      column[S::translations + i] = from[1][S::rotation[i]];
+    }
+  }
+  static Vec axis(int component) {
+    return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
+  }
+};
+
+/// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
+/// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
+/// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
+/// matrix is sum m J^T J over the quadrature points.
+template <class Kernel, int dofs>
+void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
+                  SegmentTangent<MassShape<dofs>>& tangent) {
+  using Frames = SegmentFrames<MassShape<dofs>>;
+  using S = Space<dofs>;
+  constexpr int t = S::translations, size = S::size;
+  const ReducedSegment& segment = kinematics.segments()[i];
+  const auto& g = kinematics.geometry(i);
+
+  Pack mass(0);
+  Vec3<Pack> first;                      // sum m P
+  Pack second[3][3];                     // sum m P P^T, upper
+  std::array<Vec3<Pack>, dofs> momentum, spin;  // sum m dP, sum m P x dP
+  Pack inner[dofs][dofs];                // sum m dP . dP, upper
+  for (auto& row : second) std::fill(std::begin(row), std::end(row), Pack(0));
+  for (auto& row : inner) std::fill(std::begin(row), std::end(row), Pack(0));
+  for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+    const Pack& m = kinematics.blocks()[b].mass;
+    const auto& block = kinematics.block_geometry(b);
+    const Vec3<Pack>& p = block.position;
+    const Vec3<Pack> mp = m * p;
+    mass += m;
+    first = first + mp;
+    second[0][0] += mp.x * p.x;
+    second[0][2] += mp.x * p.z;
+    second[2][2] += mp.z * p.z;
+    if constexpr (dofs > 1) {
+      second[0][1] += mp.x * p.y;
+      second[1][1] += mp.y * p.y;
+      second[1][2] += mp.y * p.z;
+    }
+    for (std::size_t k = 0; k < dofs; ++k) {
+      const Vec3<Pack> md = m * block.slope[k];
+      momentum[k] = momentum[k] + md;
+      spin[k] = spin[k] + cross(p, md);
+      for (std::size_t l = k; l < dofs; ++l) inner[k][l] += dot(md, block.slope[l]);
+    }
+  }
+
+  auto& local = tangent.local;
+  local.setZero();
+  const double total = w.acc * sum(mass);
+  const Vec p{w.acc * sum(first.x), w.acc * sum(first.y), w.acc * sum(first.z)};
+  double pp[3][3];
+  for (int r = 0; r < 3; ++r) {
+    for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = w.acc * sum(second[r][c]);
+  }
+  const double trace = pp[0][0] + pp[1][1] + pp[2][2];
+  for (int r = 0; r < t; ++r) local(r, r) = total;
+  for (int c = 0; c < S::rotations; ++c) {
+    const int axis = S::rotation[c];
+    const Vec turned = cross(Frames::axis(axis), p);  // sum m e x P
+    const double column[3] = {turned.x, turned.y, turned.z};
+    for (int r = 0; r < t; ++r) {
+      local(r, t + c) = local(t + c, r) = column[S::translation[r]];
+    }
+    for (int r = 0; r < S::rotations; ++r) {
+      local(t + r, t + c) = (r == c ? trace : 0) - pp[S::rotation[r]][axis];
+    }
+  }
+  for (std::size_t k = 0; k < dofs; ++k) {
+    const auto column = size + static_cast<int>(k);
+    Frames::put(w.acc * Vec{sum(momentum[k].x), sum(momentum[k].y), sum(momentum[k].z)},
+                w.acc * Vec{sum(spin[k].x), sum(spin[k].y), sum(spin[k].z)},
+                local.col(column));
+    local.row(column).template head<size>() = local.col(column).template head<size>();
+    for (std::size_t l = k; l < dofs; ++l) {
+      local(column, size + static_cast<int>(l)) =
+          local(size + static_cast<int>(l), column) = w.acc * sum(inner[k][l]);
+    }
+    const Vec e = Kinematics<Kernel, dofs>::unit(static_cast<int>(k));
+    tangent.stiffness[static_cast<int>(k)] =
+        w.pos * dot(e, segment.stiffness) + w.vel * dot(e, segment.friction);
+    local(column, column) += tangent.stiffness[static_cast<int>(k)];
+  }
+
+  auto& transfer = tangent.transfer;
+  const Frame& f = g.rotation;
+  for (int c = 0; c < t; ++c) {
+    Frames::put(f.back(Frames::axis(S::translation[c])), Vec{}, transfer.col(c));
+  }
+  for (int c = 0; c < S::rotations; ++c) {
+    const Vec e = Frames::axis(S::rotation[c]);
+    Frames::put(f.back(cross(e, g.position)), f.back(e), transfer.col(t + c));
+  }
+  for (std::size_t k = 0; k < dofs; ++k) {
+    Frames::put(f.back(g.slope[k]), f.back(g.turn[k]),
+                transfer.col(size + static_cast<int>(k)));
+  }
+  tangent.tip.setZero();
+  if constexpr (dofs > 1) {
+    tangent.tip(t, t) = w.acc * segment.rotor;
+    if (segment.mounted) Frames::mount(segment.mount, tangent);
+  }
+  tangent.lift = transfer.transpose();
+}
+
+/// The same of a free root.
+template <class Kernel, int dofs>
+void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
+                       RootTangent<MassShape<dofs>>& root) {
+  if constexpr (dofs > 1) {
+    const FreeRootFrame& free = kinematics.free_root();
+    using Frames = SegmentFrames<MassShape<dofs>>;
+    for (int c = 0; c < 3; ++c) {
+      const Vec e = Frames::axis(c);
+      Frames::put(free.frame().back(e), Vec{}, root.transfer.col(c));
+      Frames::put(Vec{}, free.joint().W_transposed(free.at(), e),
+                  root.transfer.col(3 + c));
+    }
+    root.lift = root.transfer.transpose();
+    // The rotor at the root answers to the turning about its e0.
+    const auto spin = root.transfer.row(3);
+    root.local.noalias() =
+        (w.acc * kinematics.root_rotor()) * spin.transpose() * spin;
+  }
+}
+
+}  // namespace tress

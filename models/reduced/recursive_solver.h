@@ -1,0 +1,166 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "models/reduced/tree_solver.h"
+
+namespace tress {
+
+/// Two sweeps, O(N) [Featherstone 1983; Bertails 2009]. From the free ends to the root every
+/// segment eliminates its unknowns, x = u - Z s, and hands on what hangs below it as an
+/// articulated matrix: w = L s + beta. From the root to the free ends x follows.
+///
+/// Symmetric problems update L by the Joseph form, with V = [I; -Z]:
+///     L = V^T local V + (transfer V)^T L_tip (transfer V),
+/// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T is a difference;
+/// near a straight rod, where turning about the own axis moves almost no mass, it loses all
+/// digits after some twenty segments (tests/models/reduced/test_solvers.cpp measures it).
+template <class Shape, TreeMethod method = TreeMethod::recursive>
+class RecursiveSolver final : public TreeSolver<Shape> {
+ public:
+  explicit RecursiveSolver(const TreeTangent<Shape>& structure)
+      : eliminated_(structure.parent.size()), hanging_(structure.parent.size()) {}
+
+  Status factor(const TreeTangent<Shape>& tangent) noexcept override {
+    tangent_ = &tangent;
+    for (std::size_t i = 0; i < hanging_.size(); ++i) {
+      hanging_[i].matrix = tangent.segments[i].tip;
+    }
+    Articulated at_root = Articulated::Zero();
+    for (std::size_t i = hanging_.size(); i-- > 0;) {
+      Articulated handed_on;
+      if (!eliminate(tangent.segments[i], hanging_[i].matrix, eliminated_[i], handed_on)) {
+        return Status::retry;
+      }
+      const int parent = tangent.parent[i];
+      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].matrix) +=
+          handed_on;
+    }
+    if (!tangent.free_root) return Status::ok;
+    Eigen::Matrix<double, 6, 6> root = tangent.root.local;
+    add_product(tangent.root.lift, product(at_root, tangent.root.transfer), root);
+    root_.compute(root);
+    const double least = root_.matrixLU().diagonal().cwiseAbs().minCoeff();
+    return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
+  }
+
+  Status solve(In b, Out x) noexcept override {
+    const TreeTangent<Shape>& tangent = *tangent_;
+    for (Hanging& hanging : hanging_) hanging.load.setZero();
+    Wrench at_root = Wrench::Zero();
+    for (std::size_t i = hanging_.size(); i-- > 0;) {
+      Eliminated& e = eliminated_[i];
+      const Eigen::Matrix<double, Shape::rows, 1> lifted =
+          product(tangent.segments[i].lift, hanging_[i].load);
+      const Dofs rest = dofs(b, i) - lifted.template tail<Shape::dofs>();
+      e.u.noalias() = e.inverse * rest;
+      Wrench handed_on = lifted.template head<Shape::wrench>();
+      add_product(e.response, rest, handed_on);
+      const int parent = tangent.parent[i];
+      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load) += handed_on;
+    }
+    State at_start = State::Zero();
+    if (tangent.free_root) {
+      const std::size_t first = Shape::dofs * hanging_.size();
+      Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
+      y = root_.solve(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) -
+                      tangent.root.lift * at_root);
+      at_start = product(tangent.root.transfer, y);
+    }
+    for (std::size_t i = 0; i < hanging_.size(); ++i) {
+      const int parent = tangent.parent[i];
+      const State& s =
+          parent < 0 ? at_start : hanging_[static_cast<std::size_t>(parent)].state;
+      const Eliminated& e = eliminated_[i];
+      Eigen::Matrix<double, Shape::columns, 1> moved;
+      moved.template head<Shape::states>() = s;
+      moved.template tail<Shape::dofs>() = e.u - product(e.z, s);
+      Eigen::Map<Dofs>(x.data() + Shape::dofs * i) = moved.template tail<Shape::dofs>();
+      hanging_[i].state.setZero();
+      add_product(tangent.segments[i].transfer, moved, hanging_[i].state);
+    }
+    return Status::ok;
+  }
+
+ private:
+  static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
+  using Articulated = Eigen::Matrix<double, wrench, states>;
+  using Wrench = Eigen::Matrix<double, wrench, 1>;
+  using State = Eigen::Matrix<double, states, 1>;
+  using Dofs = Eigen::Matrix<double, n, 1>;
+  using Square = Eigen::Matrix<double, n, n>;
+
+  struct Eliminated {
+    Square inverse;                            // of the pivot H
+    Eigen::Matrix<double, n, states> z;        // x = u - z s
+    Eigen::Matrix<double, wrench, n> response; // of the wrench handed on to rest
+    Dofs u;
+  };
+  struct Hanging {
+    Articulated matrix;  // what hangs on the tip: w = matrix s + load
+    Wrench load;
+    State state;  // of the tip
+  };
+
+  static Dofs dofs(In b, std::size_t i) { return Eigen::Map<const Dofs>(&b[n * i]); }
+
+  /// H^-1, scaled first: twist and bending differ by many orders of magnitude.
+  static bool invert(const Square& h, Square& inverse) {
+    const Dofs size = h.diagonal().cwiseAbs().cwiseSqrt();
+    if (!(size.minCoeff() > 0) || !std::isfinite(size.maxCoeff())) return false;
+    const Dofs scale = size.cwiseInverse();
+    inverse = scale.asDiagonal() *
+              (scale.asDiagonal() * h * scale.asDiagonal()).inverse().eval() *
+              scale.asDiagonal();
+    return inverse.allFinite();
+  }
+
+  static bool eliminate(const SegmentTangent<Shape>& segment, const Articulated& hanging,
+                        Eliminated& e, Articulated& handed_on) {
+    Eigen::Matrix<double, wrench, Shape::columns> pulled;
+    pulled.setZero();
+    add_pulled(hanging, segment, pulled);
+    Eigen::Matrix<double, Shape::rows, Shape::columns> full = segment.local;
+    add_product(segment.lift, pulled, full);
+    const Square pivot = full.template bottomRightCorner<n, n>();
+    const auto r_of_s = full.template bottomLeftCorner<n, states>();
+    const auto w_of_x = full.template topRightCorner<wrench, n>();
+    if (!invert(pivot, e.inverse)) return false;
+    e.z = product(e.inverse, r_of_s);
+    if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
+      e.response = e.z.transpose();
+      // V = [I; -Z], so M V = M_s - M_x Z.
+      Eigen::Matrix<double, Shape::rows, states> own =
+          segment.local.template leftCols<states>();
+      add_product(segment.local.template rightCols<n>(), e.z, own, -1);
+      Eigen::Matrix<double, states, states> tip_motion =
+          segment.transfer.template leftCols<states>();
+      add_product(segment.transfer.template rightCols<n>(), e.z, tip_motion, -1);
+      Articulated joseph = own.template topRows<states>();
+      add_product(e.response, own.template bottomRows<n>(), joseph, -1);
+      const Eigen::Matrix<double, states, states> back = tip_motion.transpose();
+      add_product(back, product(hanging, tip_motion), joseph);
+      handed_on = 0.5 * (joseph + joseph.transpose());
+      return true;
+    }
+    Square used = e.inverse;
+    if constexpr (method == TreeMethod::less_implicit) {
+      // Friction and stiffness of distal segments stay out of what is handed on.
+      Square bare = pivot;
+      bare.diagonal() -= segment.stiffness;
+      if (!invert(bare, used)) return false;
+    }
+    e.response = product(w_of_x, used);
+    handed_on = full.template topLeftCorner<wrench, states>();
+    add_product(e.response, r_of_s, handed_on, -1);
+    return true;
+  }
+
+  const TreeTangent<Shape>* tangent_ = nullptr;
+  std::vector<Eliminated> eliminated_;
+  std::vector<Hanging> hanging_;
+  Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> root_;
+};
+
+}  // namespace tress

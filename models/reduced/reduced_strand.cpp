@@ -1,0 +1,224 @@
+#include "models/reduced/reduced_strand.h"
+
+#include <gsl/gsl_integration.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter own_parameters[] = {
+    {.name = "modes",
+     .help = "unknowns a segment: two curvatures and twist, two curvatures, one",
+     .choices = "bend_twist|bend|bend_planar"},
+    {.name = "solver",
+     .help = "linear solver; recursive_plain is the textbook update (loses digits)",
+     .choices = "recursive|composite|sparse|recursive_plain"},
+    {.name = "tangent",
+     .help = "terms of dr/dq, dr/dv: all; mass, friction, elastic stiffness; the latter "
+             "with those of distal segments left out of the recursion",
+     .choices = "exact|stiff|less_implicit"},
+    {.name = "rotary_inertia",
+     .help = "rotational inertia of the section about the tangent",
+     .choices = "on|off"},
+    {.name = "quadrature",
+     .help = "Gauss-Legendre points a segment, 0: by the angle it winds",
+     .number = 0,
+     .min = 0,
+     .max = 64,
+     .whole = true},
+};
+
+Vec times(const Vec& x, const Vec& y) { return {x.x * y.x, x.y * y.y, x.z * y.z}; }
+
+/// 1 for the components that are unknowns.
+Vec unknowns(int dofs) { return {dofs == 3 ? 1.0 : 0, 1, dofs == 1 ? 0.0 : 1}; }
+
+bool identity(const Frame& f) {
+  return f.e0.x == 1 && f.e1.y == 1 && f.e2.z == 1;
+}
+
+/// Arc length that a joint stands for: half of the segments beside it.
+double joint_length(const Strand& strand, std::size_t i) {
+  const Segment& segment = strand.segments[i];
+  const double before =
+      segment.parent < 0
+          ? 0
+          : strand.segments[static_cast<std::size_t>(segment.parent)].length;
+  return (before + segment.length) / 2;
+}
+
+/// Integral over a joint's arc length of a shape that is constant on every segment.
+Vec joint_angle(const Strand& strand, std::size_t i, Vec Segment::*shape) {
+  const Segment& segment = strand.segments[i];
+  Vec angle = segment.length / 2 * (segment.*shape);
+  if (segment.parent >= 0) {
+    const Segment& before = strand.segments[static_cast<std::size_t>(segment.parent)];
+    angle = angle + before.length / 2 * (before.*shape);
+  }
+  return angle;
+}
+
+void refuse(bool refused, const char* what, const char* remedy) {
+  if (refused) throw InputError(what, "model option modes", remedy);
+}
+
+void check_plane(const Strand& strand) {
+  refuse(strand.free_root.has_value(), "a free root does not stay in a plane",
+         "use modes = bend or bend_twist with root = free");
+  for (const Segment& segment : strand.segments) {
+    refuse(!identity(segment.mount), "branches leave the plane",
+           "use modes = bend or bend_twist for trees");
+    for (const Vec& shape : {segment.natural, segment.initial}) {
+      refuse(shape.x != 0 || shape.z != 0,
+             "a shape with twist or curvature about e2 leaves the plane",
+             "use modes = bend or bend_twist, or a natural curvature about e1 alone");
+    }
+  }
+}
+
+void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_area,
+                int points) {
+  const std::unique_ptr<gsl_integration_glfixed_table,
+                        decltype(&gsl_integration_glfixed_table_free)>
+      table(gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
+            gsl_integration_glfixed_table_free);
+  segment.first_block = reduced.blocks.size();
+  for (int first = 0; first < points; first += Pack::lanes) {
+    PointBlock block;
+    for (int lane = 0; lane < Pack::lanes; ++lane) {
+      double s = segment.length / 2, weight = 0;  // lanes without a point carry no mass
+      if (first + lane < points) {
+        gsl_integration_glfixed_point(0, segment.length,
+                                      static_cast<std::size_t>(first + lane), &s, &weight,
+                                      table.get());
+      }
+      block.s.set(lane, s);
+      block.length.set(lane, weight);
+      block.mass.set(lane, density_area * weight);
+    }
+    reduced.blocks.push_back(block);
+  }
+  segment.last_block = reduced.blocks.size();
+}
+
+/// Each segment's inertia about its tangent, half at its start and half at its tip.
+void add_rotors(ReducedStrand& reduced, const Strand& strand) {
+  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
+    const Segment& segment = strand.segments[i];
+    const double half =
+        strand.material.density * segment.section.polar() * segment.length / 2;
+    reduced.segments[i].rotor += half;
+    if (segment.parent >= 0) {
+      reduced.segments[static_cast<std::size_t>(segment.parent)].rotor += half;
+    } else {
+      reduced.root_rotor += half;
+    }
+  }
+}
+
+}  // namespace
+
+std::span<const Parameter> reduced_parameters() { return own_parameters; }
+
+ReducedOptions reduced_options(const Parameters& p) {
+  const std::string_view modes = p.word("modes"), solver = p.word("solver"),
+                         tangent = p.word("tangent");
+  ReducedOptions options;
+  options.dofs = modes == "bend_twist" ? 3 : modes == "bend" ? 2 : 1;
+  options.method = solver == "composite" ? TreeMethod::composite
+                   : solver == "sparse"  ? TreeMethod::sparse
+                   : solver == "recursive_plain" ? TreeMethod::recursive_plain
+                                                 : TreeMethod::recursive;
+  options.tangent = tangent == "exact"   ? ReducedTangent::exact
+                    : tangent == "stiff" ? ReducedTangent::stiff
+                                         : ReducedTangent::less_implicit;
+  options.rotary_inertia = p.word("rotary_inertia") == "on";
+  options.quadrature = p.whole("quadrature");
+  return options;
+}
+
+int quadrature_points(double angle) {
+  if (angle <= 1.5) return 4;
+  if (angle <= 7) return 8;
+  if (angle <= 13) return 12;
+  if (angle <= 20) return 16;
+  return 4 * static_cast<int>(std::ceil(angle / 5));
+}
+
+ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
+                             const ReducedOptions& options, Effects effects) {
+  check(strand);
+  const bool joints = unknown == Unknown::joint_angle;
+  if (options.dofs == 1) check_plane(strand);
+  if (joints && strand.free_root) {
+    throw InputError("a ball joint at a free root moves nothing", "model option root",
+                     "use root = free with super_helix");
+  }
+  const Material& material = strand.material;
+  const Vec free = unknowns(options.dofs), held = Vec{1, 1, 1} - free;
+
+  ReducedStrand reduced;
+  reduced.root = strand.root;
+  reduced.free_root = strand.free_root;
+  reduced.effects = std::move(effects);
+  reduced.tangent = options.tangent;
+  reduced.method = options.tangent == ReducedTangent::less_implicit
+                       ? TreeMethod::less_implicit
+                       : options.method;
+  double winding = 0;
+  for (const Segment& segment : strand.segments) {
+    for (const Vec& shape : {segment.natural, segment.initial}) {
+      winding = std::max(winding, segment.length * std::sqrt(dot(shape, shape)));
+    }
+  }
+  const int points = options.quadrature > 0 ? options.quadrature
+                     : joints               ? Pack::lanes
+                                            : quadrature_points(winding);
+  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
+    const Segment& from = strand.segments[i];
+    ReducedSegment segment;
+    segment.parent = from.parent;
+    segment.length = from.length;
+    segment.mount = from.mount;
+    segment.mounted = !identity(from.mount);
+    const Vec moduli{material.shear_modulus * from.section.torsion(),
+                     material.youngs_modulus * from.section.inertia1(),
+                     material.youngs_modulus * from.section.inertia2()};
+    const double gamma = material.internal_friction;
+    const double arc = joints ? joint_length(strand, i) : from.length;
+    const double factor = joints ? 1 / arc : arc;
+    segment.stiffness = times(free, factor * moduli);
+    segment.friction = times(free, (factor * gamma) * Vec{1, 1, 1});
+    const Vec natural =
+        joints ? joint_angle(strand, i, &Segment::natural) : from.natural;
+    const Vec initial =
+        joints ? joint_angle(strand, i, &Segment::initial) : from.initial;
+    segment.rest = times(free, natural);
+    segment.initial = times(free, initial);
+    segment.held = times(held, natural);
+    add_points(reduced, segment, material.density * from.section.area(), points);
+    reduced.segments.push_back(segment);
+  }
+  if (options.rotary_inertia) add_rotors(reduced, strand);
+
+  constexpr double earth = 9.81;  // m/s^2
+  const CrossSection& section = strand.segments.front().section;
+  reduced.length = strand.length();
+  // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
+  const double bending = 12.36 * material.youngs_modulus * section.inertia1() /
+                         (material.density * section.area() *
+                          std::pow(reduced.length, 4));
+  reduced.rate = std::sqrt(earth / reduced.length + bending);
+  reduced.unknown_scale =
+      joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / reduced.length;
+  reduced.regular_mass = options.dofs < 3 || options.rotary_inertia;
+  return reduced;
+}
+
+}  // namespace tress

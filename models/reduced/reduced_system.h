@@ -1,0 +1,272 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "models/reduced/exact_tangent.h"
+#include "models/reduced/reduced_strand.h"
+#include "models/reduced/tree_solver.h"
+
+namespace tress {
+
+/// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix, BallLink),
+/// behind the contract of models/system.h. residual: Newton-Euler, O(N). linearize and
+/// solve: the mass tangent, or the exact one, by the chosen method. The acceleration of the
+/// explicit form comes from the recursion whatever the method.
+template <class Kernel, int dofs>
+class ReducedSystem final : public System,
+                            private ExplicitForm,
+                            private Energetics,
+                            private MaterialPoints {
+ public:
+  explicit ReducedSystem(ReducedStrand strand)
+      : effects_(std::move(strand.effects)),
+        exact_(strand.tangent == ReducedTangent::exact),
+        regular_mass_(strand.regular_mass),
+        unknown_scale_(strand.unknown_scale),
+        length_(strand.length),
+        rate_(strand.rate),
+        kinematics_(std::move(strand.segments), std::move(strand.blocks),
+                    std::move(strand.root),
+                    strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
+                                     : std::nullopt,
+                    strand.root_rotor),
+        dynamics_(kinematics_, effects_),
+        exact_tangent_(kinematics_, dynamics_) {
+    ready(mass_);
+    mass_solver_ = make_tree_solver<Mass>(strand.method, mass_);
+    ready(acceleration_);
+    acceleration_solver_ = make_tree_solver<Mass>(TreeMethod::recursive, acceleration_);
+    const auto n = static_cast<std::size_t>(kinematics_.unknowns());
+    zero_.assign(n, 0.0);
+    scratch_.assign(n, 0.0);
+    if (!exact_) return;
+    ready(full_);
+    full_solver_ = make_tree_solver<Exact>(strand.method, full_);
+    if (dynamics_.effect_needs().derivatives) {
+      for (auto* x : {&by_position_, &by_velocity_}) {
+        x->resize(9 * Pack::lanes * kinematics_.blocks().size());
+      }
+    }
+  }
+
+  Layout layout() const override { return {kinematics_.unknowns(), 0}; }
+  Traits traits() const override {
+    return {.constant_mass = false, .regular_mass = regular_mass_};
+  }
+
+  void initial_state(Out q, Out v) const override {
+    std::ranges::fill(v, 0.0);
+    const auto& segments = kinematics_.segments();
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      for (int k = 0; k < dofs; ++k) {
+        q[dofs * i + static_cast<std::size_t>(k)] = dot(K::unit(k), segments[i].initial);
+      }
+    }
+    if (kinematics_.free()) kinematics_.free_root().initial_state(q.last(6), v.last(6));
+  }
+
+  void scale(Out q_typ, Out v_typ) const override {
+    std::ranges::fill(q_typ, unknown_scale_);
+    if (kinematics_.free()) {
+      std::ranges::fill(q_typ.last(6).first(3), length_);
+      std::ranges::fill(q_typ.last(3), 1.0);
+    }
+    for (std::size_t i = 0; i < q_typ.size(); ++i) v_typ[i] = rate_ * q_typ[i];
+  }
+
+  Status residual(double t, In q, In v, In a, Out r) noexcept override {
+    dynamics_.residual(t, q, v, a, r);
+    return finite(r);
+  }
+
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    // With neither velocity nor position weight there is nothing but mass.
+    full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
+    if (!full_in_use_) {
+      kinematics_.shape(q);
+      return factor(w, mass_, *mass_solver_);
+    }
+    dynamics_.residual(t, q, v, a, scratch_);
+    const auto effects = effect_blocks(t);
+    for (std::size_t i = 0; i < full_.segments.size(); ++i) {
+      exact_tangent_.segment(i, w, effects, full_.segments[i]);
+    }
+    if (full_.free_root) exact_tangent_.root(w, v, a, full_.root);
+    return full_solver_->factor(full_);
+  }
+
+  Status solve(In b, Out x) noexcept override {
+    const Status s = full_in_use_ ? full_solver_->solve(b, x) : mass_solver_->solve(b, x);
+    return s == Status::ok ? finite(x) : s;
+  }
+
+  bool accept(double, InOut q, InOut v) override {
+    return kinematics_.free() && kinematics_.free_root().rebase(q.last(6), v.last(6));
+  }
+
+  ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }
+  Energetics* energetics() override { return this; }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  using K = Kinematics<Kernel, dofs>;
+  using Mass = MassShape<dofs>;
+  using Exact = ExactShape<dofs>;
+
+  template <class Shape>
+  void ready(TreeTangent<Shape>& tangent) const {
+    for (const ReducedSegment& segment : kinematics_.segments()) {
+      tangent.parent.push_back(segment.parent);
+    }
+    tangent.segments.resize(tangent.parent.size());
+    tangent.free_root = kinematics_.free();
+  }
+
+  static Status finite(In x) {
+    return std::ranges::all_of(x, [](double y) { return std::isfinite(y); })
+               ? Status::ok
+               : Status::retry;
+  }
+
+  Status factor(Weights w, TreeTangent<Mass>& tangent, TreeSolver<Mass>& solver) {
+    for (std::size_t i = 0; i < tangent.segments.size(); ++i) {
+      mass_tangent(kinematics_, i, w, tangent.segments[i]);
+    }
+    if (tangent.free_root) mass_root_tangent(kinematics_, w, tangent.root);
+    return solver.factor(tangent);
+  }
+
+  typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
+    if (by_position_.empty()) return {};
+    const Points points = dynamics_.points(dynamics_.effect_needs());
+    std::ranges::fill(by_position_, 0.0);
+    std::ranges::fill(by_velocity_, 0.0);
+    for (const auto& effect : effects_) {
+      effect->add_derivatives(t, points, 1, 0, by_position_);
+      effect->add_derivatives(t, points, 0, 1, by_velocity_);
+    }
+    return {by_position_, by_velocity_};
+  }
+
+  Status acceleration(double t, In q, In v, Out a) noexcept override {
+    dynamics_.residual(t, q, v, zero_, scratch_);
+    const Status s = factor({1, 0, 0}, acceleration_, *acceleration_solver_);
+    if (s != Status::ok) return s;
+    for (double& entry : scratch_) entry = -entry;
+    const Status solved = acceleration_solver_->solve(scratch_, a);
+    return solved == Status::ok ? finite(a) : solved;
+  }
+
+  Energy energy(double t, In q, In v) override {
+    kinematics_.move(t, q, v, zero_);
+    Energy e;
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      const ReducedSegment& segment = kinematics_.segments()[i];
+      for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+        const Vec3<Pack> u = kinematics_.velocity(i, b);
+        e.kinetic += 0.5 * sum(kinematics_.blocks()[b].mass * dot(u, u));
+      }
+      const double spin = kinematics_.motion(i).tip.omega.x;
+      e.kinetic += 0.5 * segment.rotor * spin * spin;
+      const Vec bent = K::components(q, i) - segment.rest;
+      e.potential += 0.5 * (segment.stiffness.x * bent.x * bent.x +
+                            segment.stiffness.y * bent.y * bent.y +
+                            segment.stiffness.z * bent.z * bent.z);
+    }
+    const Points points = dynamics_.points({.position = true, .velocity = true});
+    for (const auto& effect : effects_) e.potential += effect->potential(t, points);
+    return e;
+  }
+
+  double power(double t, In q, In v) override {
+    kinematics_.move(t, q, v, zero_);
+    const Points points = dynamics_.points({.position = true, .velocity = true});
+    double sum = 0;
+    for (const auto& effect : effects_) sum += effect->power(t, points);
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      const Vec& friction = kinematics_.segments()[i].friction;
+      const Vec rate = K::components(v, i);
+      sum -= friction.x * rate.x * rate.x + friction.y * rate.y * rate.y +
+             friction.z * rate.z * rate.z;
+    }
+    return sum + root_power(t, q, v);
+  }
+
+  /// Work of the clamp: what it takes to hold the root on its path.
+  double root_power(double t, In q, In v) {
+    if (!kinematics_.moving_root() || !regular_mass_) return 0;
+    std::vector<double> a(zero_.size());
+    if (acceleration(t, q, v, a) != Status::ok) return std::nan("");
+    dynamics_.residual(t, q, v, a, scratch_);
+    const Wrench& w = dynamics_.at_root();
+    return dot(w.force, kinematics_.root().v) + dot(w.moment, kinematics_.root().omega);
+  }
+
+  bool momentum(double t, In q, In v, Momentum& total) override {
+    kinematics_.move(t, q, v, zero_);
+    Vec linear, angular;
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      const ReducedSegment& segment = kinematics_.segments()[i];
+      const FrameMotion& tip = kinematics_.motion(i).tip;
+      angular = angular + (segment.rotor * tip.omega.x) * tip.frame.e0;
+      for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+        const Vec3<Pack> x = Vec3<Pack>(kinematics_.motion(i).start.x) +
+                             kinematics_.world(i, kinematics_.block_geometry(b).position);
+        const Vec3<Pack> p = kinematics_.blocks()[b].mass *
+                             kinematics_.world(i, kinematics_.velocity(i, b));
+        const Vec3<Pack> l = cross(x, p);
+        linear = linear + Vec{sum(p.x), sum(p.y), sum(p.z)};
+        angular = angular + Vec{sum(l.x), sum(l.y), sum(l.z)};
+      }
+    }
+    total = {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
+    return true;
+  }
+
+  // Material points: the root and the tips of all segments.
+  int count() const override { return kinematics_.count() + 1; }
+  void positions(double t, In q, Out x) override {
+    kinematics_.move(t, q, zero_, zero_);
+    store3(kinematics_.root().x, &x[0]);
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      store3(kinematics_.motion(i).tip.x, &x[3 * (i + 1)]);
+    }
+  }
+  void velocities(double t, In q, In v, Out u) override {
+    kinematics_.move(t, q, v, zero_);
+    store3(kinematics_.root().frame * kinematics_.root().v, &u[0]);
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      const FrameMotion& tip = kinematics_.motion(i).tip;
+      store3(tip.frame * tip.v, &u[3 * (i + 1)]);
+    }
+  }
+
+  Effects effects_;
+  bool exact_, regular_mass_;
+  double unknown_scale_, length_, rate_;
+  K kinematics_;
+  InverseDynamics<Kernel, dofs> dynamics_;
+  ExactTangent<Kernel, dofs> exact_tangent_;
+  TreeTangent<Mass> mass_, acceleration_;
+  TreeTangent<Exact> full_;
+  std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
+  std::unique_ptr<TreeSolver<Exact>> full_solver_;
+  bool full_in_use_ = false;
+  std::vector<double> zero_, scratch_, by_position_, by_velocity_;
+};
+
+template <class Kernel>
+std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
+  switch (dofs) {
+    case 1:
+      return std::make_unique<ReducedSystem<Kernel, 1>>(std::move(strand));
+    case 2:
+      return std::make_unique<ReducedSystem<Kernel, 2>>(std::move(strand));
+    default:
+      return std::make_unique<ReducedSystem<Kernel, 3>>(std::move(strand));
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "models/reduced/tree_tangent.h"
+
+namespace tress {
+
+/// The directions in which the frames of a strand move. With two or three unknowns a
+/// segment it is all of space; a strand of one unknown a segment (bending about e1 alone)
+/// stays in its plane, whose axes are e0 and e2: two translations and one rotation.
+template <int dofs>
+struct Space {
+  static constexpr int translations = dofs == 1 ? 2 : 3;
+  static constexpr int rotations = dofs == 1 ? 1 : 3;
+  static constexpr int size = translations + rotations;
+  static constexpr int translation[3] = {0, dofs == 1 ? 2 : 1, 2};
+  static constexpr int rotation[3] = {dofs == 1 ? 1 : 0, 1, 2};
+  /// Component of (twist, curvature 1, curvature 2) that unknown k of a segment is.
+  static constexpr int component(int k) { return dofs == 3 ? k : k + 1; }
+};
+
+template <int dofs>
+using MassShape = TreeShape<Space<dofs>::size, Space<dofs>::size, dofs>;
+
+template <int dofs>
+using ExactShape = TreeShape<3 * Space<dofs>::size, Space<dofs>::size, dofs>;
+
+}  // namespace tress

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "integrators/linear/klu.h"
+#include "models/reduced/tree_solver.h"
+
+namespace tress {
+
+/// The equations of TreeTangent as they stand, nothing eliminated: per segment its unknowns
+/// x, the state of its tip and the wrench at its start, in one sparse matrix for KLU.
+template <class Shape>
+class SparseTreeSolver final : public TreeSolver<Shape> {
+ public:
+  explicit SparseTreeSolver(const TreeTangent<Shape>& structure)
+      : pattern_(make_pattern(structure)), klu_(pattern_) {
+    values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
+    rhs_.resize(static_cast<std::size_t>(pattern_.rows));
+  }
+
+  Status factor(const TreeTangent<Shape>& tangent) noexcept override {
+    segments_ = tangent.parent.size();
+    free_root_ = tangent.free_root;
+    std::fill(values_.begin(), values_.end(), 0.0);
+    std::size_t entry = 0;
+    emit(tangent, [&](int, int, double value) {
+      values_[static_cast<std::size_t>(place_[entry++])] += value;
+    });
+    return klu_.factor(values_);
+  }
+
+  Status solve(In b, Out x) noexcept override {
+    std::fill(rhs_.begin(), rhs_.end(), 0.0);
+    for (std::size_t i = 0; i < segments_; ++i) {
+      for (std::size_t k = 0; k < n; ++k) rhs_[stride * i + k] = b[n * i + k];
+    }
+    const std::size_t last = free_root_ ? 6 : 0;
+    for (std::size_t k = 0; k < last; ++k) {
+      rhs_[stride * segments_ + k] = b[n * segments_ + k];
+    }
+    const Status status = klu_.solve(rhs_);
+    for (std::size_t i = 0; i < segments_; ++i) {
+      for (std::size_t k = 0; k < n; ++k) x[n * i + k] = rhs_[stride * i + k];
+    }
+    for (std::size_t k = 0; k < last; ++k) {
+      x[n * segments_ + k] = rhs_[stride * segments_ + k];
+    }
+    return status;
+  }
+
+ private:
+  // Offsets inside a segment: rows are [r; state of the tip; wrench], columns [x; s; w].
+  static constexpr int n = Shape::dofs, states = Shape::states, wrench = Shape::wrench;
+  static constexpr int stride = n + states + wrench;
+  static constexpr int of_state = n, of_wrench = n + states;
+
+  template <class Sink, class Block>
+  static void put(Sink& sink, int row, int column, double factor, const Block& block) {
+    for (int j = 0; j < block.cols(); ++j) {
+      for (int i = 0; i < block.rows(); ++i) {
+        sink(row + i, column + j, factor * block(i, j));
+      }
+    }
+  }
+
+  template <class Sink>
+  static void put_identity(Sink& sink, int row, int column, int size) {
+    for (int i = 0; i < size; ++i) sink(row + i, column + i, 1.0);
+  }
+
+  /// Every entry of the matrix in a fixed order; entries may repeat and add up.
+  template <class Sink>
+  static void emit(const TreeTangent<Shape>& tangent, Sink sink) {
+    const int root = stride * static_cast<int>(tangent.parent.size());
+    for (std::size_t i = 0; i < tangent.parent.size(); ++i) {
+      const SegmentTangent<Shape>& segment = tangent.segments[i];
+      const int at = stride * static_cast<int>(i);
+      const int parent = tangent.parent[i];
+      const auto lift_w = segment.lift.template topRows<wrench>();
+      const auto lift_r = segment.lift.template bottomRows<n>();
+
+      put(sink, at, at, 1, segment.local.template bottomRightCorner<n, n>());
+      put(sink, at, at + of_state, 1, product(lift_r, segment.tip));
+      put_identity(sink, at + of_state, at + of_state, states);
+      put(sink, at + of_state, at, -1, segment.transfer.template rightCols<n>());
+      put_identity(sink, at + of_wrench, at + of_wrench, wrench);
+      put(sink, at + of_wrench, at, -1,
+          segment.local.template topRightCorner<wrench, n>());
+      put(sink, at + of_wrench, at + of_state, -1, product(lift_w, segment.tip));
+
+      // What the state at the start adds: of the parent's tip, or of a free root.
+      const auto from_start = [&](int column, const auto& start) {
+        put(sink, at, column, 1,
+            product(segment.local.template bottomLeftCorner<n, states>(), start));
+        put(sink, at + of_state, column, -1,
+            product(segment.transfer.template leftCols<states>(), start));
+        put(sink, at + of_wrench, column, -1,
+            product(segment.local.template topLeftCorner<wrench, states>(), start));
+      };
+      if (parent >= 0) {
+        from_start(stride * parent + of_state,
+                   Eigen::Matrix<double, states, states>::Identity().eval());
+        const auto& below = tangent.segments[static_cast<std::size_t>(parent)].lift;
+        put(sink, stride * parent, at + of_wrench, 1, below.template bottomRows<n>());
+        put(sink, stride * parent + of_wrench, at + of_wrench, -1,
+            below.template topRows<wrench>());
+      } else if (tangent.free_root) {
+        from_start(root, tangent.root.transfer);
+        put(sink, root, at + of_wrench, 1, tangent.root.lift);
+      }
+    }
+    if (tangent.free_root) put(sink, root, root, 1, tangent.root.local);
+  }
+
+  /// Also fills place_: where each emitted entry goes among the pattern's values.
+  Pattern make_pattern(const TreeTangent<Shape>& structure) {
+    std::vector<std::pair<int, int>> entries;  // column, row
+    emit(structure, [&](int row, int column, double) { entries.emplace_back(column, row); });
+    std::vector<std::pair<int, int>> sorted = entries;
+    std::sort(sorted.begin(), sorted.end());
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    Pattern pattern;
+    pattern.rows = pattern.cols = stride * static_cast<int>(structure.parent.size()) +
+                                  (structure.free_root ? 6 : 0);
+    pattern.start.assign(static_cast<std::size_t>(pattern.cols) + 1, 0);
+    for (const auto& [column, row] : sorted) {
+      ++pattern.start[static_cast<std::size_t>(column) + 1];
+      pattern.row.push_back(row);
+    }
+    std::partial_sum(pattern.start.begin(), pattern.start.end(), pattern.start.begin());
+    for (const auto& entry : entries) {
+      place_.push_back(static_cast<int>(
+          std::lower_bound(sorted.begin(), sorted.end(), entry) - sorted.begin()));
+    }
+    return pattern;
+  }
+
+  std::vector<int> place_;
+  Pattern pattern_;
+  KluSolver klu_;
+  std::vector<double> values_, rhs_;
+  std::size_t segments_ = 0;
+  bool free_root_ = false;
+};
+
+}  // namespace tress

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "models/reduced/reduced_strand.h"
+#include "models/system.h"
+
+namespace tress {
+
+/// Super-helix [Bertails, Audoly, Cani, Querleux, Leroy, Leveque 2006]: an inextensible
+/// Kirchhoff rod of N segments, each a helix of constant Darboux vector; unknowns are its
+/// components (twist, curvature 1, curvature 2 in 1/m; fewer by `modes`). Equations of
+/// motion
+///
+///     M(q) q'' + gamma l q' + K (q - q_rest) + gyroscopic terms = sum J^T f
+///
+/// with K = l diag(GJ, EI1, EI2) and mass integrals by Gauss-Legendre points. Second order
+/// in the segment length. Solving by `recursive` is O(N) [Bertails 2009]. Trees are the
+/// same with branching parents. Throws InputError (see reduced_strand).
+std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
+                                    Effects effects);
+
+std::span<const Parameter> super_helix_parameters();
+std::unique_ptr<System> make_super_helix(const Parameters& parameters);
+
+}  // namespace tress

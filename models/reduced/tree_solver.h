@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "models/reduced/tree_tangent.h"
+#include "models/system.h"
+
+namespace tress {
+
+/// How the linear problem of a tree is solved; all but `less_implicit` give the same x.
+enum class TreeMethod {
+  recursive,        // two sweeps, O(N); symmetric problems in a form that stays definite
+  composite,        // dense matrix in O(N^2), Cholesky or LU in O(N^3)
+  sparse,           // states, unknowns and wrenches side by side, KLU
+  recursive_plain,  // two sweeps by the textbook update, which loses digits (a pitfall)
+  less_implicit,    // our reconstruction of a recursion that leaves the friction and
+                    // stiffness of distal segments out of the elimination
+};
+
+/// Solves S x = b for one TreeTangent. factor() and solve() do not allocate after the
+/// first call.
+template <class Shape>
+class TreeSolver {
+ public:
+  virtual ~TreeSolver() = default;
+  /// `retry` when a pivot is not usable. The tangent must outlive the solves.
+  virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
+  virtual Status solve(In b, Out x) noexcept = 0;  // b and x may be the same
+};
+
+/// The last two methods exist for symmetric shapes; exact tangents get `recursive`.
+template <class Shape>
+std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
+                                                    const TreeTangent<Shape>& structure);
+
+}  // namespace tress

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/reduced/block_product.h"
+
+namespace tress {
+
+/// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers from
+/// its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs` unknowns
+/// of its own. Symmetric problems (mass, friction and stiffness only) have states ==
+/// wrench: the acceleration of the frame. The exact tangent carries displacement, velocity
+/// and acceleration: states == 3 wrench.
+template <int states_, int wrench_, int dofs_>
+struct TreeShape {
+  static constexpr int states = states_;
+  static constexpr int wrench = wrench_;
+  static constexpr int dofs = dofs_;
+  static constexpr int columns = states + dofs;
+  static constexpr int rows = wrench + dofs;
+  static constexpr bool symmetric = states == wrench;
+
+  template <int r, int c>
+  using Matrix = Eigen::Matrix<double, r, c>;
+};
+
+/// Linearised equations of one segment: with s the state at its start, x its unknowns and
+/// w_tip the wrench that hangs on its tip,
+///
+///     s_tip = transfer [s; x]
+///     [w; r] = local [s; x] + lift w_tip,     w_tip = tip s_tip + sum of the children's w
+///
+/// and the equations to solve are r = b. Symmetric: lift = transfer^T, local and tip are
+/// symmetric. Exact: the blocks of transfer that take displacement to velocity or
+/// acceleration, and acceleration to anything else, are zero. `stiffness` is the diagonal
+/// part of local that comes from friction and elasticity.
+template <class Shape>
+struct SegmentTangent {
+  template <int r, int c>
+  using Matrix = typename Shape::template Matrix<r, c>;
+
+  Matrix<Shape::states, Shape::columns> transfer;
+  Matrix<Shape::rows, Shape::columns> local;
+  Matrix<Shape::wrench, Shape::states> tip;
+  Matrix<Shape::rows, Shape::wrench> lift;
+  Matrix<Shape::dofs, 1> stiffness;
+};
+
+/// c += m transfer, for m with as many columns as states; uses the zero blocks of transfer.
+template <class M, class Shape, class C>
+void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
+  constexpr int size = Shape::wrench, levels = Shape::states / size;
+  constexpr int rows = M::RowsAtCompileTime;
+  const auto add = [&](int from, int to) {
+    add_product<rows, size, size>(
+        m.data() + rows * size * from, rows,
+        segment.transfer.data() + size * from + Shape::states * size * to, Shape::states,
+        c.data() + rows * size * to, rows);
+  };
+  for (int level = 0; level < levels; ++level) add(level, level);
+  if constexpr (levels == 3) add(2, 1);
+  add_product<rows, Shape::states, Shape::dofs>(
+      m.data(), rows, segment.transfer.data() + Shape::states * Shape::states,
+      Shape::states, c.data() + rows * Shape::states, rows);
+}
+
+/// The same of a root that moves freely: its 6 unknowns y give the state s = transfer y at
+/// the start of the first segments, and local y + lift (sum of their w) = b.
+template <class Shape>
+struct RootTangent {
+  template <int r, int c>
+  using Matrix = typename Shape::template Matrix<r, c>;
+
+  Matrix<Shape::states, 6> transfer;
+  Matrix<6, 6> local;
+  Matrix<6, Shape::wrench> lift;
+};
+
+/// Everything that a tree solver factors. Unknowns are ordered by segment, the root's last.
+template <class Shape>
+struct TreeTangent {
+  std::vector<int> parent;  // of each segment, earlier than it; -1: the root
+  std::vector<SegmentTangent<Shape>> segments;
+  RootTangent<Shape> root;  // read when free_root
+  bool free_root = false;
+
+  int unknowns() const {
+    return static_cast<int>(parent.size()) * Shape::dofs + (free_root ? 6 : 0);
+  }
+};
+
+}  // namespace tress
