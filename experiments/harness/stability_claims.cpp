@@ -9,12 +9,12 @@
 namespace tress {
 namespace {
 
-/// All that tells rows apart but for the solver.
-std::string setting_of(const Row& row) {
+/// All that tells rows apart but for the column that is compared.
+std::string setting_of(const Row& row, std::string_view compared) {
   std::string key;
-  for (const std::string_view column :
-       {"scene", "model", "integrator", "tangent", "modes", "elements", "damping"}) {
-    key.append(row.text(column)).append("/");
+  for (const std::string_view column : {"scene", "model", "integrator", "solver",
+                                        "tangent", "modes", "elements", "damping"}) {
+    if (column != compared) key.append(row.text(column)).append("/");
   }
   return key;
 }
@@ -25,16 +25,16 @@ struct Bracket {
   bool above(const Bracket& other) const { return stable >= other.unstable; }
 };
 
-/// By setting, of the rows with this solver whose search was done.
+/// By setting, of the rows with this word in this column whose search was done.
 std::map<std::string, Bracket> limits_of(const std::vector<Row>& rows,
-                                         std::string_view solver) {
+                                         std::string_view column, std::string_view word) {
   std::map<std::string, Bracket> limits;
   for (const Row& row : rows) {
-    if (row.text("solver") != solver || !row.ok()) continue;
+    if (row.text(column) != word || !row.ok()) continue;
     const double unstable = row.has("dt_first_unstable_s")
                                 ? row.number("dt_first_unstable_s")
                                 : std::numeric_limits<double>::infinity();
-    limits[setting_of(row)] = {row.number("dt_max_s"), unstable};
+    limits[setting_of(row, column)] = {row.number("dt_max_s"), unstable};
   }
   return limits;
 }
@@ -48,12 +48,13 @@ struct Worst {
 /// One verdict per scene. `violated` tells whether two brackets break the claim, `ratio`
 /// how far they are from doing so.
 template <typename Violated, typename Ratio>
-void check_pairs(const std::vector<Row>& rows, std::string_view first,
-                 std::string_view second, const std::string& claim, Violated violated,
-                 Ratio ratio, Verdicts& verdicts) {
+void check_pairs(const std::vector<Row>& rows, std::string_view column,
+                 std::string_view first, std::string_view second,
+                 const std::string& claim, Violated violated, Ratio ratio,
+                 Verdicts& verdicts) {
   std::map<std::string, Worst> scenes;
-  const auto others = limits_of(rows, second);
-  for (const auto& [setting, limit] : limits_of(rows, first)) {
+  const auto others = limits_of(rows, column, second);
+  for (const auto& [setting, limit] : limits_of(rows, column, first)) {
     const auto other = others.find(setting);
     if (other == others.end()) continue;
     Worst& worst = scenes[setting.substr(0, setting.find('/'))];
@@ -85,12 +86,12 @@ const Row* shaken(const std::vector<Row>& rows, std::string_view integrator,
 
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_pairs(
-      rows, "recursive", "composite",
+      rows, "solver", "recursive", "composite",
       "recursive and composite have the same largest step",
       [](const Bracket& a, const Bracket& b) { return a.above(b) || b.above(a); },
       [](double a, double b) { return std::max(a / b, b / a); }, verdicts);
   check_pairs(
-      rows, "less_implicit", "recursive", "less_implicit never exceeds recursive",
+      rows, "tangent", "less_implicit", "stiff", "less_implicit never exceeds stiff",
       [](const Bracket& a, const Bracket& b) { return a.above(b); },
       [](double a, double b) { return a / b; }, verdicts);
 
