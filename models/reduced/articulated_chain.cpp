@@ -6,8 +6,9 @@
 
 namespace tress {
 
-std::unique_ptr<System> articulated_chain(const Strand& strand, const ReducedOptions& options,
-                                    Effects effects) {
+std::unique_ptr<System> articulated_chain(const Strand& strand,
+                                          const ReducedOptions& options,
+                                          Effects effects) {
   return make_reduced_system<BallLink>(
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects)),
       options.dofs);
@@ -20,7 +21,7 @@ std::span<const Parameter> articulated_chain_parameters() {
 
 std::unique_ptr<System> make_articulated_chain(const Parameters& parameters) {
   return articulated_chain(strand(parameters), reduced_options(parameters),
-                     strand_effects(parameters));
+                           strand_effects(parameters));
 }
 
 }  // namespace tress

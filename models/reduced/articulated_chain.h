@@ -9,11 +9,12 @@
 namespace tress {
 
 /// Serial chain of rigid links with ball joints, bending and twisting springs and rest
-/// angles [Hadap, Magnenat-Thalmann 2001; Hadap 2006]. Unknowns are the rotation vectors of
-/// the joints (rad). A joint stands for half of each of the links beside it: stiffness
-/// diag(GJ, EI1, EI2)/l with l that arc length, so the joint at the clamp is twice as stiff.
-/// Solved by Featherstone's articulated-body sweep with stiffness and friction inside, or
-/// by the dense matrix of composite bodies. Throws InputError (see reduced_strand).
+/// angles [Hadap, Magnenat-Thalmann 2001; Hadap 2006]. Unknowns are the rotation vectors
+/// of the joints (rad). A joint stands for half of each of the links beside it: stiffness
+/// diag(GJ, EI1, EI2)/l with l that arc length, so the joint at the clamp is twice as
+/// stiff. Solved by Featherstone's articulated-body sweep with stiffness and friction
+/// inside, or by the dense matrix of composite bodies. Throws InputError (see
+/// reduced_strand).
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options, Effects effects);
 

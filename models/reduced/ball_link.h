@@ -4,11 +4,11 @@
 
 namespace tress {
 
-/// Kinematics of a rigid straight link behind a ball joint: with the rotation vector theta
-/// of the joint, E = exp([theta]x), the link points along E e0 and turns with W(1) theta'.
-/// A joint is a helix of length 1 that goes nowhere, so its rotation and its angular
-/// velocity are those of Helix; positions are s E e0. The rotation vector is regular for
-/// |theta| < 2 pi, which a joint between links never needs to leave.
+/// Kinematics of a rigid straight link behind a ball joint: with the rotation vector
+/// theta of the joint, E = exp([theta]x), the link points along E e0 and turns with W(1)
+/// theta'. A joint is a helix of length 1 that goes nowhere, so its rotation and its
+/// angular velocity are those of Helix; positions are s E e0. The rotation vector is
+/// regular for |theta| < 2 pi, which a joint between links never needs to leave.
 class BallLink {
  public:
   template <class T>
@@ -26,7 +26,9 @@ class BallLink {
 
   BallLink() = default;
   BallLink(const Vec& theta, double length)
-      : joint_(theta, 1), at_(joint_.tip()), length_(length),
+      : joint_(theta, 1),
+        at_(joint_.tip()),
+        length_(length),
         along_(joint_.rotated(at_, Helix::tangent)) {}
 
   template <class T>

@@ -4,9 +4,9 @@
 
 namespace tress {
 
-/// c += factor a b for small column-major blocks of fixed size inside larger ones, given by
-/// their first entries and column strides. Loops rather than Eigen's products: those unroll
-/// completely, and a 9 x 6 x 21 product then takes the compiler minutes.
+/// c += factor a b for small column-major blocks of fixed size inside larger ones, given
+/// by their first entries and column strides. Loops rather than Eigen's products: those
+/// unroll completely, and a 9 x 6 x 21 product then takes the compiler minutes.
 template <int rows, int inner, int columns>
 inline void add_product(const double* a, int a_stride, const double* b, int b_stride,
                         double* c, int c_stride, double factor = 1) {
@@ -28,10 +28,9 @@ inline void add_product(const A& a, const B& b, C&& c, double factor = 1) {
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
-  add_product<rows, inner, columns>(
-      a.data(), static_cast<int>(a.colStride()), b.data(),
-      static_cast<int>(b.colStride()), c.data(), static_cast<int>(c.colStride()),
-      factor);
+  add_product<rows, inner, columns>(a.data(), static_cast<int>(a.colStride()), b.data(),
+                                    static_cast<int>(b.colStride()), c.data(),
+                                    static_cast<int>(c.colStride()), factor);
 }
 
 /// a b

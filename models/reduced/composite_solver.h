@@ -7,10 +7,11 @@
 
 namespace tress {
 
-/// The dense matrix of all unknowns, as in [Bertails et al. 2006], but assembled in O(N^2)
-/// by composite bodies [Featherstone's CRBA]: what hangs on a tip, with its joints held,
-/// is summed up once from the free ends; column block i then takes one walk to the root
-/// (and, for an exact tangent, one through the segments below). Cholesky or LU, O(N^3).
+/// The dense matrix of all unknowns, as in [Bertails et al. 2006], but assembled in
+/// O(N^2) by composite bodies [Featherstone's CRBA]: what hangs on a tip, with its joints
+/// held, is summed up once from the free ends; column block i then takes one walk to the
+/// root (and, for an exact tangent, one through the segments below). Cholesky or LU,
+/// O(N^3).
 template <class Shape>
 class CompositeSolver final : public TreeSolver<Shape> {
  public:
@@ -64,8 +65,8 @@ class CompositeSolver final : public TreeSolver<Shape> {
       Load<n> load = full_[at].template topRightCorner<wrench, n>();
       walk_up<n>(tangent, tangent.parent[at], n * i, load);
       if constexpr (!Shape::symmetric) {
-        walk_down<n>(tangent, at,
-                     tangent.segments[at].transfer.template rightCols<n>(), n * i);
+        walk_down<n>(tangent, at, tangent.segments[at].transfer.template rightCols<n>(),
+                     n * i);
       }
     }
     if (!tangent.free_root) return;
@@ -83,7 +84,8 @@ class CompositeSolver final : public TreeSolver<Shape> {
   void walk_up(const TreeTangent<Shape>& tangent, int segment, Eigen::Index column,
                Load<columns>& load) {
     while (segment >= 0) {
-      const SegmentTangent<Shape>& at = tangent.segments[static_cast<std::size_t>(segment)];
+      const SegmentTangent<Shape>& at =
+          tangent.segments[static_cast<std::size_t>(segment)];
       const Eigen::Matrix<double, Shape::rows, columns> lifted = product(at.lift, load);
       put<n, columns>(n * segment, column, lifted.template bottomRows<n>());
       load = lifted.template topRows<wrench>();
@@ -119,8 +121,9 @@ class CompositeSolver final : public TreeSolver<Shape> {
       const int parent = tangent.parent[i];
       if (parent < 0 ? !root : moved_[static_cast<std::size_t>(parent)] == 0) continue;
       const Motion<columns> s =
-          parent < 0 ? motion
-                     : state_[static_cast<std::size_t>(parent)].template leftCols<columns>();
+          parent < 0
+              ? motion
+              : state_[static_cast<std::size_t>(parent)].template leftCols<columns>();
       moved_[i] = 1;
       dense_.matrix.template block<n, columns>(n * static_cast<Eigen::Index>(i), column) =
           product(full_[i].template bottomLeftCorner<n, states>(), s);

@@ -7,8 +7,9 @@
 
 namespace tress {
 
-/// A dense matrix of mixed units, scaled to unit diagonal and factored: Cholesky when it is
-/// symmetric, LU otherwise. `matrix` is written by the caller and destroyed by factor().
+/// A dense matrix of mixed units, scaled to unit diagonal and factored: Cholesky when it
+/// is symmetric, LU otherwise. `matrix` is written by the caller and destroyed by
+/// factor().
 class DenseFactor {
  public:
   DenseFactor(int size, bool symmetric);

@@ -8,8 +8,8 @@ namespace tress {
 /// Every derivative of the residual of one segment (InverseDynamics), at the motion that
 /// Kinematics holds. States are variations of a frame in its own components: displacement
 /// (d, phi), then of its velocity (v, omega) and acceleration (a, alpha). With C the
-/// rotation to the tip, theta the turn of the tip by the unknowns, c a point's acceleration
-/// and f its load,
+/// rotation to the tip, theta the turn of the tip by the unknowns, c a point's
+/// acceleration and f its load,
 ///
 ///     d(C^T y) = C^T (dy + y x theta),    dF = m dc + phi x f - df
 ///
@@ -62,7 +62,8 @@ class ExactTangent {
       const Frame rotation = joint.rotation(free.at());
       const Vec rate{v[3], v[4], v[5]}, second{a[3], a[4], a[5]};
       const Vec omega = joint.W(rate).at(free.at());
-      const Vec alpha = joint.W(second).at(free.at()) + joint.dW(rate, rate).at(free.at());
+      const Vec alpha =
+          joint.W(second).at(free.at()) + joint.dW(rate, rate).at(free.at());
       root.local.setZero();
       root.transfer.setZero();
       root.lift.setZero();
@@ -230,12 +231,11 @@ class ExactTangent {
         const Vec3<Pack>& slope = block.slope[at];
         const Vec3<Pack> bent = with_rate[at].at(block.at);
         const Vec3<Pack> carried = cross(omega, slope);
-        Vec3<Pack> dF =
-            mass * (Pack(w.acc) * slope + Pack(2 * w.vel) * (carried + bent) +
-                    Pack(w.pos) * (cross(alpha, slope) +
-                                   cross(omega, carried + Pack(2) * bent) +
-                                   with_acceleration[at].at(block.at) +
-                                   with_rates[at].at(block.at)));
+        Vec3<Pack> dF = mass * (Pack(w.acc) * slope + Pack(2 * w.vel) * (carried + bent) +
+                                Pack(w.pos) * (cross(alpha, slope) +
+                                               cross(omega, carried + Pack(2) * bent) +
+                                               with_acceleration[at].at(block.at) +
+                                               with_rates[at].at(block.at)));
         if (blocks) {
           dF = dF - Pack(w.pos) * (by_x * slope) -
                by_v * (Pack(w.vel) * slope + Pack(w.pos) * (carried + bent));

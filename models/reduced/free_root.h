@@ -13,12 +13,13 @@ struct FrameMotion {
   Vec v, omega, a, alpha;
 };
 
-/// A root that moves freely, by 6 unknowns: its position (world components) and a rotation
-/// vector theta relative to a reference frame, frame = reference exp([theta]x). The
-/// reference follows the motion (rebase), so that theta stays far from 2 pi.
+/// A root that moves freely, by 6 unknowns: its position (world components) and a
+/// rotation vector theta relative to a reference frame, frame = reference exp([theta]x).
+/// The reference follows the motion (rebase), so that theta stays far from 2 pi.
 class FreeRootFrame {
  public:
-  explicit FreeRootFrame(const FreeRoot& start) : start_(start), reference_(start.frame) {}
+  explicit FreeRootFrame(const FreeRoot& start)
+      : start_(start), reference_(start.frame) {}
 
   void initial_state(Out q, Out v) const;  // (6), (6)
   FrameMotion motion(In q, In v, In a);    // keeps what the calls below read

@@ -82,8 +82,7 @@ class Helix {
     const Terms t(kappa_, y);
     const double k1 = dot(kappa_, x1), k2 = dot(kappa_, x2), c = dot(x1, x2);
     return {c * t.u + k1 * cross(x2, y) + k2 * cross(x1, y), (k1 * k2) * t.u,
-            t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1),
-            (k1 * k2) * t.z};
+            t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1), (k1 * k2) * t.z};
   }
   Third d3W(const Vec& x1, const Vec& x2, const Vec& x3, const Vec& y) const {
     const Terms t(kappa_, y);
@@ -138,7 +137,8 @@ class Helix {
 
   /// u = K y, z = K^2 y and the derivatives of z along x, and along x1 and x2.
   struct Terms {
-    Terms(const Vec& k, const Vec& y0) : kappa(k), y(y0), u(cross(k, y0)), z(cross(k, u)) {}
+    Terms(const Vec& k, const Vec& y0)
+        : kappa(k), y(y0), u(cross(k, y0)), z(cross(k, u)) {}
     Vec z_of(const Vec& x) const { return cross(x, u) + cross(kappa, cross(x, y)); }
     Vec z_of(const Vec& x1, const Vec& x2) const {
       return cross(x1, cross(x2, y)) + cross(x2, cross(x1, y));

@@ -35,15 +35,14 @@ class Kinematics {
   };
   struct SegmentMotion {
     FrameMotion start, tip;
-    Vec rate, acceleration;  // kappa', kappa''
-    Vec velocity;            // P' at the tip
-    Vec turning;             // W kappa' at the tip
+    Vec rate, acceleration;       // kappa', kappa''
+    Vec velocity;                 // P' at the tip
+    Vec turning;                  // W kappa' at the tip
     Vec tip_v, tip_a, tip_alpha;  // of the tip, in the components of the start
   };
 
   Kinematics(std::vector<ReducedSegment> segments, std::vector<PointBlock> blocks,
-             RootMotion root, std::optional<FreeRootFrame> free_root,
-             double root_rotor)
+             RootMotion root, std::optional<FreeRootFrame> free_root, double root_rotor)
       : segments_(std::move(segments)),
         blocks_(std::move(blocks)),
         root_motion_(std::move(root)),
@@ -111,7 +110,11 @@ class Kinematics {
  private:
   static FrameMotion clamped(const RootPose& pose) {
     const Frame& f = pose.frame;
-    return {f, pose.x, f.back(pose.v), f.back(pose.omega), f.back(pose.a),
+    return {f,
+            pose.x,
+            f.back(pose.v),
+            f.back(pose.omega),
+            f.back(pose.a),
             f.back(pose.alpha)};
   }
 

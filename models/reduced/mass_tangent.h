@@ -59,10 +59,10 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   const auto& g = kinematics.geometry(i);
 
   Pack mass(0);
-  Vec3<Pack> first;                      // sum m P
-  Pack second[3][3];                     // sum m P P^T, upper
+  Vec3<Pack> first;                             // sum m P
+  Pack second[3][3];                            // sum m P P^T, upper
   std::array<Vec3<Pack>, dofs> momentum, spin;  // sum m dP, sum m P x dP
-  Pack inner[dofs][dofs];                // sum m dP . dP, upper
+  Pack inner[dofs][dofs];                       // sum m dP . dP, upper
   for (auto& row : second) std::fill(std::begin(row), std::end(row), Pack(0));
   for (auto& row : inner) std::fill(std::begin(row), std::end(row), Pack(0));
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
@@ -162,8 +162,7 @@ void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
     root.lift = root.transfer.transpose();
     // The rotor at the root answers to the turning about its e0.
     const auto spin = root.transfer.row(3);
-    root.local.noalias() =
-        (w.acc * kinematics.root_rotor()) * spin.transpose() * spin;
+    root.local.noalias() = (w.acc * kinematics.root_rotor()) * spin.transpose() * spin;
   }
 }
 

@@ -7,15 +7,16 @@
 
 namespace tress {
 
-/// Two sweeps, O(N) [Featherstone 1983; Bertails 2009]. From the free ends to the root every
-/// segment eliminates its unknowns, x = u - Z s, and hands on what hangs below it as an
-/// articulated matrix: w = L s + beta. From the root to the free ends x follows.
+/// Two sweeps, O(N) [Featherstone 1983; Bertails 2009]. From the free ends to the root
+/// every segment eliminates its unknowns, x = u - Z s, and hands on what hangs below it
+/// as an articulated matrix: w = L s + beta. From the root to the free ends x follows.
 ///
 /// Symmetric problems update L by the Joseph form, with V = [I; -Z]:
 ///     L = V^T local V + (transfer V)^T L_tip (transfer V),
-/// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T is a difference;
-/// near a straight rod, where turning about the own axis moves almost no mass, it loses all
-/// digits after some twenty segments (tests/models/reduced/test_solvers.cpp measures it).
+/// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T is a
+/// difference; near a straight rod, where turning about the own axis moves almost no
+/// mass, it loses all digits after some twenty segments
+/// (tests/models/reduced/test_solvers.cpp measures it).
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -30,7 +31,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     Articulated at_root = Articulated::Zero();
     for (std::size_t i = hanging_.size(); i-- > 0;) {
       Articulated handed_on;
-      if (!eliminate(tangent.segments[i], hanging_[i].matrix, eliminated_[i], handed_on)) {
+      if (!eliminate(tangent.segments[i], hanging_[i].matrix, eliminated_[i],
+                     handed_on)) {
         return Status::retry;
       }
       const int parent = tangent.parent[i];
@@ -58,7 +60,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       Wrench handed_on = lifted.template head<Shape::wrench>();
       add_product(e.response, rest, handed_on);
       const int parent = tangent.parent[i];
-      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load) += handed_on;
+      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load) +=
+          handed_on;
     }
     State at_start = State::Zero();
     if (tangent.free_root) {
@@ -92,9 +95,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   using Square = Eigen::Matrix<double, n, n>;
 
   struct Eliminated {
-    Square inverse;                            // of the pivot H
-    Eigen::Matrix<double, n, states> z;        // x = u - z s
-    Eigen::Matrix<double, wrench, n> response; // of the wrench handed on to rest
+    Square inverse;                             // of the pivot H
+    Eigen::Matrix<double, n, states> z;         // x = u - z s
+    Eigen::Matrix<double, wrench, n> response;  // of the wrench handed on to rest
     Dofs u;
   };
   struct Hanging {

@@ -39,9 +39,7 @@ Vec times(const Vec& x, const Vec& y) { return {x.x * y.x, x.y * y.y, x.z * y.z}
 /// 1 for the components that are unknowns.
 Vec unknowns(int dofs) { return {dofs == 3 ? 1.0 : 0, 1, dofs == 1 ? 0.0 : 1}; }
 
-bool identity(const Frame& f) {
-  return f.e0.x == 1 && f.e1.y == 1 && f.e2.z == 1;
-}
+bool identity(const Frame& f) { return f.e0.x == 1 && f.e1.y == 1 && f.e2.z == 1; }
 
 /// Arc length that a joint stands for: half of the segments beside it.
 double joint_length(const Strand& strand, std::size_t i) {
@@ -131,8 +129,8 @@ ReducedOptions reduced_options(const Parameters& p) {
                          tangent = p.word("tangent");
   ReducedOptions options;
   options.dofs = modes == "bend_twist" ? 3 : modes == "bend" ? 2 : 1;
-  options.method = solver == "composite" ? TreeMethod::composite
-                   : solver == "sparse"  ? TreeMethod::sparse
+  options.method = solver == "composite"         ? TreeMethod::composite
+                   : solver == "sparse"          ? TreeMethod::sparse
                    : solver == "recursive_plain" ? TreeMethod::recursive_plain
                                                  : TreeMethod::recursive;
   options.tangent = tangent == "exact"   ? ReducedTangent::exact
@@ -195,10 +193,8 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     const double factor = joints ? 1 / arc : arc;
     segment.stiffness = times(free, factor * moduli);
     segment.friction = times(free, (factor * gamma) * Vec{1, 1, 1});
-    const Vec natural =
-        joints ? joint_angle(strand, i, &Segment::natural) : from.natural;
-    const Vec initial =
-        joints ? joint_angle(strand, i, &Segment::initial) : from.initial;
+    const Vec natural = joints ? joint_angle(strand, i, &Segment::natural) : from.natural;
+    const Vec initial = joints ? joint_angle(strand, i, &Segment::initial) : from.initial;
     segment.rest = times(free, natural);
     segment.initial = times(free, initial);
     segment.held = times(held, natural);
@@ -211,9 +207,9 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   const CrossSection& section = strand.segments.front().section;
   reduced.length = strand.length();
   // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
-  const double bending = 12.36 * material.youngs_modulus * section.inertia1() /
-                         (material.density * section.area() *
-                          std::pow(reduced.length, 4));
+  const double bending =
+      12.36 * material.youngs_modulus * section.inertia1() /
+      (material.density * section.area() * std::pow(reduced.length, 4));
   reduced.rate = std::sqrt(earth / reduced.length + bending);
   reduced.unknown_scale =
       joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / reduced.length;

@@ -66,7 +66,7 @@ struct ReducedStrand {
   TreeMethod method = TreeMethod::recursive;
   double unknown_scale = 1;  // typical size of an unknown: one radian over the length
   double length = 1;         // m
-  double rate = 1;           // 1/s, of swinging and bending, the root of their squares' sum
+  double rate = 1;  // 1/s, of swinging and bending, the root of their squares' sum
   bool regular_mass = true;
 };
 

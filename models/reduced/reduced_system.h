@@ -10,10 +10,10 @@
 
 namespace tress {
 
-/// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix, BallLink),
-/// behind the contract of models/system.h. residual: Newton-Euler, O(N). linearize and
-/// solve: the mass tangent, or the exact one, by the chosen method. The acceleration of the
-/// explicit form comes from the recursion whatever the method.
+/// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
+/// BallLink), behind the contract of models/system.h. residual: Newton-Euler, O(N).
+/// linearize and solve: the mass tangent, or the exact one, by the chosen method. The
+/// acceleration of the explicit form comes from the recursion whatever the method.
 template <class Kernel, int dofs>
 class ReducedSystem final : public System,
                             private ExplicitForm,

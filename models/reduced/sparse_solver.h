@@ -9,8 +9,9 @@
 
 namespace tress {
 
-/// The equations of TreeTangent as they stand, nothing eliminated: per segment its unknowns
-/// x, the state of its tip and the wrench at its start, in one sparse matrix for KLU.
+/// The equations of TreeTangent as they stand, nothing eliminated: per segment its
+/// unknowns x, the state of its tip and the wrench at its start, in one sparse matrix for
+/// KLU.
 template <class Shape>
 class SparseTreeSolver final : public TreeSolver<Shape> {
  public:
@@ -117,7 +118,8 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
   /// Also fills place_: where each emitted entry goes among the pattern's values.
   Pattern make_pattern(const TreeTangent<Shape>& structure) {
     std::vector<std::pair<int, int>> entries;  // column, row
-    emit(structure, [&](int row, int column, double) { entries.emplace_back(column, row); });
+    emit(structure,
+         [&](int row, int column, double) { entries.emplace_back(column, row); });
     std::vector<std::pair<int, int>> sorted = entries;
     std::sort(sorted.begin(), sorted.end());
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());

@@ -26,7 +26,8 @@ std::unique_ptr<System> make_super_helix(const Parameters& parameters) {
 std::span<const Parameter> super_helix_tree_parameters() {
   static const std::vector<Parameter> all = [] {
     const std::span<const Parameter> solving = reduced_parameters();
-    std::vector<Parameter> own{{.name = "tree", .help = "which", .choices = tree_choices}};
+    std::vector<Parameter> own{
+        {.name = "tree", .help = "which", .choices = tree_choices}};
     // Branches leave the plane.
     own.push_back({.name = "modes",
                    .help = "unknowns a segment: two curvatures and twist, two curvatures",

@@ -15,9 +15,9 @@ namespace tress {
 ///
 ///     M(q) q'' + gamma l q' + K (q - q_rest) + gyroscopic terms = sum J^T f
 ///
-/// with K = l diag(GJ, EI1, EI2) and mass integrals by Gauss-Legendre points. Second order
-/// in the segment length. Solving by `recursive` is O(N) [Bertails 2009]. Trees are the
-/// same with branching parents. Throws InputError (see reduced_strand).
+/// with K = l diag(GJ, EI1, EI2) and mass integrals by Gauss-Legendre points. Second
+/// order in the segment length. Solving by `recursive` is O(N) [Bertails 2009]. Trees are
+/// the same with branching parents. Throws InputError (see reduced_strand).
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects);
 

@@ -22,13 +22,14 @@ std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
           structure);
     }
     if (method == TreeMethod::less_implicit) {
-      return std::make_unique<RecursiveSolver<Shape, TreeMethod::less_implicit>>(structure);
+      return std::make_unique<RecursiveSolver<Shape, TreeMethod::less_implicit>>(
+          structure);
     }
   }
   return std::make_unique<RecursiveSolver<Shape>>(structure);
 }
 
-#define TRESS_INSTANTIATE(Shape)                        \
+#define TRESS_INSTANTIATE(Shape)                                       \
   template std::unique_ptr<TreeSolver<Shape>> make_tree_solver<Shape>( \
       TreeMethod, const TreeTangent<Shape>&)
 TRESS_INSTANTIATE(MassShape<3>);

@@ -7,11 +7,11 @@
 
 namespace tress {
 
-/// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers from
-/// its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs` unknowns
-/// of its own. Symmetric problems (mass, friction and stiffness only) have states ==
-/// wrench: the acceleration of the frame. The exact tangent carries displacement, velocity
-/// and acceleration: states == 3 wrench.
+/// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers
+/// from its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs`
+/// unknowns of its own. Symmetric problems (mass, friction and stiffness only) have
+/// states == wrench: the acceleration of the frame. The exact tangent carries
+/// displacement, velocity and acceleration: states == 3 wrench.
 template <int states_, int wrench_, int dofs_>
 struct TreeShape {
   static constexpr int states = states_;
@@ -29,13 +29,14 @@ struct TreeShape {
 /// w_tip the wrench that hangs on its tip,
 ///
 ///     s_tip = transfer [s; x]
-///     [w; r] = local [s; x] + lift w_tip,     w_tip = tip s_tip + sum of the children's w
+///     [w; r] = local [s; x] + lift w_tip,     w_tip = tip s_tip + sum of the children's
+///     w
 ///
 /// and the equations to solve are r = b. Symmetric: lift = transfer^T, local and tip are
-/// symmetric. Exact: transfer takes displacement to displacement, velocity to velocity and
-/// acceleration, acceleration to acceleration; in the plane, where a turn changes the
-/// components of the clamp's omega, displacement to acceleration too. `stiffness` is the diagonal
-/// part of local that comes from friction and elasticity.
+/// symmetric. Exact: transfer takes displacement to displacement, velocity to velocity
+/// and acceleration, acceleration to acceleration; in the plane, where a turn changes the
+/// components of the clamp's omega, displacement to acceleration too. `stiffness` is the
+/// diagonal part of local that comes from friction and elasticity.
 template <class Shape>
 struct SegmentTangent {
   template <int r, int c>
@@ -48,7 +49,8 @@ struct SegmentTangent {
   Matrix<Shape::dofs, 1> stiffness;
 };
 
-/// c += m transfer, for m with as many columns as states; uses the zero blocks of transfer.
+/// c += m transfer, for m with as many columns as states; uses the zero blocks of
+/// transfer.
 template <class M, class Shape, class C>
 void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
   constexpr int size = Shape::wrench, levels = Shape::states / size;
@@ -67,8 +69,8 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
       Shape::states, c.data() + rows * Shape::states, rows);
 }
 
-/// The same of a root that moves freely: its 6 unknowns y give the state s = transfer y at
-/// the start of the first segments, and local y + lift (sum of their w) = b.
+/// The same of a root that moves freely: its 6 unknowns y give the state s = transfer y
+/// at the start of the first segments, and local y + lift (sum of their w) = b.
 template <class Shape>
 struct RootTangent {
   template <int r, int c>
@@ -79,7 +81,8 @@ struct RootTangent {
   Matrix<6, Shape::wrench> lift;
 };
 
-/// Everything that a tree solver factors. Unknowns are ordered by segment, the root's last.
+/// Everything that a tree solver factors. Unknowns are ordered by segment, the root's
+/// last.
 template <class Shape>
 struct TreeTangent {
   std::vector<int> parent;  // of each segment, earlier than it; -1: the root

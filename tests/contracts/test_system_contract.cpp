@@ -55,7 +55,8 @@ double tangent_error(System& tangent_of, System& residual_of, States& s, Weights
   return largest(plus(sx, -1, b)) / largest(b);
 }
 
-bool exact_tangent(const CatalogueCase& c) { return c.word != "stiff" && c.word != "less_implicit";
+bool exact_tangent(const CatalogueCase& c) {
+  return c.word != "stiff" && c.word != "less_implicit";
 }
 
 // Truncation e^4 = 3e-13 times the ratio of fifth to first derivatives, plus rounding

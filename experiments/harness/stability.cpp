@@ -1,0 +1,184 @@
+#include "experiments/harness/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+bool finite(In x) {
+  return std::ranges::all_of(x, [](double entry) { return std::isfinite(entry); });
+}
+
+/// Distance between the first and the last of `points` (3 each).
+double first_to_last(const std::vector<double>& points) {
+  const std::size_t tip = points.size() - 3;
+  return std::hypot(points[tip] - points[0], points[tip + 1] - points[1],
+                    points[tip + 2] - points[2]);
+}
+
+/// Watches one run; an Observer that never allocates.
+class Judge {
+ public:
+  Judge(System& system, const StabilityBounds& bounds, const State& start)
+      : bounds_(bounds) {
+    if (bounds.energy < StabilityBounds::none) {
+      energetics_ = system.energetics();
+      if (energetics_ == nullptr) missing("energy");
+      energy_start_ = energetics_->energy(0, start.q, start.v).total();
+    }
+    if (bounds.reach < StabilityBounds::none || bounds.speed < StabilityBounds::none) {
+      points_ = system.material_points();
+      if (points_ == nullptr) missing("material points");
+      x_.resize(3 * static_cast<std::size_t>(points_->count()));
+      u_.resize(x_.size());
+    }
+  }
+
+  /// False as soon as a bound is broken. Comparisons are such that NaN breaks it.
+  bool operator()(double t, In q, In v) {
+    if (energetics_ != nullptr) {
+      const double gain = energetics_->energy(t, q, v).total() - energy_start_;
+      see(run.energy_gain, gain, bounds_.energy, Broken::energy);
+    }
+    if (points_ != nullptr) {
+      points_->positions(t, q, x_);
+      points_->velocities(t, q, v, u_);
+      see(run.reach, first_to_last(x_), bounds_.reach, Broken::reach);
+      see(run.speed, first_to_last(u_), bounds_.speed, Broken::speed);
+    }
+    return run.stable();
+  }
+
+  StabilityRun run;
+
+ private:
+  [[noreturn]] static void missing(const std::string& what) {
+    throw InputError("stability of this scene is judged by the model's " + what,
+                     "stability judge", "choose a model that has it");
+  }
+
+  void see(double& largest, double value, double bound, Broken kind) {
+    largest = std::max(largest, value);
+    if (value <= bound || !run.stable()) return;
+    run.broken = std::isfinite(value) ? kind : Broken::not_finite;
+  }
+
+  StabilityBounds bounds_;
+  Energetics* energetics_ = nullptr;
+  MaterialPoints* points_ = nullptr;
+  double energy_start_ = 0;
+  std::vector<double> x_, u_;
+};
+
+struct Trial {
+  double dt;
+  Broken broken;
+  bool stable() const { return broken == Broken::nothing; }
+};
+
+/// What the trials say so far, whatever their order.
+StepLimit summary(std::vector<Trial> trials, bool complete) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown, 0, complete};
+  limit.runs = static_cast<int>(trials.size());
+  std::ranges::sort(trials, {}, &Trial::dt);
+  if (!trials.empty()) limit.finest = trials.front().dt;
+  for (const Trial& trial : trials) {
+    const bool below = std::isnan(limit.unstable);
+    if (trial.stable()) {
+      (below ? limit.stable : limit.stable_above) = trial.dt;
+    } else if (below) {
+      limit.unstable = trial.dt;
+      limit.limited_by = trial.broken;
+    }
+  }
+  return limit;
+}
+
+}  // namespace
+
+std::string_view name(Broken broken) {
+  switch (broken) {
+    case Broken::nothing:
+      return "nothing";
+    case Broken::not_finite:
+      return "not finite";
+    case Broken::energy:
+      return "energy";
+    case Broken::reach:
+      return "reach";
+    case Broken::speed:
+      return "speed";
+    case Broken::no_solution:
+      break;
+  }
+  return "no solution";
+}
+
+std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
+                                      const Options& options, double t_end,
+                                      const StabilityBounds& bounds,
+                                      const GiveUp& give_up) {
+  // 1e-9: a whole number of steps up to rounding is not run one step longer.
+  const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
+  const State start = initial_state(system);
+  Judge judge(system, bounds, start);
+  bool given_up = false;
+  const Simulation run = simulate(integrator, system, options, start,
+                                  steps * options.step, [&](double t, In q, In v) {
+                                    given_up = give_up && give_up();
+                                    return !given_up && judge(t, q, v);
+                                  });
+  if (given_up) return {};
+  StabilityRun result = std::move(judge.run);
+  result.t = run.t;
+  result.stats = run.stats;
+  if (run.status != Status::ok && result.stable()) {
+    const bool blown_up = !finite(run.state.q) || !finite(run.state.v);
+    result.broken = blown_up ? Broken::not_finite : Broken::no_solution;
+    result.failure = run.failure;
+  }
+  return result;
+}
+
+StepLimit find_step_limit(const StepSearch& search,
+                          const std::function<std::optional<Broken>(double dt)>& judge) {
+  std::vector<Trial> trials;
+  const auto test = [&](double dt) {
+    const std::optional<Broken> broken = judge(dt);
+    if (broken) trials.push_back({dt, *broken});
+    return broken.has_value();
+  };
+
+  // 1e-6: the last step of the scan is not lost to rounding.
+  const double ratio = search.ratio;
+  const int count =
+      1 + static_cast<int>(std::log(search.coarsest / search.finest) / std::log(ratio) +
+                           1e-6);
+  double top = 0;  // of the stable steps that nothing unstable lies below yet
+  for (int i = 0; i < count; ++i) {
+    const double dt = search.coarsest * std::pow(ratio, -i);
+    if (!test(dt)) return summary(std::move(trials), false);
+    if (!trials.back().stable()) {
+      top = 0;
+    } else if (top == 0) {
+      top = dt;
+    }
+    if (top >= search.depth * dt) break;
+  }
+
+  StepLimit limit = summary(trials, true);
+  while (limit.unstable > limit.stable * search.resolution) {
+    const bool tested = test(std::sqrt(limit.stable * limit.unstable));
+    limit = summary(trials, tested);
+    if (!tested) break;
+  }
+  return limit;
+}
+
+}  // namespace tress

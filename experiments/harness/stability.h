@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "experiments/harness/simulation.h"
+
+namespace tress {
+
+/// What a stable run keeps, besides staying finite. Energy bounds are for passive scenes;
+/// a moving root puts energy in, so driven scenes are bounded by where the tip gets and
+/// how fast.
+struct StabilityBounds {
+  static constexpr double none = std::numeric_limits<double>::infinity();
+  double energy = none;  // J, mechanical energy above that of the start
+  double reach = none;   // m, distance of the tip from the root
+  double speed = none;   // m/s, of the tip relative to the root
+};
+
+/// Which of it did not hold first.
+enum class Broken { nothing, not_finite, energy, reach, speed, no_solution };
+std::string_view name(Broken broken);
+
+/// One judged run; the maxima are over the part that was run.
+struct StabilityRun {
+  Broken broken = Broken::nothing;
+  double t = 0;            // s, where it ended
+  double energy_gain = 0;  // J, 0 when not asked for
+  double reach = 0;        // m
+  double speed = 0;        // m/s
+  Stats stats;
+  std::string failure;  // the integrator's words for no_solution
+
+  bool stable() const { return broken == Broken::nothing; }
+};
+
+/// True ends the work: a budget is used up.
+using GiveUp = std::function<bool()>;
+
+/// Steps of exactly `options.step` until `t_end` is reached or passed, so that what is
+/// judged is the step asked for, not one that divides t_end; ends where a bound breaks.
+/// The root is the system's first material point, the tip its last. Empty when given up.
+/// Throws InputError when a bound needs a form that the system lacks.
+std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
+                                      const Options& options, double t_end,
+                                      const StabilityBounds& bounds,
+                                      const GiveUp& give_up = {});
+
+/// How the largest stable step is looked for.
+struct StepSearch {
+  double coarsest = 0.1;     // s, "cap": larger steps are not tried
+  double finest = 1e-6;      // s
+  double ratio = 1.7782794;  // of neighbours in the scan: four per decade
+  double resolution = 1.05;  // dt_first_unstable / dt_max of the answer
+  /// Stability is not always monotone: the scan goes on below a stable step until
+  /// everything down to a `depth`-th of it was stable too.
+  double depth = 30;
+};
+
+/// Steps that were not tried or not met are NaN.
+struct StepLimit {
+  double stable;        // s, largest step such that all tested up to it were stable
+  double unstable;      // s, smallest unstable step tested
+  Broken limited_by;    // what broke there; nothing: all steps tested were stable
+  double stable_above;  // s, largest stable step above `unstable`: not monotone
+  double finest;        // s, smallest step tested
+  int runs;
+  bool complete;  // false: given up before the search was done
+};
+
+/// Scans from coarse to fine, then bisects (geometrically) between `stable` and
+/// `unstable`. `judge` is empty when it gave up.
+StepLimit find_step_limit(const StepSearch& search,
+                          const std::function<std::optional<Broken>(double dt)>& judge);
+
+}  // namespace tress

@@ -1,0 +1,169 @@
+#include "experiments/harness/stability_grid.h"
+
+#include <algorithm>
+#include <string>
+
+#include "integrators/catalogue.h"
+#include "models/catalogue.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter settings_of_rows[] = {
+    {.name = "scene",
+     .help = "rows of one scene",
+     .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
+    {.name = "damping",
+     .help = "rows of one level of internal friction: 0, 1e-12 or 1e-10 kg m^3/s",
+     .choices = "all|none|light|seed"},
+    {.name = "solver",
+     .help = "rows of one solver of the model",
+     .choices = "all|recursive|composite|sparse|recursive_plain"},
+    {.name = "tangent",
+     .help = "rows of one tangent of the model",
+     .choices = "all|stiff|exact|less_implicit"},
+    {.name = "modes",
+     .help = "which modes the strands have",
+     .choices = "bend_twist|bend|bend_planar"},
+    {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
+    {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-6, .min = 1e-12},
+    {.name = "depth",
+     .help = "scan on below a stable step until this factor is stable",
+     .number = 30,
+     .min = 1},
+    {.name = "resolution",
+     .help = "bisect until unstable over stable step is this",
+     .number = 1.05,
+     .min = 1.0001},
+    {.name = "row_s",
+     .help = "time to search for one row (s), 0: 5, with --quick 2, with --full 300",
+     .number = 0,
+     .min = 0},
+};
+
+// EI/gamma is the relaxation rate; gamma damps modes beyond 2 EI/gamma over-critically.
+// The seed's gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
+// a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
+// leaves the motion as it is and only rounds off what the grid adds.
+constexpr Damping dampings[] = {{"none", "0"}, {"light", "1e-12"}, {"seed", "1e-10"}};
+
+struct Method {
+  std::string_view model, integrator, solver, tangent;
+};
+
+constexpr Method methods[] = {
+    {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
+    {"super_helix", "semi_implicit_euler", "composite", "stiff"},
+    {"super_helix", "semi_implicit_euler", "recursive", "less_implicit"},
+    {"super_helix", "semi_implicit_euler", "recursive", "exact"},
+    {"super_helix", "semi_implicit_euler", "composite", "exact"},
+    {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
+};
+
+constexpr Method methods_of_full[] = {
+    {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
+    {"super_helix", "semi_implicit_euler", "sparse", "exact"},
+    {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
+};
+
+/// Where the other integrators are compared.
+constexpr int usual_elements = 20;
+
+std::vector<int> element_counts(const CommandLine& line) {
+  if (!line.elements.empty()) return line.elements;
+  if (line.quick) return {1, 5, usual_elements};
+  if (line.full) return {1, 2, 3, 5, 8, 10, 15, 20, 30, 40, 60, 80, 100, 150, 200};
+  return {1, 2, 3, 5, 10, usual_elements, 40};
+}
+
+/// The seed's kind of step on every solver, and every other fixed-step integrator through
+/// the linear-time solver with the whole tangent.
+std::vector<Method> all_methods(bool full, bool others) {
+  std::vector<Method> all(std::begin(methods), std::end(methods));
+  if (full) all.insert(all.end(), std::begin(methods_of_full), std::end(methods_of_full));
+  for (const IntegratorEntry& entry : integrators()) {
+    if (!others || entry.adaptive || entry.id == "semi_implicit_euler") continue;
+    all.push_back({"super_helix", entry.id, "recursive", "exact"});
+    if (full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
+  }
+  return all;
+}
+
+bool known_word(const Parameter& parameter, std::string_view word) {
+  std::string_view rest = parameter.choices;
+  while (!rest.empty()) {
+    const std::size_t bar = rest.find('|');
+    if (rest.substr(0, bar) == word) return true;
+    rest = bar == std::string_view::npos ? std::string_view{} : rest.substr(bar + 1);
+  }
+  return false;
+}
+
+/// Whether the model has this solver and tangent, and the integrator takes it.
+bool possible(const StabilityCase& c, const Settings& settings) {
+  for (const auto& [key, word] :
+       {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
+    const auto has = [&, k = std::string_view(key), w = word](const Parameter& p) {
+      return p.name == k && known_word(p, w);
+    };
+    if (std::ranges::none_of(c.model->parameters, has)) return false;
+  }
+  const auto system = c.model->make(c.parameters(settings));
+  return refusal(find_integrator(c.integrator), *system, Formulation::parametric).empty();
+}
+
+}  // namespace
+
+Row StabilityCase::identity() const {
+  Row row;
+  row.set("scene", scene->name).set("model", model->id).set("integrator", integrator);
+  row.set("solver", solver).set("tangent", tangent).set("modes", modes);
+  row.set("elements", elements).set("damping", damping.name);
+  return row;
+}
+
+Parameters StabilityCase::parameters(const Settings& settings) const {
+  Parameters p = settings.parameters(*model);
+  for (const auto& [key, value] : scene->settings) p.set(key, value);
+  p.set("elements", std::to_string(elements));
+  p.set("internal_friction_kg_m3_s", damping.internal_friction);
+  p.set("solver", solver);
+  p.set("tangent", tangent);
+  p.set("modes", modes);
+  return p;
+}
+
+std::span<const Parameter> stability_settings() { return settings_of_rows; }
+
+std::vector<StabilityCase> stability_cases(const CommandLine& line,
+                                           const Settings& settings) {
+  const Parameters& rows = settings.experiment();
+  const auto keeps = [&rows](std::string_view key, std::string_view word) {
+    return rows.word(key) == "all" || rows.word(key) == word;
+  };
+  std::vector<StabilityCase> all;
+  for (const StrandScene& scene : strand_scenes()) {
+    if (!keeps("scene", scene.name)) continue;
+    const bool damped = line.full || rows.word("damping") != "all" ||
+                        scene.name == "release" || scene.name == "shake";
+    for (const Damping& damping : dampings) {
+      if (!keeps("damping", damping.name) || (!damped && damping.name != "none"))
+        continue;
+      for (const int elements : element_counts(line)) {
+        const bool others = line.full || !line.integrators.empty() ||
+                            (elements == usual_elements && damping.name == "none");
+        for (const Method& m : all_methods(line.full, others)) {
+          if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
+          if (!wanted(line.models, m.model)) continue;
+          if (!wanted(line.integrators, m.integrator)) continue;
+          const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
+                                m.tangent, rows.word("modes"),   elements,     damping};
+          if (possible(c, settings)) all.push_back(c);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace tress

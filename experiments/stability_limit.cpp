@@ -1,0 +1,162 @@
+// What is the largest stable step of a strand, against the number of its elements, and
+// what decides it: the solver, the tangent, damping or the scene?
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/stability.h"
+#include "experiments/harness/stability_claims.h"
+#include "experiments/harness/stability_grid.h"
+#include "experiments/harness/timing.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "what happens to the strand"},
+    {"model", "catalogue id"},
+    {"integrator", "method"},
+    {"solver", "how the model solves S x = b"},
+    {"tangent", "which terms S has"},
+    {"modes", "unknowns per element"},
+    {"elements", "number of elements"},
+    {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},
+    {"dt_max_s", "largest step such that every step tested up to it was stable"},
+    {"dt_first_unstable_s", "smallest unstable step tested"},
+    {"limited_by", "what broke there; cap: no larger step was tried"},
+    {"stable_above_s", "largest stable step above it: stability is not monotone"},
+    {"dt_finest_s", "smallest step tested"},
+    {"runs", "steps tested"},
+    {"t_end_s", "time simulated by a run, at least"},
+    {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
+    {"energy_gain_j", "largest gain of energy at dt_max"},
+    {"speed_bound_m_s", "driven scenes: speed of the tip that is unstable"},
+    {"speed_max_m_s", "largest speed of the tip at dt_max"},
+    {"steps", "steps of the run at dt_max"},
+    {"newton_iterations", "linear solves of that run"},
+    {"cost_per_step_s", "wall time of a step at dt_max", true},
+    {"realtime_factor", "simulated over wall time at dt_max", true},
+};
+
+double row_time(const CommandLine& line, const Parameters& rows) {
+  if (rows.number("row_s") > 0) return rows.number("row_s");
+  return line.quick ? 2 : line.full ? 300 : 5;
+}
+
+StepSearch step_search(const Parameters& rows) {
+  return {.coarsest = rows.number("cap_s"),
+          .finest = rows.number("floor_s"),
+          .resolution = rows.number("resolution"),
+          .depth = rows.number("depth")};
+}
+
+/// Wall time (s) of a step, over at most so many steps that a row does not take long.
+double step_cost(const StabilityCase& c, System& system, const Options& options,
+                 int repeat) {
+  constexpr double most_steps = 2000;
+  const double steps =
+      std::min(most_steps, std::ceil(c.scene->t_end / options.step - 1e-9));
+  const State start = initial_state(system);
+  const double wall = time_run(repeat, [&] {
+    (void)simulate(c.integrator, system, options, start, steps * options.step);
+  });
+  return wall / steps;
+}
+
+struct Work {
+  StabilityCase which;
+  Parameters parameters;
+  Options options;
+  StepSearch search;
+  double time_s;  // for the search
+  int repeat;
+};
+
+void measure(const Work& work, const Deadline& deadline, Row& row) {
+  const StabilityCase& c = work.which;
+  const auto system = c.model->make(work.parameters);
+  const StabilityBounds bounds = stability_bounds(*c.scene, work.parameters, *system);
+  row.set("t_end_s", c.scene->t_end);
+  row.set("energy_bound_j", bounds.energy).set("speed_bound_m_s", bounds.speed);
+
+  const Deadline own(work.time_s);
+  const GiveUp late = [&] { return own.passed() || deadline.passed(); };
+  Options options = work.options;
+  std::map<double, StabilityRun> runs;
+  const StepLimit limit =
+      find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {
+        options.step = dt;
+        auto run =
+            judge_run(c.integrator, *system, options, c.scene->t_end, bounds, late);
+        if (!run) return {};
+        return (runs[dt] = *run).broken;
+      });
+
+  row.set("dt_max_s", limit.stable).set("dt_first_unstable_s", limit.unstable);
+  row.set("stable_above_s", limit.stable_above).set("dt_finest_s", limit.finest);
+  row.set("runs", limit.runs);
+  if (!std::isnan(limit.unstable)) row.set("limited_by", name(limit.limited_by));
+  if (limit.stable >= work.search.coarsest) row.set("limited_by", "cap");
+  if (!std::isnan(limit.stable)) {
+    const StabilityRun& run = runs.at(limit.stable);
+    if (bounds.energy < StabilityBounds::none) row.set("energy_gain_j", run.energy_gain);
+    if (bounds.speed < StabilityBounds::none) row.set("speed_max_m_s", run.speed);
+    row.set("steps", run.stats.steps);
+    row.set("newton_iterations", run.stats.newton_iterations);
+    options.step = limit.stable;
+    const double cost = step_cost(c, *system, options, work.repeat);
+    row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
+  }
+  if (!limit.complete) {
+    row.failed("gave_up", "the time for the row was over before the search was");
+  } else if (std::isnan(limit.stable)) {
+    const StabilityRun& run = runs.at(limit.unstable);
+    row.failed("unstable", "no stable step down to " + std::to_string(limit.finest) +
+                               " s: " + std::string(name(run.broken)) +
+                               " at t = " + std::to_string(run.t) + " s " + run.failure);
+  }
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, stability_settings());
+  const Parameters& rows = settings.experiment();
+  std::vector<Case> all;
+  for (const StabilityCase& c : stability_cases(line, settings)) {
+    const Work work{c,
+                    c.parameters(settings),
+                    settings.options(),
+                    step_search(rows),
+                    row_time(line, rows),
+                    line.repeat};
+    all.push_back({c.identity(), [work](Row& row, const Deadline& deadline) {
+                     measure(work, deadline, row);
+                   }});
+  }
+  return all;
+}
+
+/// A method without a stable step, or one that needs so many that nobody waits for them,
+/// is what is looked for.
+bool finding(const Row& row) {
+  return row.status() == "unstable" || row.status() == "gave_up";
+}
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "stability_limit",
+      .question = "what is the largest stable step against the number of elements?",
+      .example = "--elements 5,20 --integrators backward_euler --set scene=shake",
+      .columns = columns,
+      .settings = stability_settings(),
+      .cases = cases,
+      .checks = check_stability_claims,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "experiments/harness/stability_claims.h"
+
+namespace tress {
+namespace {
+
+Row row(std::string_view scene, std::string_view integrator, std::string_view solver,
+        std::string_view tangent, double stable, double unstable) {
+  Row r;
+  r.set("scene", scene).set("model", "super_helix").set("integrator", integrator);
+  r.set("solver", solver).set("tangent", tangent).set("modes", "bend_twist");
+  r.set("elements", 20).set("damping", "none");
+  return r.set("dt_max_s", stable).set("dt_first_unstable_s", unstable);
+}
+
+Row semi_implicit(std::string_view solver, double stable, double unstable,
+                  std::string_view tangent = "stiff") {
+  return row("whip", "semi_implicit_euler", solver, tangent, stable, unstable);
+}
+
+constexpr double none = std::numeric_limits<double>::infinity();  // an empty cell
+
+std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
+  Verdicts all;
+  check_stability_claims(rows, all);
+  return all.all();
+}
+
+TEST(StabilityClaims, BracketsThatOverlapAreTheSameLimit) {
+  const auto same = verdicts(
+      {semi_implicit("recursive", 1.00, 1.05), semi_implicit("composite", 1.04, 1.09)});
+  ASSERT_EQ(same.size(), 1u);
+  EXPECT_TRUE(same[0].held);
+  EXPECT_DOUBLE_EQ(same[0].value, 1.04);
+  for (const auto& [recursive, composite] : {std::pair{1.00, 1.06}, {1.06, 1.00}}) {
+    const auto other =
+        verdicts({semi_implicit("recursive", recursive, 1.05 * recursive),
+                  semi_implicit("composite", composite, 1.05 * composite)});
+    ASSERT_EQ(other.size(), 1u);
+    EXPECT_FALSE(other[0].held);
+    EXPECT_DOUBLE_EQ(other[0].value, 1.06);
+  }
+}
+
+TEST(StabilityClaims, ALimitAtTheCapIsAboveEveryOther) {
+  EXPECT_TRUE(verdicts({semi_implicit("recursive", 0.1, none),
+                        semi_implicit("composite", 0.1, none)})[0]
+                  .held);
+  EXPECT_FALSE(verdicts({semi_implicit("recursive", 0.1, none),
+                         semi_implicit("composite", 0.08, 0.084)})[0]
+                   .held);
+}
+
+TEST(StabilityClaims, LessImplicitMayBeBelowStiffButNotAbove) {
+  EXPECT_TRUE(verdicts({semi_implicit("recursive", 1.00, 1.05),
+                        semi_implicit("recursive", 0.01, 0.0105, "less_implicit")})[0]
+                  .held);
+  EXPECT_FALSE(verdicts({semi_implicit("recursive", 1.00, 1.05),
+                         semi_implicit("recursive", 1.05, 1.10, "less_implicit")})[0]
+                   .held);
+}
+
+TEST(StabilityClaims, RowsWithoutALimitSayNothing) {
+  Row failed = semi_implicit("recursive", 5, 6);
+  failed.failed("gave_up", "");
+  EXPECT_TRUE(verdicts({failed, semi_implicit("composite", 1, 2)}).empty());
+  EXPECT_TRUE(verdicts({semi_implicit("recursive", 1, 2)}).empty());
+}
+
+TEST(StabilityClaims, TheShakenStrandDecidesOnTheTwoTangents) {
+  const auto shaken = [](double implicit, double semi) {
+    return verdicts(
+        {row("shake", "backward_euler", "recursive", "exact", implicit, none),
+         row("shake", "semi_implicit_euler", "recursive", "stiff", semi, 1.05 * semi)});
+  };
+  const auto good = shaken(0.033, 0.0019), bad = shaken(0.0329, 0.002);
+  ASSERT_EQ(good.size(), 2u);
+  ASSERT_EQ(bad.size(), 2u);
+  EXPECT_TRUE(good[0].held && good[1].held);
+  EXPECT_FALSE(bad[0].held || bad[1].held);
+}
+
+}  // namespace
+}  // namespace tress
