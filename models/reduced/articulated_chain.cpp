@@ -15,7 +15,14 @@ std::unique_ptr<System> articulated_chain(const Strand& strand,
 }
 
 std::span<const Parameter> articulated_chain_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(reduced_parameters());
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> shared = with_strand_parameters(reduced_parameters());
+    // The joint at a free root would have no mass on its other side.
+    for (Parameter& p : shared) {
+      if (p.name == "root") p.choices = bound_root_choices;
+    }
+    return shared;
+  }();
   return all;
 }
 
