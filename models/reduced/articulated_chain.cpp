@@ -9,7 +9,7 @@ namespace tress {
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options,
                                           Effects effects) {
-  return make_reduced_system<BallLink>(
+  return make_reduced_system<BallLink, BallLink>(
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects)),
       options.dofs);
 }

@@ -266,11 +266,12 @@ class ReducedSystem final : public System,
   std::vector<double> zero_, scratch_, by_position_, by_velocity_;
 };
 
-template <class Kernel>
+/// `PlanarKernel` is that of one unknown a segment.
+template <class Kernel, class PlanarKernel>
 std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
   switch (dofs) {
     case 1:
-      return std::make_unique<ReducedSystem<Kernel, 1>>(std::move(strand));
+      return std::make_unique<ReducedSystem<PlanarKernel, 1>>(std::move(strand));
     case 2:
       return std::make_unique<ReducedSystem<Kernel, 2>>(std::move(strand));
     default:
