@@ -28,6 +28,7 @@ inline void add_product(const A& a, const B& b, C&& c, double factor = 1) {
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
+  static_assert(!B::IsRowMajor || inner == 1 || columns == 1);
   add_product<rows, inner, columns>(a.data(), static_cast<int>(a.colStride()), b.data(),
                                     static_cast<int>(b.colStride()), c.data(),
                                     static_cast<int>(c.colStride()), factor);
