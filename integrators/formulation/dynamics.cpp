@@ -41,6 +41,13 @@ Dynamics::Dynamics(System& system, const Options& options)
     values->assign(size(m()), 0.0);
   }
   system_.scale(q_typ_, v_typ_);
+  if (constraints_ == nullptr && !system.traits().regular_mass) {
+    constexpr double short_time = 1e-4;
+    start_step_ = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < q_typ_.size(); ++i) {
+      start_step_ = std::min(start_step_, short_time * q_typ_[i] / v_typ_[i]);
+    }
+  }
   stats.solver = "structured";
   if (constraints_ == nullptr) return;
   constraints_->scale(g_typ_);
@@ -160,7 +167,8 @@ Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
   }
   const bool position_level = position_level_;
   position_level_ = false;
-  Status s = linearize(t, q, v, zero_n_, zero_m_, {1, 0, 0});
+  Status s =
+      linearize(t, q, v, zero_n_, zero_m_, {1, start_step_, start_step_ * start_step_});
   if (s == Status::ok) s = residual(t, q, v, zero_n_, zero_m_, a, lambda);
   position_level_ = position_level;
   if (s != Status::ok) return s;

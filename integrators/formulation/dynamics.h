@@ -50,7 +50,9 @@ class Dynamics {
                      Base base = Base::fresh) noexcept;
 
   /// a and lambda that satisfy r = 0 and g'' = -alpha g - beta g' at (t, q, v); leaves
-  /// the mass matrix with the constraints of this state factored for solve().
+  /// the mass matrix with the constraints of this state factored for solve(). A singular
+  /// mass matrix determines no acceleration; then a is that of a short semi-implicit
+  /// step, after which what has no mass is nearly in equilibrium.
   Status accelerate(double t, In q, In v, Out a, Out lambda) noexcept;
 
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
@@ -70,6 +72,7 @@ class Dynamics {
   bool position_level_;
   bool base_ready_ = false;
   double alpha_ = 0, beta_ = 0;
+  double start_step_ = 0;  // s, of accelerate() where the mass is singular
   Weights weights_;
   std::optional<Kkt> kkt_;
   std::vector<double> q_typ_, v_typ_, g_typ_;

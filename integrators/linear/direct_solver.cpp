@@ -11,11 +11,6 @@
 namespace tress {
 namespace {
 
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-/// Rounding leaves the last pivot of a singular matrix at a small multiple of the
-/// roundoff that grows with n but not beyond what elimination mixes; 128 roundoffs
-/// = 1.4e-14.
-constexpr double singular_pivot = 128;
 /// Three sweeps undo units over 24 decades between neighbours in D P D, P Poisson's
 /// matrix, to within a factor 20 of P's condition; four to within 2. Dividing rows, then
 /// columns, leaves a factor 1e15.
@@ -40,8 +35,9 @@ double scattered_sign(std::uint64_t i) {
 
 }  // namespace
 
-DirectSolver::DirectSolver(const Pattern& pattern)
+DirectSolver::DirectSolver(const Pattern& pattern, double singular_pivot)
     : pattern_(pattern),
+      singular_pivot_(singular_pivot),
       scaled_(static_cast<std::size_t>(pattern.nonzeros())),
       row_scale_(static_cast<std::size_t>(pattern.rows)),
       column_scale_(static_cast<std::size_t>(pattern.cols)),
@@ -102,7 +98,7 @@ bool DirectSolver::scale(In values) noexcept {
 
 Status DirectSolver::factor(In values) noexcept {
   condition_ = 0;
-  factored_ = scale(values) && factor_scaled(scaled_) > singular_pivot * unit_roundoff;
+  factored_ = scale(values) && factor_scaled(scaled_) > singular_pivot_;
   return factored_ ? Status::ok : Status::retry;
 }
 

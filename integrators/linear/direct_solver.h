@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "integrators/linear/linear_solver.h"
@@ -11,9 +12,9 @@ namespace tress {
 /// The factored matrix is R A C: rows and columns are divided by the roots of their
 /// largest magnitudes, three times, then columns by their largest [Ruiz 2001,
 /// RAL-TR-2001-034]. It keeps symmetry, so mixed units and masses (D A D) drop out. Every
-/// column of R A C has size one and a pivot can be read as it stands: below
-/// `singular_pivot` unit roundoffs the matrix counts as singular. O(nonzeros) on top of
-/// the factorisation.
+/// column of R A C has size one and a pivot can be read as it stands: at or
+/// below `singular_pivot` the matrix counts as singular. O(nonzeros) on top of the
+/// factorisation.
 ///
 /// condition() estimates |R A C| |(R A C)^-1|, computed on request by two solves (the
 /// power method on the inverse from a scattered start). It is a lower bound of the
@@ -22,7 +23,11 @@ namespace tress {
 /// more. klu_condest was not used: it takes up to ten solves and measures A unscaled.
 class DirectSolver : public LinearSolver {
  public:
-  explicit DirectSolver(const Pattern& pattern);
+  /// Rounding leaves the last pivot of a singular matrix at a small multiple of the
+  /// roundoff that grows with n but not beyond what elimination mixes: 128 roundoffs.
+  static constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+
+  explicit DirectSolver(const Pattern& pattern, double singular_pivot = rounding);
 
   Status factor(In values) noexcept final;
   Status solve(InOut b) noexcept final;
@@ -41,6 +46,7 @@ class DirectSolver : public LinearSolver {
   double amplification(InOut x) const noexcept;
 
   Pattern pattern_;
+  double singular_pivot_;
   std::vector<double> scaled_;
   std::vector<double> row_scale_;
   std::vector<double> column_scale_;

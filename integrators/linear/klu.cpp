@@ -28,8 +28,8 @@ struct KluSolver::Handles {
   }
 };
 
-KluSolver::KluSolver(const Pattern& pattern)
-    : DirectSolver(pattern), klu_(std::make_unique<Handles>()) {
+KluSolver::KluSolver(const Pattern& pattern, double singular_pivot)
+    : DirectSolver(pattern, singular_pivot), klu_(std::make_unique<Handles>()) {
   klu_defaults(&klu_->common);
   klu_->common.scale = -1;  // scaled by DirectSolver
   // One connected body is one irreducible block, so looking for more costs time only.

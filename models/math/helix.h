@@ -74,8 +74,10 @@ HelixFunctions<T> series(const T& s, double x2) {
 /// By the closed forms for one s; accurate for ws >= 3 or so.
 HelixFunctions<double> closed_forms(double s, double x2) noexcept;
 
-// Nine terms leave out less than eps of the value up to ws = 1.5, sixteen up to 4.5,
-// where the alternating sums lose 4 bits; from there on the closed forms are the better.
+// Five terms leave out less than eps / 8 of the value up to ws = 0.17 (of B, where it is
+// most, 3!/13! X^5), nine less than eps up to 1.5, sixteen up to 4.5, where the
+// alternating sums lose 4 bits; from there on the closed forms are the better.
+inline constexpr double nearly_straight = 0.17 * 0.17;
 inline constexpr double short_end = 1.5 * 1.5;  // of X = (ws)^2
 inline constexpr double long_end = 4.5 * 4.5;
 
@@ -109,11 +111,12 @@ inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
 /// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
 /// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to
 /// ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50.
-/// Cost: one of three ways, chosen by w longest: below 1.5 and 4.5 (a turn is 6.3) power
-/// series without branches, beyond every lane by itself.
+/// Cost: one of four ways, chosen by w longest: below 0.17, 1.5 and 4.5 (a turn is 6.3)
+/// power series without branches, beyond every lane by itself.
 template <class T>
 HelixFunctions<T> helix_functions(const T& s, double x2, double longest) noexcept {
   const double x = x2 * (longest * longest);
+  if (x <= helix::nearly_straight) return helix::series<5>(s, x2);
   if (x <= helix::short_end) return helix::series<9>(s, x2);
   if (x <= helix::long_end) return helix::series<16>(s, x2);
   return helix::one_by_one(s, x2);

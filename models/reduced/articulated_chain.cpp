@@ -9,13 +9,20 @@ namespace tress {
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options,
                                           Effects effects) {
-  return make_reduced_system<BallLink>(
+  return make_reduced_system<BallLink, BallLink>(
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects)),
       options.dofs);
 }
 
 std::span<const Parameter> articulated_chain_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(reduced_parameters());
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> shared = with_strand_parameters(reduced_parameters());
+    // The joint at a free root would have no mass on its other side.
+    for (Parameter& p : shared) {
+      if (p.name == "root") p.choices = bound_root_choices;
+    }
+    return shared;
+  }();
   return all;
 }
 

@@ -60,6 +60,11 @@ class BallLink {
     return {cross(d2W(x2, x3, x1).value, along_) + cross(dw(x2, x1), t3) +
             cross(dw(x3, x1), t2) + cross(w(x1), t23)};
   }
+  Ray acceleration(const Vec& rate, const Vec& second) const {
+    const Vec turning = w(rate);
+    return {cross(w(second) + dw(rate, rate), along_) +
+            cross(turning, cross(turning, along_))};
+  }
 
   template <class T>
   Vec3<T> rotated(const At<T>&, const Vec& y) const {

@@ -162,7 +162,6 @@ class ExactTangent {
     const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
     const Vec3<Pack> omega(m.start.omega), alpha(m.start.alpha);
-    const auto rate = g.kernel.first(m.rate);
     using Second = decltype(g.kernel.second(Vec{}, Vec{}));
     using Third = decltype(g.kernel.third(Vec{}, Vec{}, Vec{}));
     std::array<Second, dofs> with_rate, with_acceleration;
@@ -184,7 +183,7 @@ class ExactTangent {
       const Pack& mass = kinematics_.blocks()[b].mass;
       const auto& block = kinematics_.block_geometry(b);
       const Vec3<Pack>& p = block.position;
-      const Vec3<Pack> velocity = rate.at(block.at);
+      const Vec3<Pack> velocity = m.moving.at(block.at);
       const Vec3<Pack>& load = dynamics_.load(b);
       const Vec3<Pack>& force = dynamics_.force(b);
       const Vec3<Pack> turning = cross(omega, p);

@@ -59,6 +59,15 @@ class Helix {
     }
   };
 
+  struct Acceleration {
+    Vec A, A1, A2, B, B1, B2;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.A2, A2) +
+             weighted(p.f.B, B) + weighted(p.f.B1, B1) + weighted(p.f.B2, B2);
+    }
+  };
+
   Helix() = default;
   Helix(const Vec& kappa, double length)
       : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)) {}
@@ -106,6 +115,12 @@ class Helix {
   Second second(const Vec& x1, const Vec& x2) const { return d2W(x1, x2, tangent); }
   Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
     return d3W(x1, x2, x3, tangent);
+  }
+  /// P'' for kappa' = rate and kappa'' = second.
+  Acceleration acceleration(const Vec& rate, const Vec& second) const {
+    const First f = first(second);
+    const Second b = this->second(rate, rate);
+    return {f.A, f.A1 + b.A1, b.A2, f.B + b.B, f.B1 + b.B1, b.B2};
   }
 
   /// E(s) y.

@@ -137,9 +137,6 @@ class InverseDynamics {
 
     Vec3<Pack> sum_force, sum_moment;
     std::array<Pack, dofs> sum_r{};
-    const auto bias = g.kernel.second(m.rate, m.rate);
-    const auto velocity = g.kernel.first(m.rate);
-    const auto acceleration = g.kernel.first(m.acceleration);
     const Frame& f = m.start.frame;
     const Vec3<Pack> e0(f.e0), e1(f.e1), e2(f.e2), omega(m.start.omega),
         alpha(m.start.alpha), a(m.start.a);
@@ -148,8 +145,8 @@ class InverseDynamics {
       const Vec3<Pack>& p = block.position;
       Force& at = force_[b];
       at.total = kinematics_.blocks()[b].mass *
-                 (a + cross(alpha, p) + bias.at(block.at) + acceleration.at(block.at) +
-                  cross(omega, cross(omega, p) + Pack(2) * velocity.at(block.at)));
+                 (a + cross(alpha, p) + m.accelerating.at(block.at) +
+                  cross(omega, cross(omega, p) + Pack(2) * m.moving.at(block.at)));
       if (!effects_.empty()) {
         const Vec3<Pack> world = gathered(b);
         at.load = {dot(e0, world), dot(e1, world), dot(e2, world)};

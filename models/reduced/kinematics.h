@@ -35,9 +35,11 @@ class Kinematics {
   };
   struct SegmentMotion {
     FrameMotion start, tip;
-    Vec rate, acceleration;       // kappa', kappa''
-    Vec velocity;                 // P' at the tip
-    Vec turning;                  // W kappa' at the tip
+    Vec rate, acceleration;                                      // kappa', kappa''
+    decltype(Kernel().first(Vec())) moving;                      // P'
+    decltype(Kernel().acceleration(Vec(), Vec())) accelerating;  // P''
+    Vec velocity;                                                // P' at the tip
+    Vec turning;                                                 // W kappa' at the tip
     Vec tip_v, tip_a, tip_alpha;  // of the tip, in the components of the start
   };
 
@@ -105,7 +107,7 @@ class Kinematics {
     const SegmentMotion& m = motion_[i];
     const BlockGeometry& b = block_geometry_[block];
     return Vec3<Pack>(m.start.v) + cross(Vec3<Pack>(m.start.omega), b.position) +
-           geometry_[i].kernel.first(m.rate).at(b.at);
+           m.moving.at(b.at);
   }
 
  private:
@@ -153,20 +155,20 @@ class Kinematics {
 
     const Vec omega = m.start.omega, alpha = m.start.alpha;
     m.velocity = Vec{};
-    Vec p_bias = g.kernel.second(m.rate, m.rate).at(g.tip);
-    Vec turn_bias = g.kernel.dW(m.rate, m.rate).at(g.tip);
+    m.moving = g.kernel.first(m.rate);
+    m.accelerating = g.kernel.acceleration(m.rate, m.acceleration);
+    Vec turning_bias = g.kernel.dW(m.rate, m.rate).at(g.tip);
     m.turning = Vec{};
     for (int k = 0; k < dofs; ++k) {
       const double rate = dot(unit(k), m.rate), second = dot(unit(k), m.acceleration);
       m.velocity = m.velocity + rate * g.slope[k];
       m.turning = m.turning + rate * g.turn[k];
-      p_bias = p_bias + second * g.slope[k];
-      turn_bias = turn_bias + second * g.turn[k];
+      turning_bias = turning_bias + second * g.turn[k];
     }
     m.tip_v = m.start.v + cross(omega, g.position) + m.velocity;
-    m.tip_a = m.start.a + cross(alpha, g.position) + p_bias +
+    m.tip_a = m.start.a + cross(alpha, g.position) + m.accelerating.at(g.tip) +
               cross(omega, cross(omega, g.position) + 2.0 * m.velocity);
-    m.tip_alpha = alpha + turn_bias + cross(omega, m.turning);
+    m.tip_alpha = alpha + turning_bias + cross(omega, m.turning);
 
     m.tip.frame = m.start.frame * g.rotation;
     m.tip.x = m.start.x + m.start.frame * g.position;

@@ -111,19 +111,50 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   static Dofs dofs(In b, std::size_t i) { return Eigen::Map<const Dofs>(&b[n * i]); }
 
-  /// H^-1, scaled first: twist and bending differ by many orders of magnitude.
   static bool invert(const Square& h, Square& inverse) {
-    const Dofs size = h.diagonal().cwiseAbs().cwiseSqrt();
-    if (!(size.minCoeff() > 0) || !std::isfinite(size.maxCoeff())) return false;
-    const Dofs scale = size.cwiseInverse();
-    inverse = scale.asDiagonal() *
-              (scale.asDiagonal() * h * scale.asDiagonal()).inverse().eval() *
-              scale.asDiagonal();
-    return inverse.allFinite();
+    inverse = h.inverse();
+    return std::isfinite(inverse.sum());
   }
 
   static bool eliminate(const SegmentTangent<Shape>& segment, const Articulated& hanging,
                         Eliminated& e, Articulated& handed_on) {
+    if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
+      return eliminate_symmetric(segment, hanging, e, handed_on);
+    } else {
+      return eliminate_general(segment, hanging, e, handed_on);
+    }
+  }
+
+  static bool eliminate_symmetric(const SegmentTangent<Shape>& segment,
+                                  const Articulated& hanging, Eliminated& e,
+                                  Articulated& handed_on) {
+    const auto tip_of_s = segment.transfer.template leftCols<states>();
+    const auto tip_of_x = segment.transfer.template rightCols<n>();
+    const auto local_of_x = segment.local.template rightCols<n>();
+    // The pivot and what couples it to s: columns x of local + transfer^T hanging
+    // transfer.
+    Eigen::Matrix<double, Shape::rows, n> of_x = local_of_x;
+    add_product(segment.lift, product(hanging, tip_of_x), of_x);
+    if (!invert(of_x.template bottomRows<n>(), e.inverse)) return false;
+    e.response = product(of_x.template topRows<states>(), e.inverse);
+    e.z = e.response.transpose();
+    // V = [I; -Z], so M V = M_s - M_x Z.
+    Eigen::Matrix<double, Shape::rows, states> own =
+        segment.local.template leftCols<states>();
+    subtract_product(local_of_x, e.z, own);
+    Eigen::Matrix<double, states, states> tip_motion = tip_of_s;
+    subtract_product(tip_of_x, e.z, tip_motion);
+    Articulated joseph = own.template topRows<states>();
+    subtract_product(e.response, own.template bottomRows<n>(), joseph);
+    const Eigen::Matrix<double, states, states> back = tip_motion.transpose();
+    add_product(back, product(hanging, tip_motion), joseph);
+    handed_on = 0.5 * (joseph + joseph.transpose());
+    return true;
+  }
+
+  static bool eliminate_general(const SegmentTangent<Shape>& segment,
+                                const Articulated& hanging, Eliminated& e,
+                                Articulated& handed_on) {
     Eigen::Matrix<double, wrench, Shape::columns> pulled;
     pulled.setZero();
     add_pulled(hanging, segment, pulled);
@@ -134,29 +165,13 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const auto w_of_x = full.template topRightCorner<wrench, n>();
     if (!invert(pivot, e.inverse)) return false;
     e.z = product(e.inverse, r_of_s);
-    if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
-      e.response = e.z.transpose();
-      // V = [I; -Z], so M V = M_s - M_x Z.
-      Eigen::Matrix<double, Shape::rows, states> own =
-          segment.local.template leftCols<states>();
-      add_product(segment.local.template rightCols<n>(), e.z, own, -1);
-      Eigen::Matrix<double, states, states> tip_motion =
-          segment.transfer.template leftCols<states>();
-      add_product(segment.transfer.template rightCols<n>(), e.z, tip_motion, -1);
-      Articulated joseph = own.template topRows<states>();
-      add_product(e.response, own.template bottomRows<n>(), joseph, -1);
-      const Eigen::Matrix<double, states, states> back = tip_motion.transpose();
-      add_product(back, product(hanging, tip_motion), joseph);
-      handed_on = 0.5 * (joseph + joseph.transpose());
-      return true;
-    }
     if constexpr (method == TreeMethod::recursive_plain) {
       const Eigen::Matrix<double, wrench, n> y = w_of_x;
       const Eigen::Matrix<double, n, wrench> mirrored = y.transpose();
       e.z = product(e.inverse, mirrored);
       e.response = e.z.transpose();
       handed_on = full.template topLeftCorner<wrench, states>();
-      add_product(y, e.z, handed_on, -1);
+      subtract_product(y, e.z, handed_on);
       return true;
     }
     Square used = e.inverse;
@@ -168,7 +183,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
     e.response = product(w_of_x, used);
     handed_on = full.template topLeftCorner<wrench, states>();
-    add_product(e.response, r_of_s, handed_on, -1);
+    subtract_product(e.response, r_of_s, handed_on);
     return true;
   }
 

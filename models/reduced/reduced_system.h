@@ -86,7 +86,7 @@ class ReducedSystem final : public System,
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
     if (!full_in_use_) {
       kinematics_.shape(q);
-      return factor(w, mass_, *mass_solver_);
+      return factored_ = factor(w, mass_, *mass_solver_);
     }
     dynamics_.residual(t, q, v, a, scratch_);
     const auto effects = effect_blocks(t);
@@ -94,10 +94,11 @@ class ReducedSystem final : public System,
       exact_tangent_.segment(i, w, effects, full_.segments[i]);
     }
     if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
-    return full_solver_->factor(full_);
+    return factored_ = full_solver_->factor(full_);
   }
 
   Status solve(In b, Out x) noexcept override {
+    if (factored_ != Status::ok) return factored_;
     const Status s = full_in_use_ ? full_solver_->solve(b, x) : mass_solver_->solve(b, x);
     return s == Status::ok ? finite(x) : s;
   }
@@ -159,17 +160,24 @@ class ReducedSystem final : public System,
     return solved == Status::ok ? finite(a) : solved;
   }
 
+  static double rotor_energy(double inertia, const FrameMotion& m) {
+    return 0.5 * inertia * m.omega.x * m.omega.x;
+  }
+  static Vec rotor_momentum(double inertia, const FrameMotion& m) {
+    return (inertia * m.omega.x) * m.frame.e0;
+  }
+
   Energy energy(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
     Energy e;
+    e.kinetic = rotor_energy(kinematics_.root_rotor(), kinematics_.root());
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       const ReducedSegment& segment = kinematics_.segments()[i];
       for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
         const Vec3<Pack> u = kinematics_.velocity(i, b);
         e.kinetic += 0.5 * sum(kinematics_.blocks()[b].mass * dot(u, u));
       }
-      const double spin = kinematics_.motion(i).tip.omega.x;
-      e.kinetic += 0.5 * segment.rotor * spin * spin;
+      e.kinetic += rotor_energy(segment.rotor, kinematics_.motion(i).tip);
       const Vec bent = K::components(q, i) - segment.rest;
       e.potential += 0.5 * (segment.stiffness.x * bent.x * bent.x +
                             segment.stiffness.y * bent.y * bent.y +
@@ -206,11 +214,11 @@ class ReducedSystem final : public System,
 
   bool momentum(double t, In q, In v, Momentum& total) override {
     kinematics_.move(t, q, v, zero_);
-    Vec linear, angular;
+    Vec linear;
+    Vec angular = rotor_momentum(kinematics_.root_rotor(), kinematics_.root());
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       const ReducedSegment& segment = kinematics_.segments()[i];
-      const FrameMotion& tip = kinematics_.motion(i).tip;
-      angular = angular + (segment.rotor * tip.omega.x) * tip.frame.e0;
+      angular = angular + rotor_momentum(segment.rotor, kinematics_.motion(i).tip);
       for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
         const Vec3<Pack> x = Vec3<Pack>(kinematics_.motion(i).start.x) +
                              kinematics_.world(i, kinematics_.block_geometry(b).position);
@@ -254,14 +262,16 @@ class ReducedSystem final : public System,
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_;
   bool full_in_use_ = false;
+  Status factored_ = Status::retry;
   std::vector<double> zero_, scratch_, by_position_, by_velocity_;
 };
 
-template <class Kernel>
+/// `PlanarKernel` is that of one unknown a segment.
+template <class Kernel, class PlanarKernel>
 std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
   switch (dofs) {
     case 1:
-      return std::make_unique<ReducedSystem<Kernel, 1>>(std::move(strand));
+      return std::make_unique<ReducedSystem<PlanarKernel, 1>>(std::move(strand));
     case 2:
       return std::make_unique<ReducedSystem<Kernel, 2>>(std::move(strand));
     default:

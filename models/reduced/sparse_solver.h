@@ -16,7 +16,10 @@ template <class Shape>
 class SparseTreeSolver final : public TreeSolver<Shape> {
  public:
   explicit SparseTreeSolver(const TreeTangent<Shape>& structure)
-      : pattern_(make_pattern(structure)), klu_(pattern_) {
+      : pattern_(make_pattern(structure)),
+        // Turning a nearly straight strand about its axis moves next to nothing: small
+        // pivots are its physics. Only a zero is singular.
+        klu_(pattern_, 0) {
     values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
     rhs_.resize(static_cast<std::size_t>(pattern_.rows));
   }

@@ -1,5 +1,6 @@
 #include "models/reduced/super_helix.h"
 
+#include "models/reduced/arc.h"
 #include "models/reduced/reduced_system.h"
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
@@ -8,7 +9,7 @@ namespace tress {
 
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects) {
-  return make_reduced_system<Helix>(
+  return make_reduced_system<Helix, Arc>(
       reduced_strand(strand, Unknown::curvature, options, std::move(effects)),
       options.dofs);
 }

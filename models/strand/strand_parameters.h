@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "models/effects/effect.h"
@@ -9,6 +10,10 @@
 #include "models/strand/strand.h"
 
 namespace tress {
+
+/// The words of `root` for models whose root cannot move freely.
+inline constexpr std::string_view bound_root_choices =
+    "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull";
 
 /// The catalogue parameters that every strand model shares, followed by its own.
 std::vector<Parameter> with_strand_parameters(std::span<const Parameter> own);

@@ -168,9 +168,18 @@ TEST_P(SystemContract, ResidualVanishesOnExplicitAcceleration) {
   ASSERT_EQ(form->acceleration(t0, s.q, s.v, a), Status::ok);
   const auto r = residual(*system_, s.q, s.v, a);
   const auto f = residual(*system_, s.q, s.v, std::vector<double>(s.n, 0.0));
-  ASSERT_GT(largest(f), 0);
-  // The solve for a is backward stable: a residual of n rounding errors of the load.
-  EXPECT_LE(largest(r), 1e3 * static_cast<double>(s.n) * 2.2e-16 * largest(f));
+  // M a - f is of rounding errors of |M| |a| + |f|: where masses are small a residual of
+  // f is a small difference of large inertial terms.
+  std::vector<double> size(s.n);
+  for (std::size_t j = 0; j < s.n; ++j) {
+    std::vector<double> column(s.n, 0.0);
+    column[j] = a[j];
+    const auto moved = plus(residual(*system_, s.q, s.v, column), -1, f);
+    for (std::size_t i = 0; i < s.n; ++i) size[i] += std::abs(moved[i]);
+  }
+  for (std::size_t i = 0; i < s.n; ++i) size[i] += std::abs(f[i]);
+  ASSERT_GT(largest(size), 0);
+  EXPECT_LE(largest(r), 1e3 * static_cast<double>(s.n) * 2.2e-16 * largest(size));
 }
 
 TEST_P(SystemContract, InitialStateSatisfiesTheConstraints) {
@@ -276,6 +285,8 @@ TEST_P(SystemContract, EnergyChangesByThePowerOfTheRemainingForces) {
   Energetics* energetics = system_->energetics();
   if (energetics == nullptr) GTEST_SKIP() << "no energetics";
   States s(*system_);
+  if (s.m == 0 && !system_->traits().regular_mass)
+    GTEST_SKIP() << "no acceleration follows from q and v alone";
   Options options;
   if (s.m > 0) options.formulation = Formulation::acceleration;
   Dynamics dynamics(*system_, options);

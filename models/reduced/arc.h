@@ -1,0 +1,135 @@
+#pragma once
+
+#include "models/math/frame.h"
+#include "models/math/helix.h"
+
+namespace tress {
+
+/// A helix (helix.h) without twist that bends about e1 alone: with kappa = (0, k, 0), a
+/// circular arc in the plane of e0 and e2,
+///
+///     P(s) = (S, 0, -k A),    E(s) e0 = (cos ks, 0, -sin ks),    W(s) e1 = s e1.
+///
+/// Directions x and y have an e1 component alone. Derivatives with respect to k follow
+/// from d/dk of f(k^2) = k f1 and from S = s - k^2 B, so that none cancels at k = 0.
+class Arc {
+ public:
+  /// The functions at one arc length, or at a pack of them.
+  template <class T>
+  struct At {
+    T s;
+    HelixFunctions<T> f;
+  };
+
+  // d^m P/dk^m times `factor`, m = 0 to 3.
+  struct Zeroth {
+    double k;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return {p.f.S, T(0), T(-k) * p.f.A};
+    }
+  };
+  struct First {
+    double k, factor;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      const auto [x, z] = slope(p, k);
+      return {T(factor) * x, T(0), T(factor) * z};
+    }
+  };
+  struct Second {
+    double k, factor;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      const auto [x, z] = curvature(p, k);
+      return {T(factor) * x, T(0), T(factor) * z};
+    }
+  };
+  struct Third {
+    double k, factor;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      const T kk(k * k);
+      const T x = T(-k) * (T(12) * p.f.B1 + kk * (T(9) * p.f.B2 + kk * p.f.B3));
+      const T z = T(-3) * p.f.A1 - kk * (T(6) * p.f.A2 + kk * p.f.A3);
+      return {T(factor) * x, T(0), T(factor) * z};
+    }
+  };
+  /// P'' for k' = rate and k'' = second.
+  struct Acceleration {
+    double k, rate, second;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      const auto [x1, z1] = slope(p, k);
+      const auto [x2, z2] = curvature(p, k);
+      const T square(rate * rate);
+      return {T(second) * x1 + square * x2, T(0), T(second) * z1 + square * z2};
+    }
+  };
+  /// Turns about e1.
+  struct Turn {
+    double factor;
+    Vec at(const At<double>& p) const { return {0, factor * p.s, 0}; }
+  };
+  /// W does not depend on k.
+  struct Nothing {
+    Vec at(const At<double>&) const { return {}; }
+  };
+
+  Arc() = default;
+  Arc(const Vec& kappa, double length) : k_(kappa.y), length_(length) {}
+
+  template <class T>
+  At<T> point(const T& s) const {
+    return {s, helix_functions(s, k_ * k_, length_)};
+  }
+  At<double> tip() const { return point(length_); }
+
+  Turn W(const Vec& y) const { return {y.y}; }
+  Nothing dW(const Vec&, const Vec&) const { return {}; }
+  Nothing d2W(const Vec&, const Vec&, const Vec&) const { return {}; }
+
+  Zeroth position() const { return {k_}; }
+  First first(const Vec& x) const { return {k_, x.y}; }
+  Second second(const Vec& x1, const Vec& x2) const { return {k_, x1.y * x2.y}; }
+  Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
+    return {k_, x1.y * x2.y * x3.y};
+  }
+  Acceleration acceleration(const Vec& rate, const Vec& second) const {
+    return {k_, rate.y, second.y};
+  }
+
+  /// E(s) y: sin ks = k S, cos ks = 1 - k^2 A.
+  template <class T>
+  Vec3<T> rotated(const At<T>& p, const Vec& y) const {
+    const T sine = T(k_) * p.f.S, cosine = T(1) - T(k_ * k_) * p.f.A;
+    return {cosine * T(y.x) + sine * T(y.z), T(y.y), cosine * T(y.z) - sine * T(y.x)};
+  }
+  Frame rotation(const At<double>& p) const {
+    const double sine = k_ * p.f.S, cosine = 1 - k_ * k_ * p.f.A;
+    return {{cosine, 0, -sine}, {0, 1, 0}, {sine, 0, cosine}};
+  }
+  Vec dW_transposed(const At<double>&, const Vec&, const Vec&) const { return {}; }
+
+ private:
+  template <class T>
+  struct InPlane {
+    T x, z;
+  };
+  template <class T>
+  static InPlane<T> slope(const At<T>& p, double k) {
+    const T kk(k * k);
+    return {T(-k) * (T(2) * p.f.B + kk * p.f.B1), -p.f.A - kk * p.f.A1};
+  }
+  template <class T>
+  static InPlane<T> curvature(const At<T>& p, double k) {
+    const T kk(k * k);
+    return {T(-2) * p.f.B - kk * (T(5) * p.f.B1 + kk * p.f.B2),
+            T(-k) * (T(3) * p.f.A1 + kk * p.f.A2)};
+  }
+
+  double k_ = 0;
+  double length_ = 0;
+};
+
+}  // namespace tress
