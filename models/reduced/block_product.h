@@ -32,6 +32,7 @@ inline void accumulate_product(const A& a, const B& b, C&& c) {
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
+  static_assert(!B::IsRowMajor || inner == 1 || columns == 1);
   if constexpr (rows * inner * columns <= 27) {
     c.noalias() += sign * a.lazyProduct(b);
   } else {
