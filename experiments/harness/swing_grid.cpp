@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "integrators/catalogue.h"
@@ -88,32 +89,41 @@ struct Body {
 constexpr Body principal{"super_helix", "bend", "recursive"};
 constexpr Body chain{"articulated_chain", "bend", "recursive"};
 constexpr Body others[] = {
-    {"super_helix", "bend_twist", "recursive"},
     {"super_helix", "bend", "composite"},
     {"super_helix", "bend", "sparse"},
     chain,
+};
+
+// Twist has next to no mass, so what Newton leaves over of it comes back undamped and
+// larger: only converged steps or methods that damp fast modes get through.
+constexpr Body twisting{"super_helix", "bend_twist", "recursive"};
+constexpr Method twisting_methods[] = {
+    {"implicit_midpoint", "stiff", loose, 0, true},
+    {"implicit_midpoint", "exact", converged},
+    {"linearly_implicit_midpoint", "stiff"},
+    {"bdf2", "stiff", loose},
+    {"bdf2", "exact", converged},
 };
 
 // Total error: the strand bends most at its root, so shorter elements there are worth
 // trying beside equal ones.
 constexpr double gradings[] = {1, 3};
 
-/// Steps (s) or relative tolerances, from loose to tight, `factor` apart.
+/// Steps (s) or relative tolerances from loose to tight: loosest / base^(i exponent).
 struct Ladder {
-  double loosest, factor;
+  double loosest, base, exponent;
   int rungs;
 };
 
 Ladder ladder(const IntegratorEntry& entry, bool implicit, bool full) {
   const int more = full ? 3 : 0;
-  const double half_decade = std::sqrt(10), half_octave = std::sqrt(2);
   if (entry.adaptive) {
-    return implicit ? Ladder{0.1, half_decade, 7 + 2 * more} : Ladder{0.1, 10, 4 + more};
+    return implicit ? Ladder{0.1, 10, 0.5, 5 + 2 * more} : Ladder{0.1, 10, 1, 3 + more};
   }
-  if (entry.order == 1) return {implicit ? 1e-2 : 1.25e-3, 2, 8 + more};
   // Explicit steps beyond 1.25 ms are unstable at 20 elements.
-  return implicit ? Ladder{1e-2, half_octave, 9 + more}
-                  : Ladder{1.25e-3, half_octave, 5 + more};
+  const double loosest = implicit ? 1e-2 : 1.25e-3;
+  if (entry.order == 1) return {loosest, 2, 1, (implicit ? 7 : 4) + more};
+  return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
 }
 
 std::string_view name(Refresh refresh) {
@@ -135,20 +145,19 @@ class Grid {
       : line_(line), settings_(settings) {}
 
   std::vector<SwingCase> cases() {
+    const std::span<const Method> total =
+        line_.integrators.empty() ? std::span<const Method>(best) : methods;
     for (const int elements : counts({peer_elements})) {
-      for (const Method& m : methods) {
-        if (!m.full_only || line_.full || !line_.integrators.empty()) {
-          add("time", principal, m, elements, 1);
-        }
-      }
+      for (const Method& m : methods) add("time", principal, m, elements, 1);
       for (const Body& body : others) {
         for (const Method& m : best) add("time", body, m, elements, 1);
       }
+      for (const Method& m : twisting_methods) add("time", twisting, m, elements, 1);
     }
     for (const int elements : counts({3, 5, 7, 9, 12, 16, 20, 28, 40})) {
       for (const Body& body : {principal, chain}) {
         for (const double grading : gradings) {
-          for (const Method& m : best) add("total", body, m, elements, grading);
+          for (const Method& m : total) add("total", body, m, elements, grading);
         }
       }
     }
@@ -167,6 +176,7 @@ class Grid {
 
   void add(std::string_view error, const Body& body, const Method& m, int elements,
            double grading) {
+    if (m.full_only && !line_.full && line_.integrators.empty()) return;
     if (!keeps("error", error) || !keeps("modes", body.modes)) return;
     if (!keeps("solver", body.solver) || !keeps("tangent", m.tangent)) return;
     if (!wanted(line_.models, body.model) || !wanted(line_.integrators, m.integrator)) {
@@ -190,18 +200,22 @@ class Grid {
     c.options.refresh = m.newton.refresh;
     if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
     c.options = settings_.options(c.options);
-    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_.full);
+    Ladder rungs = ladder(entry, !m.tangent.empty(), line_.full);
+    // What finer steps add, elements take away again.
+    if (error == "total") rungs.rungs -= 2;
     for (int i = 0; i < rungs.rungs; ++i) {
-      const double x = rungs.loosest / std::pow(rungs.factor, i);
+      const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
       (entry.adaptive ? c.options.rtol : c.options.step) = x;
       if (entry.adaptive) c.options.atol = x;
-      all_.push_back(c);
+      // --set can make two ways of iterating the same.
+      if (known_.insert(describe(c.identity())).second) all_.push_back(c);
     }
   }
 
   const CommandLine& line_;
   const Settings& settings_;
   std::vector<SwingCase> all_;
+  std::set<std::string> known_;
 };
 
 }  // namespace
