@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "integrators/vector_ops.h"
+
 namespace tress {
 namespace {
 
@@ -12,6 +14,14 @@ constexpr double slow_rate = 0.3;
 
 // Corrections that stop shrinking are rounding when they are this close to the tolerance.
 constexpr double stagnation_factor = 1e4;
+
+// Corrections that grew this often do not shrink by themselves.
+constexpr int most_grown = 2;
+
+// Damped steps are shorter, so there may be more of them; a step this much shorter than
+// Newton's gets nowhere.
+constexpr int damped_patience = 3;
+constexpr double shortest = 1e-4;
 
 }  // namespace
 
@@ -23,13 +33,24 @@ Stage::Stage(Dynamics& dynamics, const Options& options)
       q_(static_cast<std::size_t>(dynamics.n())),
       v_(q_.size()),
       r_(q_.size()),
-      c_(static_cast<std::size_t>(dynamics.m())) {}
+      c_(static_cast<std::size_t>(dynamics.m())),
+      a_guess_(q_.size()),
+      lambda_guess_(c_.size()),
+      a_kept_(q_.size()),
+      lambda_kept_(c_.size()),
+      a_step_(q_.size()),
+      lambda_step_(c_.size()) {}
 
 void Stage::place(In q_bar, In v_bar, Weights w, In a) noexcept {
   for (std::size_t i = 0; i < q_.size(); ++i) {
     q_[i] = q_bar[i] + w.pos * a[i];
     v_[i] = v_bar[i] + w.vel * a[i];
   }
+}
+
+double Stage::size_of(In correction, Weights w) const noexcept {
+  return std::max(w.pos * scaled_norm(correction, dynamics_.q_typ()),
+                  w.vel * scaled_norm(correction, dynamics_.v_typ()));
 }
 
 Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
@@ -48,16 +69,33 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= r_[i];
   for (std::size_t k = 0; k < lambda.size(); ++k) lambda[k] -= c_[k];
   place(q_bar, v_bar, w, a);
-  correction = std::max(w.pos * scaled_norm(r_, dynamics_.q_typ()),
-                        w.vel * scaled_norm(r_, dynamics_.v_typ()));
+  correction = size_of(r_, w);
   return std::isfinite(correction) ? Status::ok : Status::retry;
 }
 
 Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
                     InOut lambda) noexcept {
+  std::ranges::copy(a, a_guess_.begin());
+  std::ranges::copy(lambda, lambda_guess_.begin());
+  Status s = newton(t, q_bar, v_bar, w, a, lambda);
+  // From the guess, from no acceleration, from standstill.
+  for (int start = 0; s == Status::retry && start < 3; ++start) {
+    factored_ = {};
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      a[i] = start == 0 ? a_guess_[i] : start == 1 ? 0 : -v_bar[i] / w.vel;
+    }
+    std::ranges::copy(lambda_guess_, lambda.begin());
+    s = damped(t, q_bar, v_bar, w, a, lambda);
+  }
+  return s;
+}
+
+Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
+                     InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
   double previous = std::numeric_limits<double>::infinity();
   double rate = 1;
+  int grown = 0;
   const bool same_matrix = factored_.vel == w.vel && factored_.pos == w.pos;
   bool linearize = refresh_ != Refresh::when_slow || factored_.acc == 0 || !same_matrix;
   for (int i = 0; i < iterations_; ++i) {
@@ -73,19 +111,62 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
     if (rate > 0.5 && i >= 2 && correction <= stagnation_factor * tolerance_) {
       return Status::ok;
     }
+    if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     linearize = refresh_ == Refresh::every_iteration ||
                 (refresh_ == Refresh::when_slow && i > 0 && rate > slow_rate);
     previous = correction;
   }
-  factored_ = {};
   return Status::retry;
 }
 
-Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, InOut a,
+Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
+                     InOut lambda) noexcept {
+  place(q_bar, v_bar, w, a);
+  for (int i = 0; i < damped_patience * iterations_; ++i) {
+    Status s = dynamics_.linearize(t, q_, v_, a, lambda, w);
+    if (s == Status::ok) {
+      s = dynamics_.residual(t, q_, v_, a, lambda, a_step_, lambda_step_);
+    }
+    if (s == Status::ok) s = dynamics_.solve(a_step_, lambda_step_);
+    if (s != Status::ok) return s;
+    ++dynamics_.stats.newton_iterations;
+    const double size = size_of(a_step_, w);
+    if (!std::isfinite(size)) return Status::retry;
+    s = halve_until_smaller(t, q_bar, v_bar, w, size, a, lambda);
+    const bool rounding = s == Status::retry && size <= stagnation_factor * tolerance_;
+    if (size <= tolerance_ || rounding) return Status::ok;
+    if (s != Status::ok) return s;
+  }
+  return Status::retry;
+}
+
+/// Takes the step a_step_, lambda_step_ or as much of it as makes the correction of the
+/// kept matrix smaller than `size`, that of the step itself.
+Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
+                                  InOut a, InOut lambda) noexcept {
+  std::ranges::copy(a, a_kept_.begin());
+  std::ranges::copy(lambda, lambda_kept_.begin());
+  for (double part = 1; part >= shortest; part /= 2) {
+    shifted(a, a_kept_, -part, a_step_);
+    shifted(lambda, lambda_kept_, -part, lambda_step_);
+    place(q_bar, v_bar, w, a);
+    if (size <= tolerance_) return Status::ok;
+    Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
+    if (s == Status::ok) s = dynamics_.solve(r_, c_);
+    if (s == Status::fatal) return s;
+    if (s == Status::ok && size_of(r_, w) <= (1 - part / 4) * size) return s;
+  }
+  return Status::retry;
+}
+
+Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                           InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
+  factored_ = {};
+  const Status s = dynamics_.linearize(t, q_, v_, a_matrix, lambda, w);
+  if (s != Status::ok) return s;
   double correction = 0;
-  return correct(t, q_bar, v_bar, w, true, a, lambda, correction);
+  return correct(t, q_bar, v_bar, w, false, a, lambda, correction);
 }
 
 }  // namespace tress

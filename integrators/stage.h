@@ -9,8 +9,11 @@ namespace tress {
 /// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
 /// method: find a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
-/// by Newton's method. Options: newton_tolerance bounds the last correction of q and v
-/// over System::scale, newton_iterations, refresh.
+/// by Newton's method; where that does not converge, with steps damped by the natural
+/// monotonicity test [Deuflhard 2011, Newton Methods for Nonlinear Problems, section 3.3]
+/// from the guess, from no acceleration and from standstill: long steps of shaken strands
+/// need it. Options: newton_tolerance bounds the last correction of q and v over
+/// System::scale, newton_iterations, refresh.
 class Stage {
  public:
   Stage(Dynamics& dynamics, const Options& options);
@@ -18,8 +21,9 @@ class Stage {
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
 
-  /// Exactly one Newton step from the guess, converged or not (semi-implicit methods).
-  Status single_step(double t, In q_bar, In v_bar, Weights w, InOut a,
+  /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
+  /// with the matrix at acceleration a_matrix.
+  Status single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                      InOut lambda) noexcept;
 
   In q() const { return q_; }  // of the last call
@@ -27,6 +31,11 @@ class Stage {
 
  private:
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
+  double size_of(In correction, Weights w) const noexcept;
+  Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status damped(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
+                             InOut a, InOut lambda) noexcept;
   Status correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
                  InOut lambda, double& correction) noexcept;
 
@@ -36,6 +45,8 @@ class Stage {
   Refresh refresh_;
   Weights factored_;  // weights of the matrix held by dynamics_; acc = 0: none
   std::vector<double> q_, v_, r_, c_;
+  std::vector<double> a_guess_, lambda_guess_;
+  std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
 };
 
 }  // namespace tress

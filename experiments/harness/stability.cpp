@@ -82,9 +82,9 @@ struct Trial {
 };
 
 /// What the trials say so far, whatever their order.
-StepLimit summary(std::vector<Trial> trials, bool complete) {
+StepLimit summary(std::vector<Trial> trials, double resolution) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown, 0, complete};
+  StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown, 0, false, false};
   limit.runs = static_cast<int>(trials.size());
   std::ranges::sort(trials, {}, &Trial::dt);
   if (!trials.empty()) limit.finest = trials.front().dt;
@@ -97,6 +97,8 @@ StepLimit summary(std::vector<Trial> trials, bool complete) {
       limit.limited_by = trial.broken;
     }
   }
+  const bool some_stable = !std::isnan(limit.stable);
+  limit.resolved = some_stable && !(limit.unstable > limit.stable * resolution);
   return limit;
 }
 
@@ -121,12 +123,11 @@ std::string_view name(Broken broken) {
 }
 
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
-                                      const Options& options, double t_end,
-                                      const StabilityBounds& bounds,
+                                      const Options& options, const State& start,
+                                      double t_end, const StabilityBounds& bounds,
                                       const GiveUp& give_up) {
   // 1e-9: a whole number of steps up to rounding is not run one step longer.
   const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
-  const State start = initial_state(system);
   Judge judge(system, bounds, start);
   bool given_up = false;
   const Simulation run = simulate(integrator, system, options, start,
@@ -149,9 +150,11 @@ std::optional<StabilityRun> judge_run(std::string_view integrator, System& syste
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge) {
   std::vector<Trial> trials;
+  StepLimit limit = summary(trials, search.resolution);
   const auto test = [&](double dt) {
     const std::optional<Broken> broken = judge(dt);
     if (broken) trials.push_back({dt, *broken});
+    limit = summary(trials, search.resolution);
     return broken.has_value();
   };
 
@@ -160,24 +163,15 @@ StepLimit find_step_limit(const StepSearch& search,
   const int count =
       1 + static_cast<int>(std::log(search.coarsest / search.finest) / std::log(ratio) +
                            1e-6);
-  double top = 0;  // of the stable steps that nothing unstable lies below yet
   for (int i = 0; i < count; ++i) {
     const double dt = search.coarsest * std::pow(ratio, -i);
-    if (!test(dt)) return summary(std::move(trials), false);
-    if (!trials.back().stable()) {
-      top = 0;
-    } else if (top == 0) {
-      top = dt;
+    if (!test(dt)) return limit;
+    while (!std::isnan(limit.stable) && !limit.resolved) {
+      if (!test(std::sqrt(limit.stable * limit.unstable))) return limit;
     }
-    if (top >= search.depth * dt) break;
+    if (limit.stable >= search.depth * dt) break;
   }
-
-  StepLimit limit = summary(trials, true);
-  while (limit.unstable > limit.stable * search.resolution) {
-    const bool tested = test(std::sqrt(limit.stable * limit.unstable));
-    limit = summary(trials, tested);
-    if (!tested) break;
-  }
+  limit.complete = true;
   return limit;
 }
 

@@ -45,8 +45,8 @@ using GiveUp = std::function<bool()>;
 /// The root is the system's first material point, the tip its last. Empty when given up.
 /// Throws InputError when a bound needs a form that the system lacks.
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
-                                      const Options& options, double t_end,
-                                      const StabilityBounds& bounds,
+                                      const Options& options, const State& start,
+                                      double t_end, const StabilityBounds& bounds,
                                       const GiveUp& give_up = {});
 
 /// How the largest stable step is looked for.
@@ -55,7 +55,7 @@ struct StepSearch {
   double finest = 1e-6;      // s
   double ratio = 1.7782794;  // of neighbours in the scan: four per decade
   double resolution = 1.05;  // dt_first_unstable / dt_max of the answer
-  /// Stability is not always monotone: the scan goes on below a stable step until
+  /// Stability is not always monotone: steps below a stable one are tested until
   /// everything down to a `depth`-th of it was stable too.
   double depth = 30;
 };
@@ -68,11 +68,13 @@ struct StepLimit {
   double stable_above;  // s, largest stable step above `unstable`: not monotone
   double finest;        // s, smallest step tested
   int runs;
-  bool complete;  // false: given up before the search was done
+  bool resolved;  // unstable / stable is within the resolution, or nothing was unstable
+  bool complete;  // and all was stable down to the depth: nobody gave up
 };
 
-/// Scans from coarse to fine, then bisects (geometrically) between `stable` and
-/// `unstable`. `judge` is empty when it gave up.
+/// Scans from coarse to fine. At the first stable step it bisects (geometrically) between
+/// `stable` and `unstable`, then goes on down to the depth, where the next unstable step
+/// begins anew. `judge` is empty when it gave up.
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge);
 

@@ -22,10 +22,13 @@ std::string setting_of(const Row& row, std::string_view compared) {
 /// A limit is known to lie between these two; unstable is infinite at the cap.
 struct Bracket {
   double stable, unstable;
+  double finest;  // smallest step tested, 0 when the search was done
   bool above(const Bracket& other) const { return stable >= other.unstable; }
+  /// Whether the search got to where the other one found its limit.
+  bool reaches(const Bracket& other) const { return finest <= other.unstable; }
 };
 
-/// By setting, of the rows with this word in this column whose search was done.
+/// By setting, of the rows with this word in this column that have a limit.
 std::map<std::string, Bracket> limits_of(const std::vector<Row>& rows,
                                          std::string_view column, std::string_view word) {
   std::map<std::string, Bracket> limits;
@@ -34,7 +37,9 @@ std::map<std::string, Bracket> limits_of(const std::vector<Row>& rows,
     const double unstable = row.has("dt_first_unstable_s")
                                 ? row.number("dt_first_unstable_s")
                                 : std::numeric_limits<double>::infinity();
-    limits[setting_of(row, column)] = {row.number("dt_max_s"), unstable};
+    const double finest =
+        row.text("search_done") == "false" ? row.number("dt_finest_s") : 0;
+    limits[setting_of(row, column)] = {row.number("dt_max_s"), unstable, finest};
   }
   return limits;
 }
@@ -57,6 +62,7 @@ void check_pairs(const std::vector<Row>& rows, std::string_view column,
   for (const auto& [setting, limit] : limits_of(rows, column, first)) {
     const auto other = others.find(setting);
     if (other == others.end()) continue;
+    if (!limit.reaches(other->second) || !other->second.reaches(limit)) continue;
     Worst& worst = scenes[setting.substr(0, setting.find('/'))];
     const double r = ratio(limit.stable, other->second.stable);
     if (r > worst.ratio) {

@@ -1,6 +1,7 @@
 #include "experiments/harness/stability_grid.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "integrators/catalogue.h"
@@ -28,7 +29,7 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
     {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-6, .min = 1e-12},
     {.name = "depth",
-     .help = "scan on below a stable step until this factor is stable",
+     .help = "test below a stable step until this factor is stable",
      .number = 30,
      .min = 1},
     {.name = "resolution",
@@ -36,7 +37,7 @@ constexpr Parameter settings_of_rows[] = {
      .number = 1.05,
      .min = 1.0001},
     {.name = "row_s",
-     .help = "time to search for one row (s), 0: 5, with --quick 2, with --full 300",
+     .help = "time to search for one row (s), 0: 5, with --quick 1, with --full 20",
      .number = 0,
      .min = 0},
 };
@@ -51,42 +52,76 @@ struct Method {
   std::string_view model, integrator, solver, tangent;
 };
 
+/// Against the number of elements: the seed's kind of step on every solver, our
+/// reconstruction of its recursion, the whole tangent, and the serial chain.
 constexpr Method methods[] = {
     {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
     {"super_helix", "semi_implicit_euler", "composite", "stiff"},
     {"super_helix", "semi_implicit_euler", "recursive", "less_implicit"},
     {"super_helix", "semi_implicit_euler", "recursive", "exact"},
-    {"super_helix", "semi_implicit_euler", "composite", "exact"},
+    {"super_helix", "backward_euler", "recursive", "exact"},
     {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
 };
 
-constexpr Method methods_of_full[] = {
+/// Only where methods are compared with each other.
+constexpr Method further_methods[] = {
     {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
+    {"super_helix", "semi_implicit_euler", "composite", "exact"},
     {"super_helix", "semi_implicit_euler", "sparse", "exact"},
+    {"articulated_chain", "semi_implicit_euler", "composite", "stiff"},
     {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
+    {"articulated_chain", "backward_euler", "recursive", "exact"},
 };
 
-/// Where the other integrators are compared.
+/// Of --quick; the others say nothing new about stability.
+constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint", "bdf2",
+                                                  "generalized_alpha"};
+constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
+                                             "whip"};
+
+/// Where methods are compared.
 constexpr int usual_elements = 20;
+
+bool contains(std::span<const std::string_view> words, std::string_view word) {
+  return std::ranges::find(words, word) != words.end();
+}
 
 std::vector<int> element_counts(const CommandLine& line) {
   if (!line.elements.empty()) return line.elements;
-  if (line.quick) return {1, 5, usual_elements};
-  if (line.full) return {1, 2, 3, 5, 8, 10, 15, 20, 30, 40, 60, 80, 100, 150, 200};
-  return {1, 2, 3, 5, 10, usual_elements, 40};
+  if (line.full) return {1, 2, 3, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200};
+  return {1, 2, 5, 10, usual_elements, 40};
 }
 
-/// The seed's kind of step on every solver, and every other fixed-step integrator through
-/// the linear-time solver with the whole tangent.
-std::vector<Method> all_methods(bool full, bool others) {
+/// `others`: and every other fixed-step integrator, by the linear-time solver with the
+/// whole tangent.
+std::vector<Method> all_methods(const CommandLine& line, bool others) {
   std::vector<Method> all(std::begin(methods), std::end(methods));
-  if (full) all.insert(all.end(), std::begin(methods_of_full), std::end(methods_of_full));
+  if (!others) return all;
+  all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
-    if (!others || entry.adaptive || entry.id == "semi_implicit_euler") continue;
+    if (entry.adaptive || entry.id == "semi_implicit_euler") continue;
+    if (entry.id == "backward_euler") continue;  // above
+    if (line.quick && line.integrators.empty() &&
+        !contains(quick_integrators, entry.id)) {
+      continue;
+    }
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
-    if (full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
+    if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
   }
   return all;
+}
+
+/// Whether the rows of a scene are for a damping and a number of elements, when nothing
+/// on the command line says so: all without damping; --quick shows what damping does on
+/// two scenes at two counts, the default on four at all.
+bool usual(const CommandLine& line, const StrandScene& scene, const Damping& damping,
+           int elements) {
+  if (line.full) return true;
+  if (damping.name == "none") return !line.quick || contains(quick_scenes, scene.name);
+  constexpr std::string_view damped[] = {"shake", "curl_drop", "release", "whip"};
+  if (!line.quick) return contains(damped, scene.name);
+  return contains(std::span(damped).first(2), scene.name) &&
+         (elements == 5 || elements == usual_elements);
 }
 
 bool known_word(const Parameter& parameter, std::string_view word) {
@@ -141,18 +176,19 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
   const auto keeps = [&rows](std::string_view key, std::string_view word) {
     return rows.word(key) == "all" || rows.word(key) == word;
   };
+  const bool scene_chosen = rows.word("scene") != "all";
+  const bool damping_chosen = rows.word("damping") != "all";
   std::vector<StabilityCase> all;
   for (const StrandScene& scene : strand_scenes()) {
     if (!keeps("scene", scene.name)) continue;
-    const bool damped = line.full || rows.word("damping") != "all" ||
-                        scene.name == "release" || scene.name == "shake";
     for (const Damping& damping : dampings) {
-      if (!keeps("damping", damping.name) || (!damped && damping.name != "none"))
-        continue;
+      if (!keeps("damping", damping.name)) continue;
       for (const int elements : element_counts(line)) {
-        const bool others = line.full || !line.integrators.empty() ||
+        const bool chosen = scene_chosen || damping_chosen || !line.elements.empty();
+        if (!chosen && !usual(line, scene, damping, elements)) continue;
+        const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
                             (elements == usual_elements && damping.name == "none");
-        for (const Method& m : all_methods(line.full, others)) {
+        for (const Method& m : all_methods(line, others)) {
           if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
           if (!wanted(line.models, m.model)) continue;
           if (!wanted(line.integrators, m.integrator)) continue;

@@ -15,14 +15,20 @@ struct StrandScene {
   std::string_view name;
   std::string_view what;
   ModelSettings settings;
-  double t_end;  // s
-  bool driven;   // the root moves: judged by its tip, otherwise by its energy
+  double t_end;     // s
+  double coarsest;  // s, longer steps would miss what drives the scene
+  bool driven;      // the root moves: judged by its tip, otherwise by its energy
 };
 
 std::span<const StrandScene> strand_scenes();
 
 /// Throws InputError naming the nearest scene when there is no such scene.
 const StrandScene& find_strand_scene(std::string_view name);
+
+/// The initial state with every rate off by up to 1e-3 of its typical size (a millionth
+/// of the energy), so that nothing unstable is spared by symmetry: a straight strand
+/// released in a plane never twists.
+State perturbed_start(const System& system);
 
 /// What a stable run of the scene keeps, for `system` made with `parameters`.
 ///

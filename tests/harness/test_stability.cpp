@@ -83,7 +83,9 @@ StepLimit limit_of(std::string_view integrator, const SpringData& data, double t
                    double energy, const StepSearch& search) {
   Spring spring(data);
   return find_step_limit(search, [&](double dt) {
-    return judge_run(integrator, spring, step_of(dt), t_end, {.energy = energy})->broken;
+    return judge_run(integrator, spring, step_of(dt), initial_state(spring), t_end,
+                     {.energy = energy})
+        ->broken;
   });
 }
 
@@ -140,7 +142,8 @@ Spring thrown() { return Spring({.stiffness = 0, .force = 2, .q0 = 0}); }
 
 TEST(StabilityJudge, EndsWhereTheTipIsOutOfReach) {
   Spring spring = thrown();
-  const auto run = judge_run("rk4", spring, step_of(0.125), 10, {.reach = 1.1});
+  const auto run =
+      judge_run("rk4", spring, step_of(0.125), initial_state(spring), 10, {.reach = 1.1});
   EXPECT_EQ(run->broken, Broken::reach);
   EXPECT_EQ(run->t, 1.125);  // 1 m at 1 s was in reach
   EXPECT_DOUBLE_EQ(run->reach, 1.125 * 1.125);
@@ -149,7 +152,8 @@ TEST(StabilityJudge, EndsWhereTheTipIsOutOfReach) {
 // The root travels at 3 m/s; only the speed relative to it counts.
 TEST(StabilityJudge, EndsWhereTheTipIsTooFast) {
   Spring spring = thrown();
-  const auto run = judge_run("rk4", spring, step_of(0.125), 10, {.speed = 1.1});
+  const auto run =
+      judge_run("rk4", spring, step_of(0.125), initial_state(spring), 10, {.speed = 1.1});
   EXPECT_EQ(run->broken, Broken::speed);
   EXPECT_EQ(run->t, 0.625);
   EXPECT_DOUBLE_EQ(run->speed, 1.25);
@@ -157,7 +161,7 @@ TEST(StabilityJudge, EndsWhereTheTipIsTooFast) {
 
 TEST(StabilityJudge, WithinItsBoundsARunIsStable) {
   Spring spring({});
-  const auto run = judge_run("rk4", spring, step_of(0.01), 1,
+  const auto run = judge_run("rk4", spring, step_of(0.01), initial_state(spring), 1,
                              {.energy = 0.5, .reach = 1.01, .speed = 1.01 * omega});
   EXPECT_TRUE(run->stable());
   EXPECT_EQ(run->stats.steps, 100);
@@ -168,24 +172,29 @@ TEST(StabilityJudge, WithinItsBoundsARunIsStable) {
 
 TEST(StabilityJudge, TakesTheStepAskedForEvenIfTheRunGetsLonger) {
   Spring spring({});
-  const auto run = judge_run("rk4", spring, step_of(0.3), 1, {});
+  const auto run = judge_run("rk4", spring, step_of(0.3), initial_state(spring), 1, {});
   EXPECT_DOUBLE_EQ(run->t, 1.2);
   EXPECT_EQ(run->stats.steps, 4);
 }
 
 TEST(StabilityJudge, ValuesThatAreNotFiniteAreUnstable) {
   Spring spring({.stiffness = -1e8});  // grows by 1e3 per step and more
-  EXPECT_EQ(judge_run("explicit_euler", spring, step_of(0.1), 1e3, {})->broken,
-            Broken::not_finite);
+  EXPECT_EQ(
+      judge_run("explicit_euler", spring, step_of(0.1), initial_state(spring), 1e3, {})
+          ->broken,
+      Broken::not_finite);
   Spring overflowing({.q0 = 1e200});  // finite, its energy is not
-  EXPECT_EQ(judge_run("rk4", overflowing, step_of(0.1), 1, {.energy = 1})->broken,
+  EXPECT_EQ(judge_run("rk4", overflowing, step_of(0.1), initial_state(overflowing), 1,
+                      {.energy = 1})
+                ->broken,
             Broken::not_finite);
 }
 
 TEST(StabilityJudge, AStepWithoutSolutionIsUnstableAndSaysSo) {
   AnglePendulum pendulum;
   pendulum.fails_after = 0.55;
-  const auto run = judge_run("backward_euler", pendulum, step_of(0.1), 1, {});
+  const auto run =
+      judge_run("backward_euler", pendulum, step_of(0.1), initial_state(pendulum), 1, {});
   EXPECT_EQ(run->broken, Broken::no_solution);
   EXPECT_DOUBLE_EQ(run->t, 0.5);
   EXPECT_FALSE(run->failure.empty());
@@ -193,17 +202,19 @@ TEST(StabilityJudge, AStepWithoutSolutionIsUnstableAndSaysSo) {
 
 TEST(StabilityJudge, RefusesASystemThatCannotBeJudged) {
   AnglePendulum pendulum;
-  EXPECT_THROW((void)judge_run("rk4", pendulum, step_of(0.1), 1, {.energy = 1}),
+  EXPECT_THROW((void)judge_run("rk4", pendulum, step_of(0.1), initial_state(pendulum), 1,
+                               {.energy = 1}),
                InputError);
-  EXPECT_THROW((void)judge_run("rk4", pendulum, step_of(0.1), 1, {.speed = 1}),
+  EXPECT_THROW((void)judge_run("rk4", pendulum, step_of(0.1), initial_state(pendulum), 1,
+                               {.speed = 1}),
                InputError);
 }
 
 TEST(StabilityJudge, GivesUpWhenTold) {
   Spring spring({});
   int steps = 0;
-  EXPECT_FALSE(
-      judge_run("rk4", spring, step_of(0.1), 100, {}, [&steps] { return ++steps > 10; }));
+  EXPECT_FALSE(judge_run("rk4", spring, step_of(0.1), initial_state(spring), 100, {},
+                         [&steps] { return ++steps > 10; }));
   EXPECT_EQ(steps, 11);
 }
 

@@ -65,7 +65,7 @@ TEST_P(StageSolution, ConvergesQuadraticallyWithTheExactTangent) {
   std::ranges::fill(lambda_, 0.0);
   std::vector<double> errors;
   for (int i = 0; i < 12; ++i) {
-    ASSERT_EQ(stage.single_step(h, q_bar_, state_->v, w_, a_, lambda_), Status::ok);
+    ASSERT_EQ(stage.single_step(h, q_bar_, state_->v, w_, a_, a_, lambda_), Status::ok);
     const double error = scaled_norm(plus(a_, -1, solution), state_->a_typ);
     if (error < 1e-9) break;  // the accuracy of the solution compared with
     errors.push_back(error);
