@@ -14,14 +14,15 @@ struct FrameOf {
   Vec3<T> e1{T(0), T(1), T(0)};
   Vec3<T> e2{T(0), T(0), T(1)};
 
-  friend constexpr Vec3<T> operator*(const FrameOf& f, const Vec3<T>& x) {
+  [[gnu::always_inline]] friend constexpr Vec3<T> operator*(const FrameOf& f,
+                                                            const Vec3<T>& x) {
     return x.x * f.e0 + x.y * f.e1 + x.z * f.e2;
   }
   friend constexpr FrameOf operator*(const FrameOf& f, const FrameOf& g) {
     return {f * g.e0, f * g.e1, f * g.e2};
   }
   /// The transpose applied: components outside to components in the frame.
-  constexpr Vec3<T> back(const Vec3<T>& x) const {
+  [[gnu::always_inline]] constexpr Vec3<T> back(const Vec3<T>& x) const {
     return {dot(e0, x), dot(e1, x), dot(e2, x)};
   }
 };

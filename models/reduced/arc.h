@@ -66,6 +66,14 @@ class Arc {
       return {T(second) * x1 + square * x2, T(0), T(second) * z1 + square * z2};
     }
   };
+  struct AccelerationSlope {
+    Second second;
+    Third third;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return second.at(p) + third.at(p);
+    }
+  };
   /// Turns about e1.
   struct Turn {
     double factor;
@@ -97,6 +105,11 @@ class Arc {
   }
   Acceleration acceleration(const Vec& rate, const Vec& second) const {
     return {k_, rate.y, second.y};
+  }
+  /// Its derivative along x.
+  AccelerationSlope acceleration_slope(const Vec& rate, const Vec& second,
+                                       const Vec& x) const {
+    return {this->second(second, x), third(rate, rate, x)};
   }
 
   /// E(s) y: sin ks = k S, cos ks = 1 - k^2 A.

@@ -65,6 +65,9 @@ class BallLink {
     return {cross(w(second) + dw(rate, rate), along_) +
             cross(turning, cross(turning, along_))};
   }
+  Ray acceleration_slope(const Vec& rate, const Vec& second, const Vec& x) const {
+    return {this->second(second, x).direction + third(rate, rate, x).direction};
+  }
 
   template <class T>
   Vec3<T> rotated(const At<T>&, const Vec& y) const {

@@ -7,7 +7,7 @@ namespace tress {
 /// c += sign a b for small column-major blocks of fixed size inside larger ones, given by
 /// their first entries and column strides. Loops rather than Eigen's products: those
 /// unroll completely, and a 9 x 6 x 21 product then takes the compiler minutes. A column
-/// of c stays in vector registers; without the second pragma the compiler unrolls its
+/// of c stays in vector registers; without the last pragma the compiler unrolls its
 /// loop before it comes to vectorise it, and the product takes more than twice as long.
 template <int sign, int rows, int inner, int columns>
 inline void accumulate_product(const double* a, int a_stride, const double* b,
@@ -19,28 +19,27 @@ inline void accumulate_product(const double* a, int a_stride, const double* b,
     for (int k = 0; k < inner; ++k) {
       const double weight = b[k + b_stride * j];
 #pragma GCC unroll 1
-      for (int i = 0; i < rows; ++i) {
-        if constexpr (sign > 0) {
-          sum[i] += weight * a[i + a_stride * k];
-        } else {
-          sum[i] -= weight * a[i + a_stride * k];
-        }
-      }
+      for (int i = 0; i < rows; ++i) sum[i] += sign * weight * a[i + a_stride * k];
     }
     for (int i = 0; i < rows; ++i) c[i + c_stride * j] = sum[i];
   }
 }
 
-/// The same for matrices or blocks of them.
+/// The same for matrices or blocks of them; the smallest are Eigen's to unroll.
 template <int sign, class A, class B, class C>
 inline void accumulate_product(const A& a, const B& b, C&& c) {
   constexpr int rows = A::RowsAtCompileTime, inner = A::ColsAtCompileTime,
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
-  accumulate_product<sign, rows, inner, columns>(
-      a.data(), static_cast<int>(a.colStride()), b.data(),
-      static_cast<int>(b.colStride()), c.data(), static_cast<int>(c.colStride()));
+  static_assert(!B::IsRowMajor || inner == 1 || columns == 1);
+  if constexpr (rows * inner * columns <= 27) {
+    c.noalias() += sign * a.lazyProduct(b);
+  } else {
+    accumulate_product<sign, rows, inner, columns>(
+        a.data(), static_cast<int>(a.colStride()), b.data(),
+        static_cast<int>(b.colStride()), c.data(), static_cast<int>(c.colStride()));
+  }
 }
 
 /// c += a b

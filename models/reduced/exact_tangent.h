@@ -29,14 +29,14 @@ class ExactTangent {
                const InverseDynamics<Kernel, dofs>& dynamics)
       : kinematics_(kinematics), dynamics_(dynamics) {}
 
+  /// Expects zeros where transfer has its zero blocks (see SegmentTangent).
   void segment(std::size_t i, Weights w, const EffectBlocks& effects,
                SegmentTangent<Shape>& tangent) const {
     const ReducedSegment& segment = kinematics_.segments()[i];
     tangent.local.setZero();
-    tangent.transfer.setZero();
-    tangent.lift.setZero();
-    points(i, w, effects, tangent);
-    tip(i, w, tangent);
+    const Derivatives derivatives(kinematics_.geometry(i).kernel, kinematics_.motion(i));
+    points(i, w, effects, derivatives, tangent);
+    tip(i, w, derivatives, tangent);
     for (int k = 0; k < dofs; ++k) {
       const Vec e = K::unit(k);
       tangent.stiffness[k] =
@@ -124,6 +124,26 @@ class ExactTangent {
     Frames::put(translation, rotation, column.template segment<size>(level * size));
   }
 
+  /// Of the positions in a segment, with respect to its unknowns.
+  struct Derivatives {
+    Derivatives(const Kernel& kernel, const typename K::SegmentMotion& m) {
+      for (std::size_t k = 0; k < dofs; ++k) {
+        const Vec e = K::unit(static_cast<int>(k));
+        velocity[k] = kernel.second(m.rate, e);
+        acceleration[k] = kernel.acceleration_slope(m.rate, m.acceleration, e);
+        for (std::size_t l = k; l < dofs; ++l) {
+          curvature[k][l] = curvature[l][k] =
+              kernel.second(e, K::unit(static_cast<int>(l)));
+        }
+      }
+    }
+    using Second = decltype(Kernel().second(Vec(), Vec()));
+    std::array<Second, dofs> velocity;  // dP'/dq_k
+    std::array<decltype(Kernel().acceleration_slope(Vec(), Vec(), Vec())), dofs>
+        acceleration;                                      // dP''/dq_k
+    std::array<std::array<Second, dofs>, dofs> curvature;  // d2P/dq_k dq_l
+  };
+
   /// A 3x3 block of each lane, in the components of the segment's start.
   struct Blocks {
     Vec3<Pack> column[3];
@@ -157,26 +177,10 @@ class ExactTangent {
   static Vec in_plane(const Vec& omega, const Vec& axis) { return cross(omega, axis); }
 
   void points(std::size_t i, Weights w, const EffectBlocks& effects,
-              SegmentTangent<Shape>& tangent) const {
+              const Derivatives& derivatives, SegmentTangent<Shape>& tangent) const {
     const ReducedSegment& segment = kinematics_.segments()[i];
-    const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
     const Vec3<Pack> omega(m.start.omega), alpha(m.start.alpha);
-    using Second = decltype(g.kernel.second(Vec{}, Vec{}));
-    using Third = decltype(g.kernel.third(Vec{}, Vec{}, Vec{}));
-    std::array<Second, dofs> with_rate, with_acceleration;
-    std::array<std::array<Second, dofs>, dofs> curvature;
-    std::array<Third, dofs> with_rates;
-    for (int k = 0; k < dofs; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      with_rate[at] = g.kernel.second(m.rate, K::unit(k));
-      with_acceleration[at] = g.kernel.second(m.acceleration, K::unit(k));
-      with_rates[at] = g.kernel.third(m.rate, m.rate, K::unit(k));
-      for (int l = k; l < dofs; ++l) {
-        curvature[at][static_cast<std::size_t>(l)] =
-            g.kernel.second(K::unit(k), K::unit(l));
-      }
-    }
     const bool blocks = !effects.velocity.empty();
 
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
@@ -228,13 +232,13 @@ class ExactTangent {
       for (int k = 0; k < dofs; ++k) {
         const auto at = static_cast<std::size_t>(k);
         const Vec3<Pack>& slope = block.slope[at];
-        const Vec3<Pack> bent = with_rate[at].at(block.at);
+        const Vec3<Pack> bent = derivatives.velocity[at].at(block.at);
         const Vec3<Pack> carried = cross(omega, slope);
-        Vec3<Pack> dF = mass * (Pack(w.acc) * slope + Pack(2 * w.vel) * (carried + bent) +
-                                Pack(w.pos) * (cross(alpha, slope) +
-                                               cross(omega, carried + Pack(2) * bent) +
-                                               with_acceleration[at].at(block.at) +
-                                               with_rates[at].at(block.at)));
+        Vec3<Pack> dF =
+            mass *
+            (Pack(w.acc) * slope + Pack(2 * w.vel) * (carried + bent) +
+             Pack(w.pos) * (cross(alpha, slope) + cross(omega, carried + Pack(2) * bent) +
+                            derivatives.acceleration[at].at(block.at)));
         if (blocks) {
           dF = dF - Pack(w.pos) * (by_x * slope) -
                by_v * (Pack(w.vel) * slope + Pack(w.pos) * (carried + bent));
@@ -247,7 +251,8 @@ class ExactTangent {
         for (int l = k; l < dofs; ++l) {
           const double bend =
               w.pos *
-              sum(dot(curvature[at][static_cast<std::size_t>(l)].at(block.at), force));
+              sum(dot(derivatives.curvature[at][static_cast<std::size_t>(l)].at(block.at),
+                      force));
           tangent.local(size + k, 3 * size + l) += bend;
           if (l != k) tangent.local(size + l, 3 * size + k) += bend;
         }
@@ -276,7 +281,8 @@ class ExactTangent {
   }
 
   /// State of the tip, and what the wrench on the tip does at the start.
-  void tip(std::size_t i, Weights w, SegmentTangent<Shape>& tangent) const {
+  void tip(std::size_t i, Weights w, const Derivatives& derivatives,
+           SegmentTangent<Shape>& tangent) const {
     const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
     const Frame& f = g.rotation;
@@ -317,13 +323,12 @@ class ExactTangent {
       const auto index = static_cast<std::size_t>(k);
       const Vec e = K::unit(k);
       const Vec &slope = g.slope[index], &turn = g.turn[index];
-      const Vec bent = g.kernel.second(m.rate, e).at(at);
+      const Vec bent = derivatives.velocity[index].at(at);
       const Vec turned = g.kernel.dW(e, m.rate).at(at);  // d(W kappa')/dkappa_k
       const Vec velocity = cross(omega, slope) + bent;
       const Vec acceleration = cross(alpha, slope) +
                                cross(omega, cross(omega, slope) + 2.0 * bent) +
-                               g.kernel.second(m.acceleration, e).at(at) +
-                               g.kernel.third(m.rate, m.rate, e).at(at);
+                               derivatives.acceleration[index].at(at);
       const Vec spin = g.kernel.dW(e, m.acceleration).at(at) +
                        g.kernel.d2W(e, m.rate, m.rate).at(at) + cross(omega, turned);
       auto column = transfer.col(3 * size + k);
@@ -345,12 +350,12 @@ class ExactTangent {
       Frames::put(w.pos * d_force, w.pos * at_start, wrench);
       local.template head<size>() += wrench;
       const Vec by_turn = g.kernel.dW_transposed(at, e, moment);
-      for (int l = 0; l < dofs; ++l) {
-        const Vec other = K::unit(l);
-        local[size + l] +=
-            w.pos * (dot(g.slope[static_cast<std::size_t>(l)], d_force) +
-                     dot(g.turn[static_cast<std::size_t>(l)], d_moment) +
-                     dot(g.kernel.second(e, other).at(at), force) + dot(other, by_turn));
+      for (std::size_t l = 0; l < dofs; ++l) {
+        const Vec other = K::unit(static_cast<int>(l));
+        local[size + static_cast<int>(l)] +=
+            w.pos *
+            (dot(g.slope[l], d_force) + dot(g.turn[l], d_moment) +
+             dot(derivatives.curvature[index][l].at(at), force) + dot(other, by_turn));
       }
     }
 

@@ -20,10 +20,13 @@ void FreeRootFrame::initial_state(Out q, Out v) const {
   store3(start_.frame.back(start_.spin), &v[3]);  // at theta = 0, W = I
 }
 
-FrameMotion FreeRootFrame::motion(In q, In v, In a) {
+void FreeRootFrame::place(In q) {
   joint_ = Helix(rotation(q), 1);
   at_ = joint_.tip();
   frame_ = reference_ * joint_.rotation(at_);
+}
+
+FrameMotion FreeRootFrame::motion(In q, In v, In a) const {
   const Vec rate = rotation(v), second = rotation(a);
   // omega = W theta' in the reference's components; E^T W = W^T.
   const Vec alpha = joint_.W(second).at(at_) + joint_.dW(rate, rate).at(at_);

@@ -22,7 +22,9 @@ class FreeRootFrame {
       : start_(start), reference_(start.frame) {}
 
   void initial_state(Out q, Out v) const;  // (6), (6)
-  FrameMotion motion(In q, In v, In a);    // keeps what the calls below read
+  /// Takes the place that all calls below but rebase() are about.
+  void place(In q);  // (6)
+  FrameMotion motion(In q, In v, In a) const;
   /// Generalised forces of a wrench at the root, in the root's components.
   void residual(const Vec& force, const Vec& moment, Out r) const;
   /// Moves the reference when theta has grown; true: q and v have changed.

@@ -68,9 +68,20 @@ class Helix {
     }
   };
 
+  /// The derivative of Acceleration with respect to kappa.
+  struct AccelerationSlope {
+    Vec A1, A2, A3, B, B1, B2, B3;
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
+             weighted(p.f.B, B) + weighted(p.f.B1, B1) + weighted(p.f.B2, B2) +
+             weighted(p.f.B3, B3);
+    }
+  };
+
   Helix() = default;
   Helix(const Vec& kappa, double length)
-      : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)) {}
+      : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)), along_(kappa, tangent) {}
 
   template <class T>
   At<T> point(const T& s) const {
@@ -88,39 +99,31 @@ class Helix {
     return {u_x, k_x * u, cross(x, u) + cross(kappa_, u_x), k_x * cross(kappa_, u)};
   }
   Second d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
-    const Terms t(kappa_, y);
-    const double k1 = dot(kappa_, x1), k2 = dot(kappa_, x2), c = dot(x1, x2);
-    return {c * t.u + k1 * cross(x2, y) + k2 * cross(x1, y), (k1 * k2) * t.u,
-            t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1), (k1 * k2) * t.z};
+    return second_of(Terms(kappa_, y), x1, x2);
   }
   Third d3W(const Vec& x1, const Vec& x2, const Vec& x3, const Vec& y) const {
-    const Terms t(kappa_, y);
-    const double k1 = dot(kappa_, x1), k2 = dot(kappa_, x2), k3 = dot(kappa_, x3);
-    const double c12 = dot(x1, x2), c13 = dot(x1, x3), c23 = dot(x2, x3);
-    const double mixed = c12 * k3 + c13 * k2 + c23 * k1;
-    const Vec u1 = cross(x1, y), u2 = cross(x2, y), u3 = cross(x3, y);
-    const Vec z1 = t.z_of(x1), z2 = t.z_of(x2), z3 = t.z_of(x3);
-    return {c12 * u3 + c13 * u2 + c23 * u1,
-            mixed * t.u + (k1 * k2) * u3 + (k1 * k3) * u2 + (k2 * k3) * u1,
-            (k1 * k2 * k3) * t.u,
-            c12 * z3 + c13 * z2 + c23 * z1 + k1 * t.z_of(x2, x3) + k2 * t.z_of(x1, x3) +
-                k3 * t.z_of(x1, x2),
-            mixed * t.z + (k1 * k2) * z3 + (k1 * k3) * z2 + (k2 * k3) * z1,
-            (k1 * k2 * k3) * t.z};
+    return third_of(Terms(kappa_, y), x1, x2, x3);
   }
 
   // Positions of the element's points.
   Zeroth position() const { return W(tangent); }
   First first(const Vec& x) const { return dW(x, tangent); }
-  Second second(const Vec& x1, const Vec& x2) const { return d2W(x1, x2, tangent); }
+  Second second(const Vec& x1, const Vec& x2) const { return second_of(along_, x1, x2); }
   Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
-    return d3W(x1, x2, x3, tangent);
+    return third_of(along_, x1, x2, x3);
   }
   /// P'' for kappa' = rate and kappa'' = second.
   Acceleration acceleration(const Vec& rate, const Vec& second) const {
     const First f = first(second);
     const Second b = this->second(rate, rate);
     return {f.A, f.A1 + b.A1, b.A2, f.B + b.B, f.B1 + b.B1, b.B2};
+  }
+  /// Its derivative along x.
+  AccelerationSlope acceleration_slope(const Vec& rate, const Vec& second,
+                                       const Vec& x) const {
+    const Second a = this->second(second, x);
+    const Third b = third(rate, rate, x);
+    return {a.A1 + b.A1, a.A2 + b.A2, b.A3, a.B, a.B1 + b.B1, a.B2 + b.B2, b.B3};
   }
 
   /// E(s) y.
@@ -152,6 +155,7 @@ class Helix {
 
   /// u = K y, z = K^2 y and the derivatives of z along x, and along x1 and x2.
   struct Terms {
+    Terms() = default;
     Terms(const Vec& k, const Vec& y0)
         : kappa(k), y(y0), u(cross(k, y0)), z(cross(k, u)) {}
     Vec z_of(const Vec& x) const { return cross(x, u) + cross(kappa, cross(x, y)); }
@@ -161,9 +165,30 @@ class Helix {
     Vec kappa, y, u, z;
   };
 
+  static Second second_of(const Terms& t, const Vec& x1, const Vec& x2) {
+    const double k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), c = dot(x1, x2);
+    return {c * t.u + k1 * cross(x2, t.y) + k2 * cross(x1, t.y), (k1 * k2) * t.u,
+            t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1), (k1 * k2) * t.z};
+  }
+  static Third third_of(const Terms& t, const Vec& x1, const Vec& x2, const Vec& x3) {
+    const double k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), k3 = dot(t.kappa, x3);
+    const double c12 = dot(x1, x2), c13 = dot(x1, x3), c23 = dot(x2, x3);
+    const double mixed = c12 * k3 + c13 * k2 + c23 * k1;
+    const Vec u1 = cross(x1, t.y), u2 = cross(x2, t.y), u3 = cross(x3, t.y);
+    const Vec z1 = t.z_of(x1), z2 = t.z_of(x2), z3 = t.z_of(x3);
+    return {c12 * u3 + c13 * u2 + c23 * u1,
+            mixed * t.u + (k1 * k2) * u3 + (k1 * k3) * u2 + (k2 * k3) * u1,
+            (k1 * k2 * k3) * t.u,
+            c12 * z3 + c13 * z2 + c23 * z1 + k1 * t.z_of(x2, x3) + k2 * t.z_of(x1, x3) +
+                k3 * t.z_of(x1, x2),
+            mixed * t.z + (k1 * k2) * z3 + (k1 * k3) * z2 + (k2 * k3) * z1,
+            (k1 * k2 * k3) * t.z};
+  }
+
   Vec kappa_;
   double length_ = 0;
   double x2_ = 0;
+  Terms along_;  // of positions: y = e0
 };
 
 }  // namespace tress

@@ -81,8 +81,9 @@ class Kinematics {
     return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
   }
 
-  /// Shapes of all segments at q.
+  /// Shapes of all segments at q, and the place of a free root.
   void shape(In q) {
+    if (free_root_) free_root_->place(q.last(6));
     if (std::ranges::equal(q, shaped_)) return;
     for (std::size_t i = 0; i < segments_.size(); ++i) shape_segment(i, q);
     shaped_.assign(q.begin(), q.end());

@@ -13,10 +13,13 @@ namespace tress {
 ///
 /// Symmetric problems update L by the Joseph form, with V = [I; -Z]:
 ///     L = V^T local V + (transfer V)^T L_tip (transfer V),
-/// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T is a
-/// difference; near a straight rod, where turning about the own axis moves almost no
-/// mass, it loses all digits after some twenty segments
-/// (tests/models/reduced/test_solvers.cpp measures it).
+/// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T, with H, Y and
+/// P the blocks of local + lift L_tip transfer, reads one half of that matrix for the
+/// other. Rounding makes L unsymmetric, and near a straight rod, where turning about the
+/// own axis moves almost no mass, every segment amplifies that: after some twenty
+/// segments no digit is left (tests/models/reduced/test_solvers.cpp measures it).
+/// Averaging L with L^T, or eliminating without regard to symmetry as exact tangents are,
+/// prevents it too.
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -162,6 +165,15 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const auto w_of_x = full.template topRightCorner<wrench, n>();
     if (!invert(pivot, e.inverse)) return false;
     e.z = product(e.inverse, r_of_s);
+    if constexpr (method == TreeMethod::recursive_plain) {
+      const Eigen::Matrix<double, wrench, n> y = w_of_x;
+      const Eigen::Matrix<double, n, wrench> mirrored = y.transpose();
+      e.z = product(e.inverse, mirrored);
+      e.response = e.z.transpose();
+      handed_on = full.template topLeftCorner<wrench, states>();
+      subtract_product(y, e.z, handed_on);
+      return true;
+    }
     Square used = e.inverse;
     if constexpr (method == TreeMethod::less_implicit) {
       // Friction and stiffness of distal segments stay out of what is handed on.

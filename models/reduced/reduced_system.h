@@ -122,6 +122,7 @@ class ReducedSystem final : public System,
       tangent.parent.push_back(segment.parent);
     }
     tangent.segments.resize(tangent.parent.size());
+    for (auto& segment : tangent.segments) segment.transfer.setZero();
     tangent.free_root = kinematics_.free();
   }
 

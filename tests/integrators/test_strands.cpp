@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <ostream>
+
+#include "models/catalogue.h"
+#include "tests/support/drive.h"
+#include "tests/support/fit.h"
+
+namespace tress {
+namespace {
+
+using testing_support::Drive;
+using testing_support::fitted_order;
+
+// A soft thick strand (its waves take milliseconds, so that explicit methods are in their
+// asymptotic range) on a root that translates and turns, with drag: every term of the
+// equations is alive.
+constexpr double checkpoints[] = {0.01, 0.02, 0.03, 0.04, 0.05};  // s
+constexpr double end_time = 0.05;
+
+struct Method {
+  const IntegratorEntry* entry;
+  std::string_view model;
+  std::string name() const { return std::string(entry->id) + "_" + std::string(model); }
+};
+
+void PrintTo(const Method& method, std::ostream* out) {
+  *out << method.name();
+}  // NOLINT
+
+std::unique_ptr<System> strand(std::string_view model) {
+  const ModelEntry& entry = find_model(model);
+  Parameters p(entry.parameters, "model " + std::string(model));
+  if (p.knows("elements")) {
+    p.set("elements", "3");
+    p.set("radius_m", "1e-3");
+    p.set("natural_curvature_1_m", "8");
+    p.set("natural_curvature2_1_m", "5");
+    p.set("youngs_modulus_pa", "1e6");
+  } else {  // the palm tree is of wood: softened until it sways like the strand
+    p.set("youngs_modulus_pa", "1e5");
+  }
+  p.set("mass_damping_1_s", "2");
+  p.set("root", "shake_rotate");
+  return entry.make(p);
+}
+
+/// The state at the checkpoints, by an explicit method of order 8 on the explicit form.
+const std::vector<std::vector<double>>& reference(std::string_view model) {
+  static std::map<std::string_view, std::vector<std::vector<double>>> known;
+  auto& states = known[model];
+  if (!states.empty()) return states;
+  const auto system = strand(model);
+  Options options;
+  options.rtol = 1e-13;
+  options.atol = 1e-13;
+  Drive drive("gsl_rk8pd", *system, options);
+  for (const double t : checkpoints) {
+    EXPECT_EQ(drive.to(t), Status::ok) << drive.integrator->failure();
+    states.emplace_back(drive.integrator->q().begin(), drive.integrator->q().end());
+  }
+  return states;
+}
+
+struct Outcome {
+  double error;  // largest of a coordinate over the checkpoints, over its typical size
+  long steps;
+};
+
+Outcome run(const Method& method, const Options& options) {
+  const auto system = strand(method.model);
+  Drive drive(method.entry->id, *system, options);
+  std::vector<double> q_typ(drive.q0.size()), v_typ(q_typ.size());
+  system->scale(q_typ, v_typ);
+  double most = 0;
+  for (std::size_t i = 0; i < std::size(checkpoints); ++i) {
+    EXPECT_EQ(drive.to(checkpoints[i]), Status::ok) << drive.integrator->failure();
+    most = std::max(most, drive.distance(reference(method.model)[i]) / q_typ.front());
+  }
+  return {most, drive.integrator->stats().steps};
+}
+
+std::vector<Method> methods(bool adaptive) {
+  std::vector<Method> all;
+  for (const std::string_view model :
+       {"super_helix", "articulated_chain", "super_helix_tree"}) {
+    const auto system = strand(model);
+    for (const IntegratorEntry& entry : integrators()) {
+      if (entry.adaptive != adaptive) continue;
+      if (!refusal(entry, *system, Formulation::parametric).empty()) continue;
+      all.push_back({&entry, model});
+    }
+  }
+  return all;
+}
+
+TEST(Strands, OnlyRattleIsRefused) {
+  // Its impulses need a constant mass matrix.
+  EXPECT_EQ(methods(false).size() + methods(true).size(), 3 * (integrators().size() - 1));
+}
+
+class FixedStepOnStrands : public testing::TestWithParam<Method> {};
+
+TEST_P(FixedStepOnStrands, ErrorFallsAtTheNominalOrder) {
+  std::vector<double> steps, errors;
+  // Methods of order one come to their asymptotic range later.
+  const int coarsest = GetParam().entry->order == 1 ? 1000 : 100;
+  for (int i = 0; i < 4; ++i) {
+    Options options;
+    options.step = end_time / (coarsest * std::pow(2, i));
+    steps.push_back(options.step);
+    errors.push_back(run(GetParam(), options).error);
+  }
+  EXPECT_NEAR(fitted_order(steps, errors), GetParam().entry->order, 0.25)
+      << "errors from " << errors.front() << " to " << errors.back();
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, FixedStepOnStrands, testing::ValuesIn(methods(false)),
+                         [](const auto& test) { return test.param.name(); });
+
+class AdaptiveOnStrands : public testing::TestWithParam<Method> {};
+
+TEST_P(AdaptiveOnStrands, ErrorFollowsTheTolerance) {
+  for (const double rtol : {1e-4, 1e-6, 1e-8}) {
+    Options options;
+    options.rtol = rtol;
+    options.atol = rtol / 10;
+    // Order 2, its default, keeps rtol^(2/3) of the error (OrderTwoBdf).
+    if (GetParam().entry->id == "cvode_bdf") options.max_order = 5;
+    const Outcome outcome = run(GetParam(), options);
+    // Local errors of rtol each add up; few steps are given the factor 100 of test_order.
+    const auto factor = static_cast<double>(std::max(100L, outcome.steps));
+    EXPECT_LE(outcome.error, factor * rtol) << "rtol " << rtol;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveOnStrands, testing::ValuesIn(methods(true)),
+                         [](const auto& test) { return test.param.name(); });
+
+}  // namespace
+}  // namespace tress

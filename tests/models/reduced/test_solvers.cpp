@@ -1,0 +1,207 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cstdio>
+
+#include "experiments/harness/strand_scenes.h"
+#include "models/reduced/super_helix.h"
+#include "tests/models/reduced/strand_cases.h"
+
+namespace tress {
+namespace {
+
+using namespace testing_support;
+
+constexpr double t0 = 0.013;  // off the start: the root moves
+
+constexpr std::array solvers = {"composite", "recursive", "sparse"};
+
+const ModelSettings curly = {{"natural_curvature_1_m", "60"},
+                             {"natural_curvature2_1_m", "10"},
+                             {"natural_twist_1_m", "20"},
+                             {"ellipticity", "1.3"},
+                             {"grading", "2"},
+                             {"internal_friction_kg_m3_s", "1e-11"}};
+
+std::vector<StrandCase> solver_cases() {
+  std::vector<StrandCase> all;
+  for (const std::string modes : {"bend_twist", "bend", "bend_planar"}) {
+    const ModelSettings shape = modes == "bend_planar" ? ModelSettings{} : curly;
+    for (const std::string root : {"fixed", "shake_rotate"}) {
+      for (const std::string model : {"super_helix", "articulated_chain"}) {
+        all.push_back({model + "_" + modes + "_" + root, find_model(model).id,
+                       with(shape, {{"modes", modes}, {"root", root}})});
+      }
+    }
+    if (modes == "bend_planar") continue;
+    all.push_back({"super_helix_" + modes + "_free", "super_helix",
+                   with(shape, {{"modes", modes}, {"root", "free"}})});
+    for (const std::string tree : {"algae", "complex_tree"}) {
+      all.push_back({"tree_" + tree + "_" + modes,
+                     "super_helix_tree",
+                     {{"tree", tree}, {"modes", modes}, {"root", "shake_rotate"}}});
+    }
+  }
+  all.push_back(
+      {"tree_algae_free", "super_helix_tree", {{"tree", "algae"}, {"root", "free"}}});
+  return all;
+}
+
+/// Of S scaled to unit diagonal; `system` holds S factored.
+double scaled_condition(System& system) {
+  const int n = system.layout().coordinates;
+  Eigen::MatrixXd inverse(n, n);
+  std::vector<double> b = zeros(system), x = zeros(system);
+  for (int j = 0; j < n; ++j) {
+    std::ranges::fill(b, 0.0);
+    b[static_cast<std::size_t>(j)] = 1;
+    EXPECT_EQ(system.solve(b, x), Status::ok);
+    inverse.col(j) = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
+  }
+  const Eigen::MatrixXd s = inverse.inverse();
+  const Eigen::VectorXd size = s.diagonal().cwiseAbs().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      size.cwiseInverse().asDiagonal() * s * size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd scaled_inverse = size.asDiagonal() * inverse * size.asDiagonal();
+  return scaled.norm() * scaled_inverse.norm();
+}
+
+class Solvers : public testing::TestWithParam<StrandCase> {};
+
+TEST_P(Solvers, AgreeOnRandomStates) {
+  for (const std::string tangent : {"stiff", "exact"}) {
+    std::array<std::unique_ptr<System>, solvers.size()> systems;
+    for (std::size_t k = 0; k < solvers.size(); ++k) {
+      systems[k] = GetParam().make({{"tangent", tangent}, {"solver", solvers[k]}});
+    }
+    System& composite = *systems[0];
+    unsigned seed = 1;
+    for (const double h : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
+      States s(composite, seed++);
+      s.shake(0.5);
+      std::vector<double> b = zeros(composite);
+      ASSERT_EQ(composite.residual(t0, s.q, s.v, s.a, b), Status::ok);
+      std::array<std::vector<double>, solvers.size()> x;
+      for (std::size_t k = 0; k < solvers.size(); ++k) {
+        SCOPED_TRACE(std::string(solvers[k]) + ", " + tangent +
+                     ", h = " + std::to_string(h));
+        x[k] = zeros(composite);
+        ASSERT_EQ(systems[k]->linearize(t0, s.q, s.v, s.a, {1, h, h * h}), Status::ok);
+        ASSERT_EQ(systems[k]->solve(b, x[k]), Status::ok);
+      }
+      // 1e-10, but where the numbers of the matrix themselves, rounded to eps, leave its
+      // solution less certain than that: eps cond. The twist of a thin strand has next to
+      // no mass, so with twist that is so for h below some 1e-4 s.
+      const double tolerance =
+          h >= 1e-4 ? 1e-10 : std::max(1e-10, eps * scaled_condition(composite));
+      for (std::size_t k = 1; k < solvers.size(); ++k) {
+        EXPECT_LE(relative_difference(x[k], x[0], s.a_typ), tolerance)
+            << solvers[k] << ", " << tangent << ", h = " << h;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Reduced, Solvers, testing::ValuesIn(solver_cases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+class Trajectories : public testing::TestWithParam<StrandCase> {};
+
+TEST_P(Trajectories, OfAllSolversAreTheSame) {
+  constexpr double step = 2e-4, t_end = 0.2;  // 1000 steps, below the limit of 0.5 ms
+  const auto run = [&](const std::string& solver) {
+    const auto system = GetParam().make({{"tangent", "stiff"}, {"solver", solver}});
+    Options options;
+    options.step = step;
+    return simulate("semi_implicit_euler", *system, options, initial_state(*system),
+                    t_end);
+  };
+  const Simulation composite = run("composite");
+  ASSERT_EQ(composite.status, Status::ok) << composite.failure;
+  ASSERT_EQ(composite.stats.steps, 1000);
+  for (const std::string solver : {"recursive", "sparse"}) {
+    const Simulation other = run(solver);
+    ASSERT_EQ(other.status, Status::ok) << other.failure;
+    // 1000 steps each add a difference of eps cond = 2e-11 of the step's own change, and
+    // the shaken strand, which the step damps, does not amplify it.
+    const std::vector<double> same(other.state.q.size(), 1.0);
+    EXPECT_LE(relative_difference(other.state.q, composite.state.q, same), 1e-9);
+    EXPECT_LE(relative_difference(other.state.v, composite.state.v, same), 1e-9);
+  }
+}
+
+std::vector<StrandCase> shaken() {
+  std::vector<StrandCase> all;
+  for (const std::string model : {"super_helix", "articulated_chain"}) {
+    for (const std::string scene : {"shake", "shake_rotate"}) {
+      all.push_back(
+          {model + "_" + scene, find_model(model).id, find_strand_scene(scene).settings});
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Reduced, Trajectories, testing::ValuesIn(shaken()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// Stiffness matrix of a super-helix: diagonal, length times (GJ, EI1, EI2).
+std::vector<double> stiffness(const Strand& strand) {
+  std::vector<double> k;
+  for (const Segment& s : strand.segments) {
+    k.push_back(s.length * strand.material.shear_modulus * s.section.torsion());
+    k.push_back(s.length * strand.material.youngs_modulus * s.section.inertia1());
+    k.push_back(s.length * strand.material.youngs_modulus * s.section.inertia2());
+  }
+  return k;
+}
+
+// Relative residual |S x - b| / |b| of the weight of a nearly straight strand, with S by
+// the inverse dynamics, which are linear in a, instead of by any tangent. Without
+// rotational inertia S becomes singular in the twists as h -> 0.
+TEST(PlainRecursion, LosesDigitsThatTheJosephFormKeeps) {
+  const ModelSettings settings = {{"elements", "20"},
+                                  {"tangent", "stiff"},
+                                  {"rotary_inertia", "off"},
+                                  {"root_tangent", "x"}};
+  const Strand made = strand(parameters_of("super_helix", settings));
+  const std::vector<double> k = stiffness(made);
+  const auto joseph = make_model("super_helix", settings);
+  const auto plain =
+      make_model("super_helix", with(settings, {{"solver", "recursive_plain"}}));
+  const std::vector<double> zero = zeros(*joseph);
+  States s(*joseph, 3);
+  const std::vector<double> q = s.random(std::vector<double>(s.n, 1.0));  // up to 1/m
+  std::vector<double> b = zero;
+  ASSERT_EQ(joseph->residual(0, q, zero, zero, b), Status::ok);
+  const double load = largest(b);
+  const auto relative_residual = [&](System& system, double h) {
+    std::vector<double> x = zero, r = zero;
+    EXPECT_EQ(system.linearize(0, q, zero, zero, {1, 0, h * h}), Status::ok);
+    EXPECT_EQ(system.solve(b, x), Status::ok);
+    EXPECT_EQ(joseph->residual(0, q, zero, x, r), Status::ok);
+    double worst = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      worst = std::max(worst, std::abs(r[i] - b[i] + h * h * k[i] * x[i] - b[i]));
+    }
+    return worst / load;
+  };
+  for (const double h : {1e-3, 1e-4, 1e-5, 1e-6, 0.0}) {
+    const double kept = relative_residual(*joseph, h);
+    const double lost = relative_residual(*plain, h);
+    std::printf("h = %-7g relative residual: Joseph form %.1e, plain %.1e\n", h, kept,
+                lost);
+    // The Joseph form solves a matrix whose numbers are rounded: eps |S| |x| / |b|, at
+    // most eps cond.
+    EXPECT_EQ(joseph->linearize(0, q, zero, zero, {1, 0, h * h}), Status::ok);
+    EXPECT_LE(kept, eps * scaled_condition(*joseph)) << h;
+    if (h > 1e-4) continue;  // stiffness hides the massless twist
+    EXPECT_GE(lost, 1e5 * kept) << h;
+    if (h <= 1e-6) {
+      EXPECT_GE(lost, 1) << "not a digit left; h = " << h;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tress
