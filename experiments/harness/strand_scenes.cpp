@@ -71,13 +71,14 @@ std::vector<StrandScene> make_scenes() {
                  1,
                  0.1 / 3,
                  true});
-  // A step of half the stop ends where the clamp brakes most.
+  // Kinetic energy enough to bend the strand to a half circle; at 5 m/s it would be
+  // coiled up several times. A step of half the stop ends where the clamp brakes most.
   all.push_back({"whip",
-                 "hanging, the root stops from 5 m/s within 10 ms",
+                 "hanging, the root stops from 2 m/s within 10 ms",
                  {{"root", "stop"},
                   {"root_tangent", "down"},
                   {"initial", "natural"},
-                  {"stop_speed_m_s", "5"},
+                  {"stop_speed_m_s", "2"},
                   {"stop_time_s", "0.01"}},
                  0.5,
                  0.005,
