@@ -10,7 +10,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double t0 = 0.013;
 constexpr std::size_t elements = 12;
 // Both sides do the same sums of a few hundred terms in another order or in turned axes,
 // and solve with matrices of condition 1e2 at h = 10 ms: eps x 1e2 x some tens.

@@ -13,8 +13,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double t0 = 0.013;  // off the start: the root moves
-
 constexpr std::array solvers = {"composite", "recursive", "sparse"};
 
 const ModelSettings curly = {{"natural_curvature_1_m", "60"},
