@@ -155,9 +155,10 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
            keeps("modes", m.modes) && wanted(line.models, m.model);
   };
   std::vector<ScalingCase> all;
-  for (const Method& m : methods_of_strands()) {
-    if (!keeps("structure", straight) || !wanted_method(m)) continue;
-    for (const int elements : element_counts(line)) {
+  // Size by size: what is compared is measured within the same minute.
+  for (const int elements : element_counts(line)) {
+    for (const Method& m : methods_of_strands()) {
+      if (!keeps("structure", straight) || !wanted_method(m)) continue;
       const bool too_large = m.solver == "composite" && elements > largest_dense;
       if (too_large && !line.full && line.elements.empty()) continue;
       all.push_back(
