@@ -52,6 +52,7 @@ constexpr std::array table{
     IntegratorEntry{"semi_implicit_euler", "order 1, one linear solve, strong damping", "Baraff-Witkin 1998", 1, false, implicit_dae, any, make_semi_implicit_euler},
     IntegratorEntry{"backward_euler", "order 1, L-stable, strong damping", "Hairer-Wanner IV.3", 1, false, implicit_dae, any, make_backward_euler},
     IntegratorEntry{"implicit_midpoint", "order 2, A-stable, no damping, symplectic", "Gauss 1 stage", 2, false, one_step_ode, any, make_implicit_midpoint},
+    IntegratorEntry{"linearly_implicit_midpoint", "order 2 with any tangent, one linear solve", "Steihaug-Wolfbrandt 1979", 2, false, one_step_ode, any, make_linearly_implicit_midpoint},
     IntegratorEntry{"bdf2", "order 2, L-stable, damps fast modes", "Gear 1971", 2, false, implicit_dae, any, make_bdf2},
     IntegratorEntry{"newmark", "order 2, average acceleration, no damping", "Newmark 1959", 2, false, implicit_dae, any, make_newmark},
     IntegratorEntry{"generalized_alpha", "order 2, damping by rho_inf", "Chung-Hulbert 1993", 2, false, implicit_dae, any, make_generalized_alpha},
@@ -82,7 +83,7 @@ std::string gap(const IntegratorEntry& entry, Formulation formulation) {
     case index2_ggl:
       return "only ida solves this index-2 form";
     case index3:
-      return entry.id == "implicit_midpoint"
+      return entry.id.ends_with("implicit_midpoint")
                  ? "Gauss methods are unstable on index 3"
                  : "an ODE method cannot hold g = 0 inside the step";
     case rattle:

@@ -49,6 +49,15 @@ std::unique_ptr<Integrator> make_backward_euler(System& system, const Options& o
 std::unique_ptr<Integrator> make_implicit_midpoint(System& system,
                                                    const Options& options);
 
+/// The midpoint rule with one Newton step from an extrapolated acceleration: one
+/// residual, one factorisation and one solve per step, like semi_implicit_euler, but
+/// order 2, with any tangent (a W-method). Stable as implicit_midpoint on linear systems
+/// with the exact tangent; beyond, the step must resolve what the tangent leaves out and
+/// how it changes. [Steihaug, Wolfbrandt 1979, Math. Comp. 33, 521; Hairer, Wanner:
+/// Solving ODEs II, IV.7]
+std::unique_ptr<Integrator> make_linearly_implicit_midpoint(System& system,
+                                                            const Options& options);
+
 /// Two-step backward differentiation with variable-step coefficients, started by backward
 /// Euler. Order 2, L-stable, damps high frequencies. [Hairer, Norsett, Wanner I, III.5]
 std::unique_ptr<Integrator> make_bdf2(System& system, const Options& options);
