@@ -176,4 +176,24 @@ StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& par
                     (energetics->energy(0, start.q, start.v).total() - hanging)};
 }
 
+StabilityBounds release_bounds(System& system, const State& start, double t_end) {
+  Energetics& energetics = *system.energetics();
+  Options options;
+  options.step = 1e-3;
+  const double at_start = energetics.energy(0, start.q, start.v).total();
+  double kinetic = 0, gain = 0;
+  const Simulation run = simulate("semi_implicit_euler", system, options, start, t_end,
+                                  [&](double t, In q, In v) {
+                                    const Energy energy = energetics.energy(t, q, v);
+                                    kinetic = std::max(kinetic, energy.kinetic);
+                                    gain = std::max(gain, energy.total() - at_start);
+                                    return true;
+                                  });
+  if (run.status != Status::ok || !(gain <= energy_tolerance * kinetic)) {
+    throw InputError("released it gains energy at steps of 1 ms", "stability bounds",
+                     "choose a scene that these steps resolve");
+  }
+  return {.energy = energy_tolerance * kinetic};
+}
+
 }  // namespace tress
