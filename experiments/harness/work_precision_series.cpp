@@ -5,7 +5,11 @@
 #include <map>
 #include <string>
 
+<<<<<<< HEAD
 #include "experiments/harness/fit.h"
+=======
+#include "experiments/harness/pareto.h"
+>>>>>>> swing
 
 namespace tress {
 namespace {
@@ -57,23 +61,12 @@ void add_orders(std::vector<Row>& rows) {
   }
 }
 
-void add_pareto(std::vector<Row>& rows) {
-  for (Row& row : rows) {
-    if (!row.ok()) continue;
-    const bool dominated = std::ranges::any_of(rows, [&row](const Row& other) {
-      return other.ok() && other.text("scene") == row.text("scene") &&
-             other.number("wall_s") < row.number("wall_s") &&
-             other.number("error_rel") < row.number("error_rel");
-    });
-    row.set("pareto", !dominated);
-  }
-}
-
 }  // namespace
 
 void add_series_columns(std::vector<Row>& rows) {
   add_orders(rows);
-  add_pareto(rows);
+  add_pareto(rows, "error_rel",
+             [](const Row& row) { return std::string(row.text("scene")); });
 }
 
 }  // namespace tress

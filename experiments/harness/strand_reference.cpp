@@ -1,0 +1,75 @@
+#include "experiments/harness/strand_reference.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "experiments/harness/tip_track.h"
+
+namespace tress {
+namespace {
+
+// Local errors of 1e-5 leave 1e-7 of the length after 2 s, as the gap of the two shows.
+constexpr double tolerance = 1e-5;
+
+constexpr int finest = 160;
+constexpr double finest_step = 2.5e-4;     // s: an error of 2e-5 of the length before
+                                           // extrapolation
+constexpr double newton_tolerance = 1e-4;  // corrections below 1e-6 of the length
+
+std::vector<double> tip(const MakeStrand& make, std::string_view model, int elements,
+                        std::string_view integrator, const Options& options,
+                        const TipSampling& sampling) {
+  const auto system = make(model, elements);
+  TipRun run = run_tip(integrator, *system, options, sampling.t_end, sampling.samples);
+  if (run.status != Status::ok) {
+    throw std::runtime_error("reference of " + std::string(model) + " by " +
+                             std::string(integrator) + " failed: " + run.failure);
+  }
+  return std::move(run.tip);
+}
+
+std::vector<double> rod(const MakeStrand& make, std::string_view model,
+                        std::string_view integrator, const TipSampling& sampling) {
+  const auto converged_in_time = [&](int elements) {
+    Options options;
+    options.refresh = Refresh::every_step;
+    options.newton_tolerance = newton_tolerance;
+    options.step = 2 * finest_step;
+    const auto coarse = tip(make, model, elements, integrator, options, sampling);
+    options.step = finest_step;
+    const auto fine = tip(make, model, elements, integrator, options, sampling);
+    return extrapolated(coarse, fine, 2);
+  };
+  return extrapolated(converged_in_time(finest / 2), converged_in_time(finest), 2);
+}
+
+}  // namespace
+
+std::vector<double> extrapolated(In coarse, In fine, double ratio) {
+  std::vector<double> limit(fine.begin(), fine.end());
+  for (std::size_t i = 0; i < limit.size(); ++i) {
+    limit[i] += (fine[i] - coarse[i]) / (ratio * ratio - 1);
+  }
+  return limit;
+}
+
+TipReference converged_model(const MakeStrand& make, std::string_view model, int elements,
+                             const TipSampling& sampling) {
+  Options options;
+  options.rtol = options.atol = tolerance;
+  TipReference reference;
+  reference.tip = tip(make, model, elements, "gsl_rk8pd", options, sampling);
+  reference.gap = tip_error(tip(make, model, elements, "cvode_adams", options, sampling),
+                            reference.tip, sampling.length);
+  return reference;
+}
+
+TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling) {
+  TipReference reference;
+  reference.tip = rod(make, "super_helix", "implicit_midpoint", sampling);
+  reference.gap = tip_error(rod(make, "articulated_chain", "generalized_alpha", sampling),
+                            reference.tip, sampling.length);
+  return reference;
+}
+
+}  // namespace tress
