@@ -5,11 +5,8 @@
 #include <map>
 #include <string>
 
-<<<<<<< HEAD
 #include "experiments/harness/fit.h"
-=======
 #include "experiments/harness/pareto.h"
->>>>>>> swing
 
 namespace tress {
 namespace {
