@@ -1,5 +1,6 @@
-// Every call of the contract (models/system.h) on every model of the catalogue: the chain
-// and the beam over sizes, the others as they come. A new model is measured by itself.
+// Every call of the contract (models/system.h) on every model of the catalogue: the
+// chain, the beam and the strands over sizes, the others as they come. A new model is
+// measured by itself.
 #include <algorithm>
 #include <memory>
 
@@ -73,10 +74,15 @@ struct Sized {
 
 ModelSettings beam(int segments) { return {{"segments", std::to_string(segments)}}; }
 
+ModelSettings strand(int elements) { return {{"elements", std::to_string(elements)}}; }
+
 constexpr std::array beam_segments = {10, 40, 160, 640, 1280};
+constexpr std::array strand_elements = {5, 20, 80, 320};
 constexpr std::array sized_models = {
     Sized{"inextensible_chain", spinning_chain, chain_links},
     Sized{"beam", beam, beam_segments},
+    Sized{"super_helix", strand, strand_elements},
+    Sized{"articulated_chain", strand, strand_elements},
 };
 
 void run(benchmark::State& state, const Operation& operation, Moving& moving) {

@@ -42,6 +42,11 @@ State perturbed_start(const System& system);
 StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& parameters,
                                  System& system);
 
+/// The same for any passive system released at `start`, a tree for one: 1 % of the
+/// largest kinetic energy until t_end, found by steps of 1 ms. Throws InputError when
+/// those are not stable themselves.
+StabilityBounds release_bounds(System& system, const State& start, double t_end);
+
 /// Speed (m/s) of the tip relative to the root that no motion of the strand exceeds until
 /// t_end. In the frame of the clamp the clamp does no work. The forces there that do are
 /// gravity and, per mass, at most f = |a| + (|alpha| + omega^2) L from the root's motion;

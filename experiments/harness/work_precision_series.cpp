@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "experiments/harness/fit.h"
 #include "experiments/harness/pareto.h"
 
 namespace tress {
@@ -21,18 +22,12 @@ struct Point {
 };
 
 double slope(const std::vector<Point>& points) {
-  double x_mean = 0, y_mean = 0;
+  std::vector<double> steps, errors;
   for (const Point& p : points) {
-    x_mean += std::log(p.step) / static_cast<double>(points.size());
-    y_mean += std::log(p.error) / static_cast<double>(points.size());
+    steps.push_back(p.step);
+    errors.push_back(p.error);
   }
-  double xx = 0, xy = 0;
-  for (const Point& p : points) {
-    const double x = std::log(p.step) - x_mean;
-    xx += x * x;
-    xy += x * (std::log(p.error) - y_mean);
-  }
-  return xy / xx;
+  return log_log_slope(steps, errors);
 }
 
 std::string series_of(const Row& row) {

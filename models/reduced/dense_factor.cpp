@@ -8,6 +8,7 @@ DenseFactor::DenseFactor(int size, bool symmetric)
     : matrix(size, size),
       symmetric_(symmetric),
       rhs_(size),
+      permuted_(size),
       scale_(size),
       cholesky_(size),
       lu_(size) {}
@@ -31,7 +32,8 @@ Status DenseFactor::solve(In b, Out x) noexcept {
   if (symmetric_) {
     cholesky_.solveInPlace(rhs_);
   } else {
-    rhs_ = lu_.permutationP() * rhs_;
+    permuted_.noalias() = lu_.permutationP() * rhs_;  // in place it would allocate
+    rhs_.swap(permuted_);
     lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(rhs_);
     lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(rhs_);
   }

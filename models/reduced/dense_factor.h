@@ -20,7 +20,7 @@ class DenseFactor {
 
  private:
   bool symmetric_;
-  Eigen::VectorXd rhs_, scale_;
+  Eigen::VectorXd rhs_, permuted_, scale_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };

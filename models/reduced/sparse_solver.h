@@ -22,6 +22,7 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
         klu_(pattern_, 0) {
     values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
     rhs_.resize(static_cast<std::size_t>(pattern_.rows));
+    left_.resize(rhs_.size());
   }
 
   Status factor(const TreeTangent<Shape>& tangent) noexcept override {
@@ -44,7 +45,7 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
     for (std::size_t k = 0; k < last; ++k) {
       rhs_[stride * segments_ + k] = b[n * segments_ + k];
     }
-    const Status status = klu_.solve(rhs_);
+    const Status status = refined_solve();
     for (std::size_t i = 0; i < segments_; ++i) {
       for (std::size_t k = 0; k < n; ++k) x[n * i + k] = rhs_[stride * i + k];
     }
@@ -55,6 +56,23 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
   }
 
  private:
+  /// KLU chooses pivots for sparsity, down to a thousandth of the largest: up to five
+  /// digits go. One step of iterative refinement brings them back.
+  Status refined_solve() noexcept {
+    left_ = rhs_;
+    Status status = klu_.solve(rhs_);
+    if (status != Status::ok) return status;
+    for (std::size_t j = 0; j < rhs_.size(); ++j) {
+      for (int k = pattern_.start[j]; k < pattern_.start[j + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        left_[static_cast<std::size_t>(pattern_.row[at])] -= values_[at] * rhs_[j];
+      }
+    }
+    status = klu_.solve(left_);
+    for (std::size_t i = 0; i < rhs_.size(); ++i) rhs_[i] += left_[i];
+    return status;
+  }
+
   // Offsets inside a segment: rows are [r; state of the tip; wrench], columns [x; s; w].
   static constexpr int n = Shape::dofs, states = Shape::states, wrench = Shape::wrench;
   static constexpr int stride = n + states + wrench;
@@ -145,7 +163,7 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
   std::vector<int> place_;
   Pattern pattern_;
   KluSolver klu_;
-  std::vector<double> values_, rhs_;
+  std::vector<double> values_, rhs_, left_;
   std::size_t segments_ = 0;
   bool free_root_ = false;
 };

@@ -1,15 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "integrators/formulation/projection.h"
-#include "tests/support/catalogue_cases.h"
+#include "tests/support/tangent.h"
 
 namespace tress {
 namespace {
 
 using namespace testing_support;
-
-// One time off the start, so that time-dependent terms are alive.
-constexpr double t0 = 0.013;
 
 constexpr Weights weight_sets[] = {
     {1, 1e-3, 1e-6}, {1, 0.1, 0.01}, {1, 0, 0}, {400, 20, 1}, {1, 0.05, 0}};
@@ -23,48 +20,11 @@ class SystemContract : public testing::TestWithParam<CatalogueCase> {
   std::unique_ptr<System> system_;
 };
 
-std::vector<double> residual(System& system, const std::vector<double>& q,
-                             const std::vector<double>& v, const std::vector<double>& a) {
-  std::vector<double> r(q.size());
-  EXPECT_EQ(system.residual(t0, q, v, a, r), Status::ok);
-  return r;
-}
-
-/// S(w) x by central differences of the residual.
-std::vector<double> tangent_product(System& system, const States& s, Weights w,
-                                    const std::vector<double>& x) {
-  double length = 0;
-  for (std::size_t i = 0; i < s.n; ++i) {
-    length = std::max({length, std::abs(w.pos * x[i]) / s.q_typ[i],
-                       std::abs(w.vel * x[i]) / s.v_typ[i],
-                       std::abs(w.acc * x[i]) / s.a_typ[i]});
-  }
-  return central_difference(difference_step / length, [&](double e) {
-    return residual(system, plus(s.q, e * w.pos, x), plus(s.v, e * w.vel, x),
-                    plus(s.a, e * w.acc, x));
-  });
-}
-
-/// |S x - b| / |b| for x from linearize and solve, with b the image of a random vector.
-double tangent_error(System& tangent_of, System& residual_of, States& s, Weights w) {
-  const std::vector<double> b = tangent_product(residual_of, s, w, s.random(s.a_typ));
-  EXPECT_EQ(tangent_of.linearize(t0, s.q, s.v, s.a, w), Status::ok);
-  std::vector<double> x(s.n);
-  EXPECT_EQ(tangent_of.solve(b, x), Status::ok);
-  const std::vector<double> sx = tangent_product(residual_of, s, w, x);
-  return largest(plus(sx, -1, b)) / largest(b);
-}
-
 /// stiff and less_implicit leave terms out by design; recursive_plain is kept for the
 /// digits that it loses (tests/models/reduced/test_solvers.cpp).
 bool exact_tangent(const CatalogueCase& c) {
   return c.word != "stiff" && c.word != "less_implicit" && c.word != "recursive_plain";
 }
-
-// Truncation e^4 = 3e-13 times the ratio of fifth to first derivatives, plus rounding
-// eps / e = 3e-13 times the ratio of |r| to |S x|: 1e-7 leaves five digits for both
-// ratios.
-constexpr double tangent_tolerance = 1e-7;
 
 TEST_P(SystemContract, TangentIsTheDerivativeOfTheResidual) {
   if (!exact_tangent(GetParam())) GTEST_SKIP() << "not exact by design";

@@ -269,6 +269,18 @@ TEST(StepSearch, GoesFromCoarseToFineAndNoFurtherThanItsDepth) {
   EXPECT_GT(how.ratio * how.depth * steps.asked.back(), limit.stable);
 }
 
+// Given up while it looks deeper, a search has its limit already.
+TEST(StepSearch, BracketsTheLimitBeforeItLooksDeeper) {
+  Synthetic steps{.unstable = {{4e-2, 1}}, .patience = 8};
+  const StepLimit limit = search(steps);
+  EXPECT_TRUE(limit.resolved);
+  EXPECT_FALSE(limit.complete);
+  EXPECT_LE(limit.stable, 4e-2);
+  EXPECT_GT(limit.unstable, 4e-2);
+  Synthetic patient{{{4e-2, 1}}};
+  EXPECT_TRUE(search(patient).complete);
+}
+
 // What is stable above an unstable step does not count, however much of it there is.
 TEST(StepSearch, AnUnstableIslandBelowStableStepsIsTheLimit) {
   Synthetic steps{{{2e-3, 6e-3}, {5e-2, 1}}};
@@ -315,6 +327,7 @@ TEST(StepSearch, GivenUpItKeepsWhatItKnows) {
   Synthetic scan{.unstable = {{4e-2, 1}}, .patience = 3};
   const StepLimit scanned = search(scan);
   EXPECT_FALSE(scanned.complete);
+  EXPECT_FALSE(scanned.resolved);
   EXPECT_NEAR(scanned.stable, 0.1 / std::sqrt(10.0), 1e-8);
   EXPECT_NEAR(scanned.unstable, 0.1 / std::sqrt(std::sqrt(10.0)), 1e-8);
 
@@ -324,9 +337,10 @@ TEST(StepSearch, GivenUpItKeepsWhatItKnows) {
   EXPECT_TRUE(std::isnan(nothing.stable));
   EXPECT_TRUE(std::isnan(nothing.unstable));
 
-  Synthetic bisection{.unstable = {{4e-2, 1}}, .patience = 10};
+  Synthetic bisection{.unstable = {{4e-2, 1}}, .patience = 5};
   const StepLimit bisected = search(bisection);
   EXPECT_FALSE(bisected.complete);
+  EXPECT_FALSE(bisected.resolved);
   EXPECT_LE(bisected.stable, 4e-2);
   EXPECT_GT(bisected.unstable, 4e-2);
 }

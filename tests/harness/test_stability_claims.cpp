@@ -64,6 +64,19 @@ TEST(StabilityClaims, LessImplicitMayBeBelowStiffButNotAbove) {
                    .held);
 }
 
+// A search that ran out of time at 0.6 cannot have met a limit of 0.5; one that went on
+// to 0.4 should have.
+TEST(StabilityClaims, SearchesAreComparedWhereBothGotTo) {
+  const auto compared = [](double finest) {
+    Row cut = semi_implicit("recursive", 1.00, 1.05);
+    cut.set("search_done", false).set("dt_finest_s", finest);
+    return verdicts({cut, semi_implicit("composite", 0.5, 0.52)});
+  };
+  EXPECT_TRUE(compared(0.6).empty());
+  ASSERT_EQ(compared(0.4).size(), 1u);
+  EXPECT_FALSE(compared(0.4)[0].held);
+}
+
 TEST(StabilityClaims, RowsWithoutALimitSayNothing) {
   Row failed = semi_implicit("recursive", 5, 6);
   failed.failed("gave_up", "");

@@ -86,5 +86,97 @@ INSTANTIATE_TEST_SUITE_P(
                     catalogue_case("tinkertoys", "structure", "tree")),
     [](const auto& test) { return test.param.name(); });
 
+// ---- where Newton's method alone does not converge ---------------------------------
+
+/// One coordinate with r = inertia(q) a - force(q); derivatives by name.
+struct ScalarData {
+  double (*inertia)(double q), (*inertia_q)(double q);
+  double (*force)(double q), (*force_q)(double q);
+};
+
+class Scalar final : public System {
+ public:
+  explicit Scalar(const ScalarData& data) : data_(data) {}
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {false, false}; }
+  void initial_state(Out q, Out v) const override { q[0] = v[0] = 0; }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double, In q, In, In a, Out r) noexcept override {
+    r[0] = data_.inertia(q[0]) * a[0] - data_.force(q[0]);
+    return Status::ok;
+  }
+  Status linearize(double, In q, In, In a, Weights w) noexcept override {
+    s_ = w.acc * data_.inertia(q[0]) +
+         w.pos * (data_.inertia_q(q[0]) * a[0] - data_.force_q(q[0]));
+    return Status::ok;
+  }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0] / s_;
+    return Status::ok;
+  }
+
+ private:
+  ScalarData data_;
+  double s_ = 1;
+};
+
+double none(double) { return 0; }
+
+/// Solves force(q) = 0 with q = q_bar + a, v = v_bar + a, from the guess a.
+struct Solved {
+  Status status;
+  double q;
+};
+Solved solved(const ScalarData& data, double q_bar, double v_bar, double a) {
+  Scalar system(data);
+  const Options options;
+  Dynamics dynamics(system, options);
+  Stage stage(dynamics, options);
+  const std::vector<double> bar{q_bar}, v{v_bar};
+  std::vector<double> guess{a}, lambda;
+  const Status s = stage.solve(0, bar, v, {1, 1, 1}, guess, lambda);
+  return {s, stage.q()[0]};
+}
+
+// Newton's method on atan diverges from |q| > 1.392.
+TEST(StageDamping, ConvergesWhereFullStepsOvershoot) {
+  const ScalarData arctangent{none, none, [](double q) { return std::atan(q); },
+                              [](double q) { return 1 / (1 + q * q); }};
+  const Solved result = solved(arctangent, 10, 0, 0);
+  EXPECT_EQ(result.status, Status::ok);
+  // The last correction is at most the tolerance.
+  EXPECT_LE(std::abs(result.q), Options{}.newton_tolerance);
+}
+
+// q^3 - 2 q + 2 falls to 0.911 at q = 0.816 and no further for q > 0; its one root is
+// -1.76929. Newton's method goes 0, 1, 0, ... and every damped step ends at the minimum.
+TEST(StageDamping, BeginsAnewWhereTheGuessLeadsNowhere) {
+  const ScalarData cubic{none, none, [](double q) { return q * q * q - 2 * q + 2; },
+                         [](double q) { return 3 * q * q - 2; }};
+  constexpr double root = -1.7692923542386314;
+  const Solved no_acceleration = solved(cubic, -3, -5, 4);  // from q = 1, -3, 2
+  EXPECT_EQ(no_acceleration.status, Status::ok);
+  EXPECT_NEAR(no_acceleration.q, root, 1e-9);
+  const Solved standstill = solved(cubic, 1, 3, 0);  // from q = 1, 1, -2
+  EXPECT_EQ(standstill.status, Status::ok);
+  EXPECT_NEAR(standstill.q, root, 1e-9);
+  EXPECT_EQ(solved(cubic, 1, -1, 0).status, Status::retry);  // from q = 1, 1, 2
+}
+
+// One Newton step from a = 0 is force / (inertia + h^2 inertia' a_matrix).
+TEST(StageSingleStep, TakesItsMatrixAtTheAccelerationGiven) {
+  Scalar system({[](double q) { return 1 + q * q; }, [](double q) { return 2 * q; },
+                 [](double) { return 3.0; }, none});
+  const Options options;
+  Dynamics dynamics(system, options);
+  Stage stage(dynamics, options);
+  const std::vector<double> q_bar{0.5}, v{0}, a_matrix{4};
+  std::vector<double> a{0}, lambda;
+  ASSERT_EQ(stage.single_step(0, q_bar, v, {1, 0.5, 0.25}, a_matrix, a, lambda),
+            Status::ok);
+  EXPECT_DOUBLE_EQ(a[0], 3 / (1.25 + 0.25 * 2 * 0.5 * 4));
+  EXPECT_DOUBLE_EQ(stage.q()[0], 0.5 + 0.25 * a[0]);
+}
+
 }  // namespace
 }  // namespace tress

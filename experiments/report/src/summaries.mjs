@@ -8,7 +8,6 @@ import {
   has_limit,
   is_capped,
   run_name,
-  scan_end_s,
   solver_pairs,
   spaced,
   swing_levels,
@@ -41,7 +40,7 @@ const element_marks = [1, 2, 5, 10, 20, 40];
 function limit_cell(row) {
   if (row === undefined) return '';
   if (has_limit(row))
-    return is_capped(row) ? `≥ ${1e3 * scan_end_s}` : format_number(1e3 * row.dt_max_s);
+    return `${is_capped(row) ? '≥ ' : ''}${format_number(1e3 * row.dt_max_s)}`;
   return row.status === 'unstable' && is_positive(row.dt_first_unstable_s)
     ? `< ${format_number(1e3 * row.dt_first_unstable_s)}`
     : spaced(row.status);

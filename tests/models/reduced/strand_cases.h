@@ -10,7 +10,7 @@
 
 #include "experiments/harness/simulation.h"
 #include "models/strand/strand_parameters.h"
-#include "tests/support/catalogue_cases.h"
+#include "tests/support/tangent.h"
 
 /// What the tests of reduced-coordinate strands share.
 namespace tress::testing_support {

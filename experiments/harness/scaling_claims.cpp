@@ -1,0 +1,94 @@
+#include "experiments/harness/scaling_claims.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "experiments/harness/fit.h"
+#include "experiments/harness/scaling_grid.h"
+
+namespace tress {
+namespace {
+
+// Smaller strands are mostly what a step costs without any element.
+constexpr double first_fitted = 20;
+
+std::string series_of(const Row& row) {
+  std::string key;
+  for (const std::string_view column : {"model", "solver", "tangent", "modes"}) {
+    key.append(row.text(column)).append("/");
+  }
+  return key;
+}
+
+struct Which {
+  std::string_view structure, solver, elements;
+  std::string_view modes = "bend_twist";
+};
+
+const Row* stiff(const std::vector<Row>& rows, const Which& which) {
+  const auto found = std::ranges::find_if(rows, [&which](const Row& row) {
+    return row.ok() && row.text("structure") == which.structure &&
+           row.text("model") != "articulated_chain" &&
+           row.text("solver") == which.solver && row.text("tangent") == "stiff" &&
+           row.text("modes") == which.modes && row.text("elements") == which.elements;
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+void check_ratio(const std::vector<Row>& rows, const Which& dear, const Which& cheap,
+                 const std::string& claim, double least, Verdicts& verdicts) {
+  const Row* more = stiff(rows, dear);
+  const Row* less = stiff(rows, cheap);
+  if (more == nullptr || less == nullptr) return;
+  const double ratio = more->number("cost_per_step_s") / less->number("cost_per_step_s");
+  verdicts.check(claim, ratio >= least, ratio);
+}
+
+}  // namespace
+
+void add_exponents(std::vector<Row>& rows) {
+  struct Series {
+    std::vector<double> elements, costs;
+  };
+  std::map<std::string, Series> all;
+  for (const Row& row : rows) {
+    if (!row.ok() || row.text("structure") != straight) continue;
+    if (row.number("elements") < first_fitted) continue;
+    Series& series = all[series_of(row)];
+    series.elements.push_back(row.number("elements"));
+    series.costs.push_back(row.number("cost_per_step_s"));
+  }
+  for (Row& row : rows) {
+    const auto found = all.find(series_of(row));
+    if (row.text("structure") != straight || found == all.end()) continue;
+    if (found->second.elements.size() < 3) continue;
+    row.set("exponent", log_log_slope(found->second.elements, found->second.costs));
+  }
+}
+
+void check_scaling_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
+  const Row* usual = stiff(rows, {straight, "recursive", "20"});
+  if (stiff(rows, {straight, "recursive", "500"}) != nullptr && usual != nullptr) {
+    const double exponent = usual->number("exponent");
+    verdicts.check("recursive: cost grows with N^1.05 at most, N = 20 to 500",
+                   exponent <= 1.05, exponent);
+  }
+  if (usual != nullptr) {
+    const double cost = usual->number("cost_per_element_step_s");
+    verdicts.check("recursive, N = 20: at most 1.6 us per element and step",
+                   cost <= 1.6e-6, cost);
+  }
+  check_ratio(rows, {straight, "composite", "30"}, {straight, "recursive", "30"},
+              "composite costs 3 x recursive at N = 30", 3, verdicts);
+  check_ratio(rows, {straight, "composite", "100"}, {straight, "recursive", "100"},
+              "composite costs 10 x recursive at N = 100", 10, verdicts);
+  check_ratio(rows, {"willow", "composite", "242"}, {"willow", "recursive", "242"},
+              "willow: composite costs 20 x recursive", 20, verdicts);
+  check_ratio(rows, {straight, "recursive", "20"},
+              {straight, "recursive", "20", "bend_planar"},
+              "recursive, N = 20: bend_twist costs 3 x bend_planar", 3, verdicts);
+}
+
+}  // namespace tress

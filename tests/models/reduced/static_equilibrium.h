@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdio>
+
+#include "tests/models/reduced/strand_cases.h"
+
+namespace tress::testing_support {
+
+/// A number as a parameter takes it, all digits kept.
+inline std::string text(double x) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.17g", x);
+  return digits;
+}
+
+/// A strand at rest under gravity.
+struct Hung {
+  std::unique_ptr<System> system;
+  std::vector<double> q;
+};
+
+/// Newton on residual(v = a = 0), gravity raised by a factor of 3 at a time up to `g`.
+inline Hung hang(std::string_view model, const ModelSettings& settings, double g) {
+  Hung hung;
+  constexpr int loads = 8;
+  for (int load = loads; load-- > 0;) {
+    const double now = g * std::pow(3.0, -load);
+    hung.system = make_model(model, with(settings, {{"gravity_m_s2", text(now)}}));
+    System& system = *hung.system;
+    const std::vector<double> zero = zeros(system);
+    if (hung.q.empty()) {
+      std::vector<double> v = zero;
+      hung.q = zero;
+      system.initial_state(hung.q, v);
+    }
+    std::vector<double> q_typ = zero, v_typ = zero, r = zero;
+    system.scale(q_typ, v_typ);
+    double correction = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 30 && correction > 1e-11; ++i) {
+      EXPECT_EQ(system.residual(0, hung.q, zero, zero, r), Status::ok);
+      EXPECT_EQ(system.linearize(0, hung.q, zero, zero, {0, 0, 1}), Status::ok);
+      EXPECT_EQ(system.solve(r, r), Status::ok);
+      correction = 0;
+      for (std::size_t k = 0; k < r.size(); ++k) {
+        hung.q[k] -= r[k];
+        correction = std::max(correction, std::abs(r[k]) / q_typ[k]);
+      }
+    }
+    EXPECT_LE(correction, 1e-11) << "no equilibrium at " << now << " m/s^2";
+  }
+  return hung;
+}
+
+/// Of the root and of the tips of all segments, 3 each.
+inline std::vector<double> points(const Hung& hung) {
+  MaterialPoints& at = *hung.system->material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(at.count()));
+  at.positions(0, hung.q, x);
+  return x;
+}
+
+}  // namespace tress::testing_support
