@@ -12,6 +12,7 @@
 #include "experiments/harness/reference.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/simulation.h"
+#include "experiments/harness/strand_problems.h"
 #include "experiments/harness/timing.h"
 #include "experiments/harness/work_precision_series.h"
 
@@ -25,9 +26,11 @@ constexpr Column columns[] = {
     {"formulation", "how constraints enter"},
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance, adaptive methods"},
-    {"elements", "coordinates of the problem"},
-    {"solver", "linear solver in use"},
-    {"error_kind", "time: against the same equations integrated to convergence"},
+    {"elements", "coordinates of the problem; of a strand, its elements"},
+    {"solver", "linear solver in use; of a strand, the model's own"},
+    {"error_kind",
+     "time: against the same equations integrated to convergence; total: against the "
+     "continuous body"},
     {"error_rel", "largest error of the compared positions over their scale"},
     {"scd", "significant correct digits, -log10 of the largest relative error"},
     {"reference_gap", "disagreement of the two references, same norm"},
@@ -39,17 +42,42 @@ constexpr Column columns[] = {
     {"residuals", "residual or acceleration evaluations"},
     {"linearizations", "matrices built and factored"},
     {"solves", "linear solves"},
-    {"order_fit", "slope of log error against log step over the finest points"},
-    {"pareto", "no other run of the scene is both faster and more accurate"},
+    {"order_fit",
+     "slope of log error over the finest points: against log step; total errors at the "
+     "finest step against log element length"},
+    {"pareto",
+     "no other run of the scene and kind of error is both faster and more accurate"},
 };
 
-void measure(const Problem& problem, std::string_view integrator, const Options& options,
-             int repeat, Row& row) {
+struct Work {
+  const Problem& problem;
+  std::string_view integrator;
+  std::string_view solver;  // empty: the problem's model has one
+  Options options;
+  int repeat;
+
+  Row identity(const IntegratorEntry& entry) const {
+    Row row;
+    row.set("scene", problem.name).set("model", problem.model);
+    row.set("integrator", integrator).set("formulation", name(options.formulation));
+    if (!solver.empty()) {
+      row.set("error_kind", problem.error_kind).set("solver", solver);
+      row.set("elements", problem.elements);
+    }
+    return entry.adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
+  }
+};
+
+void measure(const Work& work, Row& row) {
+  const Problem& problem = work.problem;
   std::optional<ProblemRun> run;
-  const double wall =
-      time_run(repeat, [&] { run = run_problem(problem, integrator, options); });
+  const double wall = time_run(work.repeat, [&] {
+    run = run_problem(problem, work.integrator, work.options, work.solver);
+  });
   const Stats& stats = run->end.stats;
-  row.set("elements", run->end.state.q.size()).set("solver", stats.solver);
+  if (work.solver.empty()) {
+    row.set("elements", run->end.state.q.size()).set("solver", stats.solver);
+  }
   row.set("steps", stats.steps).set("rejected", stats.rejected);
   row.set("residuals", stats.residuals).set("linearizations", stats.linearizations);
   row.set("solves", stats.solves);
@@ -62,7 +90,8 @@ void measure(const Problem& problem, std::string_view integrator, const Options&
     row.failed("diverged", "error above ten times the scale of the problem");
     return;
   }
-  row.set("error_kind", "time").set("error_rel", error).set("scd", run->error.scd);
+  row.set("error_kind", problem.error_kind).set("error_rel", error);
+  row.set("scd", run->error.scd);
   row.set("reference_gap", problem.reference_gap);
   row.set("below_reference", error < ReferenceGap::margin * problem.reference_gap);
   row.set("wall_s", wall).set("wall_s_per_sim_s", wall / problem.t_end);
@@ -82,36 +111,52 @@ std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, boo
   return list;
 }
 
+/// Those of the problem's model that this integrator is tried with.
+std::vector<std::string_view> solvers(const Problem& problem,
+                                      std::string_view integrator) {
+  if (problem.solvers.empty()) return {""};
+  const bool all =
+      std::ranges::find(problem.comparing, integrator) != problem.comparing.end();
+  return all ? problem.solvers : std::vector{problem.solvers.front()};
+}
+
+bool tried(const Problem& problem, std::string_view integrator) {
+  return problem.integrators.empty() ||
+         std::ranges::find(problem.integrators, integrator) != problem.integrators.end();
+}
+
 std::vector<Case> cases(const CommandLine& line) {
   const Options base = Settings(line, {}).options();
   std::vector<Case> all;
-  for (const Problem& problem : problems()) {
-    if (!wanted(line.models, problem.model)) continue;
+  const auto add = [&](const Problem& problem) {
+    if (!wanted(line.models, problem.model)) return;
     const auto system = problem.make();
     for (const IntegratorEntry& entry : integrators()) {
-      if (!wanted(line.integrators, entry.id)) continue;
+      if (!wanted(line.integrators, entry.id) || !tried(problem, entry.id)) continue;
       for (const Formulation formulation : shown(entry, *system, line.full)) {
-        const int points = line.full ? 10 : 7;
-        for (int level = 0; level < points; ++level) {
-          Options options = base;
-          options.formulation = formulation;
-          Row identity;
-          identity.set("scene", problem.name).set("model", problem.model);
-          identity.set("integrator", entry.id).set("formulation", name(formulation));
-          if (entry.adaptive) {
-            options.rtol = options.atol = std::pow(10, -3 - level);
-            identity.set("rtol", options.rtol);
-          } else {
-            options.step = problem.coarse_step / std::pow(2, level);
-            identity.set("dt_s", options.step);
+        for (const std::string_view solver : solvers(problem, entry.id)) {
+          // The finest steps add nothing to a total error.
+          const int points =
+              (line.full ? 10 : 7) - (problem.error_kind == "total" ? 2 : 0);
+          for (int level = 0; level < points; ++level) {
+            Work work{problem, entry.id, solver, base, line.repeat};
+            work.options.formulation = formulation;
+            if (entry.adaptive) {
+              work.options.rtol = work.options.atol = std::pow(10, -3 - level);
+            } else {
+              work.options.step = problem.coarse_step / std::pow(2, level);
+            }
+            all.push_back({work.identity(entry),
+                           [work](Row& row, const auto&) { measure(work, row); }});
           }
-          all.push_back({identity, [&problem, id = entry.id, options,
-                                    repeat = line.repeat](Row& row, const auto&) {
-                           measure(problem, id, options, repeat, row);
-                         }});
         }
       }
     }
+  };
+  for (const Problem& problem : problems()) add(problem);
+  // Their references take some seconds.
+  if (wanted(line.models, "super_helix") || wanted(line.models, "articulated_chain")) {
+    for (const Problem& problem : strand_problems()) add(problem);
   }
   return all;
 }
@@ -139,6 +184,17 @@ void check(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdicts.check("Andrews' squeezer: 6 correct digits from ida or an implicit method",
                  squeezer >= 6, squeezer);
   verdicts.check("Beam: 6 correct digits from two integrators", on_beam >= 2, on_beam);
+  for (const std::string_view model : {"super_helix", "articulated_chain"}) {
+    const auto total = std::ranges::find_if(rows, [&](const Row& row) {
+      return row.text("model") == model && row.text("error_kind") == "total" &&
+             row.has("order_fit");
+    });
+    if (total == rows.end()) continue;
+    const double order = total->number("order_fit");
+    verdicts.check(
+        std::string(model) + ": total error falls at order 2 in element length",
+        order >= 1.8, order);
+  }
 }
 
 /// A step or tolerance too loose for the method is where its curve ends, not a mistake.

@@ -22,13 +22,6 @@ Values points(System& system, const State& end) {
   return x;
 }
 
-/// t_end k / count for k = 1 .. count
-std::vector<Checkpoint> checkpoints(double t_end, int count) {
-  std::vector<Checkpoint> times;
-  for (int k = 1; k <= count; ++k) times.push_back({t_end * k / count, {}});
-  return times;
-}
-
 /// A bead of 1 m radius released horizontally: x = sin theta, z = -cos theta.
 Problem bead(std::string_view name, const char* form) {
   Problem problem{.name = name,
@@ -90,22 +83,6 @@ std::vector<Checkpoint> tight_run(const Problem& problem, std::string_view integ
   return values;
 }
 
-/// References by an explicit Runge-Kutta method and by an Adams method.
-Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
-  const auto second = tight_run(problem, "cvode_adams", adams);
-  problem.reference = tight_run(problem, "gsl_rk8pd", runge_kutta);
-  if (problem.scale.empty()) {
-    for (const double entry : problem.reference.back().values) {
-      problem.scale.push_back(std::abs(entry));
-    }
-  }
-  for (std::size_t k = 0; k < second.size(); ++k) {
-    const ReferenceGap gap(problem.reference[k].values, second[k].values, problem.scale);
-    problem.reference_gap = std::max(problem.reference_gap, gap.gap());
-  }
-  return problem;
-}
-
 std::vector<Problem> make_problems() {
   std::vector<Problem> all{bead("pendulum", "parametric"),
                            bead("pendulum_constrained", "implicit")};
@@ -140,9 +117,36 @@ std::vector<Problem> make_problems() {
 
 }  // namespace
 
+std::unique_ptr<System> Problem::make(std::string_view solver) const {
+  ModelSettings all = settings;
+  if (!solver.empty()) all.emplace_back("solver", solver);
+  return make_model(model, all);
+}
+
+std::vector<Checkpoint> checkpoints(double t_end, int count) {
+  std::vector<Checkpoint> times;
+  for (int k = 1; k <= count; ++k) times.push_back({t_end * k / count, {}});
+  return times;
+}
+
+Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
+  const auto second = tight_run(problem, "cvode_adams", adams);
+  problem.reference = tight_run(problem, "gsl_rk8pd", runge_kutta);
+  if (problem.scale.empty()) {
+    for (const double entry : problem.reference.back().values) {
+      problem.scale.push_back(std::abs(entry));
+    }
+  }
+  for (std::size_t k = 0; k < second.size(); ++k) {
+    const ReferenceGap gap(problem.reference[k].values, second[k].values, problem.scale);
+    problem.reference_gap = std::max(problem.reference_gap, gap.gap());
+  }
+  return problem;
+}
+
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
-                       const Options& options) {
-  const auto system = problem.make();
+                       const Options& options, std::string_view solver) {
+  const auto system = problem.make(solver);
   ProblemError error{0, 16};
   std::size_t next = 0;
   std::vector<double> stops;

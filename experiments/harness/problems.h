@@ -37,7 +37,14 @@ struct Problem {
   /// What is compared: coordinates, or material points where form must not matter.
   std::function<std::vector<double>(System&, const State&)> compared;
 
-  std::unique_ptr<System> make() const { return make_model(model, settings); }
+  /// total: the reference is of the continuous body that the model cuts into elements.
+  std::string_view error_kind = "time";
+  int elements = 0;                                // of a strand
+  std::vector<std::string_view> integrators = {};  // to be tried; none: all
+  /// Solvers of the model, the first for every integrator, the others for `comparing`.
+  std::vector<std::string_view> solvers = {}, comparing = {};
+
+  std::unique_ptr<System> make(std::string_view solver = {}) const;
 };
 
 /// A run that stops at every checkpoint, so that errors which happen to cancel at one
@@ -47,7 +54,14 @@ struct ProblemRun {
   ProblemError error;  // over all checkpoints reached
 };
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
-                       const Options& options);
+                       const Options& options, std::string_view solver = {});
+
+/// The problem with its reference values filled in by an explicit Runge-Kutta method, and
+/// how far an Adams method is from them, both at 1e-13, with constraints as given.
+Problem computed(Problem problem, Formulation runge_kutta, Formulation adams);
+
+/// t_end k / count for k = 1 .. count, no values yet.
+std::vector<Checkpoint> checkpoints(double t_end, int count);
 
 /// Made once, at the first call; the doubly computed references take about a second.
 std::span<const Problem> problems();

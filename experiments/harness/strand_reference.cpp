@@ -59,16 +59,16 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
   options.rtol = options.atol = tolerance;
   TipReference reference;
   reference.tip = tip(make, model, elements, "gsl_rk8pd", options, sampling);
-  reference.gap = tip_error(tip(make, model, elements, "cvode_adams", options, sampling),
-                            reference.tip, sampling.length);
+  reference.other = tip(make, model, elements, "cvode_adams", options, sampling);
+  reference.gap = tip_error(reference.other, reference.tip, sampling.length);
   return reference;
 }
 
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling) {
   TipReference reference;
   reference.tip = rod(make, "super_helix", "implicit_midpoint", sampling);
-  reference.gap = tip_error(rod(make, "articulated_chain", "generalized_alpha", sampling),
-                            reference.tip, sampling.length);
+  reference.other = rod(make, "articulated_chain", "generalized_alpha", sampling);
+  reference.gap = tip_error(reference.other, reference.tip, sampling.length);
   return reference;
 }
 

@@ -13,10 +13,10 @@ namespace tress {
 using MakeStrand =
     std::function<std::unique_ptr<System>(std::string_view model, int elements)>;
 
-/// What a tip does, known from two sides: tip (3 samples) as run_tip samples it, and how
+/// What a tip does, known from two sides, (3 samples) each as run_tip samples it, and how
 /// far the two are apart (tip_error).
 struct TipReference {
-  std::vector<double> tip;
+  std::vector<double> tip, other;
   double gap = 0;
 };
 
