@@ -102,8 +102,8 @@ void measure(const SwingCase& c, const Parameters& parameters,
     return;
   }
   const double error = tip_error(run.tip, reference.tip, length);
-  if (!(error <= 1)) {
-    row.failed("diverged", "error above the length of the strand");
+  if (!(error <= 0.5)) {
+    row.failed("diverged", "error above half the length of the strand");
     return;
   }
   row.set("tip_error_rel", error);

@@ -126,6 +126,12 @@ Ladder ladder(const IntegratorEntry& entry, bool implicit, bool full) {
   return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
 }
 
+/// Whether step (s) and elements are worth each other: both errors are of order 2, so the
+/// cheapest way to a total error keeps step times elements between fixed bounds.
+bool balanced(double step, int elements) {
+  return step * elements >= 0.025 && step * elements <= 0.161;
+}
+
 std::string_view name(Refresh refresh) {
   switch (refresh) {
     case Refresh::every_iteration:
@@ -200,11 +206,10 @@ class Grid {
     c.options.refresh = m.newton.refresh;
     if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
     c.options = settings_.options(c.options);
-    Ladder rungs = ladder(entry, !m.tangent.empty(), line_.full);
-    // What finer steps add, elements take away again.
-    if (error == "total") rungs.rungs -= 2;
+    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_.full);
     for (int i = 0; i < rungs.rungs; ++i) {
       const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
+      if (error == "total" && !entry.adaptive && !balanced(x, elements)) continue;
       (entry.adaptive ? c.options.rtol : c.options.step) = x;
       if (entry.adaptive) c.options.atol = x;
       // --set can make two ways of iterating the same.

@@ -62,6 +62,7 @@ export const families = [
       'semi_implicit_euler',
       'backward_euler',
       'implicit_midpoint',
+      'linearly_implicit_midpoint',
       'bdf2',
       'newmark',
       'generalized_alpha',

@@ -1,0 +1,335 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/pareto.h"
+#include "experiments/harness/simulation.h"
+#include "experiments/harness/strand_reference.h"
+#include "experiments/harness/strand_scenes.h"
+#include "experiments/harness/swing_claims.h"
+#include "experiments/harness/swing_grid.h"
+#include "experiments/harness/tip_track.h"
+#include "experiments/peers/swing.h"
+#include "models/strand/strand_parameters.h"
+
+namespace tress {
+namespace {
+
+// ---- the track of a tip -----------------------------------------------------------
+
+/// A unit mass under a constant force; its "strand" is two points, the root at 0.
+class Thrown final : public System, private MaterialPoints {
+ public:
+  double fails_after = std::numeric_limits<double>::infinity();  // s
+
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {true, true}; }
+  void initial_state(Out q, Out v) const override {
+    q[0] = 1;
+    v[0] = 2;
+  }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double t, In, In, In a, Out r) noexcept override {
+    r[0] = a[0] + 3;
+    return t > fails_after ? Status::fatal : Status::ok;
+  }
+  Status linearize(double, In, In, In, Weights) noexcept override { return Status::ok; }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0];
+    return Status::ok;
+  }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  int count() const override { return 2; }
+  void positions(double t, In q, Out x) override {
+    std::ranges::fill(x, 0.0);
+    x[3] = q[0];
+    x[4] = t;
+  }
+  void velocities(double, In, In, Out) override {}
+};
+
+TEST(TipTrack, SamplesLieBetweenSteps) {
+  Thrown thrown;
+  Options options;
+  options.step = 0.3;  // samples every 0.1 s
+  const TipRun run = run_tip("implicit_midpoint", thrown, options, 1.2, 12);
+  ASSERT_EQ(run.status, Status::ok);
+  ASSERT_EQ(run.tip.size(), 36u);
+  EXPECT_EQ(run.stats.steps, 4);
+  for (std::size_t k = 1; k <= 12; ++k) {
+    const double t = 0.1 * static_cast<double>(k);
+    // The rule is exact for a constant force, and a cubic holds a parabola: rounding.
+    EXPECT_NEAR(run.tip[3 * k - 3], 1 + 2 * t - 1.5 * t * t, 1e-13);
+    EXPECT_NEAR(run.tip[3 * k - 2], t, 1e-13);
+  }
+}
+
+TEST(TipTrack, RepeatsStartAfresh) {
+  Thrown thrown;
+  Options options;
+  options.step = 0.01;
+  const TipRun once = run_tip("implicit_midpoint", thrown, options, 1, 5);
+  const TipRun timed = run_tip("implicit_midpoint", thrown, options, 1, 5, 3);
+  EXPECT_EQ(once.tip, timed.tip);
+  EXPECT_EQ(timed.stats.steps, 100);
+  EXPECT_EQ(once.wall_s, 0);
+  EXPECT_GT(timed.wall_s, 0);
+}
+
+TEST(TipTrack, AFailedRunLacksSamples) {
+  Thrown thrown;
+  thrown.fails_after = 0.52;  // between the midpoints of the steps from 6/13 and 7/13 s
+  Options options;
+  options.step = 1. / 13;
+  const TipRun run = run_tip("implicit_midpoint", thrown, options, 1, 10);
+  EXPECT_NE(run.status, Status::ok);
+  EXPECT_FALSE(run.failure.empty());
+  EXPECT_EQ(run.tip.size(), 15u);
+}
+
+TEST(TipError, IsTheRootMeanSquareOverTheLength) {
+  const std::vector<double> reference(6);
+  // Distances 5 and 0: sqrt(25/2) over 10.
+  EXPECT_DOUBLE_EQ(tip_error(std::vector<double>{3, 0, 4, 0, 0, 0}, reference, 10),
+                   std::sqrt(12.5) / 10);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(tip_error(std::vector<double>(3), reference, 10), infinity);
+  EXPECT_EQ(tip_error(std::vector<double>(6, std::nan("")), reference, 10), infinity);
+}
+
+// ---- references -------------------------------------------------------------------
+
+TEST(Extrapolated, RemovesWhatFallsWithTheSquare) {
+  const auto answer = [](double h) { return std::vector<double>{7 + 5 * h * h, -h * h}; };
+  const auto limit = extrapolated(answer(0.3), answer(0.1), 3);
+  EXPECT_NEAR(limit[0], 7, 1e-14);
+  EXPECT_NEAR(limit[1], 0, 1e-14);
+}
+
+std::unique_ptr<System> swinging(std::string_view model, int elements) {
+  ModelSettings settings = find_strand_scene("swing").settings;
+  settings.emplace_back("elements", std::to_string(elements));
+  settings.emplace_back("modes", "bend");
+  settings.emplace_back("tangent", "stiff");
+  return make_model(model, settings);
+}
+
+constexpr double length = 0.2;
+
+TEST(ConvergedModel, IsWhatStepsTendTo) {
+  const TipSampling sampling{0.3, 15, length};
+  const TipReference reference = converged_model(swinging, "super_helix", 5, sampling);
+  // Local errors of 1e-5 of 15 to 20 times a curvature of 1/L make far less of the tip.
+  EXPECT_LE(reference.gap, 1e-5);
+  const auto error = [&](double step) {
+    const auto system = swinging("super_helix", 5);
+    Options options;
+    options.step = step;
+    const TipRun run =
+        run_tip("implicit_midpoint", *system, options, sampling.t_end, sampling.samples);
+    return tip_error(run.tip, reference.tip, length);
+  };
+  // Order 2, with errors well above the gap.
+  const double coarse = error(2e-3), fine = error(1e-3);
+  EXPECT_GT(fine, 10 * reference.gap);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.2);
+}
+
+TEST(ConvergedRod, IsWhatElementsTendTo) {
+  const TipSampling sampling{0.1, 5, length};
+  const TipReference rod = converged_rod(swinging, sampling);
+  const auto error = [&](int elements) {
+    const auto system = swinging("super_helix", elements);
+    Options options;
+    options.step = 2.5e-4;
+    const TipRun run =
+        run_tip("implicit_midpoint", *system, options, sampling.t_end, sampling.samples);
+    return tip_error(run.tip, rod.tip, length);
+  };
+  const double coarse = error(10), fine = error(20);
+  EXPECT_GT(fine, 10 * rod.gap);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
+}
+
+TEST(ConvergedModel, ThrowsWhenItsRunFails) {
+  const MakeStrand make = [](std::string_view, int) {
+    auto thrown = std::make_unique<Thrown>();
+    thrown->fails_after = 0.1;
+    return thrown;
+  };
+  EXPECT_THROW((void)converged_model(make, "thrown", 1, {1, 10, 1}), std::runtime_error);
+}
+
+// ---- the scene --------------------------------------------------------------------
+
+TEST(SwingScene, IsTheOneOfThePeers) {
+  using peers::Swing;
+  const ModelEntry& model = find_model("super_helix");
+  Parameters p(model.parameters, "super_helix");
+  for (const auto& [key, value] : find_strand_scene("swing").settings) p.set(key, value);
+  const Strand made = strand(p);
+  // Peers count in mm, mg and s.
+  EXPECT_NEAR(made.length(), 1e-3 * Swing::length, 1e-15);
+  EXPECT_NEAR(made.mass(), 1e-6 * Swing{1}.mass(), 1e-20);
+  const CrossSection& section = made.segments.front().section;
+  EXPECT_DOUBLE_EQ(section.a1, 1e-3 * Swing::radius);
+  EXPECT_DOUBLE_EQ(section.a2, 1e-3 * Swing::radius);
+  const Swing one{1};  // EI / l = stiffness of an inner hinge, mg mm^2/s^2
+  EXPECT_NEAR(made.material.youngs_modulus * section.inertia1() / made.length(),
+              1e-12 * one.stiffness(1), 1e-20);
+  EXPECT_EQ(made.material.internal_friction, 0);
+  for (const Segment& segment : made.segments) {
+    EXPECT_EQ(dot(segment.natural, segment.natural), 0);
+    EXPECT_EQ(dot(segment.initial, segment.initial), 0);
+  }
+  for (const double t : {0.0, 0.13, 0.77, 1.5}) {
+    const RootPose root = made.root.at(t);
+    EXPECT_NEAR(root.x.y, 1e-3 * Swing::clamp(t), 1e-15);
+    EXPECT_EQ(root.x.x, 0);
+    EXPECT_EQ(root.x.z, 0);
+    EXPECT_EQ(root.frame.e0.x, 1);
+    // What the peers' links feel at rest seen from the clamp, m/s^2.
+    const Vec felt = 1e-3 * Swing::gravity(t);
+    const double damping = p.number("mass_damping_1_s");
+    EXPECT_NEAR(-root.a.y - damping * root.v.y, felt.y, 1e-12);
+    EXPECT_NEAR(-p.number("gravity_m_s2"), felt.z, 1e-12);
+  }
+  EXPECT_EQ(find_strand_scene("swing").t_end, Swing::t_end);
+}
+
+// ---- rows -------------------------------------------------------------------------
+
+std::vector<SwingCase> cases(const CommandLine& line) {
+  return swing_cases(line, Settings(line, swing_settings()));
+}
+
+TEST(SwingGrid, IdentitiesDifferAndIntegratorsAreThere) {
+  const std::vector<SwingCase> all = cases({});
+  std::set<std::string> identities;
+  std::set<std::string_view> integrators;
+  for (const SwingCase& c : all) {
+    EXPECT_TRUE(identities.insert(describe(c.identity())).second)
+        << describe(c.identity());
+    integrators.insert(c.integrator);
+    if (c.error_kind == "time") {
+      EXPECT_EQ(c.elements, peer_elements);
+      EXPECT_EQ(c.grading, 1);
+    }
+  }
+  for (const std::string_view id :
+       {"implicit_midpoint", "linearly_implicit_midpoint", "generalized_alpha", "newmark",
+        "bdf2", "ida", "cvode_bdf", "arkode_dirk", "semi_implicit_euler", "rk4"}) {
+    EXPECT_TRUE(integrators.contains(id)) << id;
+  }
+}
+
+TEST(SwingGrid, FollowsTheCommandLine) {
+  CommandLine line;
+  line.integrators = {"implicit_midpoint"};
+  line.models = {"articulated_chain"};
+  line.elements = {9};
+  line.set = {{"error", "total"}, {"newton_tolerance", "1e-3"}, {"refresh", "when_slow"}};
+  const std::vector<SwingCase> chosen = cases(line);
+  ASSERT_FALSE(chosen.empty());
+  for (const SwingCase& c : chosen) {
+    EXPECT_EQ(c.integrator, "implicit_midpoint");
+    EXPECT_EQ(c.model->id, "articulated_chain");
+    EXPECT_EQ(c.elements, 9);
+    EXPECT_EQ(c.error_kind, "total");
+    EXPECT_EQ(c.options.newton_tolerance, 1e-3);
+    EXPECT_EQ(c.options.refresh, Refresh::when_slow);
+  }
+}
+
+TEST(SwingGrid, ParametersAreThoseOfTheRow) {
+  CommandLine line;
+  line.integrators = {"bdf2"};
+  line.set = {{"modes", "bend_twist"}, {"quadrature", "8"}};
+  const Settings settings(line, swing_settings());
+  for (const SwingCase& c : swing_cases(line, settings)) {
+    const Parameters p = c.parameters(settings);
+    EXPECT_EQ(p.word("modes"), "bend_twist");
+    EXPECT_EQ(p.word("tangent"), c.tangent);
+    EXPECT_EQ(p.whole("elements"), c.elements);
+    EXPECT_EQ(p.whole("quadrature"), 8);
+    EXPECT_EQ(p.word("root"), "swing");
+  }
+}
+
+Row run(std::string_view kind, int elements, double error, double wall,
+        std::string_view modes = "bend") {
+  Row row;
+  row.set("error_kind", kind).set("model", "super_helix").set("modes", modes);
+  row.set("integrator", "implicit_midpoint").set("elements", elements);
+  row.set("tip_error_rel", error).set("wall_s", wall);
+  return row;
+}
+
+TEST(Pareto, IsWhatNothingBeatsInBoth) {
+  std::vector<Row> rows{run("time", 20, 0.01, 1), run("time", 20, 0.02, 2),
+                        run("time", 20, 0.005, 3), run("time", 5, 0.02, 2),
+                        run("time", 20, 0.01, 0.5)};
+  rows.back().failed("diverged", "not counted");
+  add_pareto(rows, "tip_error_rel",
+             [](const Row& row) { return std::string(row.text("elements")); });
+  EXPECT_EQ(rows[0].text("pareto"), "true");
+  EXPECT_EQ(rows[1].text("pareto"), "false");
+  EXPECT_EQ(rows[2].text("pareto"), "true");
+  EXPECT_EQ(rows[3].text("pareto"), "true");
+  EXPECT_EQ(rows[4].text("pareto"), "");
+}
+
+std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
+  Verdicts all;
+  check_swing_claims(rows, all);
+  return all.all();
+}
+
+TEST(SwingClaims, TakeTheFastestRunThatIsAccurateEnough) {
+  const auto all =
+      verdicts({run("time", 20, 0.009, 0.015), run("time", 20, 0.02, 0.001),
+                run("time", 20, 0.0009, 0.06), run("time", 5, 0.0001, 0.001)});
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_TRUE(all[0].held);
+  EXPECT_EQ(all[0].value, 0.015);
+  EXPECT_FALSE(all[1].held);
+  EXPECT_EQ(all[1].value, 0.06);
+}
+
+TEST(SwingClaims, DoNotHoldWhereNothingIsAccurateEnough) {
+  const auto all = verdicts({run("total", 9, 0.02, 0.001)});
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_FALSE(all[0].held);
+  EXPECT_TRUE(std::isinf(all[0].value));
+}
+
+TEST(SwingClaims, CompareConvergedRunsWithAndWithoutTwist) {
+  const auto pair = [](double error, const char* tolerance) {
+    std::vector<Row> rows{run("time", 20, 0.005, 1),
+                          run("time", 20, error, 1, "bend_twist")};
+    for (Row& row : rows) row.set("dt_s", 1e-3).set("newton_tolerance", tolerance);
+    return verdicts(rows);
+  };
+  EXPECT_TRUE(pair(0.0051, "1e-10").back().held);
+  EXPECT_FALSE(pair(0.0056, "1e-10").back().held);
+  EXPECT_NEAR(pair(0.0056, "1e-10").back().value, 0.12, 1e-12);
+  EXPECT_EQ(pair(0.0056, "0.3").size(), 2u);  // the two targets alone
+}
+
+TEST(SwingClaims, ReferencesMustAgree) {
+  std::vector<Row> rows{run("total", 9, 0.02, 0.001), run("total", 5, 0.02, 0.001)};
+  rows[0].set("reference_gap", 2e-5);
+  EXPECT_TRUE(verdicts(rows).back().held);
+  rows[1].set("reference_gap", 2e-4);
+  EXPECT_FALSE(verdicts(rows).back().held);
+  EXPECT_EQ(verdicts(rows).back().value, 2e-4);
+}
+
+}  // namespace
+}  // namespace tress
