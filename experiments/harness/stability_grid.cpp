@@ -74,7 +74,8 @@ constexpr Method further_methods[] = {
 };
 
 /// Of --quick; the others say nothing new about stability.
-constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint", "bdf2",
+constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint",
+                                                  "linearly_implicit_midpoint", "bdf2",
                                                   "generalized_alpha"};
 constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
                                              "whip"};

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "models/math/vec3.h"
 #include "models/system.h"
 
 namespace tress {
@@ -42,6 +44,10 @@ class Effect {
   virtual Needs needs() const = 0;
   /// f += load, (3 count) N.
   virtual void add_load(double t, const Points& p, InOut f) const noexcept = 0;
+  /// Of an effect whose load is m times the same acceleration at every point and time.
+  /// Models in moving frames may let the root accelerate against it instead of calling
+  /// add_load.
+  virtual std::optional<Vec> uniform_acceleration() const noexcept { return {}; }
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;

@@ -15,6 +15,7 @@ class Gravity final : public Effect {
   std::string_view name() const override { return "gravity"; }
   Needs needs() const override { return {}; }
   void add_load(double t, const Points& p, InOut f) const noexcept override;
+  std::optional<Vec> uniform_acceleration() const noexcept override { return g_; }
   void add_derivatives(double, const Points&, double, double,
                        InOut) const noexcept override {}
   double potential(double t, const Points& p) const noexcept override;

@@ -29,7 +29,7 @@ class ExactTangent {
                const InverseDynamics<Kernel, dofs>& dynamics)
       : kinematics_(kinematics), dynamics_(dynamics) {}
 
-  /// Expects zeros where transfer has its zero blocks (see SegmentTangent).
+  /// Expects zeros in tip and where transfer has its zero blocks (see SegmentTangent).
   void segment(std::size_t i, Weights w, const EffectBlocks& effects,
                SegmentTangent<Shape>& tangent) const {
     const ReducedSegment& segment = kinematics_.segments()[i];
@@ -45,10 +45,6 @@ class ExactTangent {
     }
     if constexpr (dofs > 1) {
       rotor(segment.rotor, kinematics_.motion(i).tip.omega, tangent.tip);
-    } else {
-      tangent.tip.setZero();
-    }
-    if constexpr (dofs > 1) {
       if (segment.mounted) Frames::mount(segment.mount, tangent);
     }
   }
@@ -107,6 +103,7 @@ class ExactTangent {
         root.local(5, 3 + c) = w.pos * moment.z;
       }
       Eigen::Matrix<double, size, Shape::states> spin;
+      spin.setZero();
       rotor(kinematics_.root_rotor(), m.omega, spin);
       add_product(root.lift, product(spin, root.transfer), root.local);
     }
@@ -377,11 +374,11 @@ class ExactTangent {
     }
   }
 
-  /// Derivatives of I (alpha_x, omega_x omega_z, -omega_x omega_y).
+  /// Derivatives of I (alpha_x, omega_x omega_z, -omega_x omega_y); the rest of m is
+  /// zero.
   static void rotor(double inertia, const Vec& omega,
                     Eigen::Matrix<double, size, Shape::states>& m) {
     constexpr int spin = size + t;  // column of the variation of omega_x
-    m.setZero();
     m(t, 2 * size + t) = inertia;
     m(t + 1, spin) = inertia * omega.z;
     m(t + 1, spin + 2) = inertia * omega.x;

@@ -93,11 +93,7 @@ class Helix {
     const Vec u = cross(kappa_, y);
     return {y, u, cross(kappa_, u)};
   }
-  First dW(const Vec& x, const Vec& y) const {
-    const Vec u = cross(kappa_, y), u_x = cross(x, y);
-    const double k_x = dot(kappa_, x);
-    return {u_x, k_x * u, cross(x, u) + cross(kappa_, u_x), k_x * cross(kappa_, u)};
-  }
+  First dW(const Vec& x, const Vec& y) const { return first_of(Terms(kappa_, y), x); }
   Second d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
     return second_of(Terms(kappa_, y), x1, x2);
   }
@@ -107,7 +103,7 @@ class Helix {
 
   // Positions of the element's points.
   Zeroth position() const { return W(tangent); }
-  First first(const Vec& x) const { return dW(x, tangent); }
+  First first(const Vec& x) const { return first_of(along_, x); }
   Second second(const Vec& x1, const Vec& x2) const { return second_of(along_, x1, x2); }
   Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
     return third_of(along_, x1, x2, x3);
@@ -165,6 +161,10 @@ class Helix {
     Vec kappa, y, u, z;
   };
 
+  static First first_of(const Terms& t, const Vec& x) {
+    const double k = dot(t.kappa, x);
+    return {cross(x, t.y), k * t.u, t.z_of(x), k * t.z};
+  }
   static Second second_of(const Terms& t, const Vec& x1, const Vec& x2) {
     const double k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), c = dot(x1, x2);
     return {c * t.u + k1 * cross(x2, t.y) + k2 * cross(x1, t.y), (k1 * k2) * t.u,

@@ -14,12 +14,22 @@ struct Wrench {
 
 /// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme: motion
 /// from the root to the tips (Kinematics), d'Alembert forces m p'' - f at the quadrature
-/// points, wrenches from the tips to the root. O(N).
+/// points (gravity as an acceleration of the root [Luh, Walker, Paul 1980]), wrenches
+/// from the tips to the root. O(N).
 template <class Kernel, int dofs>
 class InverseDynamics {
  public:
   InverseDynamics(Kinematics<Kernel, dofs>& kinematics, const Effects& effects)
-      : kinematics_(kinematics), effects_(effects), needs_(needs(effects)) {
+      : kinematics_(kinematics), needs_(needs(effects)) {
+    Vec uniform;
+    for (const auto& effect : effects) {
+      if (const auto acceleration = effect->uniform_acceleration()) {
+        uniform = uniform + *acceleration;
+      } else {
+        loading_.push_back(effect.get());
+      }
+    }
+    kinematics.fall(uniform);
     const std::size_t blocks = kinematics.blocks().size();
     count_ = Pack::lanes * blocks;
     load_.resize(3 * count_);
@@ -40,10 +50,10 @@ class InverseDynamics {
 
   void residual(double t, In q, In v, In a, Out r) {
     kinematics_.move(t, q, v, a);
-    if (!effects_.empty()) {
+    if (!loading_.empty()) {
       const Points p = points(needs_);
       std::fill(load_.begin(), load_.end(), 0.0);
-      for (const auto& effect : effects_) effect->add_load(t, p, load_);
+      for (const Effect* effect : loading_) effect->add_load(t, p, load_);
     }
     for (Wrench& wrench : at_tip_) wrench = {};
     at_root_ = {};
@@ -83,7 +93,6 @@ class InverseDynamics {
   const Wrench& at_tip(std::size_t i) const { return at_tip_[i]; }
   const Wrench& at_root() const { return at_root_; }
   const Needs& effect_needs() const { return needs_; }
-  const Effects& effects() const { return effects_; }
 
  private:
   struct Force {
@@ -147,7 +156,7 @@ class InverseDynamics {
       at.total = kinematics_.blocks()[b].mass *
                  (a + cross(alpha, p) + m.accelerating.at(block.at) +
                   cross(omega, cross(omega, p) + Pack(2) * m.moving.at(block.at)));
-      if (!effects_.empty()) {
+      if (!loading_.empty()) {
         const Vec3<Pack> world = gathered(b);
         at.load = {dot(e0, world), dot(e1, world), dot(e2, world)};
         at.total = at.total - at.load;
@@ -177,7 +186,7 @@ class InverseDynamics {
   }
 
   Kinematics<Kernel, dofs>& kinematics_;
-  const Effects& effects_;
+  std::vector<const Effect*> loading_;  // those that are not uniform
   Needs needs_;
   std::size_t count_ = 0;
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;

@@ -89,11 +89,16 @@ class Kinematics {
     shaped_.assign(q.begin(), q.end());
   }
 
+  /// Accelerations are from now on relative to a frame that falls with this one (m/s^2):
+  /// inertial forces then hold the uniform load, at no cost.
+  void fall(const Vec& acceleration) { falling_ = acceleration; }
+
   /// Frames and their motion; calls shape().
   void move(double t, In q, In v, In a) {
     shape(q);
     root_ = free_root_ ? free_root_->motion(q.last(6), v.last(6), a.last(6))
                        : clamped(root_motion_.at(t));
+    root_.a = root_.a - root_.frame.back(falling_);
     for (std::size_t i = 0; i < segments_.size(); ++i) move_segment(i, v, a);
   }
 
@@ -192,6 +197,7 @@ class Kinematics {
   std::vector<BlockGeometry> block_geometry_;
   std::vector<SegmentMotion> motion_;
   FrameMotion root_;
+  Vec falling_;
   std::vector<double> shaped_;  // the q of geometry_
 };
 

@@ -40,6 +40,12 @@ class SegmentFrames {
       column[S::translations + i] = from[1][S::rotation[i]];
     }
   }
+  /// f.back(axis(component)).
+  static Vec seen(const Frame& f, int component) {
+    if (component == 0) return {f.e0.x, f.e1.x, f.e2.x};
+    if (component == 1) return {f.e0.y, f.e1.y, f.e2.y};
+    return {f.e0.z, f.e1.z, f.e2.z};
+  }
   static Vec axis(int component) {
     return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
   }
@@ -48,7 +54,8 @@ class SegmentFrames {
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
 /// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
 /// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
-/// matrix is sum m J^T J over the quadrature points.
+/// matrix is sum m J^T J over the quadrature points. Expects zeros in tip and local, or
+/// what an earlier call left there.
 template <class Kernel, int dofs>
 void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
                   SegmentTangent<MassShape<dofs>>& tangent) {
@@ -89,7 +96,7 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   }
 
   auto& local = tangent.local;
-  local.setZero();
+  if (segment.mounted) local.setZero();  // its zeros are turned below, up to rounding
   const double total = w.acc * sum(mass);
   const Vec p{w.acc * sum(first.x), w.acc * sum(first.y), w.acc * sum(first.z)};
   double pp[3][3];
@@ -128,17 +135,17 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   auto& transfer = tangent.transfer;
   const Frame& f = g.rotation;
   for (int c = 0; c < t; ++c) {
-    Frames::put(f.back(Frames::axis(S::translation[c])), Vec{}, transfer.col(c));
+    Frames::put(Frames::seen(f, S::translation[c]), Vec{}, transfer.col(c));
   }
   for (int c = 0; c < S::rotations; ++c) {
     const Vec e = Frames::axis(S::rotation[c]);
-    Frames::put(f.back(cross(e, g.position)), f.back(e), transfer.col(t + c));
+    Frames::put(f.back(cross(e, g.position)), Frames::seen(f, S::rotation[c]),
+                transfer.col(t + c));
   }
   for (std::size_t k = 0; k < dofs; ++k) {
     Frames::put(f.back(g.slope[k]), f.back(g.turn[k]),
                 transfer.col(size + static_cast<int>(k)));
   }
-  tangent.tip.setZero();
   if constexpr (dofs > 1) {
     tangent.tip(t, t) = w.acc * segment.rotor;
     if (segment.mounted) Frames::mount(segment.mount, tangent);

@@ -148,7 +148,10 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     subtract_product(e.response, own.template bottomRows<n>(), joseph);
     const Eigen::Matrix<double, states, states> back = tip_motion.transpose();
     add_product(back, product(hanging, tip_motion), joseph);
-    handed_on = 0.5 * (joseph + joseph.transpose());
+    for (int j = 0; j < states; ++j) {  // symmetric but for rounding: made so
+      for (int i = 0; i < j; ++i) joseph(j, i) = joseph(i, j);
+    }
+    handed_on = joseph;
     return true;
   }
 

@@ -122,7 +122,11 @@ class ReducedSystem final : public System,
       tangent.parent.push_back(segment.parent);
     }
     tangent.segments.resize(tangent.parent.size());
-    for (auto& segment : tangent.segments) segment.transfer.setZero();
+    for (auto& segment : tangent.segments) {  // the zero blocks stay
+      segment.transfer.setZero();
+      segment.local.setZero();
+      segment.tip.setZero();
+    }
     tangent.free_root = kinematics_.free();
   }
 
