@@ -118,6 +118,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const auto references =
       line.dry_run ? nullptr : std::make_shared<const References>(settings, chosen);
   std::vector<Case> all;
+  all.reserve(chosen.size());
   for (const SwingCase& c : chosen) {
     all.push_back({c.identity(), [c, references, parameters = c.parameters(settings),
                                   repeat = line.repeat](Row& row, const Deadline&) {

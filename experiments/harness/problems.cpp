@@ -124,8 +124,9 @@ std::unique_ptr<System> Problem::make(std::string_view solver) const {
 }
 
 std::vector<Checkpoint> checkpoints(double t_end, int count) {
-  std::vector<Checkpoint> times;
-  for (int k = 1; k <= count; ++k) times.push_back({t_end * k / count, {}});
+  std::vector<Checkpoint> times(static_cast<std::size_t>(count));
+  for (int k = 1; k <= count; ++k)
+    times[static_cast<std::size_t>(k - 1)].t = t_end * k / count;
   return times;
 }
 

@@ -171,8 +171,8 @@ class Grid {
   }
 
  private:
-  std::vector<int> counts(std::vector<int> usual) const {
-    return line_.elements.empty() ? usual : line_.elements;
+  std::vector<int> counts(std::initializer_list<int> usual) const {
+    return line_.elements.empty() ? std::vector<int>(usual) : line_.elements;
   }
 
   bool keeps(std::string_view key, std::string_view word) const {
