@@ -34,6 +34,8 @@ function(tress_test name)
   target_compile_definitions(test_${name} PRIVATE
                              TRESS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TRESS_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  # Tests run once: optimising them costs more than it brings.
+  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   tress_warnings(test_${name})
   gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()
