@@ -9,17 +9,6 @@
 namespace tress {
 namespace {
 
-std::vector<std::string_view> words_of(std::string_view choices) {
-  std::vector<std::string_view> words;
-  while (!choices.empty()) {
-    const std::size_t bar = choices.find('|');
-    words.push_back(choices.substr(0, bar));
-    choices =
-        bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
-  }
-  return words;
-}
-
 std::string join(std::span<const std::string_view> words) {
   std::string text;
   for (const std::string_view word : words) {
@@ -72,6 +61,17 @@ double parse_number(const Parameter& declared, std::string_view text,
 }
 
 }  // namespace
+
+std::vector<std::string_view> words_of(std::string_view choices) {
+  std::vector<std::string_view> words;
+  while (!choices.empty()) {
+    const std::size_t bar = choices.find('|');
+    words.push_back(choices.substr(0, bar));
+    choices =
+        bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
+  }
+  return words;
+}
 
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates) {

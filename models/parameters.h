@@ -47,6 +47,9 @@ class Parameters {
   std::string where_;
 };
 
+/// The words of a Parameter's `choices`.
+std::vector<std::string_view> words_of(std::string_view choices);
+
 /// The candidate nearest to `word` by edit distance, or empty when none is near.
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates);

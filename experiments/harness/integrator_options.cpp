@@ -1,5 +1,7 @@
 #include "experiments/harness/integrator_options.h"
 
+#include <algorithm>
+
 namespace tress {
 namespace {
 
@@ -30,13 +32,8 @@ template <auto member, typename Enum>
 void choice(Options& o, const Parameters& p, std::string_view key) {
   for (const Parameter& declared : integrator_options()) {
     if (declared.name != key) continue;
-    int position = 0;
-    std::string_view rest = declared.choices;
-    while (rest.substr(0, rest.find('|')) != p.word(key)) {
-      rest.remove_prefix(rest.find('|') + 1);
-      ++position;
-    }
-    o.*member = static_cast<Enum>(position);
+    const auto words = words_of(declared.choices);
+    o.*member = static_cast<Enum>(std::ranges::find(words, p.word(key)) - words.begin());
   }
 }
 

@@ -15,13 +15,6 @@ using Values = std::vector<double>;
 
 Values coordinates(System&, const State& end) { return end.q; }
 
-Values points(System& system, const State& end) {
-  MaterialPoints& material = *system.material_points();
-  Values x(3 * static_cast<std::size_t>(material.count()));
-  material.positions(0, end.q, x);
-  return x;
-}
-
 /// A bead of 1 m radius released horizontally: x = sin theta, z = -cos theta.
 Problem bead(std::string_view name, const char* form) {
   Problem problem{.name = name,
@@ -116,6 +109,13 @@ std::vector<Problem> make_problems() {
 }
 
 }  // namespace
+
+std::vector<double> points(System& system, const State& state) {
+  MaterialPoints& material = *system.material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(material.count()));
+  material.positions(0, state.q, x);
+  return x;
+}
 
 std::unique_ptr<System> Problem::make(std::string_view solver) const {
   ModelSettings all = settings;

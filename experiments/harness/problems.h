@@ -47,6 +47,9 @@ struct Problem {
   std::unique_ptr<System> make(std::string_view solver = {}) const;
 };
 
+/// The material points of a state, three coordinates each.
+std::vector<double> points(System& system, const State& state);
+
 /// A run that stops at every checkpoint, so that errors which happen to cancel at one
 /// time do not pass for accuracy.
 struct ProblemRun {

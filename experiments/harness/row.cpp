@@ -73,6 +73,12 @@ std::string run_id(std::string_view experiment, const Row& identity) {
   return fmt::format("{:016x}", hash);
 }
 
+std::string joined(const Row& row, std::initializer_list<std::string_view> columns) {
+  std::string key;
+  for (const std::string_view column : columns) key.append(row.text(column)).append("/");
+  return key;
+}
+
 std::string describe(const Row& identity) {
   std::string text;
   for (const auto& [column, cell] : identity.cells()) {

@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,6 +63,9 @@ constexpr int schema_version = 1;
 /// Names a row across runs: 16 hexadecimal digits hashed from the experiment's name, the
 /// identity cells sorted by column, and the schema version.
 std::string run_id(std::string_view experiment, const Row& identity);
+
+/// The texts of some columns, "a/b/", to group rows by.
+std::string joined(const Row& row, std::initializer_list<std::string_view> columns);
 
 /// "a=1 b=2" for messages.
 std::string describe(const Row& identity);

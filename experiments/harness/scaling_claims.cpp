@@ -15,11 +15,7 @@ namespace {
 constexpr double first_fitted = 20;
 
 std::string series_of(const Row& row) {
-  std::string key;
-  for (const std::string_view column : {"model", "solver", "tangent", "modes"}) {
-    key.append(row.text(column)).append("/");
-  }
-  return key;
+  return joined(row, {"model", "solver", "tangent", "modes"});
 }
 
 struct Which {

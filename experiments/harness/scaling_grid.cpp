@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "experiments/harness/strand_scenes.h"
 #include "models/catalogue.h"
@@ -11,9 +10,6 @@
 
 namespace tress {
 namespace {
-
-constexpr std::array<std::string_view, 5> trees = {"palm_tree", "algae", "complex_tree",
-                                                   "man", "willow"};
 
 constexpr Parameter settings_of_rows[] = {
     {.name = "structure",
@@ -165,7 +161,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
           {straight, &find_model(m.model), m.solver, m.tangent, m.modes, elements});
     }
   }
-  for (const std::string_view tree : trees) {
+  for (const std::string_view tree : words_of(tree_choices)) {
     if (!keeps("structure", tree)) continue;
     const auto elements = static_cast<int>(tree_segments(tree).size());
     for (const Method& m : methods_of_trees) {

@@ -125,22 +125,12 @@ bool usual(const CommandLine& line, const StrandScene& scene, const Damping& dam
          (elements == 5 || elements == usual_elements);
 }
 
-bool known_word(const Parameter& parameter, std::string_view word) {
-  std::string_view rest = parameter.choices;
-  while (!rest.empty()) {
-    const std::size_t bar = rest.find('|');
-    if (rest.substr(0, bar) == word) return true;
-    rest = bar == std::string_view::npos ? std::string_view{} : rest.substr(bar + 1);
-  }
-  return false;
-}
-
 /// Whether the model has this solver and tangent, and the integrator takes it.
 bool possible(const StabilityCase& c, const Settings& settings) {
   for (const auto& [key, word] :
        {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
     const auto has = [&, k = std::string_view(key), w = word](const Parameter& p) {
-      return p.name == k && known_word(p, w);
+      return p.name == k && contains(words_of(p.choices), w);
     };
     if (std::ranges::none_of(c.model->parameters, has)) return false;
   }

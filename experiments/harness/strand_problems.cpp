@@ -27,10 +27,7 @@ ModelSettings settings(int elements) {
 std::vector<double> in_plane(In tip) { return {tip[0], tip[2]}; }
 
 std::vector<double> tip(System& system, const State& state) {
-  MaterialPoints& points = *system.material_points();
-  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
-  points.positions(0, state.q, x);
-  return in_plane(In(x).last(3));
+  return in_plane(In(points(system, state)).last(3));
 }
 
 Problem release(std::string_view model, int elements) {

@@ -43,12 +43,8 @@ std::map<std::string, double> converged_errors(const std::vector<Row>& rows,
   for (const Row& row : rows) {
     if (row.text("error_kind") != "time" || row.text("modes") != modes) continue;
     if (!row.ok() || !(row.number("newton_tolerance") <= converged)) continue;
-    std::string key;
-    for (const std::string_view column : {"model", "solver", "tangent", "integrator",
-                                          "newton_tolerance", "elements", "dt_s"}) {
-      key.append(row.text(column)).append("/");
-    }
-    errors[key] = row.number("tip_error_rel");
+    errors[joined(row, {"model", "solver", "tangent", "integrator", "newton_tolerance",
+                        "elements", "dt_s"})] = row.number("tip_error_rel");
   }
   return errors;
 }

@@ -30,12 +30,6 @@ double slope(const std::vector<Point>& points) {
   return log_log_slope(sizes, errors);
 }
 
-std::string joined(const Row& row, std::initializer_list<std::string_view> columns) {
-  std::string key;
-  for (const std::string_view column : columns) key.append(row.text(column)).append("/");
-  return key;
-}
-
 bool is_total(const Row& row) { return row.text("error_kind") == "total"; }
 
 /// Time errors fall with the step, total ones with the length of an element.

@@ -5,6 +5,7 @@
 #include "models/constrained/bead_on_wire.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/on_curve.h"
+#include "models/effects/gravity.h"
 
 namespace tress {
 namespace {
@@ -37,11 +38,7 @@ constexpr Parameter declared[] = {
      .number = 0.5,
      .min = 1e-6,
      .max = 1e6},
-    {.name = "gravity_m_s2",
-     .help = "gravity along -z (m/s^2)",
-     .number = 9.81,
-     .min = 0,
-     .max = 1e6},
+    gravity_parameter,
     {.name = "drag_kg_s",
      .help = "linear drag of the bead (kg/s)",
      .number = 0,

@@ -9,6 +9,7 @@
 #include "models/constrained/angles.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/joints.h"
+#include "models/effects/gravity.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -38,11 +39,7 @@ constexpr Parameter declared[] = {
      .number = 1,
      .min = 1e-6,
      .max = 1e6},
-    {.name = "gravity_m_s2",
-     .help = "gravity along -z (m/s^2)",
-     .number = 9.81,
-     .min = 0,
-     .max = 1e6},
+    gravity_parameter,
     {.name = "drag_kg_m_s",
      .help = "air drag per length nu (kg/(m s))",
      .number = 0,

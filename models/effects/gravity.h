@@ -2,8 +2,16 @@
 
 #include "models/effects/effect.h"
 #include "models/math/vec3.h"
+#include "models/parameters.h"
 
 namespace tress {
+
+/// How every model's catalogue entry asks for its strength.
+inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
+                                             .help = "gravity along -z (m/s^2)",
+                                             .number = 9.81,
+                                             .min = 0,
+                                             .max = 1e6};
 
 /// Uniform gravity: f = m g per point, potential energy -m g.x (zero at the origin).
 /// Reads mass and, for the potential only, position. O(points).

@@ -43,12 +43,7 @@ class CompositeSolver final : public TreeSolver<Shape> {
     at_root_.setZero();
     for (std::size_t i = 0; i < full_.size(); ++i) hanging_[i] = tangent.segments[i].tip;
     for (std::size_t i = full_.size(); i-- > 0;) {
-      const SegmentTangent<Shape>& segment = tangent.segments[i];
-      Eigen::Matrix<double, wrench, Shape::columns> pulled;
-      pulled.setZero();
-      add_pulled(hanging_[i], segment, pulled);
-      full_[i] = segment.local;
-      add_product(segment.lift, pulled, full_[i]);
+      full_[i] = with_hanging(tangent.segments[i], hanging_[i]);
       const int parent = tangent.parent[i];
       (parent < 0 ? at_root_ : hanging_[static_cast<std::size_t>(parent)]) +=
           full_[i].template topLeftCorner<wrench, states>();

@@ -38,9 +38,7 @@ class ExactTangent {
     points(i, w, effects, derivatives, tangent);
     tip(i, w, derivatives, tangent);
     for (int k = 0; k < dofs; ++k) {
-      const Vec e = K::unit(k);
-      tangent.stiffness[k] =
-          w.pos * dot(e, segment.stiffness) + w.vel * dot(e, segment.friction);
+      tangent.stiffness[k] = dot(K::unit(k), restoring(segment, w));
       tangent.local(size + k, 3 * size + k) += tangent.stiffness[k];
     }
     if constexpr (dofs > 1) {
@@ -62,7 +60,6 @@ class ExactTangent {
           joint.W(second).at(free.at()) + joint.dW(rate, rate).at(free.at());
       root.local.setZero();
       root.transfer.setZero();
-      root.lift.setZero();
       for (int c = 0; c < 3; ++c) {
         const Vec e = Frames::axis(c);
         const Vec back = free.frame().back(e);
@@ -73,11 +70,11 @@ class ExactTangent {
 
         const Vec turn = joint.W(e).at(free.at());  // in the reference's components
         const Vec phi = rotation.back(turn);
-        const Vec d_omega = joint.dW(e, rate).at(free.at()) + cross(omega, turn);
+        const Vec turned = joint.dW(e, rate).at(free.at());
+        const Vec d_omega = turned + cross(omega, turn);
         const Vec d_alpha = joint.dW(e, second).at(free.at()) +
                             joint.d2W(e, rate, rate).at(free.at()) + cross(alpha, turn);
-        const Vec d_alpha_rate =
-            joint.dW(e, rate).at(free.at()) + joint.dW(rate, e).at(free.at());
+        const Vec d_alpha_rate = turned + joint.dW(rate, e).at(free.at());
         auto theta = root.transfer.col(3 + c);
         put({}, w.pos * phi, theta, 0);
         put(w.pos * cross(m.v, phi), w.pos * rotation.back(d_omega) + w.vel * phi, theta,
@@ -88,19 +85,10 @@ class ExactTangent {
             theta, 2);
 
         Frames::put(free.frame() * e, {}, root.lift.col(c));
-        root.lift.col(c).template tail<3>().setZero();
-        const Vec lifted = joint.W(e).at(free.at());
-        root.lift(3, 3 + c) = lifted.x;
-        root.lift(4, 3 + c) = lifted.y;
-        root.lift(5, 3 + c) = lifted.z;
+        Frames::put({}, turn, root.lift.col(3 + c));
         const Vec force = free.frame() * cross(phi, held.force);
         const Vec moment = joint.dW(e, held.moment).at(free.at());
-        root.local(0, 3 + c) = w.pos * force.x;
-        root.local(1, 3 + c) = w.pos * force.y;
-        root.local(2, 3 + c) = w.pos * force.z;
-        root.local(3, 3 + c) = w.pos * moment.x;
-        root.local(4, 3 + c) = w.pos * moment.y;
-        root.local(5, 3 + c) = w.pos * moment.z;
+        Frames::put(w.pos * force, w.pos * moment, root.local.col(3 + c));
       }
       Eigen::Matrix<double, size, Shape::states> spin;
       spin.setZero();

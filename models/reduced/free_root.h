@@ -33,7 +33,6 @@ class FreeRootFrame {
   const Frame& frame() const { return frame_; }
   const Helix& joint() const { return joint_; }
   const Helix::At<double>& at() const { return at_; }
-  const Frame& reference() const { return reference_; }
 
  private:
   FreeRoot start_;

@@ -14,10 +14,10 @@ namespace tress {
 ///     P(s) = W(s) e0                             position
 ///
 /// Derivatives with respect to kappa are directional and multilinear: dW[x] y is the
-/// derivative of W y along x, d2W[x1, x2] y and d3W[x1, x2, x3] y the second and third
-/// ones; those of P follow with y = e0. Each is a few constant vectors weighted by the
-/// functions, so it is prepared once for an element and evaluated at any s (a number or a
-/// pack of them). Straight elements are no special case.
+/// derivative of W y along x, d2W[x1, x2] y the second one; those of P follow with y =
+/// e0. Each is a few constant vectors weighted by the functions, so it is prepared once
+/// for an element and evaluated at any s (a number or a pack of them). Straight elements
+/// are no special case.
 class Helix {
  public:
   /// The functions at one arc length, or at a pack of them.
@@ -96,9 +96,6 @@ class Helix {
   First dW(const Vec& x, const Vec& y) const { return first_of(Terms(kappa_, y), x); }
   Second d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
     return second_of(Terms(kappa_, y), x1, x2);
-  }
-  Third d3W(const Vec& x1, const Vec& x2, const Vec& x3, const Vec& y) const {
-    return third_of(Terms(kappa_, y), x1, x2, x3);
   }
 
   // Positions of the element's points.

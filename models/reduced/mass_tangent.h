@@ -51,6 +51,11 @@ class SegmentFrames {
   }
 };
 
+/// Elastic stiffness and friction of the unknowns, by component.
+inline Vec restoring(const ReducedSegment& segment, Weights w) {
+  return w.pos * segment.stiffness + w.vel * segment.friction;
+}
+
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
 /// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
 /// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
@@ -126,9 +131,8 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
       local(column, size + static_cast<int>(l)) =
           local(size + static_cast<int>(l), column) = w.acc * sum(inner[k][l]);
     }
-    const Vec e = Kinematics<Kernel, dofs>::unit(static_cast<int>(k));
     tangent.stiffness[static_cast<int>(k)] =
-        w.pos * dot(e, segment.stiffness) + w.vel * dot(e, segment.friction);
+        dot(Kinematics<Kernel, dofs>::unit(static_cast<int>(k)), restoring(segment, w));
     local(column, column) += tangent.stiffness[static_cast<int>(k)];
   }
 

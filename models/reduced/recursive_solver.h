@@ -158,11 +158,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   static bool eliminate_general(const SegmentTangent<Shape>& segment,
                                 const Articulated& hanging, Eliminated& e,
                                 Articulated& handed_on) {
-    Eigen::Matrix<double, wrench, Shape::columns> pulled;
-    pulled.setZero();
-    add_pulled(hanging, segment, pulled);
-    Eigen::Matrix<double, Shape::rows, Shape::columns> full = segment.local;
-    add_product(segment.lift, pulled, full);
+    const auto full = with_hanging(segment, hanging);
     const Square pivot = full.template bottomRightCorner<n, n>();
     const auto r_of_s = full.template bottomLeftCorner<n, states>();
     const auto w_of_x = full.template topRightCorner<wrench, n>();

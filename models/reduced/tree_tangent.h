@@ -69,6 +69,20 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
       Shape::states, c.data() + rows * Shape::states, rows);
 }
 
+/// [s; x] of a segment to its [w; r], with `hanging` s_tip on its tip:
+/// local + lift hanging transfer.
+template <class Shape>
+auto with_hanging(
+    const SegmentTangent<Shape>& segment,
+    const typename Shape::template Matrix<Shape::wrench, Shape::states>& hanging) {
+  typename Shape::template Matrix<Shape::wrench, Shape::columns> pulled;
+  pulled.setZero();
+  add_pulled(hanging, segment, pulled);
+  typename Shape::template Matrix<Shape::rows, Shape::columns> full = segment.local;
+  add_product(segment.lift, pulled, full);
+  return full;
+}
+
 /// The same of a root that moves freely: its 6 unknowns y give the state s = transfer y
 /// at the start of the first segments, and local y + lift (sum of their w) = b.
 template <class Shape>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "experiments/harness/fit.h"
 #include "tests/support/drive.h"
-#include "tests/support/fit.h"
 #include "tests/support/small_systems.h"
 
 namespace tress {
@@ -9,7 +9,6 @@ namespace {
 
 using testing_support::AngleChain;
 using testing_support::Drive;
-using testing_support::fitted_order;
 
 /// Centrifugal forces and weight stay out of S.
 class MassTangent final : public AngleChain {
@@ -63,7 +62,7 @@ TEST(LinearlyImplicitMidpoint, KeepsOrderTwoWithTheMassMatrixForATangent) {
     errors.push_back(drive.distance(exact));
   }
   // A single step from no acceleration would be of order 1.
-  EXPECT_NEAR(fitted_order(steps, errors), 2, 0.2)
+  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.2)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 

@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/fit.h"
 #include "experiments/harness/pendulum_reference.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
-#include "tests/support/fit.h"
 
 namespace tress {
 namespace {
-
-using testing_support::fitted_order;
 
 // The circle bead is the plane pendulum: an exact solution, in one coordinate
 // (parametric) and with multipliers (every other formulation).
@@ -102,7 +100,7 @@ TEST_P(FixedStepOrder, ErrorFallsAtTheNominalOrder) {
     steps.push_back(options.step);
     errors.push_back(run(GetParam(), options).position_error);
   }
-  EXPECT_NEAR(fitted_order(steps, errors), GetParam().entry->order, 0.2)
+  EXPECT_NEAR(log_log_slope(steps, errors), GetParam().entry->order, 0.2)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 
@@ -144,7 +142,7 @@ TEST(OrderTwoBdf, ErrorFallsAsTheToleranceToTheTwoThirds) {
     tolerances.push_back(rtol);
     errors.push_back(run(method, options).position_error);
   }
-  EXPECT_NEAR(fitted_order(tolerances, errors), 2. / 3, 0.1);
+  EXPECT_NEAR(log_log_slope(tolerances, errors), 2. / 3, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveTolerance, testing::ValuesIn(methods(true)),

@@ -3,15 +3,14 @@
 #include <map>
 #include <ostream>
 
+#include "experiments/harness/fit.h"
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
-#include "tests/support/fit.h"
 
 namespace tress {
 namespace {
 
 using testing_support::Drive;
-using testing_support::fitted_order;
 
 // A soft thick strand (its waves take milliseconds, so that explicit methods are in their
 // asymptotic range) on a root that translates and turns, with drag: every term of the
@@ -112,7 +111,7 @@ TEST_P(FixedStepOnStrands, ErrorFallsAtTheNominalOrder) {
     steps.push_back(options.step);
     errors.push_back(run(GetParam(), options).error);
   }
-  EXPECT_NEAR(fitted_order(steps, errors), GetParam().entry->order, 0.25)
+  EXPECT_NEAR(log_log_slope(steps, errors), GetParam().entry->order, 0.25)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 

@@ -38,14 +38,9 @@ inline std::vector<CatalogueCase> catalogue_cases() {
   for (const ModelEntry& entry : models()) {
     cases.push_back({&entry, "", ""});
     for (const Parameter& parameter : entry.parameters) {
-      std::string_view rest = parameter.choices;
-      bool first = true;  // the first choice is the default
-      while (!rest.empty()) {
-        const std::size_t bar = rest.find('|');
-        const std::string word(rest.substr(0, bar));
-        if (!first) cases.push_back({&entry, std::string(parameter.name), word});
-        first = false;
-        rest = bar == std::string_view::npos ? std::string_view{} : rest.substr(bar + 1);
+      const auto words = words_of(parameter.choices);
+      for (std::size_t i = 1; i < words.size(); ++i) {  // the first is the default
+        cases.push_back({&entry, std::string(parameter.name), std::string(words[i])});
       }
     }
   }

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "experiments/harness/fit.h"
 #include "tests/support/drive.h"
-#include "tests/support/fit.h"
 #include "tests/support/small_systems.h"
 
 namespace tress {
@@ -71,7 +71,7 @@ class Accuracy : public testing::TestWithParam<Case> {
     }
     // Errors at one time scatter and may cancel, so the trend is what must hold:
     // rtol^(2/3) at order 2, nearly rtol above.
-    EXPECT_GT(testing_support::fitted_order(tolerances, errors), 0.6);
+    EXPECT_GT(log_log_slope(tolerances, errors), 0.6);
     EXPECT_LT(errors.back(), 1e-3 * errors.front());
   }
 };

@@ -3,8 +3,8 @@
 #include <array>
 #include <numbers>
 
+#include "experiments/harness/fit.h"
 #include "tests/models/reduced/static_equilibrium.h"
-#include "tests/support/fit.h"
 
 // Strands at rest under gravity against solutions of Kirchhoff's equations of the
 // continuous rod, computed independently of this code as boundary-value problems on two
@@ -60,7 +60,7 @@ TEST_P(Cantilever, ApproachesTheGravitoBendingCurveAtOrder2) {
     const std::vector<double> last_sizes(sizes.begin() + 1, sizes.end());
     const std::vector<double> last_errors(errors.begin() + 1, errors.end());
     const double tolerance = exact.gamma <= 10 ? 0.03 : 0.2;
-    EXPECT_NEAR(fitted_order(last_sizes, last_errors), 2, tolerance) << exact.gamma;
+    EXPECT_NEAR(log_log_slope(last_sizes, last_errors), 2, tolerance) << exact.gamma;
     if (exact.gamma > 10) continue;
     // Small loads bend by the moment M(s) = Gamma (1 - s)^2/2. A helix takes its mean
     // over the element and H = int M (1 - s) loses the covariance of the two, Gamma
@@ -127,8 +127,8 @@ TEST_P(CurlyHair, ApproachesKirchhoffsRodAtOrder2) {
   // (kappa h)^2/4 of the leading one at most: 0.15 at the coarsest of the three, which
   // moves the order fitted over a factor of 4 by 0.1.
   const auto order = [&](const std::vector<double>& errors) {
-    return fitted_order({sizes.begin() + 1, sizes.end()},
-                        {errors.begin() + 1, errors.end()});
+    return log_log_slope({sizes.begin() + 1, sizes.end()},
+                         {errors.begin() + 1, errors.end()});
   };
   EXPECT_NEAR(order(away), 2, 0.1);
   EXPECT_NEAR(order(energy_off), 2, 0.1);

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
+#include "experiments/harness/fit.h"
 #include "tests/models/reduced/strand_cases.h"
-#include "tests/support/fit.h"
 
 namespace tress {
 namespace {
@@ -69,7 +69,7 @@ void expect_order_2(const Way& way, Error error) {
     std::printf("%s, %s: step %g s, error %.2e\n", way.strand.name.c_str(),
                 way.integrator.c_str(), step, errors.back());
   }
-  EXPECT_NEAR(fitted_order(steps, errors), 2, 0.1);
+  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.1);
 }
 
 class EnergyOfARelease : public testing::TestWithParam<Way> {};

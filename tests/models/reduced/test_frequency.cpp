@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "experiments/harness/fit.h"
 #include "tests/models/reduced/static_equilibrium.h"
-#include "tests/support/fit.h"
 
 namespace tress {
 namespace {
@@ -64,7 +64,7 @@ TEST_P(Frequency, ApproachesTheBeamAtOrder2) {
                 errors.back());
   }
   // The next term, (beta h)^2/10 or so of the first, is 0.014 at N = 5.
-  EXPECT_NEAR(fitted_order(sizes, errors), 2, 0.02);
+  EXPECT_NEAR(log_log_slope(sizes, errors), 2, 0.02);
 }
 
 TEST_P(Frequency, ScalesWithLengthSectionAndMaterial) {

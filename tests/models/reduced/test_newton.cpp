@@ -2,10 +2,10 @@
 
 #include <cstdio>
 
+#include "experiments/harness/fit.h"
 #include "experiments/harness/stability.h"
 #include "experiments/harness/strand_scenes.h"
 #include "tests/models/reduced/strand_cases.h"
-#include "tests/support/fit.h"
 
 namespace tress {
 namespace {
@@ -127,7 +127,7 @@ double convergence_order(System& exact, System& tested, double h) {
     after.push_back(
         solver.size(plus(plus(a, -1, step.solve(a, step.residual(a))), -1, solution)));
   }
-  return fitted_order(before, after);
+  return log_log_slope(before, after);
 }
 
 // The next order is (constant times) the error itself: constants of up to 1e3 change the
