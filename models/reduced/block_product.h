@@ -4,20 +4,22 @@
 
 namespace tress {
 
-/// c += sign a b for small column-major blocks of fixed size inside larger ones, given by
-/// their first entries and column strides. Loops rather than Eigen's products: those
-/// unroll completely, and a 9 x 6 x 21 product then takes the compiler minutes. A column
-/// of c stays in vector registers; without the last pragma the compiler unrolls its
-/// loop before it comes to vectorise it, and the product takes more than twice as long.
-template <int sign, int rows, int inner, int columns>
-inline void accumulate_product(const double* a, int a_stride, const double* b,
-                               int b_stride, double* c, int c_stride) {
+/// c (+)= sign a b for small column-major blocks of fixed size inside larger ones, given
+/// by their first entries and column strides; b, with a row stride too, may be
+/// transposed. Loops rather than Eigen's products: those unroll completely, and a 9 x 6 x
+/// 21 product then takes the compiler minutes. A column of c stays in vector registers;
+/// without the last pragma the compiler unrolls its loop before it comes to vectorise it,
+/// and the product takes more than twice as long. Inlined, so that strides are constants.
+template <int sign, bool onto, int rows, int inner, int columns>
+[[gnu::always_inline]] inline void multiply(const double* a, int a_stride,
+                                            const double* b, int b_step, int b_stride,
+                                            double* c, int c_stride) {
   for (int j = 0; j < columns; ++j) {
     double sum[rows];
-    for (int i = 0; i < rows; ++i) sum[i] = c[i + c_stride * j];
+    for (int i = 0; i < rows; ++i) sum[i] = onto ? c[i + c_stride * j] : 0.0;
 #pragma GCC unroll 9
     for (int k = 0; k < inner; ++k) {
-      const double weight = b[k + b_stride * j];
+      const double weight = b[b_step * k + b_stride * j];
 #pragma GCC unroll 1
       for (int i = 0; i < rows; ++i) sum[i] += sign * weight * a[i + a_stride * k];
     }
@@ -26,40 +28,43 @@ inline void accumulate_product(const double* a, int a_stride, const double* b,
 }
 
 /// The same for matrices or blocks of them; the smallest are Eigen's to unroll.
-template <int sign, class A, class B, class C>
-inline void accumulate_product(const A& a, const B& b, C&& c) {
+template <int sign, bool onto, class A, class B, class C>
+inline void multiply(const A& a, const B& b, C&& c) {
   constexpr int rows = A::RowsAtCompileTime, inner = A::ColsAtCompileTime,
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
-  static_assert(!B::IsRowMajor || inner == 1 || columns == 1);
   if constexpr (rows * inner * columns <= 27) {
-    c.noalias() += sign * a.lazyProduct(b);
+    if constexpr (onto) {
+      c.noalias() += sign * a.lazyProduct(b);
+    } else {
+      c.noalias() = sign * a.lazyProduct(b);
+    }
   } else {
-    accumulate_product<sign, rows, inner, columns>(
-        a.data(), static_cast<int>(a.colStride()), b.data(),
-        static_cast<int>(b.colStride()), c.data(), static_cast<int>(c.colStride()));
+    multiply<sign, onto, rows, inner, columns>(a.data(), static_cast<int>(a.colStride()),
+                                               b.data(), static_cast<int>(b.rowStride()),
+                                               static_cast<int>(b.colStride()), c.data(),
+                                               static_cast<int>(c.colStride()));
   }
 }
 
 /// c += a b
 template <class A, class B, class C>
 inline void add_product(const A& a, const B& b, C&& c) {
-  accumulate_product<1>(a, b, c);
+  multiply<1, true>(a, b, c);
 }
 
 /// c -= a b
 template <class A, class B, class C>
 inline void subtract_product(const A& a, const B& b, C&& c) {
-  accumulate_product<-1>(a, b, c);
+  multiply<-1, true>(a, b, c);
 }
 
 /// a b
 template <class A, class B>
 inline auto product(const A& a, const B& b) {
   Eigen::Matrix<double, A::RowsAtCompileTime, B::ColsAtCompileTime> c;
-  c.setZero();
-  add_product(a, b, c);
+  multiply<1, false>(a, b, c);
   return c;
 }
 

@@ -165,7 +165,8 @@ class ExactTangent {
               const Derivatives& derivatives, SegmentTangent<Shape>& tangent) const {
     const ReducedSegment& segment = kinematics_.segments()[i];
     const auto& m = kinematics_.motion(i);
-    const Vec3<Pack> omega(m.start.omega), alpha(m.start.alpha);
+    const FrameMotion& from = kinematics_.start(i);
+    const Vec3<Pack> omega(from.omega), alpha(from.alpha);
     const bool blocks = !effects.velocity.empty();
 
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
@@ -179,9 +180,9 @@ class ExactTangent {
       Blocks by_x, by_v;
       Vec3<Pack> u;  // velocity of the point
       if (blocks) {
-        by_x = gathered(effects.position, b, m.start.frame);
-        by_v = gathered(effects.velocity, b, m.start.frame);
-        u = Vec3<Pack>(m.start.v) + turning + velocity;
+        by_x = gathered(effects.position, b, from.frame);
+        by_v = gathered(effects.velocity, b, from.frame);
+        u = Vec3<Pack>(from.v) + turning + velocity;
       }
       const auto add = [&](int column, const Vec3<Pack>& dF) {
         accumulate(block, dF, column, tangent);
@@ -206,7 +207,7 @@ class ExactTangent {
         }
         if constexpr (dofs == 1) {
           // omega within the plane is not among the states: it turns with the frame.
-          const Vec3<Pack> turned(in_plane(m.start.omega, Frames::axis(S::rotation[c])));
+          const Vec3<Pack> turned(in_plane(from.omega, Frames::axis(S::rotation[c])));
           by_phi = by_phi + mass * (cross(turned, turning + Pack(2) * velocity) +
                                     cross(omega, cross(turned, p)));
         }
@@ -271,7 +272,8 @@ class ExactTangent {
     const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
     const Frame& f = g.rotation;
-    const Vec omega = m.start.omega, alpha = m.start.alpha;
+    const FrameMotion& from = kinematics_.start(i);
+    const Vec omega = from.omega, alpha = from.alpha;
     const Vec tip_omega = omega + m.turning;
     auto& transfer = tangent.transfer;
     const auto back = [&](const Vec& translation, const Vec& rotation, auto&& column,

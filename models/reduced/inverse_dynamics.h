@@ -114,8 +114,7 @@ class InverseDynamics {
       }
     };
     if (wanted.position) {
-      scatter(Vec3<Pack>(kinematics_.motion(i).start.x) +
-                  kinematics_.world(i, block.position),
+      scatter(Vec3<Pack>(kinematics_.start(i).x) + kinematics_.world(i, block.position),
               x_);
     }
     if (wanted.velocity) {
@@ -139,6 +138,7 @@ class InverseDynamics {
     const ReducedSegment& segment = kinematics_.segments()[i];
     const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
+    const FrameMotion& from = kinematics_.start(i);
 
     Wrench& tip = at_tip_[i];
     tip.moment = tip.moment + rotor_moment(segment.rotor, m.tip);
@@ -146,9 +146,9 @@ class InverseDynamics {
 
     Vec3<Pack> sum_force, sum_moment;
     std::array<Pack, dofs> sum_r{};
-    const Frame& f = m.start.frame;
-    const Vec3<Pack> e0(f.e0), e1(f.e1), e2(f.e2), omega(m.start.omega),
-        alpha(m.start.alpha), a(m.start.a);
+    const Frame& f = from.frame;
+    const Vec3<Pack> e0(f.e0), e1(f.e1), e2(f.e2), omega(from.omega), alpha(from.alpha),
+        a(from.a);
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
       const auto& block = kinematics_.block_geometry(b);
       const Vec3<Pack>& p = block.position;

@@ -34,7 +34,7 @@ class Kinematics {
     std::array<Vec, dofs> slope, turn;  // dP/dq_k and W e_k at the tip
   };
   struct SegmentMotion {
-    FrameMotion start, tip;
+    FrameMotion tip;
     Vec rate, acceleration;                                      // kappa', kappa''
     decltype(Kernel().first(Vec())) moving;                      // P'
     decltype(Kernel().acceleration(Vec(), Vec())) accelerating;  // P''
@@ -52,7 +52,11 @@ class Kinematics {
         root_rotor_(root_rotor),
         geometry_(segments_.size()),
         block_geometry_(blocks_.size()),
-        motion_(segments_.size()) {}
+        motion_(segments_.size()) {
+    if (std::ranges::any_of(segments_, &ReducedSegment::mounted)) {
+      mounted_.resize(segments_.size());
+    }
+  }
 
   int count() const { return static_cast<int>(segments_.size()); }
   int unknowns() const { return count() * dofs + (free_root_ ? 6 : 0); }
@@ -61,6 +65,10 @@ class Kinematics {
   const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
   const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
   const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }
+  const FrameMotion& start(std::size_t i) const {
+    const ReducedSegment& segment = segments_[i];
+    return segment.mounted ? mounted_[i] : parent_tip(segment);
+  }
   const FrameMotion& root() const { return root_; }
   bool free() const { return free_root_.has_value(); }
   FreeRootFrame& free_root() { return *free_root_; }
@@ -105,14 +113,14 @@ class Kinematics {
   /// The position of a segment's points and their velocity, world components; after
   /// move().
   Vec3<Pack> world(std::size_t i, const Vec3<Pack>& x) const {
-    const Frame& f = motion_[i].start.frame;
+    const Frame& f = start(i).frame;
     return x.x * Vec3<Pack>(f.e0) + x.y * Vec3<Pack>(f.e1) + x.z * Vec3<Pack>(f.e2);
   }
   Vec3<Pack> velocity(std::size_t i, std::size_t block) const {
-    const SegmentMotion& m = motion_[i];
+    const FrameMotion& from = start(i);
     const BlockGeometry& b = block_geometry_[block];
-    return Vec3<Pack>(m.start.v) + cross(Vec3<Pack>(m.start.omega), b.position) +
-           m.moving.at(b.at);
+    return Vec3<Pack>(from.v) + cross(Vec3<Pack>(from.omega), b.position) +
+           motion_[i].moving.at(b.at);
   }
 
  private:
@@ -152,13 +160,12 @@ class Kinematics {
     const ReducedSegment& segment = segments_[i];
     const SegmentGeometry& g = geometry_[i];
     SegmentMotion& m = motion_[i];
-    m.start = segment.parent < 0 ? root_
-                                 : motion_[static_cast<std::size_t>(segment.parent)].tip;
-    if (segment.mounted) mount(segment.mount, m.start);
+    if (segment.mounted) mount(i);
+    const FrameMotion& from = start(i);
     m.rate = components(v, i);
     m.acceleration = components(a, i);
 
-    const Vec omega = m.start.omega, alpha = m.start.alpha;
+    const Vec omega = from.omega, alpha = from.alpha;
     m.velocity = Vec{};
     m.moving = g.kernel.first(m.rate);
     m.accelerating = g.kernel.acceleration(m.rate, m.acceleration);
@@ -170,22 +177,29 @@ class Kinematics {
       m.turning = m.turning + rate * g.turn[k];
       turning_bias = turning_bias + second * g.turn[k];
     }
-    m.tip_v = m.start.v + cross(omega, g.position) + m.velocity;
-    m.tip_a = m.start.a + cross(alpha, g.position) + m.accelerating.at(g.tip) +
+    m.tip_v = from.v + cross(omega, g.position) + m.velocity;
+    m.tip_a = from.a + cross(alpha, g.position) + m.accelerating.at(g.tip) +
               cross(omega, cross(omega, g.position) + 2.0 * m.velocity);
     m.tip_alpha = alpha + turning_bias + cross(omega, m.turning);
 
-    m.tip.frame = m.start.frame * g.rotation;
-    m.tip.x = m.start.x + m.start.frame * g.position;
+    m.tip.frame = from.frame * g.rotation;
+    m.tip.x = from.x + from.frame * g.position;
     m.tip.v = g.rotation.back(m.tip_v);
     m.tip.omega = g.rotation.back(omega + m.turning);
     m.tip.a = g.rotation.back(m.tip_a);
     m.tip.alpha = g.rotation.back(m.tip_alpha);
   }
 
-  static void mount(const Frame& mount, FrameMotion& m) {
-    m.frame = m.frame * mount;
-    for (Vec* x : {&m.v, &m.omega, &m.a, &m.alpha}) *x = mount.back(*x);
+  const FrameMotion& parent_tip(const ReducedSegment& segment) const {
+    return segment.parent < 0 ? root_
+                              : motion_[static_cast<std::size_t>(segment.parent)].tip;
+  }
+  void mount(std::size_t i) {
+    const ReducedSegment& segment = segments_[i];
+    FrameMotion& m = mounted_[i];
+    m = parent_tip(segment);
+    m.frame = m.frame * segment.mount;
+    for (Vec* x : {&m.v, &m.omega, &m.a, &m.alpha}) *x = segment.mount.back(*x);
   }
 
   std::vector<ReducedSegment> segments_;
@@ -196,6 +210,7 @@ class Kinematics {
   std::vector<SegmentGeometry> geometry_;
   std::vector<BlockGeometry> block_geometry_;
   std::vector<SegmentMotion> motion_;
+  std::vector<FrameMotion> mounted_;  // starts of mounted segments
   FrameMotion root_;
   Vec falling_;
   std::vector<double> shaped_;  // the q of geometry_

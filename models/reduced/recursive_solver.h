@@ -33,14 +33,12 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
     Articulated at_root = Articulated::Zero();
     for (std::size_t i = hanging_.size(); i-- > 0;) {
-      Articulated handed_on;
-      if (!eliminate(tangent.segments[i], hanging_[i].matrix, eliminated_[i],
-                     handed_on)) {
+      const int parent = tangent.parent[i];
+      if (!eliminate(
+              tangent.segments[i], hanging_[i].matrix, eliminated_[i],
+              parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].matrix)) {
         return Status::retry;
       }
-      const int parent = tangent.parent[i];
-      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].matrix) +=
-          handed_on;
     }
     if (!tangent.free_root) return Status::ok;
     Eigen::Matrix<double, 6, 6> root = tangent.root.local;
@@ -116,48 +114,48 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return std::isfinite(inverse.sum());
   }
 
+  /// Adds to `onto` what the segment hands on.
   static bool eliminate(const SegmentTangent<Shape>& segment, const Articulated& hanging,
-                        Eliminated& e, Articulated& handed_on) {
+                        Eliminated& e, Articulated& onto) {
     if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
-      return eliminate_symmetric(segment, hanging, e, handed_on);
+      return eliminate_symmetric(segment, hanging, e, onto);
     } else {
-      return eliminate_general(segment, hanging, e, handed_on);
+      return eliminate_general(segment, hanging, e, onto);
     }
   }
 
   static bool eliminate_symmetric(const SegmentTangent<Shape>& segment,
                                   const Articulated& hanging, Eliminated& e,
-                                  Articulated& handed_on) {
-    const auto tip_of_s = segment.transfer.template leftCols<states>();
-    const auto tip_of_x = segment.transfer.template rightCols<n>();
+                                  Articulated& onto) {
+    // Transposed: [s; x] to the tip, and in local s to x and x to x.
+    const auto tip_of_s = segment.lift.template topRows<states>();
+    const auto tip_of_x = segment.lift.template bottomRows<n>();
     const auto local_of_x = segment.local.template rightCols<n>();
     // The pivot and what couples it to s: columns x of local + transfer^T hanging
     // transfer.
     Eigen::Matrix<double, Shape::rows, n> of_x = local_of_x;
-    add_product(segment.lift, product(hanging, tip_of_x), of_x);
+    add_product(segment.lift, product(hanging, tip_of_x.transpose()), of_x);
     if (!invert(of_x.template bottomRows<n>(), e.inverse)) return false;
     e.response = product(of_x.template topRows<states>(), e.inverse);
     e.z = e.response.transpose();
-    // V = [I; -Z], so M V = M_s - M_x Z.
-    Eigen::Matrix<double, Shape::rows, states> own =
-        segment.local.template leftCols<states>();
-    subtract_product(local_of_x, e.z, own);
+    // V = [I; -Z]: M V = M_s - M_x Z.
     Eigen::Matrix<double, states, states> tip_motion = tip_of_s;
-    subtract_product(tip_of_x, e.z, tip_motion);
-    Articulated joseph = own.template topRows<states>();
-    subtract_product(e.response, own.template bottomRows<n>(), joseph);
-    const Eigen::Matrix<double, states, states> back = tip_motion.transpose();
-    add_product(back, product(hanging, tip_motion), joseph);
+    subtract_product(e.response, tip_of_x, tip_motion);
+    Eigen::Matrix<double, states, n> own = local_of_x.template topRows<states>();
+    subtract_product(e.response, local_of_x.template bottomRows<n>(), own);
+    onto += segment.local.template topLeftCorner<states, states>();
+    subtract_product(local_of_x.template topRows<states>(), e.response.transpose(), onto);
+    subtract_product(e.response, own.transpose(), onto);
+    add_product(tip_motion, product(hanging, tip_motion.transpose()), onto);
     for (int j = 0; j < states; ++j) {  // symmetric but for rounding: made so
-      for (int i = 0; i < j; ++i) joseph(j, i) = joseph(i, j);
+      for (int i = 0; i < j; ++i) onto(j, i) = onto(i, j);
     }
-    handed_on = joseph;
     return true;
   }
 
   static bool eliminate_general(const SegmentTangent<Shape>& segment,
                                 const Articulated& hanging, Eliminated& e,
-                                Articulated& handed_on) {
+                                Articulated& onto) {
     const auto full = with_hanging(segment, hanging);
     const Square pivot = full.template bottomRightCorner<n, n>();
     const auto r_of_s = full.template bottomLeftCorner<n, states>();
@@ -169,8 +167,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       const Eigen::Matrix<double, n, wrench> mirrored = y.transpose();
       e.z = product(e.inverse, mirrored);
       e.response = e.z.transpose();
-      handed_on = full.template topLeftCorner<wrench, states>();
-      subtract_product(y, e.z, handed_on);
+      onto += full.template topLeftCorner<wrench, states>();
+      subtract_product(y, e.z, onto);
       return true;
     }
     Square used = e.inverse;
@@ -181,8 +179,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       if (!invert(bare, used)) return false;
     }
     e.response = product(w_of_x, used);
-    handed_on = full.template topLeftCorner<wrench, states>();
-    subtract_product(e.response, r_of_s, handed_on);
+    onto += full.template topLeftCorner<wrench, states>();
+    subtract_product(e.response, r_of_s, onto);
     return true;
   }
 

@@ -225,7 +225,7 @@ class ReducedSystem final : public System,
       const ReducedSegment& segment = kinematics_.segments()[i];
       angular = angular + rotor_momentum(segment.rotor, kinematics_.motion(i).tip);
       for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
-        const Vec3<Pack> x = Vec3<Pack>(kinematics_.motion(i).start.x) +
+        const Vec3<Pack> x = Vec3<Pack>(kinematics_.start(i).x) +
                              kinematics_.world(i, kinematics_.block_geometry(b).position);
         const Vec3<Pack> p = kinematics_.blocks()[b].mass *
                              kinematics_.world(i, kinematics_.velocity(i, b));

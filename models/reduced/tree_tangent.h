@@ -56,16 +56,16 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
   constexpr int size = Shape::wrench, levels = Shape::states / size;
   constexpr int rows = M::RowsAtCompileTime;
   const auto add = [&](int from, int to) {
-    accumulate_product<1, rows, size, size>(
+    multiply<1, true, rows, size, size>(
         m.data() + rows * size * from, rows,
-        segment.transfer.data() + size * from + Shape::states * size * to, Shape::states,
-        c.data() + rows * size * to, rows);
+        segment.transfer.data() + size * from + Shape::states * size * to, 1,
+        Shape::states, c.data() + rows * size * to, rows);
   };
   for (int level = 0; level < levels; ++level) add(level, level);
   if constexpr (levels == 3) add(2, 1);
   if constexpr (levels == 3 && Shape::dofs == 1) add(2, 0);
-  accumulate_product<1, rows, Shape::states, Shape::dofs>(
-      m.data(), rows, segment.transfer.data() + Shape::states * Shape::states,
+  multiply<1, true, rows, Shape::states, Shape::dofs>(
+      m.data(), rows, segment.transfer.data() + Shape::states * Shape::states, 1,
       Shape::states, c.data() + rows * Shape::states, rows);
 }
 
