@@ -8,6 +8,7 @@
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/tinkertoys.h"
 #include "models/input_error.h"
+#include "models/maximal/der.h"
 #include "models/published/andrews_squeezer.h"
 #include "models/published/beam.h"
 #include "models/published/double_pendulum.h"
@@ -30,6 +31,7 @@ std::span<const ModelEntry> models() {
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), make_super_helix},
       ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), make_articulated_chain},
+      ModelEntry{"der", "discrete elastic rod of n edges; 3n positions and n angles, extensible or with n multipliers", "Bergou 2008, 2010", der_parameters(), make_der},
   };
   return entries;
 }

@@ -68,6 +68,15 @@ struct Dual {
     using std::sin;
     return x.chain(cos(x.value), -sin(x.value));
   }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    using std::atan2;
+    const T square = x.value * x.value + y.value * y.value;
+    Dual angle(atan2(y.value, x.value));
+    for (int k = 0; k < n; ++k) {
+      angle.part[k] = (x.value * y.part[k] - y.value * x.part[k]) / square;
+    }
+    return angle;
+  }
   friend Dual sqrt(const Dual& x) {
     using std::sqrt;
     const T root = sqrt(x.value);

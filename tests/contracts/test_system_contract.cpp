@@ -103,8 +103,9 @@ TEST_P(SystemContract, SparseFormHoldsTheTangent) {
     }
     const std::vector<double> expected = tangent_product(*system_, s, w, x);
     EXPECT_GT(largest(expected), 0);
-    EXPECT_LE(largest(plus(product, -1, expected)),
-              tangent_tolerance * largest(expected));
+    EXPECT_LE(
+        largest(plus(product, -1, expected)),
+        tangent_tolerance * largest(expected) + tangent_rounding(*system_, s, w, x));
   }
 }
 
@@ -271,8 +272,11 @@ TEST_P(SystemContract, EnergyChangesByThePowerOfTheRemainingForces) {
   const double power = energetics->power(t0, s.q, s.v);
   const Energy now = energetics->energy(t0, s.q, s.v);
   const double rate = central_difference(step, energy)[0];
-  // e^4 and eps / e of the difference, relative to E / time; two digits of margin.
-  const double scale = std::abs(now.kinetic) + std::abs(now.potential);
+  // e^4 and eps / e of the difference, relative to E / time; two digits of margin. Off
+  // the constraints a state is not shaken: a straight strand has no energy yet, but
+  // bends.
+  double scale = std::abs(now.kinetic) + std::abs(now.potential);
+  if (s.m > 0) scale = std::max(scale, std::abs(energy(time)[0]));
   EXPECT_NEAR(rate, power, 1e-10 * scale / time);
 }
 

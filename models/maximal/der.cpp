@@ -1,0 +1,92 @@
+#include "models/maximal/der.h"
+
+#include "models/maximal/der_elasticity.h"
+#include "models/maximal/nodal_strand.h"
+#include "models/strand/strand_parameters.h"
+#include "models/tangent_choice.h"
+
+namespace tress {
+namespace {
+
+Vec stiffness(const Strand& strand, const Segment& segment) {
+  const Material& material = strand.material;
+  const CrossSection& section = segment.section;
+  return {material.shear_modulus * section.torsion(),
+          material.youngs_modulus * section.inertia1(),
+          material.youngs_modulus * section.inertia2()};
+}
+
+/// A joint of half of each neighbour (of a clamp: nothing): mean stiffness over length.
+DerElasticity::JointData joint(const Strand& strand, const Segment* before,
+                               const Segment& after, const Vec& rest) {
+  const double l = (after.length + (before != nullptr ? before->length : 0)) / 2;
+  Vec weighted = after.length / 2 * stiffness(strand, after);
+  if (before != nullptr) {
+    weighted = weighted + before->length / 2 * stiffness(strand, *before);
+  }
+  const double friction = strand.material.internal_friction / l;
+  return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
+}
+
+}  // namespace
+
+std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
+                            Effects effects) {
+  const std::size_t n = strand.segments.size();
+  NodalStrand nodal(strand, "der", n);
+  MaximalStrand& parts = nodal.parts;
+  std::vector<DerElasticity::EdgeData> edges;
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Segment& segment = strand.segments[i];
+    lengths.push_back(segment.length);
+    const double stretch =
+        strand.material.youngs_modulus * segment.section.area() / segment.length;
+    edges.push_back(
+        {nodal.initial[i], segment.length, options.inextensible ? 0.0 : stretch});
+    if (!options.quasi_static_twist) {
+      parts.inertia[i] =
+          strand.material.density * segment.section.polar() * segment.length;
+    }
+    // The frames of a rigid motion turn with the whole.
+    const Vec spin = parts.clamped ? strand.root.at(0).omega : strand.free_root->spin;
+    parts.rate[3 * (n + 1) + i] = dot(spin, nodal.initial[i].e0);
+  }
+  std::vector<DerElasticity::JointData> joints;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Segment* before = i > 0 ? &strand.segments[i - 1] : nullptr;
+    if (before == nullptr && !parts.clamped) continue;
+    const Vec rest = joint_strain(
+        before != nullptr ? nodal.natural[i - 1] : nodal.root.frame, nodal.natural[i]);
+    joints.push_back(joint(strand, before, strand.segments[i], rest));
+  }
+  parts.elasticity = std::make_unique<DerElasticity>(std::move(edges), std::move(joints),
+                                                     parts.clamped, options.tangent);
+  if (options.inextensible) parts.constraints = inextensible(parts, lengths);
+  parts.effects = std::move(effects);
+  parts.solver = options.solver;
+  return std::make_unique<MaximalSystem>(std::move(parts));
+}
+
+std::span<const Parameter> der_parameters() {
+  static const std::vector<Parameter> all = with_strand_parameters(
+      std::array{Parameter{.name = "stretch",
+                           .help = "springs of stiffness EA, or edges of constant length",
+                           .choices = "extensible|inextensible"},
+                 Parameter{.name = "twist",
+                           .help = "angles with the section's inertia, or without",
+                           .choices = "dynamic|quasi_static"},
+                 tangent_parameter, maximal_solver_parameter});
+  return all;
+}
+
+std::unique_ptr<System> make_der(const Parameters& parameters) {
+  DerOptions options;
+  options.inextensible = parameters.word("stretch") == "inextensible";
+  options.quasi_static_twist = parameters.word("twist") == "quasi_static";
+  options.tangent = tangent_choice(parameters);
+  options.solver = maximal_solver(parameters);
+  return der(strand(parameters), options, strand_effects(parameters));
+}
+
+}  // namespace tress

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "models/effects/effect.h"
+#include "models/maximal/maximal_system.h"
+#include "models/parameters.h"
+#include "models/strand/strand.h"
+
+namespace tress {
+
+/// Discrete elastic rod [Bergou et al. 2008, 2010]: n edges between nodes x_i, an angle
+/// theta per edge for its material frame. With integrated strains kappa (twist and two
+/// curvatures, joint_strain.h) between neighbouring edges and l the mean of their
+/// lengths,
+///
+///     E = sum_joints (kappa - kappa_rest)^T diag(GJ, EI1, EI2) (kappa - kappa_rest)/(2
+///     l)
+///       + sum_edges EA l (|e|/l - 1)^2/2,    friction = gamma/l per integrated strain.
+///
+/// The clamp is a wall half an edge before the first edge's middle: a joint of length l/2
+/// between the clamp's frame and edge 0, which makes the scheme second order. Rest
+/// strains are those between the chords of the natural shape. Mass is
+/// lumped at the nodes, rho (I1 + I2) l at the angles.
+///
+/// A joint's twist is between -pi and pi.
+///
+/// Frames are functions of q relative to reference frames that stay as they are until an
+/// edge has turned by more than 60 degrees from its own; accept() then takes the present
+/// frame as the reference and gives theta' the turning that the old one brought, so that
+/// neither frames nor spins jump.
+struct DerOptions {
+  bool inextensible = false;         // |e| = l as constraints with multipliers
+  bool quasi_static_twist = false;   // angles have no inertia
+  Tangent tangent = Tangent::exact;  // stiff: without the second derivatives of strains
+  LinearKind solver = LinearKind::automatic;
+};
+
+/// Throws InputError unless the strand is a chain.
+std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
+                            Effects effects);
+
+std::span<const Parameter> der_parameters();
+std::unique_ptr<System> make_der(const Parameters& parameters);
+
+}  // namespace tress

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "models/maximal/elasticity.h"
+#include "models/maximal/joint_strain.h"
+#include "models/maximal/rod_edge.h"
+
+namespace tress {
+
+/// Stretching, bending and twisting of a discrete rod (der.h), coordinates z = (x_0, ...,
+/// x_n, theta_0, ..., theta_{n-1}).
+class DerElasticity final : public Elasticity {
+ public:
+  struct EdgeData {
+    Frame reference;
+    double length;   // at rest, m
+    double stretch;  // EA/l, N/m; 0: held by constraints
+  };
+  struct JointData {
+    Vec rest;                 // strains
+    Vec stiffness, friction;  // moment per strain and per its rate
+  };
+
+  /// `joints`: between neighbouring edges; with `walled` the one at the clamp first.
+  DerElasticity(std::vector<EdgeData> edges, std::vector<JointData> joints, bool walled,
+                Tangent tangent);
+
+  std::vector<std::vector<int>> groups() const override;
+  void add_force(const Placement& p, InOut f) noexcept override;
+  void add_tangent(const Placement& p, double pos, double vel,
+                   GroupSum& s) noexcept override;
+  double energy(const Placement& p) noexcept override;
+  double power(const Placement& p) noexcept override;
+  bool rebase(const RootPose& root, InOut z, InOut rate) override;
+
+ private:
+  struct Edge {
+    EdgeTurn turn;
+    Frame frame;
+    Vec spin;    // world components, rad/s
+    Vec moment;  // of the joints on the edge
+  };
+  struct Joint {
+    JointStrain strain;
+    Vec rate;    // of the strains
+    Vec stress;  // elastic and friction
+  };
+  using Square = double[8][8];
+
+  bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
+  /// Edge before a joint; meaningless for the clamp's.
+  std::size_t before(std::size_t joint) const { return walled_ ? joint - 1 : joint; }
+  std::size_t after(std::size_t joint) const { return walled_ ? joint : joint + 1; }
+  double theta(In z, std::size_t edge) const { return z[angles_ + edge]; }
+
+  void place(const Placement& p) noexcept;
+  const Frame& frame_before(const Placement& p, std::size_t joint) const {
+    return clamp(joint) ? p.root.frame : edges_[before(joint)].frame;
+  }
+  void joint_tangent(const Placement& p, std::size_t joint, double pos, double vel,
+                     Square& s) const noexcept;
+  void edge_tangent(std::size_t edge, double pos, double (&h)[4][4]) const noexcept;
+
+  std::vector<EdgeData> edge_data_;
+  std::vector<JointData> joint_data_;
+  bool walled_;
+  Tangent tangent_;
+  bool friction_;
+  std::size_t angles_;  // first angle in z
+  std::vector<Edge> edges_;
+  std::vector<Joint> joints_;
+};
+
+}  // namespace tress

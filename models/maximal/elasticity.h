@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "models/maximal/groups.h"
+#include "models/strand/root_motion.h"
+
+namespace tress {
+
+/// A strand of redundant coordinates as its internal forces see it: all coordinates
+/// z = [held; q], those that the clamp prescribes first, their rates, and the clamp.
+struct Placement {
+  const RootPose& root;
+  In z, rate;
+};
+
+/// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are
+/// sets of coordinates (places in z) that one term couples; the tangent comes group by
+/// group, in the order of groups(), as square matrices.
+class Elasticity {
+ public:
+  virtual ~Elasticity() = default;
+  virtual std::vector<std::vector<int>> groups() const = 0;
+  /// f += dE/dz + friction.
+  virtual void add_force(const Placement& p, InOut f) noexcept = 0;
+  /// s += pos df/dz + vel df/d(rate).
+  virtual void add_tangent(const Placement& p, double pos, double vel,
+                           GroupSum& s) noexcept = 0;
+  virtual double energy(const Placement& p) noexcept = 0;  // J
+  /// W: what friction takes (negative) and a turning clamp gives.
+  virtual double power(const Placement& p) noexcept = 0;
+  /// After an accepted step: may move reference frames, and with them z and its rate.
+  /// True: the equations changed.
+  virtual bool rebase(const RootPose&, InOut /*z*/, InOut /*rate*/) { return false; }
+};
+
+}  // namespace tress

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "models/system.h"
+
+namespace tress {
+
+/// Which entries of a sparse symmetric-pattern matrix square matrices over groups of
+/// coordinates touch. Coordinates below `held` are prescribed: their rows and columns are
+/// dropped.
+class Groups {
+ public:
+  Groups(const std::vector<std::vector<int>>& groups, int held);
+
+  /// Adds every pair of a group to `columns`, one list of rows per unprescribed
+  /// coordinate.
+  void couple(std::vector<std::vector<int>>& columns) const;
+  /// Looks up the places of all entries; call once.
+  void bind(const Pattern& pattern);
+
+  std::size_t size(std::size_t group) const { return start_[group + 1] - start_[group]; }
+  std::span<const int> coordinates(std::size_t group) const {
+    return std::span(coordinate_).subspan(start_[group], size(group));
+  }
+  /// Places of the entries of a group's matrix, row by row; -1: dropped.
+  const int* places(std::size_t group) const { return &place_[first_place_[group]]; }
+  std::size_t count() const { return start_.size() - 1; }
+
+ private:
+  int held_;
+  std::vector<std::size_t> start_{0};
+  std::vector<int> coordinate_;
+  std::vector<std::size_t> first_place_;
+  std::vector<int> place_;
+};
+
+/// Adds matrices of groups to the values of a sparse matrix.
+class GroupSum {
+ public:
+  GroupSum(const Groups& groups, Out values) : groups_(groups), values_(values) {}
+  /// `matrix` is (size x size), row-major.
+  void add(std::size_t group, const double* matrix) {
+    const std::size_t entries = groups_.size(group) * groups_.size(group);
+    const int* place = groups_.places(group);
+    for (std::size_t k = 0; k < entries; ++k) {
+      if (place[k] >= 0) values_[static_cast<std::size_t>(place[k])] += matrix[k];
+    }
+  }
+
+ private:
+  const Groups& groups_;
+  Out values_;
+};
+
+/// Sorted, unique columns as a pattern.
+Pattern pattern_of(std::vector<std::vector<int>> columns);
+
+}  // namespace tress

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cmath>
+
+#include "models/math/frame.h"
+
+namespace tress {
+
+/// Bending and twisting between two neighbouring frames (e0 the tangent) of a discrete
+/// rod, integrated over the joint (rad): twist, curvature about e1, curvature about e2.
+/// With t = e0, - the frame before and + the one behind, c = 1 + t- . t+,
+///
+///     kappa_1 = -(t+ . e2- - t- . e2+)/c,    kappa_2 = (t+ . e1- - t- . e1+)/c,
+///     twist = atan2(e2- . e1+ - e1- . e2+, e1- . e1+ + e2- . e2+).
+///
+/// These are the strains of [Bergou 2008, 2010], kb . (e1- + e1+)/2 and kb . (e2- +
+/// e2+)/2 with the curvature binormal kb = 2 t- x t+/c, and the angle left after t- is
+/// turned into t+ on the shortest way. |kappa| = 2 tan(angle/2). Not defined for
+/// antiparallel tangents (c = 0).
+template <class T>
+Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
+  using std::atan2;
+  const T c = T(1) + dot(minus.e0, plus.e0);
+  return {atan2(dot(minus.e2, plus.e1) - dot(minus.e1, plus.e2),
+                dot(minus.e1, plus.e1) + dot(minus.e2, plus.e2)),
+          (dot(minus.e0, plus.e2) - dot(plus.e0, minus.e2)) / c,
+          (dot(plus.e0, minus.e1) - dot(minus.e0, plus.e1)) / c};
+}
+
+/// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), all as the
+/// symmetric matrix of (u, w), row-major.
+struct TwoVectorForm {
+  double m[6][6] = {};
+
+  /// += factor ((w - u) . a) (x . b), x = u (side 0) or w (side 1).
+  void add(double factor, const Vec& a, int side, const Vec& b) {
+    const double from[6] = {-a.x, -a.y, -a.z, a.x, a.y, a.z};
+    const double to[3] = {b.x, b.y, b.z};
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double half = 0.5 * factor * from[i] * to[j];
+        m[i][3 * side + j] += half;
+        m[3 * side + j][i] += half;
+      }
+    }
+  }
+  /// += factor |w - u|^2.
+  void add_square(double factor) {
+    for (int i = 0; i < 3; ++i) {
+      m[i][i] += factor;
+      m[3 + i][3 + i] += factor;
+      m[i][3 + i] -= factor;
+      m[3 + i][i] -= factor;
+    }
+  }
+  /// += factor w . (u x a).
+  void add_triple(double factor, const Vec& a) {
+    // u x a = -[a]x u
+    const double h[3][3] = {{0, a.z, -a.y}, {-a.z, 0, a.x}, {a.y, -a.x, 0}};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        m[3 + i][j] += 0.5 * factor * h[i][j];
+        m[j][3 + i] += 0.5 * factor * h[i][j];
+      }
+    }
+  }
+};
+
+/// The strains of a joint and their derivatives with respect to rotations exp([w-]x) and
+/// exp([w+]x) of the two frames, world components. The first ones depend on the relative
+/// rotation alone: d strain = gradient . (w+ - w-).
+struct JointStrain {
+  JointStrain() = default;
+  JointStrain(const Frame& minus, const Frame& plus)
+      : c(1 + dot(minus.e0, plus.e0)),
+        value(joint_strain(minus, plus)),
+        k((1 / c) * cross(minus.e0, plus.e0)),
+        twist((1 / c) * (minus.e0 + plus.e0)),
+        curvature1((-1 / c) * (cross(minus.e0, plus.e2) + cross(plus.e0, minus.e2)) +
+                   value.y * k),
+        curvature2((1 / c) * (cross(minus.e0, plus.e1) + cross(plus.e0, minus.e1)) +
+                   value.z * k) {}
+
+  /// Sum of stress times second derivative of each strain: the terms of second order in
+  /// (w-, w+) are half of this form.
+  TwoVectorForm second(const Frame& minus, const Frame& plus, const Vec& stress) const {
+    TwoVectorForm form;
+    add_bending(minus.e0, plus.e0, minus.e1, plus.e1, value.z, stress.z, form);
+    add_bending(minus.e0, plus.e0, minus.e2, plus.e2, -value.y, -stress.y, form);
+    for (const int side : {0, 1}) {
+      const double sign = side == 0 ? -1 : 1;
+      const Vec bent = stress.y * curvature1 + stress.z * curvature2;
+      form.add(2 * sign, bent, side, k);
+      form.add(sign * stress.x, twist, side, k);
+    }
+    form.add_triple(stress.x, twist);
+    return form;
+  }
+
+  double c = 2;
+  Vec value;
+  Vec k;  // half the curvature binormal
+  Vec twist, curvature1, curvature2;
+
+ private:
+  /// kappa = (t+ . m- - t- . m+)/c but for what its own change of scale brings.
+  void add_bending(const Vec& t_minus, const Vec& t_plus, const Vec& m_minus,
+                   const Vec& m_plus, double kappa, double stress,
+                   TwoVectorForm& form) const {
+    const double s = stress / c;
+    form.add(s, t_minus, 0, m_plus + kappa * t_plus);
+    form.add(-s, m_plus + kappa * t_plus, 1, t_minus);
+    form.add(-s, m_minus, 0, t_plus);
+    form.add(s, t_plus, 1, m_minus);
+    form.add_square(-s * kappa);
+  }
+};
+
+}  // namespace tress

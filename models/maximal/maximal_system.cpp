@@ -1,0 +1,312 @@
+#include "models/maximal/maximal_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tress {
+namespace {
+
+std::vector<int> coordinates_of(const NodeMean& mean) {
+  std::vector<int> all(3 * static_cast<std::size_t>(mean.nodes));
+  std::iota(all.begin(), all.end(), 3 * mean.first);
+  return all;
+}
+
+std::vector<std::vector<int>> groups_of_mass(const MaximalStrand& strand) {
+  std::vector<std::vector<int>> groups;
+  for (const auto& point : strand.mass) groups.push_back(coordinates_of(point.at));
+  return groups;
+}
+
+std::vector<std::vector<int>> groups_of_others(const MaximalStrand& strand) {
+  std::vector<std::vector<int>> groups;
+  for (std::size_t i = 3 * static_cast<std::size_t>(strand.nodes); i < strand.z.size();
+       ++i) {
+    groups.push_back({static_cast<int>(i)});
+  }
+  return groups;
+}
+
+Vec mean(const NodeMean& at, In of_nodes) {
+  Vec sum;
+  for (int k = 0; k < at.nodes; ++k) {
+    sum = sum + at.weight[static_cast<std::size_t>(k)] *
+                    load3(&of_nodes[3 * static_cast<std::size_t>(at.first + k)]);
+  }
+  return sum;
+}
+
+void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
+  for (int k = 0; k < at.nodes; ++k) {
+    double* f = &onto_nodes[3 * static_cast<std::size_t>(at.first + k)];
+    store3(load3(f) + at.weight[static_cast<std::size_t>(k)] * force, f);
+  }
+}
+
+bool finite(In x) {
+  return std::ranges::all_of(x, [](double y) { return std::isfinite(y); });
+}
+
+}  // namespace
+
+MaximalSystem::MaximalSystem(MaximalStrand strand)
+    : strand_(std::move(strand)),
+      needs_(needs(strand_.effects)),
+      elastic_(strand_.elasticity->groups(), static_cast<int>(held())),
+      massive_(groups_of_mass(strand_), static_cast<int>(held())),
+      inert_(groups_of_others(strand_), static_cast<int>(held())),
+      z_(strand_.z),
+      rate_(strand_.rate),
+      force_(z_.size()) {
+  regular_mass_ =
+      std::ranges::all_of(strand_.inertia, [](double inertia) { return inertia > 0; });
+  build_pattern();
+  solver_ = make_linear_solver(strand_.solver, pattern_);
+  const std::size_t count = strand_.mass.size();
+  for (auto* x : {&x_, &v_, &tangent_, &load_}) x->resize(3 * count);
+  for (const auto& point : strand_.mass) {
+    mass_.push_back(point.mass);
+    length_.push_back(point.length);
+  }
+  blocks_.resize(9 * count);
+  scratch_.resize(static_cast<std::size_t>(pattern_.rows));
+}
+
+void MaximalSystem::build_pattern() {
+  std::vector<std::vector<int>> columns(z_.size() - held());
+  for (const Groups* groups : {&elastic_, &massive_, &inert_}) groups->couple(columns);
+  if (strand_.constraints) strand_.constraints->couple(columns);
+  pattern_ = pattern_of(std::move(columns));
+  for (Groups* groups : {&elastic_, &massive_, &inert_}) groups->bind(pattern_);
+  if (strand_.constraints) strand_.constraints->bind(pattern_);
+  values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
+}
+
+Layout MaximalSystem::layout() const {
+  return {pattern_.rows, strand_.constraints ? strand_.constraints->rows() : 0};
+}
+
+Traits MaximalSystem::traits() const {
+  return {.constant_mass = true, .regular_mass = regular_mass_};
+}
+
+void MaximalSystem::initial_state(Out q, Out v) const {
+  std::ranges::copy(In(strand_.z).subspan(held()), q.begin());
+  std::ranges::copy(In(strand_.rate).subspan(held()), v.begin());
+}
+
+void MaximalSystem::scale(Out q_typ, Out v_typ) const {
+  std::ranges::copy(In(strand_.z_typ).subspan(held()), q_typ.begin());
+  std::ranges::copy(In(strand_.z_rate).subspan(held()), v_typ.begin());
+}
+
+void MaximalSystem::place(double t, In q) noexcept {
+  std::ranges::copy(q, z_.begin() + static_cast<std::ptrdiff_t>(held()));
+  pose_ = strand_.root.at(t);
+  if (strand_.clamped) store3(pose_.x, z_.data());
+}
+
+void MaximalSystem::place(double t, In q, In v) noexcept {
+  place(t, q);
+  std::ranges::copy(v, rate_.begin() + static_cast<std::ptrdiff_t>(held()));
+  if (strand_.clamped) store3(pose_.v, rate_.data());
+}
+
+Points MaximalSystem::points(Needs wanted) noexcept {
+  Points p{static_cast<int>(mass_.size()), {}, {}, {}, mass_, length_};
+  const auto fill = [&](In of_nodes, std::vector<double>& to) {
+    for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
+      store3(mean(strand_.mass[i].at, of_nodes), &to[3 * i]);
+    }
+    return In(to);
+  };
+  if (wanted.position || wanted.tangent) p.x = fill(z_, x_);
+  if (wanted.velocity) p.v = fill(rate_, v_);
+  if (wanted.tangent) {  // from neighbour to neighbour
+    for (std::size_t i = 0; i < mass_.size(); ++i) {
+      const std::size_t from = i == 0 ? 0 : i - 1;
+      const std::size_t to = std::min(i + 1, mass_.size() - 1);
+      const Vec d = load3(&x_[3 * to]) - load3(&x_[3 * from]);
+      store3((1 / std::sqrt(dot(d, d))) * d, &tangent_[3 * i]);
+    }
+    p.tangent = tangent_;
+  }
+  return p;
+}
+
+/// force_ = M z'' + dE/dz + friction - loads over all coordinates.
+void MaximalSystem::forces(double t, In a) noexcept {
+  std::ranges::fill(force_, 0.0);
+  if (!strand_.effects.empty()) {
+    std::ranges::fill(load_, 0.0);
+    const Points p = points(needs_);
+    for (const auto& effect : strand_.effects) effect->add_load(t, p, load_);
+  }
+  for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
+    const auto& point = strand_.mass[i];
+    Vec acceleration;
+    for (int k = 0; k < point.at.nodes; ++k) {
+      const std::size_t node = 3 * static_cast<std::size_t>(point.at.first + k);
+      const Vec of_node = node < held() ? pose_.a : load3(&a[node - held()]);
+      acceleration =
+          acceleration + point.at.weight[static_cast<std::size_t>(k)] * of_node;
+    }
+    spread(point.at, point.mass * acceleration - load3(&load_[3 * i]), force_);
+  }
+  const std::size_t others = z_.size() - strand_.inertia.size();
+  for (std::size_t i = 0; i < strand_.inertia.size(); ++i) {
+    force_[others + i] += strand_.inertia[i] * a[others + i - held()];
+  }
+  strand_.elasticity->add_force(placement(), force_);
+}
+
+Status MaximalSystem::residual(double t, In q, In v, In a, Out r) noexcept {
+  place(t, q, v);
+  forces(t, a);
+  std::ranges::copy(In(force_).subspan(held()), r.begin());
+  return finite(r) ? Status::ok : Status::retry;
+}
+
+/// sum += w.acc M, and blocks_ of the effects as they stand.
+void MaximalSystem::add_mass(Weights w, GroupSum& sum) noexcept {
+  std::array<double, 144> matrix;  // of up to four nodes
+  for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
+    const NodeMean& at = strand_.mass[i].at;
+    double block[9];
+    std::copy_n(&blocks_[9 * i], 9, block);
+    for (const std::size_t k : {0, 4, 8}) block[k] += w.acc * mass_[i];
+    const auto size = 3 * static_cast<std::size_t>(at.nodes);
+    for (std::size_t r = 0; r < size; ++r) {
+      for (std::size_t c = 0; c < size; ++c) {
+        matrix[size * r + c] =
+            at.weight[r / 3] * at.weight[c / 3] * block[3 * (r % 3) + c % 3];
+      }
+    }
+    sum.add(i, matrix.data());
+  }
+}
+
+Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcept {
+  place(t, q, v);
+  std::ranges::fill(s, 0.0);
+  std::ranges::fill(blocks_, 0.0);
+  if (needs_.derivatives && (w.pos != 0 || w.vel != 0)) {
+    const Points p = points(needs_);
+    for (const auto& effect : strand_.effects) {
+      effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
+    }
+  }
+  GroupSum of_mass(massive_, s), of_others(inert_, s), elastic(elastic_, s);
+  add_mass(w, of_mass);
+  for (std::size_t i = 0; i < strand_.inertia.size(); ++i) {
+    const double inertia = w.acc * strand_.inertia[i];
+    of_others.add(i, &inertia);
+  }
+  if (w.pos != 0 || w.vel != 0) {
+    strand_.elasticity->add_tangent(placement(), w.pos, w.vel, elastic);
+  }
+  return finite(s) ? Status::ok : Status::retry;
+}
+
+Status MaximalSystem::linearize(double t, In q, In v, In a, Weights w) noexcept {
+  const Status s = values(t, q, v, a, w, values_);
+  return s == Status::ok ? solver_->factor(values_) : s;
+}
+
+Status MaximalSystem::solve(In b, Out x) noexcept {
+  std::ranges::copy(b, x.begin());
+  return solver_->solve(x);
+}
+
+bool MaximalSystem::accept(double t, InOut q, InOut v) {
+  place(t, q, v);
+  if (!strand_.elasticity->rebase(pose_, z_, rate_)) return false;
+  std::ranges::copy(In(z_).subspan(held()), q.begin());
+  std::ranges::copy(In(rate_).subspan(held()), v.begin());
+  return true;
+}
+
+ExplicitForm* MaximalSystem::explicit_form() {
+  return regular_mass_ && !strand_.constraints ? this : nullptr;
+}
+
+Status MaximalSystem::acceleration(double t, In q, In v, Out a) noexcept {
+  std::ranges::fill(a, 0.0);
+  const Status s = residual(t, q, v, a, scratch_);
+  if (s != Status::ok) return s;
+  if (!mass_solver_) {
+    // M is constant: factored once.
+    mass_solver_ = make_linear_solver(strand_.solver, pattern_);
+    const Status mass = values(t, q, v, a, {1, 0, 0}, values_);
+    if (mass != Status::ok) return mass;
+    if (const Status f = mass_solver_->factor(values_); f != Status::ok) return f;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = -scratch_[i];
+  return mass_solver_->solve(a);
+}
+
+Energy MaximalSystem::energy(double t, In q, In v) {
+  place(t, q, v);
+  const Points p = points({.position = true, .velocity = true});
+  Energy e;
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    const Vec u = load3(&v_[3 * i]);
+    e.kinetic += mass_[i] / 2 * dot(u, u);
+  }
+  const std::size_t others = z_.size() - strand_.inertia.size();
+  for (std::size_t i = 0; i < strand_.inertia.size(); ++i) {
+    e.kinetic += strand_.inertia[i] / 2 * rate_[others + i] * rate_[others + i];
+  }
+  e.potential = strand_.elasticity->energy(placement());
+  for (const auto& effect : strand_.effects) e.potential += effect->potential(t, p);
+  return e;
+}
+
+double MaximalSystem::power(double t, In q, In v) {
+  place(t, q, v);
+  const Points p =
+      points({.position = true, .velocity = true, .tangent = needs_.tangent});
+  double sum = strand_.elasticity->power(placement());
+  for (const auto& effect : strand_.effects) sum += effect->power(t, p);
+  return sum + root_power(t, q, v);
+}
+
+/// Work of the clamp on node 0: what it takes to hold it on its path.
+double MaximalSystem::root_power(double t, In q, In v) {
+  if (!strand_.clamped || strand_.root.fixed() || explicit_form() == nullptr) return 0;
+  std::vector<double> a(q.size());
+  if (acceleration(t, q, v, a) != Status::ok) return std::nan("");
+  place(t, q, v);
+  forces(t, a);
+  return dot(load3(force_.data()), pose_.v);
+}
+
+bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {
+  place(t, q, v);
+  points({.position = true, .velocity = true});
+  Vec linear, angular;
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    const Vec p = mass_[i] * load3(&v_[3 * i]);
+    linear = linear + p;
+    angular = angular + cross(load3(&x_[3 * i]), p);
+  }
+  total = {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
+  return true;
+}
+
+void MaximalSystem::positions(double t, In q, Out x) {
+  place(t, q);
+  for (std::size_t i = 0; i < strand_.shown.size(); ++i) {
+    store3(mean(strand_.shown[i], z_), &x[3 * i]);
+  }
+}
+
+void MaximalSystem::velocities(double t, In q, In v, Out u) {
+  place(t, q, v);
+  for (std::size_t i = 0; i < strand_.shown.size(); ++i) {
+    store3(mean(strand_.shown[i], rate_), &u[3 * i]);
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "integrators/linear/linear_solver.h"
+#include "models/constrained/constraint_set.h"
+#include "models/effects/effect.h"
+#include "models/maximal/elasticity.h"
+
+namespace tress {
+
+/// A point of the strand as the weighted mean of up to four consecutive nodes.
+struct NodeMean {
+  int first = 0;  // node
+  int nodes = 1;
+  std::array<double, 4> weight{1};
+};
+
+/// What a strand of redundant coordinates is made of. All coordinates are
+/// z = (x_0, ..., x_n, others): nodes' positions (m), then what the model adds (angles,
+/// quaternions). With `clamped` node 0 is the root and prescribed, z = [x_0; q], else q =
+/// z.
+struct MaximalStrand {
+  /// Carries mass and meets the effects.
+  struct MassPoint {
+    NodeMean at;
+    double mass, length;  // kg, m
+  };
+
+  bool clamped = true;
+  int nodes = 0;
+  std::vector<double> z, rate;        // at t = 0
+  std::vector<double> z_typ, z_rate;  // typical sizes of z and its rate
+  std::vector<double> inertia;        // of the other coordinates, >= 0
+  std::vector<MassPoint> mass;
+  std::vector<NodeMean> shown;  // root and segments' ends: MaterialPoints
+  RootMotion root;
+  std::unique_ptr<Elasticity> elasticity;
+  Effects effects;
+  /// Of q: its particles are the nodes that are not prescribed, its parameters the other
+  /// coordinates.
+  std::unique_ptr<ConstraintSet> constraints;
+  LinearKind solver = LinearKind::automatic;
+};
+
+/// A strand of redundant coordinates behind the contract of models/system.h:
+///
+///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
+///
+/// M is constant. Loads of effects act on the mass points. linearize assembles S in a
+/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand.
+class MaximalSystem final : public System,
+                            private SparseForm,
+                            private ExplicitForm,
+                            private Energetics,
+                            private MaterialPoints {
+ public:
+  explicit MaximalSystem(MaximalStrand strand);
+
+  Layout layout() const override;
+  Traits traits() const override;
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override;
+  Status residual(double t, In q, In v, In a, Out r) noexcept override;
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
+  Status solve(In b, Out x) noexcept override;
+  bool accept(double t, InOut q, InOut v) override;
+
+  SparseForm* sparse_form() override { return this; }
+  ExplicitForm* explicit_form() override;
+  ConstraintForm* constraint_form() override { return strand_.constraints.get(); }
+  Energetics* energetics() override { return this; }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  const Pattern& pattern() const override { return pattern_; }
+  Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
+  Status acceleration(double t, In q, In v, Out a) noexcept override;
+  Energy energy(double t, In q, In v) override;
+  double power(double t, In q, In v) override;
+  bool momentum(double t, In q, In v, Momentum& total) override;
+  int count() const override { return static_cast<int>(strand_.shown.size()); }
+  void positions(double t, In q, Out x) override;
+  void velocities(double t, In q, In v, Out u) override;
+
+  std::size_t held() const { return strand_.clamped ? 3 : 0; }
+  void build_pattern();
+  void place(double t, In q) noexcept;
+  void place(double t, In q, In v) noexcept;
+  Placement placement() const { return {pose_, z_, rate_}; }
+  Points points(Needs wanted) noexcept;
+  void add_mass(Weights w, GroupSum& sum) noexcept;
+  void forces(double t, In a) noexcept;
+  double root_power(double t, In q, In v);
+
+  MaximalStrand strand_;
+  Needs needs_;
+  bool regular_mass_ = true;
+  Groups elastic_, massive_, inert_;  // of energies, of mass points, of other coordinates
+  Pattern pattern_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<LinearSolver> mass_solver_;  // made when first asked for
+  RootPose pose_;                              // at the last time asked for
+  std::vector<double> z_, rate_, force_;       // all coordinates
+  std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points
+  std::vector<double> blocks_;                                  // (9 mass points)
+  std::vector<double> values_, scratch_;
+};
+
+}  // namespace tress

@@ -1,0 +1,128 @@
+#include "models/maximal/nodal_strand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/constrained/curve.h"
+#include "models/constrained/joints.h"
+#include "models/maximal/rod_edge.h"
+
+namespace tress {
+namespace {
+
+/// The path of a clamped node, as constraints want it.
+class RootPath final : public Curve {
+ public:
+  explicit RootPath(RootMotion motion) : motion_(std::move(motion)) {}
+  CurvePoint at(double t) const noexcept override {
+    const RootPose pose = motion_.at(t);
+    return {pose.x, pose.v, pose.a, {}};
+  }
+
+ private:
+  RootMotion motion_;
+};
+
+std::vector<Frame> edge_frames(const Strand& strand, ShapeOf shape,
+                               const StrandPlace& root) {
+  const std::vector<StrandPlace> ends = joints(strand, shape, root);
+  const std::vector<StrandPlace> between = middles(strand, shape, root);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    frames.push_back(edge_frame(between[i].frame, ends[i + 1].x - ends[i].x, 0.0));
+  }
+  return frames;
+}
+
+}  // namespace
+
+StrandPlace root_place(const Strand& strand) {
+  if (strand.free_root) return {strand.free_root->position, strand.free_root->frame};
+  const RootPose pose = strand.root.at(0);
+  return {pose.x, pose.frame};
+}
+
+double typical_rate(const Strand& strand) {
+  constexpr double earth = 10;  // m/s^2
+  const double length = strand.length();
+  const Segment& first = strand.segments.front();
+  const double stiffness = strand.material.youngs_modulus *
+                           std::min(first.section.inertia1(), first.section.inertia2());
+  return std::sqrt(earth / length +
+                   stiffness * length / (strand.mass() * std::pow(length, 4)));
+}
+
+NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
+                         std::size_t others) {
+  check_unbranched(strand, model);
+  root = root_place(strand);
+  initial = edge_frames(strand, ShapeOf::initial, root);
+  natural = edge_frames(strand, ShapeOf::natural, root);
+  parts.clamped = !strand.free_root.has_value();
+  parts.root = strand.root;
+  const std::size_t nodes = initial.size() + 1, coordinates = 3 * nodes;
+  parts.nodes = static_cast<int>(nodes);
+  parts.z.assign(coordinates + others, 0.0);
+  parts.rate = parts.z;
+  // Nodes matter by their places beside their neighbours.
+  const double edge = strand.length() / static_cast<double>(initial.size());
+  const double rate = typical_rate(strand);
+  parts.z_typ.assign(coordinates, edge);
+  parts.z_typ.resize(coordinates + others, 1.0);
+  parts.z_rate = parts.z_typ;
+  for (double& speed : parts.z_rate) speed *= rate;
+  parts.inertia.assign(others, 0.0);
+  // A clamped strand starts as a rigid body with its root.
+  const RootPose pose = strand.root.at(0);
+  const Vec spin = strand.free_root ? strand.free_root->spin : pose.omega;
+  const Vec speed = strand.free_root ? strand.free_root->velocity : pose.v;
+  Vec x = root.x;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    store3(x, &parts.z[3 * i]);
+    store3(speed + cross(spin, x - root.x), &parts.rate[3 * i]);
+    if (i + 1 < nodes) x = x + strand.segments[i].length * initial[i].e0;
+    double mass = 0, carried = 0;
+    for (const std::size_t k : {i, i + 1}) {  // segments on either side
+      if (k == 0 || k > strand.segments.size()) continue;
+      const Segment& segment = strand.segments[k - 1];
+      carried += segment.length / 2;
+      mass += strand.material.density * segment.section.area() * segment.length / 2;
+    }
+    const NodeMean at{.first = static_cast<int>(i)};
+    parts.mass.push_back({at, mass, carried});
+    parts.shown.push_back(at);
+  }
+}
+
+Node constraint_node(const MaximalStrand& strand, int i) {
+  if (!strand.clamped) return {Node::Kind::particle, i};
+  return i == 0 ? Node{Node::Kind::anchor, 0} : Node{Node::Kind::particle, i - 1};
+}
+
+std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& strand,
+                                            const std::vector<double>& lengths) {
+  Constraints constraints;
+  double extent = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const auto node = static_cast<int>(i);
+    constraints.push_back(distance(constraint_node(strand, node),
+                                   constraint_node(strand, node + 1), lengths[i]));
+    extent += lengths[i];
+  }
+  std::vector<Anchor> anchors;
+  if (strand.clamped) {
+    anchors.push_back({strand.root.at(0).x, std::make_shared<RootPath>(strand.root)});
+  }
+  const int particles = strand.nodes - (strand.clamped ? 1 : 0);
+  const int others = static_cast<int>(strand.z.size()) - 3 * strand.nodes;
+  return std::make_unique<ConstraintSet>(std::move(constraints), std::move(anchors),
+                                         particles, others, extent);
+}
+
+LinearKind maximal_solver(const Parameters& parameters) {
+  const std::string_view word = parameters.word("solver");
+  if (word == "banded") return LinearKind::banded;
+  return word == "klu" ? LinearKind::klu : LinearKind::automatic;
+}
+
+}  // namespace tress

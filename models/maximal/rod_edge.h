@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+
+#include "models/math/frame.h"
+
+namespace tress {
+
+/// Material frame of the edge e (m) of a discrete rod at angle theta from its reference
+/// direction: with a = reference.e0 and t = e/|e|, the reference is turned from a to t on
+/// the shortest way [Bergou 2010] and then by theta about t. Not defined for t = -a.
+template <class T>
+FrameOf<T> edge_frame(const Frame& reference, const Vec3<T>& e, const T& theta) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  const Vec3<T> a(reference.e0), d1(reference.e1), d2(reference.e2);
+  const Vec3<T> t = (T(1) / sqrt(dot(e, e))) * e;
+  const Vec3<T> u = cos(theta) * d1 + sin(theta) * d2;
+  const Vec3<T> m1 = u - (dot(u, t) / (T(1) + dot(a, t))) * (a + t);
+  return {t, m1, cross(t, m1)};
+}
+
+/// How the frame of an edge turns with its four coordinates y = (e, theta): by
+///
+///     w(dy) = t x de/L + t (dtheta + c . de),    c = t x a/(L (1 + a . t)),
+///
+/// c because turning the reference on the shortest way leaves a turn about t (the area
+/// that t sweeps on the sphere, seen from a). To second order the frame turns by
+/// w(dy) + Q(dy, dy)/2.
+struct EdgeTurn {
+  EdgeTurn() = default;
+  EdgeTurn(const Vec& reference_tangent, const Vec& e)
+      : a(reference_tangent),
+        length(std::sqrt(dot(e, e))),
+        t((1 / length) * e),
+        c((1 / (length * (1 + dot(a, t)))) * cross(t, a)) {}
+
+  /// w for changes or rates of e and theta.
+  Vec spin(const Vec& de, double dtheta) const {
+    return (1 / length) * cross(t, de) + (dtheta + dot(c, de)) * t;
+  }
+  /// The forces on e that have the work of a moment: moment . w = force . de + torque
+  /// dtheta, torque = moment . t.
+  Vec force(const Vec& moment) const {
+    return (1 / length) * cross(moment, t) + dot(moment, t) * c;
+  }
+  /// Column k of w as a matrix (3 x 4).
+  Vec column(int k) const {
+    if (k == 3) return t;
+    const Vec axis{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
+    return spin(axis, 0);
+  }
+  /// h += factor moment . Q as a symmetric matrix (4 x 4).
+  void add_second(double factor, const Vec& moment, double (&h)[4][4]) const {
+    const double along = dot(moment, t);
+    const Vec across = (1 / length) * (moment - along * t);
+    const double at = dot(a, t);
+    const Vec stretch = (2 / length) * t + (1 / (length * (1 + at))) * (a - at * t);
+    const auto add = [&](double f, const Vec& x, const Vec& y) {
+      const double u[3] = {x.x, x.y, x.z}, w[3] = {y.x, y.y, y.z};
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) h[i][j] += 0.5 * f * (u[i] * w[j] + u[j] * w[i]);
+      }
+    };
+    add(-2 * factor / (length * length), t, cross(moment, t));
+    add(factor, across, c);
+    add(-factor * along, c, stretch);
+    const double turned[3] = {across.x, across.y, across.z};
+    for (int i = 0; i < 3; ++i) {
+      h[i][3] += 0.5 * factor * turned[i];
+      h[3][i] += 0.5 * factor * turned[i];
+    }
+  }
+
+  Vec a;
+  double length = 1;
+  Vec t{1, 0, 0};
+  Vec c;
+};
+
+}  // namespace tress

@@ -1,0 +1,62 @@
+#include "models/strand/geometry.h"
+
+#include "models/input_error.h"
+#include "models/math/helix.h"
+
+namespace tress {
+namespace {
+
+/// The end of a helix of constant Darboux vector (math/helix.h) that starts at `from`.
+StrandPlace along(const StrandPlace& from, const Vec& darboux, double s) {
+  const HelixFunctions<double> f = helix_functions(s, dot(darboux, darboux), s);
+  const auto turned = [&](double along_y, double along_u, double along_z, const Vec& y) {
+    const Vec u = cross(darboux, y);
+    return along_y * y + along_u * u + along_z * cross(darboux, u);
+  };
+  const Vec e0{1, 0, 0}, e1{0, 1, 0}, e2{0, 0, 1};
+  const Frame turn{turned(1, f.S, f.A, e0), turned(1, f.S, f.A, e1),
+                   turned(1, f.S, f.A, e2)};
+  return {from.x + from.frame * turned(s, f.A, f.B, e0), from.frame * turn};
+}
+
+const Vec& darboux(const Segment& segment, ShapeOf shape) {
+  return shape == ShapeOf::natural ? segment.natural : segment.initial;
+}
+
+}  // namespace
+
+std::vector<StrandPlace> joints(const Strand& strand, ShapeOf shape,
+                                const StrandPlace& root) {
+  std::vector<StrandPlace> places{root};
+  for (const Segment& segment : strand.segments) {
+    places.push_back(along(places.back(), darboux(segment, shape), segment.length));
+  }
+  return places;
+}
+
+std::vector<StrandPlace> middles(const Strand& strand, ShapeOf shape,
+                                 const StrandPlace& root) {
+  std::vector<StrandPlace> places = joints(strand, shape, root);
+  places.pop_back();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Segment& segment = strand.segments[i];
+    places[i] = along(places[i], darboux(segment, shape), segment.length / 2);
+  }
+  return places;
+}
+
+void check_unbranched(const Strand& strand, const std::string& model) {
+  check(strand);
+  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
+    const Segment& segment = strand.segments[i];
+    const Vec& e0 = segment.mount.e0;
+    const Vec& e1 = segment.mount.e1;
+    const bool straight_on = e0.x == 1 && e1.y == 1;
+    if (segment.parent != static_cast<int>(i) - 1 || !straight_on) {
+      throw InputError("segment " + std::to_string(i) + " branches off", model,
+                       "give a chain of segments, or use super_helix_tree");
+    }
+  }
+}
+
+}  // namespace tress
