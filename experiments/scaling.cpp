@@ -10,6 +10,7 @@
 #include "experiments/harness/scaling_claims.h"
 #include "experiments/harness/scaling_grid.h"
 #include "experiments/harness/stability.h"
+#include "experiments/harness/strand_models.h"
 #include "experiments/harness/strand_scenes.h"
 #include "experiments/harness/timing.h"
 
@@ -51,8 +52,7 @@ Options step_of(double h) {
 
 Moving moving(const ScalingCase& c, const Parameters& parameters) {
   Parameters cheapest = parameters;
-  cheapest.set("solver", "recursive");
-  cheapest.set("tangent", "stiff");
+  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}, {"tangent", "stiff"}});
   const auto system = c.model->make(cheapest);
   constexpr double t = 0.05;
   Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step),
@@ -84,7 +84,7 @@ double step_cost(System& system, const Moving& from, double time_s, int repeat) 
 StepLimit largest_step(const ScalingCase& c, const Parameters& parameters,
                        const Deadline& deadline) {
   Parameters cheapest = parameters;
-  cheapest.set("solver", "recursive");
+  cheapest.set("solver", first_word(*c.model, "solver"));
   const auto system = c.model->make(cheapest);
   const State start = perturbed_start(*system);
   const StabilityBounds bounds =

@@ -12,6 +12,7 @@
 #include "experiments/harness/reference.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/simulation.h"
+#include "experiments/harness/strand_models.h"
 #include "experiments/harness/strand_problems.h"
 #include "experiments/harness/timing.h"
 #include "experiments/harness/work_precision_series.h"
@@ -155,7 +156,9 @@ std::vector<Case> cases(const CommandLine& line) {
   };
   for (const Problem& problem : problems()) add(problem);
   // Their references take some seconds.
-  if (wanted(line.models, "super_helix") || wanted(line.models, "articulated_chain")) {
+  if (std::ranges::any_of(strand_models(), [&line](const ModelEntry* model) {
+        return wanted(line.models, model->id);
+      })) {
     for (const Problem& problem : strand_problems()) add(problem);
   }
   return all;

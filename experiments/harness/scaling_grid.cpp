@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/harness/strand_models.h"
 #include "experiments/harness/strand_scenes.h"
 #include "models/catalogue.h"
 #include "models/reduced/trees.h"
@@ -17,7 +18,7 @@ constexpr Parameter settings_of_rows[] = {
      .choices = "all|straight|palm_tree|algae|complex_tree|man|willow"},
     {.name = "solver",
      .help = "rows of one solver of the model",
-     .choices = "all|recursive|composite|sparse"},
+     .choices = "all|recursive|composite|sparse|banded|klu"},
     {.name = "tangent",
      .help = "rows of one tangent of the model",
      .choices = "all|stiff|exact"},
@@ -43,6 +44,21 @@ std::vector<Method> methods_of_strands() {
       }
       if (solver != "sparse") {
         all.push_back({"articulated_chain", solver, tangent, "bend_twist"});
+      }
+    }
+  }
+  return all;
+}
+
+/// Every other strand model: each of its solvers, the first of its tangents.
+std::vector<Method> methods_of_others() {
+  const std::vector<Method> known = methods_of_strands();
+  std::vector<Method> all;
+  for (const ModelEntry* model : strand_models()) {
+    if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
+    for (const std::string_view solver : {"banded", "klu"}) {
+      if (has_word(*model, "solver", solver)) {
+        all.push_back({model->id, solver, first_word(*model, "tangent"), ""});
       }
     }
   }
@@ -116,9 +132,7 @@ Parameters ScalingCase::parameters(const Settings& settings) const {
   } else {
     set_tree(p, structure);
   }
-  p.set("solver", solver);
-  p.set("tangent", tangent);
-  p.set("modes", modes);
+  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
   return p;
 }
 
@@ -128,7 +142,7 @@ bool ScalingCase::in_seed_table() const {
 
 std::optional<double> ScalingCase::seed_fps() const {
   const SeedFrames* row = seed_frames(*this);
-  if (row == nullptr || model->id == "articulated_chain" || tangent != "stiff" ||
+  if (row == nullptr || !model->id.starts_with("super_helix") || tangent != "stiff" ||
       modes != "bend_twist") {
     return {};
   }
@@ -148,12 +162,15 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
   };
   const auto wanted_method = [&](const Method& m) {
     return keeps("solver", m.solver) && keeps("tangent", m.tangent) &&
-           keeps("modes", m.modes) && wanted(line.models, m.model);
+           (m.modes.empty() || keeps("modes", m.modes)) && wanted(line.models, m.model);
   };
+  std::vector<Method> methods = methods_of_strands();
+  const std::vector<Method> others = methods_of_others();
+  methods.insert(methods.end(), others.begin(), others.end());
   std::vector<ScalingCase> all;
   // Size by size: what is compared is measured within the same minute.
   for (const int elements : element_counts(line)) {
-    for (const Method& m : methods_of_strands()) {
+    for (const Method& m : methods) {
       if (!keeps("structure", straight) || !wanted_method(m)) continue;
       const bool too_large = m.solver == "composite" && elements > largest_dense;
       if (too_large && !line.full && line.elements.empty()) continue;

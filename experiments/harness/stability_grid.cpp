@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include "experiments/harness/strand_models.h"
 #include "integrators/catalogue.h"
-#include "models/catalogue.h"
 
 namespace tress {
 namespace {
@@ -63,6 +63,21 @@ constexpr Method methods[] = {
     {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
 };
 
+/// Every other strand model, by the usual step and by whole Newton steps: its first
+/// solver and tangent.
+std::vector<Method> methods_of(const ModelEntry& model) {
+  std::vector<Method> all;
+  for (const std::string_view integrator : {"semi_implicit_euler", "backward_euler"}) {
+    all.push_back({model.id, integrator, first_word(model, "solver"),
+                   first_word(model, "tangent")});
+  }
+  return all;
+}
+
+bool of_the_seed(std::string_view model) {
+  return std::ranges::find(methods, model, &Method::model) != std::end(methods);
+}
+
 /// Only where methods are compared with each other.
 constexpr Method further_methods[] = {
     {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
@@ -73,15 +88,18 @@ constexpr Method further_methods[] = {
     {"articulated_chain", "backward_euler", "recursive", "exact"},
 };
 
+/// Where methods are compared.
+constexpr int usual_elements = 20;
+
 /// Of --quick; the others say nothing new about stability.
 constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint",
                                                   "linearly_implicit_midpoint", "bdf2",
                                                   "generalized_alpha"};
 constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
                                              "whip"};
-
-/// Where methods are compared.
-constexpr int usual_elements = 20;
+/// Of models that are not the seed's: these scenes and numbers of elements.
+constexpr std::string_view quick_scenes_of_others[] = {"release", "shake"};
+constexpr int quick_elements_of_others[] = {5, 10, usual_elements, 40};
 
 bool contains(std::span<const std::string_view> words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -97,6 +115,11 @@ std::vector<int> element_counts(const CommandLine& line) {
 /// whole tangent.
 std::vector<Method> all_methods(const CommandLine& line, bool others) {
   std::vector<Method> all(std::begin(methods), std::end(methods));
+  for (const ModelEntry* model : strand_models()) {
+    if (of_the_seed(model->id)) continue;
+    const std::vector<Method> own = methods_of(*model);
+    all.insert(all.end(), own.begin(), own.end());
+  }
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
@@ -129,10 +152,7 @@ bool usual(const CommandLine& line, const StrandScene& scene, const Damping& dam
 bool possible(const StabilityCase& c, const Settings& settings) {
   for (const auto& [key, word] :
        {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
-    const auto has = [&, k = std::string_view(key), w = word](const Parameter& p) {
-      return p.name == k && contains(words_of(p.choices), w);
-    };
-    if (std::ranges::none_of(c.model->parameters, has)) return false;
+    if (!word.empty() && !has_word(*c.model, key, word)) return false;
   }
   const auto system = c.model->make(c.parameters(settings));
   return refusal(find_integrator(c.integrator), *system, Formulation::parametric).empty();
@@ -153,9 +173,7 @@ Parameters StabilityCase::parameters(const Settings& settings) const {
   for (const auto& [key, value] : scene->settings) p.set(key, value);
   p.set("elements", std::to_string(elements));
   p.set("internal_friction_kg_m3_s", damping.internal_friction);
-  p.set("solver", solver);
-  p.set("tangent", tangent);
-  p.set("modes", modes);
+  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
   return p;
 }
 
@@ -181,6 +199,12 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
                             (elements == usual_elements && damping.name == "none");
         for (const Method& m : all_methods(line, others)) {
           if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
+          if (!chosen && line.quick && !of_the_seed(m.model) &&
+              !(contains(quick_scenes_of_others, scene.name) &&
+                std::ranges::find(quick_elements_of_others, elements) !=
+                    std::end(quick_elements_of_others))) {
+            continue;
+          }
           if (!wanted(line.models, m.model)) continue;
           if (!wanted(line.integrators, m.integrator)) continue;
           const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "experiments/harness/reference.h"
+#include "experiments/harness/strand_models.h"
 #include "experiments/harness/strand_reference.h"
 #include "experiments/harness/strand_scenes.h"
 
@@ -30,10 +31,10 @@ std::vector<double> tip(System& system, const State& state) {
   return in_plane(In(points(system, state)).last(3));
 }
 
-Problem release(std::string_view model, int elements) {
+Problem release(const ModelEntry& model, int elements) {
   return {.name = name,
-          .model = model,
-          .settings = settings(elements),
+          .model = model.id,
+          .settings = known_to(model, settings(elements)),
           .t_end = t_end,
           .coarse_step = coarse_step,
           .scale = {length},
@@ -41,12 +42,12 @@ Problem release(std::string_view model, int elements) {
           .reference_gap = 0,
           .compared = tip,
           .elements = elements,
-          .solvers = {"recursive"}};
+          .solvers = {first_word(model, "solver")}};
 }
 
 Problem of_time(int elements) {
-  Problem problem = computed(release("super_helix", elements), Formulation::parametric,
-                             Formulation::parametric);
+  Problem problem = computed(release(find_model("super_helix"), elements),
+                             Formulation::parametric, Formulation::parametric);
   problem.solvers = {"recursive", "composite", "sparse"};
   problem.comparing = {"semi_implicit_euler", "implicit_midpoint", "ida"};
   return problem;
@@ -61,9 +62,9 @@ std::vector<Problem> of_rod() {
   const TipReference rod = converged_rod(make, {t_end, samples, length});
   const double gap = ReferenceGap(rod.tip, rod.other, std::vector<double>{length}).gap();
   std::vector<Problem> all;
-  for (const std::string_view model : {"super_helix", "articulated_chain"}) {
+  for (const ModelEntry* model : strand_models()) {
     for (const int elements : {3, 5, 7, 10, 14, 20, 28, 40}) {
-      Problem problem = release(model, elements);
+      Problem problem = release(*model, elements);
       problem.error_kind = "total";
       problem.integrators = {"implicit_midpoint"};
       problem.reference_gap = gap;

@@ -35,7 +35,7 @@ Timing time_it(int repeats, F&& f) {
 /// after a first one that warms the caches and does not count.
 template <typename F>
 double time_run(int repeats, F&& f) {
-  constexpr double long_run = 0.2;  // s; beyond it one interruption is a small part
+  constexpr double long_run = 0.05;  // s; beyond it one interruption is a small part
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   f();

@@ -82,17 +82,28 @@ struct JointStrain {
                    value.z * k) {}
 
   /// Sum of stress times second derivative of each strain: the terms of second order in
-  /// (w-, w+) are half of this form.
+  /// (w-, w+) are half of this form. With d = w+ - w-, on either side
+  /// m = (stress_2 e1 - stress_1 e2)/c, and s = (stress_1 kappa_1 + stress_2 kappa_2)/c:
+  ///
+  ///     (d . t-)(w- . (m+ + s t+)) - (d . (m+ + s t+))(w+ . t-) - (d . m-)(w- . t+)
+  ///       + (d . t+)(w+ . m-) - s |d|^2 + (d . g)(d . k) + stress_0 w+ . (w- x twist),
+  ///
+  /// g the gradients of the curvatures by twice their stresses and that of the twist.
   TwoVectorForm second(const Frame& minus, const Frame& plus, const Vec& stress) const {
     TwoVectorForm form;
-    add_bending(minus.e0, plus.e0, minus.e1, plus.e1, value.z, stress.z, form);
-    add_bending(minus.e0, plus.e0, minus.e2, plus.e2, -value.y, -stress.y, form);
-    for (const int side : {0, 1}) {
-      const double sign = side == 0 ? -1 : 1;
-      const Vec bent = stress.y * curvature1 + stress.z * curvature2;
-      form.add(2 * sign, bent, side, k);
-      form.add(sign * stress.x, twist, side, k);
-    }
+    const double s2 = stress.z / c, s1 = -stress.y / c;
+    const double s = s2 * value.z - s1 * value.y;
+    const Vec m_minus = s2 * minus.e1 + s1 * minus.e2;
+    const Vec m_plus = s2 * plus.e1 + s1 * plus.e2 + s * plus.e0;
+    form.add(1, minus.e0, 0, m_plus);
+    form.add(-1, m_plus, 1, minus.e0);
+    form.add(-1, m_minus, 0, plus.e0);
+    form.add(1, plus.e0, 1, m_minus);
+    form.add_square(-s);
+    const Vec g =
+        2 * stress.y * curvature1 + 2 * stress.z * curvature2 + stress.x * twist;
+    form.add(-1, g, 0, k);
+    form.add(1, g, 1, k);
     form.add_triple(stress.x, twist);
     return form;
   }
@@ -101,19 +112,6 @@ struct JointStrain {
   Vec value;
   Vec k;  // half the curvature binormal
   Vec twist, curvature1, curvature2;
-
- private:
-  /// kappa = (t+ . m- - t- . m+)/c but for what its own change of scale brings.
-  void add_bending(const Vec& t_minus, const Vec& t_plus, const Vec& m_minus,
-                   const Vec& m_plus, double kappa, double stress,
-                   TwoVectorForm& form) const {
-    const double s = stress / c;
-    form.add(s, t_minus, 0, m_plus + kappa * t_plus);
-    form.add(-s, m_plus + kappa * t_plus, 1, t_minus);
-    form.add(-s, m_minus, 0, t_plus);
-    form.add(s, t_plus, 1, m_minus);
-    form.add_square(-s * kappa);
-  }
 };
 
 }  // namespace tress

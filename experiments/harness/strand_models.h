@@ -1,0 +1,30 @@
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "experiments/harness/simulation.h"
+#include "models/catalogue.h"
+
+namespace tress {
+
+/// The models of the catalogue that take a strand as models/strand/strand_parameters.h
+/// describes it: every strand scene runs on each of them.
+std::vector<const ModelEntry*> strand_models();
+
+/// The default of a choice, empty where the model has no such parameter.
+std::string_view first_word(const ModelEntry& model, std::string_view key);
+
+bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
+
+/// Sets those parameters that the model has.
+void set_known(
+    Parameters& parameters,
+    std::initializer_list<std::pair<std::string_view, std::string_view>> settings);
+
+/// The settings whose keys the model knows.
+ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings);
+
+}  // namespace tress
