@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/harness/experiment.h"
+#include "experiments/harness/formulations.h"
 #include "experiments/harness/problems.h"
 #include "experiments/harness/reference.h"
 #include "experiments/harness/settings.h"
@@ -98,16 +99,9 @@ void measure(const Work& work, Row& row) {
   row.set("wall_s", wall).set("wall_s_per_sim_s", wall / problem.t_end);
 }
 
-/// The formulations a table of manageable size shows: the method's own best. --full: all
-/// but Baumgarte's, whose gains are the subject of constraint_drift.
+/// The formulations a table of manageable size shows: the method's own best. --full: all.
 std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, bool full) {
-  constexpr Formulation preference[] = {
-      Formulation::parametric, Formulation::rattle,     Formulation::index2_ggl,
-      Formulation::index3,     Formulation::projection, Formulation::acceleration};
-  std::vector<Formulation> list;
-  for (const Formulation formulation : preference) {
-    if (refusal(entry, system, formulation).empty()) list.push_back(formulation);
-  }
+  std::vector<Formulation> list = usable_formulations(entry, system);
   if (!full && list.size() > 1) list.erase(list.begin() + 1, list.end());
   return list;
 }

@@ -1,0 +1,171 @@
+// What does an integrator do to momentum and energy that no force changes? A hair thrown
+// in space without gravity, spinning, by every strand model whose root can be free.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/formulations.h"
+#include "experiments/harness/settings.h"
+#include "experiments/harness/strand_models.h"
+#include "integrators/catalogue.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"model", "catalogue id"},
+    {"integrator", "method"},
+    {"elements", "number of elements"},
+    {"dt_s", "fixed step"},
+    {"rtol", "relative and absolute tolerance, adaptive methods"},
+    {"t_end_s", "length of the flight"},
+    {"linear_error_rel",
+     "largest change of linear momentum over the flight, over itself"},
+    {"angular_error_rel", "the same of angular momentum about the origin"},
+    {"angular_change_rel", "change of its size from start to end"},
+    {"energy_change_rel", "change of mechanical energy from start to end, over it"},
+    {"steps", "accepted steps"},
+};
+
+constexpr double t_end = 0.5;        // s: three quarters of a turn
+constexpr double energy_bound = 10;  // times the start's: diverged
+
+using Three = std::array<double, 3>;
+
+double norm(const Three& x) { return std::hypot(x[0], x[1], x[2]); }
+double distance(Three x, const Three& y) {
+  for (std::size_t i = 0; i < 3; ++i) x[i] -= y[i];
+  return norm(x);
+}
+
+Parameters thrown(const Settings& settings, const ModelEntry& model, int elements) {
+  Parameters p = settings.parameters(model);
+  p.set("root", "free");
+  p.set("gravity_m_s2", "0");
+  p.set("elements", std::to_string(elements));
+  return p;
+}
+
+/// Explicit methods follow the waves of stretching of a hair, microseconds long.
+bool shown(const IntegratorEntry& entry, const CommandLine& line) {
+  constexpr std::string_view slow[] = {"gsl_rkf45",   "gsl_rk8pd",  "gsl_msadams",
+                                       "cvode_adams", "arkode_erk", "gsl_bsimp"};
+  if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
+  return line.full || std::ranges::find(slow, entry.id) == std::end(slow);
+}
+
+struct Work {
+  const ModelEntry* model;
+  std::string_view integrator;
+  Options options;
+  Parameters parameters;
+};
+
+void measure(const Work& work, Row& row) {
+  const auto system = work.model->make(work.parameters);
+  const State start = initial_state(*system);
+  Energetics& energetics = *system->energetics();
+  Momentum before, now;
+  energetics.momentum(0, start.q, start.v, before);
+  const double energy = energetics.energy(0, start.q, start.v).total();
+  double linear = 0, angular = 0, total = energy;
+  const Simulation run = simulate(
+      work.integrator, *system, work.options, start, t_end, [&](double t, In q, In v) {
+        energetics.momentum(t, q, v, now);
+        total = energetics.energy(t, q, v).total();
+        linear = std::max(linear, distance(now.linear, before.linear));
+        angular = std::max(angular, distance(now.angular, before.angular));
+        return std::abs(total) <= energy_bound * energy;
+      });
+  row.set("t_end_s", run.t).set("steps", run.stats.steps);
+  if (!(std::abs(total) <= energy_bound * energy)) {
+    row.failed("diverged", "energy beyond ten times that of the start");
+    return;
+  }
+  if (run.status != Status::ok) {
+    row.failed("solver_error", run.failure);
+    return;
+  }
+  row.set("linear_error_rel", linear / norm(before.linear));
+  row.set("angular_error_rel", angular / norm(before.angular));
+  row.set("angular_change_rel", norm(now.angular) / norm(before.angular) - 1);
+  row.set("energy_change_rel", total / energy - 1);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, {});
+  const std::vector<int> counts =
+      line.elements.empty() ? std::vector<int>{10} : line.elements;
+  std::vector<Case> all;
+  for (const ModelEntry* model : strand_models()) {
+    if (!has_word(*model, "root", "free") || !wanted(line.models, model->id)) continue;
+    for (const int elements : counts) {
+      const Parameters p = thrown(settings, *model, elements);
+      const auto system = model->make(p);
+      for (const IntegratorEntry& entry : integrators()) {
+        if (!shown(entry, line)) continue;
+        Options options = settings.options();
+        const auto formulations = usable_formulations(entry, *system);
+        if (formulations.empty()) continue;
+        options.formulation = formulations.front();
+        const int points = line.full ? 5 : 3;
+        for (int level = 0; level < points; ++level) {
+          Row identity;
+          identity.set("model", model->id).set("integrator", entry.id);
+          identity.set("elements", elements);
+          if (entry.adaptive) {
+            options.rtol = options.atol = std::pow(10, -3 - 2 * level);
+            identity.set("rtol", options.rtol);
+          } else {
+            options.step = 1 / 120.0 / std::pow(10, level);
+            identity.set("dt_s", options.step);
+          }
+          const Work work{model, entry.id, options, p};
+          all.push_back(
+              {identity, [work](Row& row, const auto&) { measure(work, row); }});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+  double least = 1, most = 0;
+  for (const Row& row : rows) {
+    if (!row.ok() || !row.has("dt_s")) continue;
+    const double lost = row.number("angular_error_rel");
+    const bool coarse = row.number("dt_s") > 5e-3;
+    if (coarse && row.text("integrator") == "backward_euler") {
+      least = std::min(least, lost);
+    }
+    if (row.text("integrator") == "implicit_midpoint" && row.text("model") == "der") {
+      most = std::max(most, lost);
+    }
+  }
+  verdicts.check("backward_euler at 1/120 s changes angular momentum by over 1 %",
+                 least > 0.01, least);
+  verdicts.check("implicit_midpoint keeps that of der to 1e-9", most < 1e-9, most);
+}
+
+/// An explicit step too large for a hair is a finding.
+bool finding(const Row&) { return true; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "free_flight",
+      .question = "what do integrators do to momentum and energy that no force changes?",
+      .example = "--models der --integrators backward_euler,implicit_midpoint",
+      .columns = columns,
+      .cases = cases,
+      .checks = check,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "integrators/catalogue.h"
+
+namespace tress {
+
+/// The formulations by which an integrator drives a system, its own best first. Without
+/// Baumgarte's feedback, whose gains are the subject of constraint_drift.
+std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
+                                             System& system);
+
+}  // namespace tress
