@@ -3,6 +3,7 @@ import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
+import { model_steps } from './model_steps.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
 import { swing } from './swing.mjs';
@@ -15,6 +16,7 @@ export const figures = [
   work_precision,
   bdf_order,
   stability_limit,
+  model_steps,
   scaling,
   swing,
 ];

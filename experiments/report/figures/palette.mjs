@@ -200,3 +200,14 @@ export function method_style(names) {
     dashes: entries.map((e) => e.dash),
   };
 }
+
+// The same for models: a colour of its own for each, solid lines.
+export function model_style(names) {
+  const domain = [...new Set(names)];
+  return {
+    domain,
+    colours: domain.map((_, i) => formulation_colours[(i + 2) % formulation_colours.length]),
+    shapes: domain.map((_, i) => shapes[i % shapes.length]),
+    dashes: domain.map(() => dashes[0]),
+  };
+}

@@ -6,6 +6,7 @@ import {
   frame_s,
   has_limit,
   is_capped,
+  is_reduced,
   principal_runs,
   run_name,
   scan_end_s,
@@ -155,6 +156,84 @@ function panel(
   };
 }
 
+// What a limit can be drawn from: the search found one, or found none.
+export const is_drawn = (row) =>
+  is_positive(row.elements) &&
+  row.elements <= elements_end &&
+  (has_limit(row) ||
+    (row.status === 'unstable' && is_positive(row.dt_first_unstable_s)));
+
+// Rows with a `method` each: one panel per scene and damping, one line per method, in
+// `columns` at least where there are as many panels.
+export function limit_spec(rows, style, { width, theme }, columns_wanted = 3) {
+  const { placed, top } = with_places(rows, style.domain);
+  const smallest = Math.min(
+    ...placed.map((row) => row.dt_ms ?? 1e3 * row.dt_first_unstable_s),
+    frame_ms / 10,
+  );
+  const bottom = smallest / 1.6;
+  const groups = [
+    ...group_by(
+      [...placed].sort((a, b) => damping_rank(a) - damping_rank(b)),
+      (row) => `${row.scene}|${row.damping}`,
+    ).values(),
+  ];
+  // Columns are dampings where they fit: scenes that have all of them come first, and
+  // only the first column carries the labels of y.
+  const scenes = distinct(rows.map((row) => row.scene));
+  const panels_of = (group) => groups.filter(([row]) => row.scene === group[0].scene);
+  const wanted = Math.max(
+    Math.min(columns_wanted, groups.length),
+    ...groups.map((group) => panels_of(group).length),
+  );
+  const place = (group) =>
+    (panels_of(group).length === wanted ? 0 : scenes.length) +
+    scenes.indexOf(group[0].scene);
+  groups.sort((a, b) => place(a) - place(b));
+  const columns = width >= 150 * wanted + axis_room + 100 ? wanted : 1;
+  const room = width - axis_room - 8 - columns * overhang - (columns - 1) * gap;
+  const { legend } = layout(width, groups.length, {
+    labels: style.domain,
+    above: true,
+  });
+  const list = groups.map((members, i) => {
+    const { x, y } = axes({
+      bottom,
+      top,
+      first: i % columns === 0,
+      last_row: columns === 1 || i + columns >= groups.length,
+    });
+    return panel(members, {
+      x,
+      y,
+      style,
+      legend,
+      panel_width: Math.floor(room / columns),
+      height: columns === 1 ? 190 : 220,
+      theme,
+      top,
+      bottom,
+    });
+  });
+  return {
+    title: {
+      text: lines_of(
+        'Dashed: 33 ms, one frame at 30 frames/s. Shaded: stable up to the end of the ' +
+          'scan (100 ms; curl drop 33 ms, whip 5 ms: longer steps miss the drive).',
+        width - 20,
+      ),
+      fontSize: 12,
+      fontWeight: 'normal',
+      color: theme.muted,
+    },
+    ...panels(
+      with_parameters(list, [legend_selection('pick_method', 'method')]),
+      columns,
+    ),
+    spacing: { row: 22, column: gap },
+  };
+}
+
 export const stability_limit = {
   id: 'stability_limit',
   title: 'The largest stable time step',
@@ -171,84 +250,12 @@ export const stability_limit = {
 
   rows: (tables) =>
     principal_runs(
-      (tables.stability_limit ?? []).filter(
-        (row) =>
-          is_positive(row.elements) &&
-          row.elements <= elements_end &&
-          (has_limit(row) ||
-            (row.status === 'unstable' && is_positive(row.dt_first_unstable_s))),
-      ),
+      (tables.stability_limit ?? []).filter((row) => is_reduced(row) && is_drawn(row)),
     ).map((row) => ({ ...row, method: run_name(row) })),
 
-  spec(tables, { width, theme }) {
+  spec(tables, options) {
     const rows = this.rows(tables);
-    const style = method_style(rows.map((row) => row.method));
-    const { placed, top } = with_places(rows, style.domain);
-    const smallest = Math.min(
-      ...placed.map((row) => row.dt_ms ?? 1e3 * row.dt_first_unstable_s),
-      frame_ms / 10,
-    );
-    const bottom = smallest / 1.6;
-    const groups = [
-      ...group_by(
-        [...placed].sort((a, b) => damping_rank(a) - damping_rank(b)),
-        (row) => `${row.scene}|${row.damping}`,
-      ).values(),
-    ];
-    // Columns are dampings where they fit: scenes that have all of them come first, and
-    // only the first column carries the labels of y.
-    const scenes = distinct(rows.map((row) => row.scene));
-    const panels_of = (group) => groups.filter(([row]) => row.scene === group[0].scene);
-    const wanted = Math.max(
-      Math.min(3, groups.length),
-      ...groups.map((group) => panels_of(group).length),
-    );
-    const place = (group) =>
-      (panels_of(group).length === wanted ? 0 : scenes.length) +
-      scenes.indexOf(group[0].scene);
-    groups.sort((a, b) => place(a) - place(b));
-    const columns = width >= 150 * wanted + axis_room + 100 ? wanted : 1;
-    const room = width - axis_room - 8 - columns * overhang - (columns - 1) * gap;
-    const { legend } = layout(width, groups.length, {
-      labels: style.domain,
-      above: true,
-    });
-    const list = groups.map((members, i) => {
-      const { x, y } = axes({
-        bottom,
-        top,
-        first: i % columns === 0,
-        last_row: columns === 1 || i + columns >= groups.length,
-      });
-      return panel(members, {
-        x,
-        y,
-        style,
-        legend,
-        panel_width: Math.floor(room / columns),
-        height: columns === 1 ? 190 : 220,
-        theme,
-        top,
-        bottom,
-      });
-    });
-    return {
-      title: {
-        text: lines_of(
-          'Dashed: 33 ms, one frame at 30 frames/s. Shaded: stable up to the end of the ' +
-            'scan (100 ms; curl drop 33 ms, whip 5 ms: longer steps miss the drive).',
-          width - 20,
-        ),
-        fontSize: 12,
-        fontWeight: 'normal',
-        color: theme.muted,
-      },
-      ...panels(
-        with_parameters(list, [legend_selection('pick_method', 'method')]),
-        columns,
-      ),
-      spacing: { row: 22, column: gap },
-    };
+    return limit_spec(rows, method_style(rows.map((row) => row.method)), options);
   },
 
   describe(tables) {

@@ -1,4 +1,5 @@
 // The text of the page: answers, sections, findings, places for figures and tables.
+import { model_step_findings } from '../figures/model_steps.mjs';
 import { figures } from '../figures/all.mjs';
 import { escape_html } from './format.mjs';
 import {
@@ -37,6 +38,7 @@ const sections = [
     summary: stability_summary,
     tables: ['stability_limit'],
   },
+  { figure: 'model_steps', findings: model_step_findings, tables: [] },
   {
     figure: 'scaling',
     findings: scaling_findings,

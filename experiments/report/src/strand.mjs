@@ -9,6 +9,8 @@ export const scan_end_s = 0.1;
 export const spaced = (name) => String(name ?? '').replaceAll('_', ' ');
 
 const papers_step = 'semi_implicit_euler';
+// Reduced coordinates: the models of the seed, whose solvers and tangents are compared.
+export const is_reduced = (row) => /^(super_helix|articulated_chain)/.test(row.model);
 const is_helix = (row) => /^super_helix/.test(row.model);
 const is_less_implicit = (row) =>
   [row.model, row.solver, row.tangent, row.integrator].some((name) =>

@@ -1,0 +1,87 @@
+// Figure 9: largest stable time step against the number of elements, model by model.
+import { distinct, group_by } from '../src/tables.mjs';
+import { format_time } from '../src/format.mjs';
+import { has_limit, is_capped, is_reduced, spaced } from '../src/strand.mjs';
+import { model_style } from './palette.mjs';
+import { is_drawn, limit_spec } from './stability_limit.mjs';
+
+// One linear solve a step, and Newton's iteration to its end.
+const integrators = ['semi_implicit_euler', 'backward_euler'];
+
+// Of the reduced models the papers' step and the whole Newton step in linear time.
+const usual = (row) =>
+  !is_reduced(row) ||
+  (row.solver === 'recursive' &&
+    row.modes === 'bend_twist' &&
+    row.tangent === (row.integrator === 'backward_euler' ? 'exact' : 'stiff'));
+
+// Scenes that all models were run on.
+function shared(rows) {
+  const models = distinct(rows.map((row) => row.model)).length;
+  const complete = [...group_by(rows, (row) => row.scene).values()].filter(
+    (members) => distinct(members.map((row) => row.model)).length === models,
+  );
+  return complete.flat();
+}
+
+const rows_of = (tables) =>
+  shared(
+    (tables.stability_limit ?? []).filter(
+      (row) =>
+        row.damping === 'none' &&
+        integrators.includes(row.integrator) &&
+        usual(row) &&
+        is_drawn(row),
+    ),
+  );
+
+const limit = (row) =>
+  !has_limit(row)
+    ? 'none found'
+    : `${is_capped(row) ? 'at least ' : ''}${format_time(row.dt_max_s)}`;
+
+// One sentence per scene and integrator, models from the largest step down.
+export function model_step_findings(tables) {
+  const at_20 = rows_of(tables).filter((row) => row.elements === 20);
+  return [...group_by(at_20, (row) => `${row.scene}|${row.integrator}`).values()].map(
+    (members) =>
+      `${spaced(members[0].scene)}, 20 elements, ${spaced(members[0].integrator)}: ` +
+      [...members]
+        .sort((a, b) => (b.dt_max_s ?? 0) - (a.dt_max_s ?? 0))
+        .map((row) => `${spaced(row.model)} ${limit(row)}`)
+        .join(', ') +
+      '.',
+  );
+}
+
+export const model_steps = {
+  id: 'model_steps',
+  title: 'The largest stable time step of every model',
+  table: 'stability_limit',
+  caption: `Largest stable time step against the number of elements without damping, one
+    line per model: above by one linear solve a step (semi-implicit Euler), below by
+    backward Euler with whole Newton steps, where a step is too long once Newton's iteration
+    finds no solution. super_helix and articulated_chain: recursion, the papers' tangent
+    above and the exact one below; others: their default solver and tangent. The shaded
+    band holds the runs that were stable up to the end of the scan. Made from
+    stability_limit.csv, scenes that every model was run on.`,
+
+  rows: (tables) =>
+    rows_of(tables).map((row) => ({
+      ...row,
+      method: spaced(row.model),
+      damping: row.integrator,
+    })),
+
+  spec(tables, options) {
+    const rows = this.rows(tables);
+    return limit_spec(rows, model_style(rows.map((row) => row.method)), options, 2);
+  },
+
+  describe(tables) {
+    const rows = this.rows(tables);
+    return `Largest stable time step in milliseconds, log scale, against the number of
+      elements: ${distinct(rows.map((r) => r.model)).length} models, two integrators, 33 ms
+      marked, ${rows.filter(is_capped).length} runs stable up to the end of the scan.`;
+  },
+};
