@@ -11,8 +11,8 @@ namespace tress {
 ///
 /// strand_release, time: super_helix of 10 elements by every integrator, some of them on
 ///   each solver of the model.
-/// strand_release, total: super_helix and articulated_chain of 3 to 40 elements against
-///   the continuous rod (converged_rod).
+/// strand_release, total: every strand model of 3 to 40 elements against the continuous
+///   rod (converged_rod).
 ///
 /// Bending alone: nothing twists the strand, and explicit methods take part. Made once,
 /// at the first call, which takes some seconds.
