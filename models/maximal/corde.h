@@ -24,13 +24,14 @@ namespace tress {
 /// and a constant mass matrix. The clamp is a wall half an edge before the first edge's
 /// middle: a joint of length l/2 between its frame and q_0 (second order).
 ///
-/// Both penalties are in the unit EI/l^2. Edges lag behind frames by V/kappa, V the shear
-/// force; a light cantilever's tip hangs 4 (l/L)^2/coupling of its deflection lower, that
-/// is 4/coupling of the scheme's own error (l/L)^2. Bending of curvature u shrinks |q|^2
-/// by (u l)^2/(coupling + norm) and softens it by twice that; replacing the angle by 2
-/// sin(angle/2) alone costs (u l)^2/24 to 8. So the defaults of 100 and 400 add a tenth
-/// or less to the error and leave order 2; the stiffest oscillations are those of the
-/// penalties, sqrt(max(coupling, norm) E/(2 rho))/l, seven times the stretch waves'.
+/// Both penalties are in the unit EI/l^2 and cost less than the scheme's own errors, at
+/// the same order 2. A joint's moment is EI sin(u l)/l: softer by (u l)^2/6 in bending of
+/// curvature u, where the norm, |q|^2 = 1 - (u l)^2/(coupling + norm), softens it by
+/// twice that. A light cantilever of length L bends lower by (l/L)^2 of its deflection,
+/// and by 4/coupling of that because edges lag behind frames by V/kappa, V the shear
+/// force. So the defaults add 4 and 6 per cent to the errors. The stiffest oscillations
+/// are the norms', sqrt((coupling + norm) E/(2 rho))/l, five times the stretch waves' 2
+/// sqrt(E/rho)/l.
 ///
 /// Inertia: mass lumped at the nodes, 4 rho (I1 + I2) l |q'|^2/2 = rho (I1 + I2) l
 /// |omega|^2/2 (omega = 2 q' conj(q)): right about the tangent; across it, where the
@@ -40,7 +41,7 @@ namespace tress {
 /// Rotations between neighbours stay below 180 degrees.
 struct CordeOptions {
   double coupling = 100;        // kappa l^2/EI
-  double norm = 400;            // nu l^2/EI
+  double norm = 100;            // nu l^2/EI
   double stretch_friction = 0;  // force per rate of stretch, N s
   LinearKind solver = LinearKind::automatic;
 };
