@@ -8,6 +8,7 @@
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/tinkertoys.h"
 #include "models/input_error.h"
+#include "models/maximal/corde.h"
 #include "models/maximal/der.h"
 #include "models/published/andrews_squeezer.h"
 #include "models/published/beam.h"
@@ -32,6 +33,7 @@ std::span<const ModelEntry> models() {
       ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), make_articulated_chain},
       ModelEntry{"der", "discrete elastic rod of n edges; 3n positions and n angles, extensible or with n multipliers", "Bergou 2008, 2010", der_parameters(), make_der},
+      ModelEntry{"corde", "Cosserat rod of n edges; 3n positions and n quaternions held together by penalties", "Spillmann & Teschner 2007", corde_parameters(), make_corde},
   };
   return entries;
 }

@@ -6,30 +6,6 @@
 #include "models/tangent_choice.h"
 
 namespace tress {
-namespace {
-
-Vec stiffness(const Strand& strand, const Segment& segment) {
-  const Material& material = strand.material;
-  const CrossSection& section = segment.section;
-  return {material.shear_modulus * section.torsion(),
-          material.youngs_modulus * section.inertia1(),
-          material.youngs_modulus * section.inertia2()};
-}
-
-/// A joint of half of each neighbour (of a clamp: nothing): mean stiffness over length.
-DerElasticity::JointData joint(const Strand& strand, const Segment* before,
-                               const Segment& after, const Vec& rest) {
-  const double l = (after.length + (before != nullptr ? before->length : 0)) / 2;
-  Vec weighted = after.length / 2 * stiffness(strand, after);
-  if (before != nullptr) {
-    weighted = weighted + before->length / 2 * stiffness(strand, *before);
-  }
-  const double friction = strand.material.internal_friction / l;
-  return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
-}
-
-}  // namespace
-
 std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
                             Effects effects) {
   const std::size_t n = strand.segments.size();
@@ -52,13 +28,13 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
     const Vec spin = parts.clamped ? strand.root.at(0).omega : strand.free_root->spin;
     parts.rate[3 * (n + 1) + i] = dot(spin, nodal.initial[i].e0);
   }
-  std::vector<DerElasticity::JointData> joints;
+  std::vector<RodJoint> joints;
   for (std::size_t i = 0; i < n; ++i) {
     const Segment* before = i > 0 ? &strand.segments[i - 1] : nullptr;
     if (before == nullptr && !parts.clamped) continue;
     const Vec rest = joint_strain(
         before != nullptr ? nodal.natural[i - 1] : nodal.root.frame, nodal.natural[i]);
-    joints.push_back(joint(strand, before, strand.segments[i], rest));
+    joints.push_back(rod_joint(strand.material, before, strand.segments[i], rest));
   }
   parts.elasticity = std::make_unique<DerElasticity>(std::move(edges), std::move(joints),
                                                      parts.clamped, options.tangent);

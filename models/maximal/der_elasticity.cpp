@@ -11,17 +11,8 @@ constexpr double far_turned = 0.5;
 
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-/// h over (e, theta) of an edge from node to node becomes a matrix over the two nodes and
-/// the angle.
-void to_nodes(const double (&h)[4][4], double (&m)[7][7]) {
-  constexpr int of[7] = {0, 1, 2, 0, 1, 2, 3};
-  constexpr double sign[7] = {-1, -1, -1, 1, 1, 1, 1};
-  for (int i = 0; i < 7; ++i) {
-    for (int j = 0; j < 7; ++j) m[i][j] = sign[i] * sign[j] * h[of[i]][of[j]];
-  }
-}
-
-/// The same over three nodes and two angles.
+/// h over (e, theta) of two neighbouring edges becomes a matrix over three nodes and two
+/// angles.
 void to_nodes(const double (&h)[8][8], double (&m)[11][11]) {
   // Nodes at the ends have one edge, the one between both.
   double half[8][11];
@@ -44,7 +35,7 @@ void to_nodes(const double (&h)[8][8], double (&m)[11][11]) {
 
 }  // namespace
 
-DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<JointData> joints,
+DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints,
                              bool walled, Tangent tangent)
     : edge_data_(std::move(edges)),
       joint_data_(std::move(joints)),
@@ -52,7 +43,7 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<JointData>
       tangent_(tangent),
       friction_(std::ranges::any_of(
           joint_data_,
-          [](const JointData& j) { return dot(j.friction, j.friction) > 0; })),
+          [](const RodJoint& j) { return dot(j.friction, j.friction) > 0; })),
       angles_(3 * (edge_data_.size() + 1)),
       edges_(edge_data_.size()),
       joints_(joint_data_.size()) {}
@@ -87,7 +78,7 @@ void DerElasticity::place(const Placement& p) noexcept {
     edge.moment = {};
   }
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const JointData& data = joint_data_[j];
+    const RodJoint& data = joint_data_[j];
     Joint& joint = joints_[j];
     Edge& behind = edges_[after(j)];
     joint.strain = JointStrain(frame_before(p, j), behind.frame);
@@ -121,7 +112,7 @@ void DerElasticity::add_force(const Placement& p, InOut f) noexcept {
 /// what is behind.
 void DerElasticity::joint_tangent(const Placement& p, std::size_t joint, double pos,
                                   double vel, Square& s) const noexcept {
-  const JointData& data = joint_data_[joint];
+  const RodJoint& data = joint_data_[joint];
   const JointStrain& strain = joints_[joint].strain;
   const Frame& minus = frame_before(p, joint);
   const Edge& behind = edges_[after(joint)];
@@ -229,7 +220,7 @@ void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
       }
     }
     double m[7][7];
-    to_nodes(h, m);
+    to_nodes<1>(h, m);
     s.add(i, &m[0][0]);
   }
   for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {

@@ -3,6 +3,7 @@
 #include "models/maximal/elasticity.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
+#include "models/maximal/rod_joint.h"
 
 namespace tress {
 
@@ -15,13 +16,8 @@ class DerElasticity final : public Elasticity {
     double length;   // at rest, m
     double stretch;  // EA/l, N/m; 0: held by constraints
   };
-  struct JointData {
-    Vec rest;                 // strains
-    Vec stiffness, friction;  // moment per strain and per its rate
-  };
-
   /// `joints`: between neighbouring edges; with `walled` the one at the clamp first.
-  DerElasticity(std::vector<EdgeData> edges, std::vector<JointData> joints, bool walled,
+  DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints, bool walled,
                 Tangent tangent);
 
   std::vector<std::vector<int>> groups() const override;
@@ -61,7 +57,7 @@ class DerElasticity final : public Elasticity {
   void edge_tangent(std::size_t edge, double pos, double (&h)[4][4]) const noexcept;
 
   std::vector<EdgeData> edge_data_;
-  std::vector<JointData> joint_data_;
+  std::vector<RodJoint> joint_data_;
   bool walled_;
   Tangent tangent_;
   bool friction_;

@@ -29,6 +29,9 @@ class Elasticity {
   virtual double energy(const Placement& p) noexcept = 0;  // J
   /// W: what friction takes (negative) and a turning clamp gives.
   virtual double power(const Placement& p) noexcept = 0;
+  /// Angular momentum (kg m^2/s) of coordinates other than positions, of this inertia;
+  /// 0 where the model neglects it.
+  virtual Vec spin(const Placement&, In /*inertia*/) noexcept { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True: the equations changed.
   virtual bool rebase(const RootPose&, InOut /*z*/, InOut /*rate*/) { return false; }

@@ -285,7 +285,7 @@ double MaximalSystem::root_power(double t, In q, In v) {
 bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {
   place(t, q, v);
   points({.position = true, .velocity = true});
-  Vec linear, angular;
+  Vec linear, angular = strand_.elasticity->spin(placement(), strand_.inertia);
   for (std::size_t i = 0; i < mass_.size(); ++i) {
     const Vec p = mass_[i] * load3(&v_[3 * i]);
     linear = linear + p;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "models/strand/strand.h"
+
+namespace tress {
+
+/// Bending and twisting between two neighbouring segments of a discrete rod, a length l
+/// apart, in integrated strains (twist, curvature about e1, curvature about e2):
+///
+///     E = sum_k stiffness_k (kappa_k - rest_k)^2/2,    stiffness = diag(GJ, EI1, EI2)/l.
+struct RodJoint {
+  Vec rest;       // rad
+  Vec stiffness;  // moment per strain, N m
+  Vec friction;   // moment per rate of strain, N m s
+};
+
+/// The joint of half of each neighbour; of a clamp (`before` null) and half of the first
+/// segment.
+RodJoint rod_joint(const Material& material, const Segment* before, const Segment& after,
+                   const Vec& rest);
+
+/// h over the edge from node to node and `others` more coordinates becomes a matrix over
+/// the two nodes and the others.
+template <int others>
+void to_nodes(const double (&h)[3 + others][3 + others],
+              double (&m)[6 + others][6 + others]) {
+  const auto of = [](int i) { return i < 3 ? i : i - 3; };
+  const auto sign = [](int i) { return i < 3 ? -1.0 : 1.0; };
+  for (int i = 0; i < 6 + others; ++i) {
+    for (int j = 0; j < 6 + others; ++j) m[i][j] = sign(i) * sign(j) * h[of(i)][of(j)];
+  }
+}
+
+}  // namespace tress
