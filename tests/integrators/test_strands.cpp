@@ -41,6 +41,10 @@ std::unique_ptr<System> strand(std::string_view model) {
   } else {  // the palm tree is of wood: softened until it sways like the strand
     p.set("youngs_modulus_pa", "1e5");
   }
+  // Penalties as slow as the rest.
+  for (const std::string_view penalty : {"coupling", "norm"}) {
+    if (p.knows(penalty)) p.set(penalty, "1");
+  }
   p.set("mass_damping_1_s", "2");
   p.set("root", "shake_rotate");
   return entry.make(p);

@@ -1,43 +1,33 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <array>
+#include <cstdio>
 #include <numbers>
 
 #include "experiments/harness/fit.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
-#include "tests/models/reduced/static_equilibrium.h"
+#include "tests/models/maximal/clamped_modes.h"
+#include "tests/models/reduced/kirchhoff.h"
 
 namespace tress {
 namespace {
 
 using namespace testing_support;
 
-// A rod of L = 1 m, EI = 1 N m^2 and radius 1 mm, so that Gamma is the weight in N and
-// EA L^2/EI = 4e6: under Gamma it stretches by Gamma/4e6 at most.
-constexpr double line_density = std::numbers::pi * 1e-3;  // kg/m
-const ModelSettings unit_rod = {{"length_m", "1"},
+// The unit rod of kirchhoff.h with a radius of 1 mm: EA L^2/EI = 4e6, so that it
+// stretches by Gamma/4e6 at most.
+const ModelSettings thin_rod = {{"length_m", "1"},
                                 {"radius_m", "0.001"},
-                                {"density_kg_m3", "1000"},
+                                {"density_kg_m3", "100000"},
                                 {"youngs_modulus_pa", "1273239544735.1628"},
                                 {"poisson_ratio", "0.4"}};
 
 TEST(Der, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
-  struct Master {
-    double gamma, width, height;
-  };
-  for (const Master& exact : {Master{1, 0.9912463953466362, 0.1234714019833512},
-                              Master{10, 0.6563537612385990, 0.7001997155143134},
-                              Master{100, 0.1592233826284426, 0.9375239353963470}}) {
+  for (const Master& exact : master_curve) {
     std::vector<double> sizes, errors;
     for (const int n : {5, 10, 20, 40, 80, 160, 320}) {
-      const Hung hung = hang("der", with(unit_rod, {{"elements", std::to_string(n)}}),
-                             exact.gamma / line_density);
-      const std::vector<double> x = points(hung);
-      const double ratio = -x[x.size() - 1] / x[x.size() - 3];
       sizes.push_back(1.0 / n);
-      errors.push_back(std::abs(ratio / (exact.height / exact.width) - 1));
+      errors.push_back(master_error("der", thin_rod, exact, n));
       std::printf("der, Gamma = %g, N = %d: H/W off by %.2e\n", exact.gamma, n,
                   errors.back());
     }
@@ -51,78 +41,36 @@ TEST(Der, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
   }
 }
 
-/// Natural curvature 18.04/L and twist 3.588/L, clamped with its tangent down, Gamma =
-/// 35.8678125, GJ/EI = 1/1.4: the tip of Kirchhoff's rod, as in
-/// tests/models/reduced/test_cantilever.cpp.
-TEST(Der, CurlyHairApproachesKirchhoffsRod) {
-  const Vec tip{0.1575486055087, 0.00707793852891, -0.2017219830847};
-  std::vector<double> sizes, away;
-  for (const int n : {20, 40, 80, 160}) {
-    const Hung hung = hang("der",
-                           with(unit_rod, {{"elements", std::to_string(n)},
-                                           {"root_tangent", "down"},
-                                           {"natural_curvature2_1_m", "18.0361544841071"},
-                                           {"natural_twist_1_m", "3.58817892564338"}}),
-                           35.8678125 / line_density);
-    const std::vector<double> x = points(hung);
-    const Vec off = load3(&x[x.size() - 3]) - tip;
-    sizes.push_back(1.0 / n);
-    away.push_back(std::sqrt(dot(off, off)));
-    std::printf("der, N = %d: tip of the curl off by %.2e L\n", n, away.back());
+TEST(Der, CurlyHairApproachesKirchhoffsRodAtOrder2) {
+  std::vector<double> sizes, away, energy_off;
+  for (const std::size_t n : {12U, 24U, 48U, 84U, 168U}) {
+    const CurlyError error = curly_error("der", thin_rod, n);
+    sizes.push_back(1.0 / static_cast<double>(n));
+    away.push_back(error.points);
+    energy_off.push_back(error.energy);
+    std::printf("der, N = %zu: points off by %.2e L, energy by %.2e\n", n, away.back(),
+                energy_off.back());
   }
-  EXPECT_LE(away[2], 5e-3);
-  // (kappa h)^2/4 of the leading error at the coarsest of the three, 0.05.
-  EXPECT_NEAR(
-      log_log_slope({sizes.begin() + 1, sizes.end()}, {away.begin() + 1, away.end()}), 2,
-      0.1);
-}
-
-/// Frequencies of small vibrations of a straight, clamped hair over sqrt(EI/(rho S L^4)),
-/// lowest first, each twice (two planes).
-std::vector<double> frequencies(int elements) {
-  const auto system =
-      make_model("der", {{"elements", std::to_string(elements)}, {"gravity_m_s2", "0"}});
-  const auto n = static_cast<Eigen::Index>(system->layout().coordinates);
-  State start = initial_state(*system);
-  SparseForm& form = *system->sparse_form();
-  const Pattern& pattern = form.pattern();
-  const auto dense = [&](Weights w) {
-    std::vector<double> values(static_cast<std::size_t>(pattern.nonzeros()));
-    EXPECT_EQ(form.values(0, start.q, start.v, start.v, w, values), Status::ok);
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const auto column = static_cast<std::size_t>(j);
-      for (int k = pattern.start[column]; k < pattern.start[column + 1]; ++k) {
-        matrix(pattern.row[static_cast<std::size_t>(k)], j) =
-            values[static_cast<std::size_t>(k)];
-      }
-    }
-    return matrix;
+  EXPECT_LE(away[3], 5e-3);  // N = 84
+  // As of the other strands, see tests/models/reduced/test_cantilever.cpp.
+  const auto order = [&](const std::vector<double>& errors) {
+    return log_log_slope({sizes.begin() + 1, sizes.end()},
+                         {errors.begin() + 1, errors.end()});
   };
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(dense({0, 0, 1}),
-                                                                        dense({1, 0, 0}));
-  const double unit = std::sqrt(3e9 * 40e-6 * 40e-6 / 4 / 1300) / (0.1 * 0.1);
-  std::vector<double> all;
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    all.push_back(std::sqrt(modes.eigenvalues()[i]) / unit);
-  }
-  return all;
+  EXPECT_NEAR(order(away), 2, 0.1);
+  EXPECT_NEAR(order(energy_off), 2, 0.1);
 }
 
-TEST(Der, VibratesAsTheBeamOfEulerAndBernoulli) {
-  constexpr double beam[] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
+TEST(Der, ClampedFrequenciesApproachTheBeamAtOrder2) {
   std::vector<double> sizes, errors;
   for (const int n : {10, 20, 40}) {
-    const std::vector<double> found = frequencies(n);
+    const std::vector<double> frequencies = bending_frequencies(
+        "der", with(thin_rod, {{"gravity_m_s2", "0"}, {"elements", std::to_string(n)}}));
     double worst = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double exact = beam[k] * beam[k];
-      worst = std::max(worst, std::abs(found[2 * k] / exact - 1));
-      // Both planes alike to the rounding of eigenvalues 1e7 times smaller than those of
-      // stretching, EA L^2/EI = 2.5e7.
-      EXPECT_NEAR(found[2 * k + 1] / found[2 * k], 1, 1e-6);
-      std::printf("der, N = %d, mode %zu: off by %.2e\n", n, k + 1,
-                  found[2 * k] / exact - 1);
+    for (std::size_t mode = 0; mode < 3; ++mode) {
+      const double off = frequencies[mode] * std::sqrt(line_density) / beam[mode] - 1;
+      worst = std::max(worst, std::abs(off));
+      std::printf("der, N = %d, mode %zu: off by %.2e\n", n, mode + 1, off);
     }
     sizes.push_back(1.0 / n);
     errors.push_back(worst);
