@@ -62,8 +62,8 @@ std::vector<Checkpoint> tight_run(const Problem& problem, std::string_view integ
   options.formulation = formulation;
   std::vector<Checkpoint> values = problem.reference;
   std::size_t next = 0;
-  std::vector<double> stops;
-  for (const Checkpoint& at : values) stops.push_back(at.t);
+  std::vector<double> stops(values.size());
+  std::ranges::transform(values, stops.begin(), &Checkpoint::t);
   const Simulation run = simulate(integrator, *system, options, initial_state(*system),
                                   stops, [&](const State& state) {
                                     values[next++].values =
@@ -81,14 +81,14 @@ std::vector<Problem> make_problems() {
                            bead("pendulum_constrained", "implicit")};
   const auto add = [&all](std::string_view name, std::string_view model,
                           const ModelSettings& settings, double t_end, double coarse_step,
-                          std::vector<double> scale, int stops, auto compared,
+                          const std::vector<double>& scale, int stops, auto compared,
                           Formulation runge_kutta, Formulation adams) {
     all.push_back(computed({.name = name,
                             .model = model,
                             .settings = settings,
                             .t_end = t_end,
                             .coarse_step = coarse_step,
-                            .scale = std::move(scale),
+                            .scale = scale,
                             .reference = checkpoints(t_end, stops),
                             .reference_gap = 0,
                             .compared = compared},

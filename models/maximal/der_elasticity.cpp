@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tress {
 namespace {
@@ -51,13 +52,10 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
 std::vector<std::vector<int>> DerElasticity::groups() const {
   std::vector<std::vector<int>> all;
   const auto nodes_and_angles = [&](std::size_t first, int nodes) {
-    std::vector<int> group;
-    for (int k = 0; k < 3 * nodes; ++k) {
-      group.push_back(static_cast<int>(3 * first) + k);
-    }
-    for (int k = 0; k < nodes - 1; ++k) {
-      group.push_back(static_cast<int>(angles_ + first) + k);
-    }
+    std::vector<int> group(static_cast<std::size_t>(4 * nodes - 1));
+    const auto angle = group.begin() + 3 * nodes;
+    std::iota(group.begin(), angle, static_cast<int>(3 * first));
+    std::iota(angle, group.end(), static_cast<int>(angles_ + first));
     return group;
   };
   for (std::size_t i = 0; i < edges_.size(); ++i) all.push_back(nodes_and_angles(i, 2));
