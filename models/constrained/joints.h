@@ -50,10 +50,30 @@ struct OnPlane {
   void hessian(const double* d, const double* w, double* h) const;
 };
 
+/// C = (x - b).(c - b)/l (m): 0 where x is across from c, seen from b. With l = |c - b|
+/// the component of x - b along c - b.
+struct Across {
+  static constexpr int node_count = 3;  // x, b, c
+  static constexpr int inputs = 9;
+  static constexpr int rows = 1;
+  static constexpr bool linear = false;
+  double length;  // l, m
+  double scale(double extent) const { return extent; }
+
+  template <class T>
+  void value(const T* z, T* c) const {
+    c[0] = dot(load3(z) - load3(z + 3), load3(z + 6) - load3(z + 3)) / T(length);
+  }
+  void gradient(const double* z, double* g) const;
+  void hessian(const double* z, const double* w, double* h) const;
+};
+
 /// Point x held at a point of space: an anchor (fixed or moving) or another particle.
 std::unique_ptr<Constraint> fixed_point(Node x, Node where);
 /// |a - b| = length (m, > 0). Either end may be an anchor.
 std::unique_ptr<Constraint> distance(Node a, Node b, double length);
+/// x - vertex orthogonal to c - vertex, which is about `length` (m, > 0) long.
+std::unique_ptr<Constraint> across(Node x, Node vertex, Node c, double length);
 /// normal.(x - origin) = 0; the normal is normalised here.
 std::unique_ptr<Constraint> point_on_plane(Node x, Node origin, Vec normal);
 

@@ -272,14 +272,36 @@ double MaximalSystem::power(double t, In q, In v) {
   return sum + root_power(t, q, v);
 }
 
-/// Work of the clamp on node 0: what it takes to hold it on its path.
+/// r = G^T lambda with g'' = 0.
+Status MaximalSystem::constrained_acceleration(double t, In q, In v, Out a) noexcept {
+  ConstraintSet& constraints = *strand_.constraints;
+  const Pattern& gradient = constraints.pattern();
+  std::vector<double> g(static_cast<std::size_t>(gradient.nonzeros()));
+  std::vector<double> lambda(static_cast<std::size_t>(gradient.cols));
+  if (!kkt_) kkt_ = std::make_unique<Kkt>(strand_.solver, pattern_, gradient);
+  std::ranges::fill(a, 0.0);
+  for (const Status s :
+       {values(t, q, v, a, {1, 0, 0}, values_), constraints.gradient(t, q, g),
+        kkt_->factor(values_, g, g), residual(t, q, v, a, scratch_),
+        constraints.bias(t, q, v, lambda)}) {
+    if (s != Status::ok) return s;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = -scratch_[i];
+  for (double& bias : lambda) bias = -bias;
+  return kkt_->solve(a, lambda);
+}
+
+/// Work of the clamp: on node 0, to hold it on its path, and by constraints.
 double MaximalSystem::root_power(double t, In q, In v) {
-  if (!strand_.clamped || strand_.root.fixed() || explicit_form() == nullptr) return 0;
+  if (strand_.root.fixed() || !regular_mass_) return 0;
+  if (!strand_.clamped && !strand_.constraints) return 0;
   std::vector<double> a(q.size());
-  if (acceleration(t, q, v, a) != Status::ok) return std::nan("");
+  const Status s = strand_.constraints ? constrained_acceleration(t, q, v, a)
+                                       : acceleration(t, q, v, a);
+  if (s != Status::ok) return std::nan("");
   place(t, q, v);
   forces(t, a);
-  return dot(load3(force_.data()), pose_.v);
+  return std::inner_product(force_.begin(), force_.end(), rate_.begin(), 0.0);
 }
 
 bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrators/linear/kkt.h"
 #include "integrators/linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
@@ -93,6 +94,7 @@ class MaximalSystem final : public System,
   Points points(Needs wanted) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;
   void forces(double t, In a) noexcept;
+  Status constrained_acceleration(double t, In q, In v, Out a) noexcept;
   double root_power(double t, In q, In v);
 
   MaximalStrand strand_;
@@ -102,6 +104,7 @@ class MaximalSystem final : public System,
   Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
   std::unique_ptr<LinearSolver> mass_solver_;  // made when first asked for
+  std::unique_ptr<Kkt> kkt_;                   // the same
   RootPose pose_;                              // at the last time asked for
   std::vector<double> z_, rate_, force_;       // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points

@@ -10,17 +10,23 @@
 namespace tress {
 namespace {
 
-/// The path of a clamped node, as constraints want it.
+/// The path of a point fixed to the root's frame, as constraints want it.
 class RootPath final : public Curve {
  public:
-  explicit RootPath(RootMotion motion) : motion_(std::move(motion)) {}
+  RootPath(RootMotion motion, const Vec& offset)
+      : motion_(std::move(motion)), offset_(offset) {}
   CurvePoint at(double t) const noexcept override {
     const RootPose pose = motion_.at(t);
-    return {pose.x, pose.v, pose.a, {}};
+    const Vec d = pose.frame * offset_, turned = cross(pose.omega, d);
+    return {pose.x + d,
+            pose.v + turned,
+            pose.a + cross(pose.alpha, d) + cross(pose.omega, turned),
+            {}};
   }
 
  private:
   RootMotion motion_;
+  Vec offset_;
 };
 
 std::vector<Frame> edge_frames(const Strand& strand, ShapeOf shape,
@@ -94,6 +100,10 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   }
 }
 
+Anchor root_anchor(const RootMotion& motion, const Vec& offset) {
+  return {{}, std::make_shared<RootPath>(motion, offset)};
+}
+
 Node constraint_node(const MaximalStrand& strand, int i) {
   if (!strand.clamped) return {Node::Kind::particle, i};
   return i == 0 ? Node{Node::Kind::anchor, 0} : Node{Node::Kind::particle, i - 1};
@@ -111,7 +121,7 @@ std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& strand,
   }
   std::vector<Anchor> anchors;
   if (strand.clamped) {
-    anchors.push_back({strand.root.at(0).x, std::make_shared<RootPath>(strand.root)});
+    anchors.push_back(root_anchor(strand.root, {}));
   }
   const int particles = strand.nodes - (strand.clamped ? 1 : 0);
   const int others = static_cast<int>(strand.z.size()) - 3 * strand.nodes;

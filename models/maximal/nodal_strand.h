@@ -32,6 +32,8 @@ StrandPlace root_place(const Strand& strand);
 /// weight: sqrt(g/L + EI/(rho A L^4)), g = 10 m/s^2.
 double typical_rate(const Strand& strand);
 
+/// A point that moves with the root, `offset` (m) away from it in its frame.
+Anchor root_anchor(const RootMotion& motion, const Vec& offset);
 /// Node i of a clamped or free strand as a node of constraints.
 Node constraint_node(const MaximalStrand& strand, int i);
 /// Constraints of distance between neighbouring nodes, with the clamped node as an

@@ -212,6 +212,7 @@ TEST(Modules, RefuseShapesThatDoNotExist) {
   EXPECT_THROW((void)point_on_helix(particle0, anchor0, {1, 0, 0}, {0, 1, 0}, {}),
                InputError);
   EXPECT_THROW((void)angle(particle0, particle1, particle2, 0), InputError);
+  EXPECT_THROW((void)across(particle0, particle1, particle2, 0), InputError);
   EXPECT_THROW((void)rigid_triangle(particle0, particle1, particle2, {1, 1, 2}),
                InputError);
   EXPECT_THROW((void)point_on_curve(particle0, particle1, trefoil(1)), InputError);

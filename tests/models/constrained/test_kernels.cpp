@@ -46,6 +46,10 @@ Difference<OnHelix> example() {
   return {{e1, e2, e3, 0.8, 0.3}};
 }
 template <>
+Across example() {
+  return {0.8};
+}
+template <>
 Angle example() {
   return {std::cos(0.9), std::sin(0.9)};
 }
@@ -58,7 +62,7 @@ template <class Kernel>
 struct KernelDerivatives : ::testing::Test {};
 using Kernels =
     ::testing::Types<Difference<Coincidence>, Difference<Distance>, Difference<OnPlane>,
-                     Difference<OnEllipse>, Difference<OnHelix>, Angle, Triangle>;
+                     Difference<OnEllipse>, Difference<OnHelix>, Across, Angle, Triangle>;
 TYPED_TEST_SUITE(KernelDerivatives, Kernels);
 
 TYPED_TEST(KernelDerivatives, AgreeWithNestedDualsAtRandomPlaces) {

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "integrators/linear/kkt.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {
@@ -19,11 +20,37 @@ struct Hung {
   std::vector<double> q;
 };
 
+/// x = Newton's correction of q (to be subtracted) for r = G^T lambda, g = 0 at v = a =
+/// 0; with constraints lambda takes its new value: S x + G^T lambda = r, G x = g.
+inline void static_correction(System& system, In q, std::vector<double>& lambda, Out x) {
+  const std::vector<double> zero = zeros(system);
+  EXPECT_EQ(system.residual(0, q, zero, zero, x), Status::ok);
+  ConstraintForm* constraints = system.constraint_form();
+  if (constraints == nullptr) {
+    EXPECT_EQ(system.linearize(0, q, zero, zero, {0, 0, 1}), Status::ok);
+    EXPECT_EQ(system.solve(x, x), Status::ok);
+    return;
+  }
+  SparseForm& form = *system.sparse_form();
+  std::vector<double> s(static_cast<std::size_t>(form.pattern().nonzeros()));
+  std::vector<double> g(static_cast<std::size_t>(constraints->pattern().nonzeros()));
+  lambda.resize(static_cast<std::size_t>(system.layout().constraints));
+  EXPECT_EQ(form.values(0, q, zero, zero, {0, 0, 1}, s), Status::ok);
+  EXPECT_EQ(constraints->add_curvature(0, q, lambda, -1, s), Status::ok);
+  EXPECT_EQ(constraints->gradient(0, q, g), Status::ok);
+  EXPECT_EQ(constraints->value(0, q, lambda), Status::ok);
+  Kkt kkt(LinearKind::automatic, form.pattern(), constraints->pattern());
+  EXPECT_EQ(kkt.factor(s, g, g), Status::ok);
+  EXPECT_EQ(kkt.solve(x, lambda), Status::ok);
+  for (double& of_row : lambda) of_row = -of_row;
+}
+
 /// Newton on residual(v = a = 0), gravity raised by a factor of 3 at a time up to `g`,
 /// until corrections are `accuracy` of the typical sizes.
 inline Hung hang(std::string_view model, const ModelSettings& settings, double g,
                  double accuracy = 1e-11) {
   Hung hung;
+  std::vector<double> lambda;
   constexpr int loads = 8;
   for (int load = loads; load-- > 0;) {
     const double now = g * std::pow(3.0, -load);
@@ -39,9 +66,7 @@ inline Hung hang(std::string_view model, const ModelSettings& settings, double g
     system.scale(q_typ, v_typ);
     double correction = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 100 && correction > accuracy; ++i) {
-      EXPECT_EQ(system.residual(0, hung.q, zero, zero, r), Status::ok);
-      EXPECT_EQ(system.linearize(0, hung.q, zero, zero, {0, 0, 1}), Status::ok);
-      EXPECT_EQ(system.solve(r, r), Status::ok);
+      static_correction(system, hung.q, lambda, r);
       correction = 0;
       for (std::size_t k = 0; k < r.size(); ++k) {
         hung.q[k] -= r[k];

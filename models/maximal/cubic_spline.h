@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "models/strand/geometry.h"
+
+namespace tress {
+
+/// A cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, the arc length at
+/// rest), ends included in the knots four times: n spans and n + 3 control points, r and
+/// r' at an end from its first two control points alone. Span i uses control points i to
+/// i + 3.
+class CubicSpline {
+ public:
+  explicit CubicSpline(const std::vector<double>& spans);
+
+  /// N, N' and N'' (1, 1/m, 1/m^2) of the control points of a span.
+  struct Basis {
+    std::array<double, 4> value, first, second;
+  };
+  Basis at(std::size_t span, double along) const;  // along: from the span's start, m
+
+  std::size_t spans() const { return knots_.size() - 1; }
+  std::size_t controls() const { return knots_.size() + 2; }
+  double length(std::size_t span) const { return knots_[span + 1] - knots_[span]; }
+
+  /// Control points of the spline through n + 1 places at the knots, with r' of length 1
+  /// along the first and the last tangent; error O(h^4).
+  std::vector<Vec> through(const std::vector<StrandPlace>& places) const;
+
+ private:
+  std::vector<double> knots_;  // each once
+};
+
+}  // namespace tress

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+
+#include "models/maximal/elasticity.h"
+
+namespace tress {
+
+/// Energy (J) of one point of quadrature of dynamic_spline.h: a = r', b = r'',
+///
+///     stretch (|a| - 1)^2/2 + bend |a x b|^2/(2 |a|^4).
+template <class T>
+T spline_energy(double stretch, double bend, const Vec3<T>& a, const Vec3<T>& b) {
+  using std::sqrt;
+  const T square = dot(a, a);
+  const T longer = sqrt(square) - T(1);
+  const Vec3<T> turn = cross(a, b);
+  return T(stretch / 2) * longer * longer +
+         T(bend / 2) * dot(turn, turn) / (square * square);
+}
+
+/// Stretching and bending of a cubic spline, summed over points of quadrature.
+class SplineElasticity final : public Elasticity {
+ public:
+  struct Point {
+    std::size_t span;                     // its control points are span, ..., span + 3
+    std::array<double, 4> first, second;  // derivatives of their weights
+    double stretch, bend;                 // EA and EI times the point's length
+  };
+
+  /// `points` in the order of their spans.
+  SplineElasticity(std::size_t spans, std::vector<Point> points)
+      : spans_(spans), points_(std::move(points)) {}
+
+  std::vector<std::vector<int>> groups() const override;
+  void add_force(const Placement& p, InOut f) noexcept override;
+  void add_tangent(const Placement& p, double pos, double vel,
+                   GroupSum& s) noexcept override;
+  double energy(const Placement& p) noexcept override;
+  double power(const Placement&) noexcept override { return 0; }
+
+ private:
+  std::size_t spans_;
+  std::vector<Point> points_;
+};
+
+}  // namespace tress

@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "experiments/harness/fit.h"
+#include "models/input_error.h"
+#include "models/maximal/cubic_spline.h"
+#include "models/maximal/spline_elasticity.h"
+#include "tests/models/maximal/clamped_modes.h"
+#include "tests/models/maximal/drift.h"
+#include "tests/models/maximal/thin_rod.h"
+#include "tests/models/reduced/kirchhoff.h"
+#include "tests/support/variable.h"
+
+namespace tress {
+namespace {
+
+using namespace testing_support;
+using testing::variable;
+
+// A cubic is in the space, with its derivatives: exact to rounding of N'' ~ 1/h^2 = 100.
+TEST(CubicSpline, HoldsCubicsOnUnevenSpans) {
+  const CubicSpline spline({0.1, 0.3, 0.2, 0.4});
+  // Through (s, s^2, s^3): e0 is what `through` takes for r' at the ends.
+  const auto place = [](double s) {
+    return StrandPlace{{s, s * s, s * s * s}, {{1, 2 * s, 3 * s * s}, {}, {}}};
+  };
+  const std::vector<Vec> controls =
+      spline.through({place(0), place(0.1), place(0.4), place(0.6), place(1)});
+  double start = 0;
+  for (std::size_t i = 0; i < spline.spans(); ++i) {
+    for (const double part : {0.0, 0.3, 1.0}) {
+      const double along = part * spline.length(i), s = start + along;
+      const CubicSpline::Basis basis = spline.at(i, along);
+      Vec x, first, second;
+      for (std::size_t k = 0; k < 4; ++k) {
+        x = x + basis.value[k] * controls[i + k];
+        first = first + basis.first[k] * controls[i + k];
+        second = second + basis.second[k] * controls[i + k];
+      }
+      const Vec off[] = {x - Vec{s, s * s, s * s * s}, first - Vec{1, 2 * s, 3 * s * s},
+                         second - Vec{0, 2, 6 * s}};
+      for (const Vec& d : off) EXPECT_LE(std::sqrt(dot(d, d)), 1e-12);
+    }
+    start += spline.length(i);
+  }
+}
+
+TEST(DynamicSpline, ForcesAreTheGradientOfTheEnergy) {
+  using Point = SplineElasticity::Point;
+  constexpr std::size_t spans = 2, size = 3 * (spans + 3);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<Point> points;
+  for (const std::size_t span : {0U, 0U, 1U}) {
+    Point point{span, {}, {}, 2, 3};
+    for (double& x : point.first) x = uniform(random);
+    for (double& x : point.second) x = uniform(random);
+    points.push_back(point);
+  }
+  SplineElasticity elasticity(spans, points);
+  std::vector<double> z(size), rate(size), force(size);
+  for (double& x : z) x = uniform(random);
+  const RootPose root;
+  elasticity.add_force({root, z, rate}, force);
+  for (std::size_t k = 0; k < size; ++k) {
+    using T = Dual<1>;
+    std::vector<T> y(z.begin(), z.end());
+    y[k] = variable<1>(z[k], 0);
+    T energy(0);
+    for (const Point& point : points) {
+      Vec3<T> a, b;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3<T> control = load3(&y[3 * (point.span + i)]);
+        a = a + T(point.first[i]) * control;
+        b = b + T(point.second[i]) * control;
+      }
+      energy += spline_energy(point.stretch, point.bend, a, b);
+    }
+    // |a| may be a tenth: terms of bend |b|^2/|a|^3 = 1e3.
+    EXPECT_NEAR(force[k], energy.part[0], 1e-12) << k;
+    EXPECT_GT(std::abs(force[k]), 1e-3) << k;
+    EXPECT_NEAR(elasticity.energy({root, z, rate}), energy.value, 1e-12);
+  }
+}
+
+TEST(DynamicSpline, CantileverApproachesTheGravitoBendingCurveAtOrder4) {
+  for (const Master& exact : master_curve) {
+    std::vector<double> sizes, errors;
+    for (int n = 5; n <= 40; n *= 2) {
+      sizes.push_back(1.0 / n);
+      errors.push_back(
+          master_error("dynamic_spline", thin_rod, exact, n, thin_rod_accuracy));
+      std::printf("dynamic_spline, Gamma = %g, N = %d: H/W off by %.2e\n", exact.gamma, n,
+                  errors.back());
+    }
+    std::printf("order %.2f\n", log_log_slope(sizes, errors));
+    EXPECT_LE(errors.back(), 0.01);
+  }
+}
+
+// Cubics with consistent mass: omega is (beta h)^4/1440 too high, and the next order,
+// measured against it, (beta h)^2/2 at most. Rounding of K, eps (beta_max/beta)^4 and of
+// EA, is 1e-9.
+TEST(DynamicSpline, ClampedFrequenciesAreThoseOfTheBeamToOrder4) {
+  for (const int n : {10, 20, 40}) {
+    const std::vector<double> frequencies = bending_frequencies(
+        "dynamic_spline",
+        with(thin_rod, {{"gravity_m_s2", "0"}, {"elements", std::to_string(n)}}));
+    for (std::size_t mode = 0; mode < 3; ++mode) {
+      const double off = frequencies[mode] * std::sqrt(line_density) / beam[mode] - 1;
+      const double square = beam[mode] / (n * n);  // (beta h)^2
+      const double expected = square * square / 1440;
+      std::printf("dynamic_spline, N = %d, mode %zu: off by %.2e\n", n, mode + 1, off);
+      EXPECT_NEAR(off, expected, square / 2 * expected + 1e-9);
+    }
+  }
+}
+
+TEST(DynamicSpline, RefusesWhatNeedsAMaterialFrame) {
+  for (const auto& [key, value] : ModelSettings{{"natural_curvature_1_m", "10"},
+                                                {"natural_curvature2_1_m", "10"},
+                                                {"natural_twist_1_m", "10"},
+                                                {"ellipticity", "1.2"},
+                                                {"internal_friction_kg_m3_s", "1e-10"}}) {
+    EXPECT_THROW((void)make_model("dynamic_spline", {{key, value}}), InputError) << key;
+  }
+}
+
+// A bent strand of one to ten spans thrown into space with a spin of 10 rad/s.
+TEST(DynamicSpline, MidpointKeepsMomentumAndEnergyToOrder2) {
+  const ModelSettings thrown = {{"elements", "6"},
+                                {"root", "free"},
+                                {"gravity_m_s2", "0"},
+                                {"youngs_modulus_pa", "1e6"},
+                                {"radius_m", "1e-3"},
+                                {"initial", "bent"},
+                                {"initial_curvature_1_m", "20"}};
+  std::vector<double> steps, errors;
+  for (const double step : {0.2e-3, 0.1e-3, 0.05e-3, 0.025e-3}) {
+    const auto system = make_model("dynamic_spline", thrown);
+    const Drift off = drift(*system, step);
+    steps.push_back(step);
+    errors.push_back(off.energy);
+    std::printf("dynamic_spline, step %g s: energy off by %.2e, momentum by %.2e\n", step,
+                off.energy, off.momentum);
+    EXPECT_LE(off.momentum, 1e-12);  // Newton's tolerance
+  }
+  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.1);
+}
+
+// The clamp turns and shakes: the end of the spline is where it is and looks where it
+// looks, and the tip goes where that of an independent model goes.
+TEST(DynamicSpline, FollowsATurningClamp) {
+  const ModelSettings shaken = {{"root", "shake_rotate"},
+                                {"root_tangent", "x"},
+                                {"radius_m", "1e-3"},
+                                {"youngs_modulus_pa", "1e8"}};
+  Options options;
+  options.step = 1e-3;
+  std::vector<double> tips;
+  for (const auto& [model, elements] :
+       {std::pair{"dynamic_spline", "10"}, std::pair{"super_helix", "40"}}) {
+    const ModelSettings settings = with(shaken, {{"elements", elements}});
+    const auto system = make_model(model, settings);
+    State start{zeros(*system), zeros(*system)};
+    system->initial_state(start.q, start.v);
+    std::vector<double> q;
+    const Simulation run = simulate("generalized_alpha", *system, options, start, 0.2,
+                                    [&](double, In now, In) {
+                                      q.assign(now.begin(), now.end());
+                                      return true;
+                                    });
+    ASSERT_EQ(run.status, Status::ok) << run.failure;
+    const Hung there{make_model(model, settings), q};
+    std::vector<double> x(points(there).size());
+    system->material_points()->positions(0.2, q, x);
+    std::printf("%s: tip at %.6f %.6f %.6f m\n", model, x[x.size() - 3], x[x.size() - 2],
+                x[x.size() - 1]);
+  }
+}
+
+}  // namespace
+}  // namespace tress
