@@ -272,14 +272,40 @@ double MaximalSystem::power(double t, In q, In v) {
   return sum + root_power(t, q, v);
 }
 
-/// Work of the clamp on node 0: what it takes to hold it on its path.
+/// Of the motion that follows from q and v; false where none does.
+bool MaximalSystem::accelerations(double t, In q, In v, std::vector<double>& a) {
+  a.assign(q.size(), 0.0);
+  if (!strand_.constraints) {
+    return explicit_form() != nullptr && acceleration(t, q, v, a) == Status::ok;
+  }
+  ConstraintSet& set = *strand_.constraints;
+  std::vector<double> gt(static_cast<std::size_t>(set.pattern().nonzeros()));
+  std::vector<double> force(q.size()), bias(static_cast<std::size_t>(set.rows()));
+  Kkt kkt(strand_.solver, pattern_, set.pattern());
+  if (residual(t, q, v, a, force) != Status::ok ||
+      values(t, q, v, a, {1, 0, 0}, values_) != Status::ok ||
+      set.gradient(t, q, gt) != Status::ok || set.bias(t, q, v, bias) != Status::ok ||
+      kkt.factor(values_, gt, gt) != Status::ok ||
+      kkt.solve(force, bias) != Status::ok) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = -force[i];
+  return true;
+}
+
+/// Work of the clamp. The forces between the parts of the strand add up to nothing, so
+/// what holds the clamp is the sum of M a - loads over all nodes.
 double MaximalSystem::root_power(double t, In q, In v) {
-  if (!strand_.clamped || strand_.root.fixed() || explicit_form() == nullptr) return 0;
-  std::vector<double> a(q.size());
-  if (acceleration(t, q, v, a) != Status::ok) return std::nan("");
+  if (!strand_.clamped || strand_.root.fixed()) return 0;
+  std::vector<double> a;
+  if (!accelerations(t, q, v, a)) return std::nan("");
   place(t, q, v);
   forces(t, a);
-  return dot(load3(force_.data()), pose_.v);
+  Vec sum;
+  for (int i = 0; i < strand_.nodes; ++i) {
+    sum = sum + load3(&force_[3 * static_cast<std::size_t>(i)]);
+  }
+  return dot(sum, pose_.v);
 }
 
 bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {

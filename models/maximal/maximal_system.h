@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/linear_solver.h"
+#include "integrators/linear/kkt.h"
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
 #include "models/maximal/elasticity.h"
@@ -93,6 +93,7 @@ class MaximalSystem final : public System,
   Points points(Needs wanted) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;
   void forces(double t, In a) noexcept;
+  bool accelerations(double t, In q, In v, std::vector<double>& a);
   double root_power(double t, In q, In v);
 
   MaximalStrand strand_;
