@@ -43,8 +43,8 @@ class Builder {
       const Vec* e = &rest_[i];
       if (bending == Bending::angular) {
         const double curved = Hinge{}.value(e);
-        const double rest = std::sqrt(
-            std::max(0.0, curved * curved - Hinge::delta * Hinge::delta));
+        const double rest =
+            std::sqrt(std::max(0.0, curved * curved - Hinge::delta * Hinge::delta));
         add<Hinge>({{}, i, stiffness, j.friction.y, rest});
       } else {
         const double chord = Chord<2>{}.value(e);
@@ -96,8 +96,7 @@ class Builder {
     const Segment& segment = strand_.segments[middle];
     // The last edge turns about the middle one.
     const Vec axis = (1 / segment.length) * rest_[middle];
-    const double by_angle =
-        dot(slope[Strain::edges - 1], cross(axis, rest_[middle + 1]));
+    const double by_angle = dot(slope[Strain::edges - 1], cross(axis, rest_[middle + 1]));
     if (std::abs(by_angle) < flat * segment.length) return;
     const double scale = 1 / (segment.length * by_angle * by_angle);
     add<Strain>({strain, first,
@@ -111,10 +110,9 @@ class Builder {
   std::vector<Vec> rest_;  // edges
 };
 
-constexpr Parameter torsion_parameter{
-    .name = "torsion",
-    .help = "springs that hold the direction of curls",
-    .choices = "none|altitude"};
+constexpr Parameter torsion_parameter{.name = "torsion",
+                                      .help = "springs that hold the direction of curls",
+                                      .choices = "none|altitude"};
 
 }  // namespace
 

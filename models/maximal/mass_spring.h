@@ -5,8 +5,8 @@
 #include <string>
 
 #include "models/effects/effect.h"
-#include "models/maximal/spring_elasticity.h"
 #include "models/maximal/maximal_system.h"
+#include "models/maximal/spring_elasticity.h"
 #include "models/parameters.h"
 #include "models/strand/strand.h"
 
@@ -16,7 +16,8 @@ namespace tress {
 /// Carlson & Tripp 1991]. With edges e of rest length l:
 ///
 ///     stretch   EA/l (|e| - l)^2/2
-///     bending   angular: EI/(2 l) (|kb| - rest)^2 per joint, |kb| = 2 tan(angle/2), l the
+///     bending   angular: EI/(2 l) (|kb| - rest)^2 per joint, |kb| = 2 tan(angle/2), l
+///     the
 ///               mean of its edges and EI that of both axes;
 ///               second_neighbour: 4 EI/l^3 (d - rest)^2/2 with d the distance of the
 ///               next node but one, as stiff as bending against a middle node that moves
@@ -38,12 +39,14 @@ namespace tress {
 ///   is lost (an isotropic rod with a free tip has no twist at rest). A joint of a curled
 ///   strand that happens to be straight has no direction to bend in (Hinge::delta).
 /// - second_neighbour has no linear stiffness against bending from straight: k angle^4,
-///   EI l^2 curvature^4/8 per length, which goes with l^2. Under its weight the strand
-///   converges to a rope: the width of a cantilever falls as sqrt(l). A rest angle a
-///   holds with sin(a)^2 of its stiffness only.
+///   EI l^2 curvature^4/8 per length, which goes with l^2. The strand converges to a
+///   rope: a cantilever of weight w hangs down (4/3) (3 EI l^2/(8 w))^(1/4) beside its
+///   clamp, for w L^2/EI = 10 and N = 160 4.9 % of L where a rod has 65.6 %. A rest
+///   angle a is held with sin(a)^2 of the stiffness.
 /// - altitude holds the direction of curls. Where rest angles are below some 4e-3 rad
 ///   there is no tetrahedron and no spring. The limit of small l is not Kirchhoff's rod:
-///   torsion of the centre line stands for twist, so the section cannot roll.
+///   torsion of the centre line stands for twist, so the section cannot roll. A curly
+///   hair under its weight is 3.7 % of L beside the rod, its energy 2 %.
 ///
 /// Selle et al. switch between the altitudes of a tetrahedron and add particles beside a
 /// straight strand to make some; one fixed altitude, its stiffness and the wall's are

@@ -285,8 +285,7 @@ bool MaximalSystem::accelerations(double t, In q, In v, std::vector<double>& a) 
   if (residual(t, q, v, a, force) != Status::ok ||
       values(t, q, v, a, {1, 0, 0}, values_) != Status::ok ||
       set.gradient(t, q, gt) != Status::ok || set.bias(t, q, v, bias) != Status::ok ||
-      kkt.factor(values_, gt, gt) != Status::ok ||
-      kkt.solve(force, bias) != Status::ok) {
+      kkt.factor(values_, gt, gt) != Status::ok || kkt.solve(force, bias) != Status::ok) {
     return false;
   }
   for (std::size_t i = 0; i < a.size(); ++i) a[i] = -force[i];

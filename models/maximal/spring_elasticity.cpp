@@ -10,8 +10,8 @@ constexpr bool at_wall = requires(Strain s, Frame f) {
   s.place(f);
 };
 template <class Strain>
-constexpr bool has_metric =
-    requires(const Strain s, const Vec* e, EdgeMatrix<Strain::edges>& m) {
+constexpr bool has_metric = requires(const Strain s, const Vec* e,
+                                     EdgeMatrix<Strain::edges>& m) {
   s.metric(e, m);
 };
 
@@ -65,7 +65,8 @@ void add_exact(const Spring<Strain>& spring, const Stretched<Strain>& now,
     for (int k = 0; k < 3; ++k) {
       for (int j = 0; j < edges; ++j) {
         const double* row = &h.m[3 * i + k][3 * j];
-        sum[k] += row[0] * now.rate[j].x + row[1] * now.rate[j].y + row[2] * now.rate[j].z;
+        sum[k] +=
+            row[0] * now.rate[j].x + row[1] * now.rate[j].y + row[2] * now.rate[j].z;
       }
     }
     slope_of_speed[i] = {sum[0], sum[1], sum[2]};

@@ -93,7 +93,7 @@ struct Chord {
 /// there, which delta rounds off. Not defined for edges that point against each other.
 struct Hinge {
   static constexpr int edges = 2;
-  static constexpr double delta = 1e-4;
+  static constexpr double delta = 1e-6;
 
   template <class T>
   T value(const Vec3<T>* e) const {

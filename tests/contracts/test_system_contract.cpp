@@ -20,8 +20,8 @@ class SystemContract : public testing::TestWithParam<CatalogueCase> {
   std::unique_ptr<System> system_;
 };
 
-/// stiff, less_implicit and filtered leave terms out by design; recursive_plain is kept for the
-/// digits that it loses (tests/models/reduced/test_solvers.cpp).
+/// stiff, less_implicit and filtered leave terms out by design; recursive_plain is kept
+/// for the digits that it loses (tests/models/reduced/test_solvers.cpp).
 bool exact_tangent(const CatalogueCase& c) {
   return c.word != "stiff" && c.word != "less_implicit" && c.word != "filtered" &&
          c.word != "recursive_plain";
