@@ -17,22 +17,22 @@ namespace tress {
 ///
 ///     stretch   EA/l (|e| - l)^2/2
 ///     bending   angular: EI/(2 l) (|kb| - rest)^2 per joint, |kb| = 2 tan(angle/2), l
-///     the
-///               mean of its edges and EI that of both axes;
-///               second_neighbour: 4 EI/l^3 (d - rest)^2/2 with d the distance of the
-///               next node but one, as stiff as bending against a middle node that moves
-///               across a chord held by its ends
+///               the mean of its edges, EI that of both axes;
+///               second_neighbour: 4 EI/l^3 (d - rest)^2/2, d the distance of the next
+///               node but one: the stiffness that bending has against a middle node that
+///               moves across a chord held by its ends
 ///     torsion   altitude: GJ/(2 l) ((h - rest)/h')^2 per four nodes, h the altitude of
 ///               their tetrahedron (spring_strain.h) and h' its slope over the dihedral
 ///               angle at rest [Selle, Lentine & Fedkiw 2008]
 ///
-/// Friction: gamma in place of EI and GJ, none on stretch.
+/// Friction: gamma in place of EI and GJ on the rates of the same strains, none on
+/// stretch. A joint knows the rate of its angle only, not of its direction.
 ///
 /// The clamp is a body and has a frame: a wall half an edge before the first edge's
 /// middle, with a bending spring over l/2 in each of two directions.
 ///
 /// Points have no frame. What this leaves out, with the figures of
-/// tests/models/maximal/test_mass_spring.cpp:
+/// tests/models/maximal/test_spring_statics.cpp:
 ///
 /// - angular alone holds the rest angle of a joint but not its direction: a curl may
 ///   unroll into anything with the same angles. Where the rest shape is straight nothing

@@ -281,11 +281,14 @@ bool MaximalSystem::accelerations(double t, In q, In v, std::vector<double>& a) 
   ConstraintSet& set = *strand_.constraints;
   std::vector<double> gt(static_cast<std::size_t>(set.pattern().nonzeros()));
   std::vector<double> force(q.size()), bias(static_cast<std::size_t>(set.rows()));
-  Kkt kkt(strand_.solver, pattern_, set.pattern());
+  if (!mass_kkt_) {
+    mass_kkt_ = std::make_unique<Kkt>(strand_.solver, pattern_, set.pattern());
+  }
   if (residual(t, q, v, a, force) != Status::ok ||
       values(t, q, v, a, {1, 0, 0}, values_) != Status::ok ||
       set.gradient(t, q, gt) != Status::ok || set.bias(t, q, v, bias) != Status::ok ||
-      kkt.factor(values_, gt, gt) != Status::ok || kkt.solve(force, bias) != Status::ok) {
+      mass_kkt_->factor(values_, gt, gt) != Status::ok ||
+      mass_kkt_->solve(force, bias) != Status::ok) {
     return false;
   }
   for (std::size_t i = 0; i < a.size(); ++i) a[i] = -force[i];

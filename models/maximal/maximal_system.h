@@ -103,6 +103,7 @@ class MaximalSystem final : public System,
   Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
   std::unique_ptr<LinearSolver> mass_solver_;  // made when first asked for
+  std::unique_ptr<Kkt> mass_kkt_;              // the same, with constraints
   RootPose pose_;                              // at the last time asked for
   std::vector<double> z_, rate_, force_;       // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points

@@ -7,7 +7,7 @@
 #include "models/maximal/groups.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
-#include "tests/models/reduced/kirchhoff.h"
+#include "tests/models/maximal/thin_rod.h"
 #include "tests/support/variable.h"
 
 namespace tress {
@@ -15,13 +15,6 @@ namespace {
 
 using namespace testing_support;
 using testing::variable;
-
-// EA L^2/EI = 4/r^2 = 4e6: weights of Gamma <= 100 stretch it by Gamma/4e6.
-const ModelSettings thin_rod = {{"length_m", "1"},
-                                {"radius_m", "0.001"},
-                                {"density_kg_m3", "100000"},
-                                {"youngs_modulus_pa", "1273239544735.1627"},
-                                {"poisson_ratio", "0.4"}};
 
 // A strand of three edges with numbers of order one, far from rest.
 TEST(Corde, ForcesAreTheGradientOfTheEnergy) {
@@ -74,9 +67,6 @@ TEST(Corde, TangentIsExactWithAllFrictionOnATurningRoot) {
     EXPECT_LE(tangent_error(*system, *system, s, w), tangent_tolerance);
   }
 }
-
-// Rounding of stretch forces, eps EA, bends the rod by eps EA L^2/EI.
-constexpr double at_rest = 2.2e-16 * 4e6;
 
 TEST(Corde, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
   for (const Master& exact : master_curve) {
