@@ -20,10 +20,11 @@ class SystemContract : public testing::TestWithParam<CatalogueCase> {
   std::unique_ptr<System> system_;
 };
 
-/// stiff and less_implicit leave terms out by design; recursive_plain is kept for the
-/// digits that it loses (tests/models/reduced/test_solvers.cpp).
+/// stiff, less_implicit and filtered leave terms out by design; recursive_plain is kept
+/// for the digits that it loses (tests/models/reduced/test_solvers.cpp).
 bool exact_tangent(const CatalogueCase& c) {
-  return c.word != "stiff" && c.word != "less_implicit" && c.word != "recursive_plain";
+  return c.word != "stiff" && c.word != "less_implicit" && c.word != "filtered" &&
+         c.word != "recursive_plain";
 }
 
 TEST_P(SystemContract, TangentIsTheDerivativeOfTheResidual) {
@@ -199,8 +200,12 @@ TEST_P(SystemContract, ConstraintDerivativesAgreeWithDifferences) {
     EXPECT_EQ(form->rate(t0, plus(s.q, e, d), s.v, g), Status::ok);
     return g;
   };
+  // Parts of a strand are small beside the distance from the origin: eps of places and
+  // speeds over the step is more than two digits below, ten times as in tangent_rounding.
+  const double rate_rounding =
+      10 * 2.2e-16 * (largest(s.q) * largest(rate_gt) + largest(s.v) * largest(gt));
   EXPECT_LE(largest(plus(central_difference(small_step, rate), -1, multiply(rate_gt, d))),
-            tolerance * (largest(s.v) + 1) * largest(g_d));
+            tolerance * (largest(s.v) + 1) * largest(g_d) + rate_rounding / small_step);
 
   // g'' - G a: the rate's derivative along the motion q + e v, t + e, with v constant.
   const double step = small_step / scaled_norm(s.v, s.q_typ);
@@ -213,7 +218,7 @@ TEST_P(SystemContract, ConstraintDerivativesAgreeWithDifferences) {
   ASSERT_EQ(form->bias(t0, s.q, s.v, bias), Status::ok);
   const double speed = largest(s.v) + 1;
   EXPECT_LE(largest(plus(central_difference(step, along), -1, bias)),
-            tolerance * std::max(largest(bias), speed * speed));
+            tolerance * std::max(largest(bias), speed * speed) + rate_rounding / step);
 
   SparseForm* sparse = system_->sparse_form();
   const Pattern& sp = sparse->pattern();

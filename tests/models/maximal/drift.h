@@ -4,8 +4,9 @@
 
 namespace tress::testing_support {
 
-/// Root mean square of the energy's drift over the largest kinetic energy, and the
-/// largest drift of linear and angular momentum over their sizes.
+/// What implicit_midpoint loses of a free strand in 0.1 s: root mean square of the
+/// energy's drift over the largest kinetic energy, and the largest drift of linear and
+/// angular momentum over their sizes.
 struct Drift {
   double energy, momentum;
 };

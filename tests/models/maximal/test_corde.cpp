@@ -75,7 +75,7 @@ TEST(Corde, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
     const int finest = exact.gamma <= 10 ? 80 : 160;
     for (int n = 5; n <= finest; n *= 2) {
       sizes.push_back(1.0 / n);
-      errors.push_back(master_error("corde", thin_rod, exact, n, thin_rod_accuracy));
+      errors.push_back(master_error("corde", thin_rod, exact, n, at_rest));
       std::printf("corde, Gamma = %g, N = %d: H/W off by %.2e\n", exact.gamma, n,
                   errors.back());
     }
@@ -103,7 +103,7 @@ TEST(Corde, CouplingLowersTheTipByItsShear) {
     const Hung hung =
         hang("corde",
              with(thin_rod, {{"coupling", coupling}, {"elements", std::to_string(n)}}),
-             light.gamma / line_density, thin_rod_accuracy);
+             light.gamma / line_density, at_rest);
     return -points(hung).back();
   };
   for (const int n : {5, 10, 20}) {
@@ -117,7 +117,7 @@ TEST(Corde, CouplingLowersTheTipByItsShear) {
 TEST(Corde, CurlyHairApproachesKirchhoffsRodAtOrder2) {
   std::vector<double> sizes, away, energy_off;
   for (const std::size_t n : {12U, 24U, 48U, 96U}) {
-    const CurlyError error = curly_error("corde", thin_rod, n, thin_rod_accuracy);
+    const CurlyError error = curly_error("corde", thin_rod, n, at_rest);
     sizes.push_back(1.0 / static_cast<double>(n));
     away.push_back(error.points);
     energy_off.push_back(error.energy);

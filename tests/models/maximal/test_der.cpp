@@ -7,27 +7,19 @@
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
 #include "tests/models/maximal/clamped_modes.h"
-#include "tests/models/reduced/kirchhoff.h"
+#include "tests/models/maximal/thin_rod.h"
 
 namespace tress {
 namespace {
 
 using namespace testing_support;
 
-// The unit rod of kirchhoff.h with a radius of 1 mm: EA L^2/EI = 4e6, so that it
-// stretches by Gamma/4e6 at most.
-const ModelSettings thin_rod = {{"length_m", "1"},
-                                {"radius_m", "0.001"},
-                                {"density_kg_m3", "100000"},
-                                {"youngs_modulus_pa", "1273239544735.1628"},
-                                {"poisson_ratio", "0.4"}};
-
 TEST(Der, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
   for (const Master& exact : master_curve) {
     std::vector<double> sizes, errors;
     for (const int n : {5, 10, 20, 40, 80, 160, 320}) {
       sizes.push_back(1.0 / n);
-      errors.push_back(master_error("der", thin_rod, exact, n));
+      errors.push_back(master_error("der", thin_rod, exact, n, at_rest));
       std::printf("der, Gamma = %g, N = %d: H/W off by %.2e\n", exact.gamma, n,
                   errors.back());
     }
@@ -44,7 +36,7 @@ TEST(Der, CantileverApproachesTheGravitoBendingCurveAtOrder2) {
 TEST(Der, CurlyHairApproachesKirchhoffsRodAtOrder2) {
   std::vector<double> sizes, away, energy_off;
   for (const std::size_t n : {12U, 24U, 48U, 84U, 168U}) {
-    const CurlyError error = curly_error("der", thin_rod, n);
+    const CurlyError error = curly_error("der", thin_rod, n, at_rest);
     sizes.push_back(1.0 / static_cast<double>(n));
     away.push_back(error.points);
     energy_off.push_back(error.energy);

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "models/effects/effect.h"
+#include "models/maximal/maximal_system.h"
+#include "models/maximal/spring_elasticity.h"
+#include "models/parameters.h"
+#include "models/strand/strand.h"
+
+namespace tress {
+
+/// A strand of point masses at the segments' ends and springs between them [Rosenblum,
+/// Carlson & Tripp 1991]. With edges e of rest length l:
+///
+///     stretch   EA/l (|e| - l)^2/2
+///     bending   angular: EI/(2 l) (|kb| - rest)^2 per joint, |kb| = 2 tan(angle/2), l
+///               the mean of its edges, EI that of both axes;
+///               second_neighbour: 4 EI/l^3 (d - rest)^2/2, d the distance of the next
+///               node but one: the stiffness that bending has against a middle node that
+///               moves across a chord held by its ends
+///     torsion   altitude: GJ/(2 l) ((h - rest)/h')^2 per four nodes, h the altitude of
+///               their tetrahedron (spring_strain.h) and h' its slope over the dihedral
+///               angle at rest [Selle, Lentine & Fedkiw 2008]
+///
+/// Friction: gamma in place of EI and GJ on the rates of the same strains, none on
+/// stretch. A joint knows the rate of its angle only, not of its direction.
+///
+/// The clamp is a body and has a frame: a wall half an edge before the first edge's
+/// middle, with a bending spring over l/2 in each of two directions.
+///
+/// Points have no frame. What this leaves out, with the figures of
+/// tests/models/maximal/test_spring_statics.cpp:
+///
+/// - angular alone holds the rest angle of a joint but not its direction: a curl may
+///   unroll into anything with the same angles. Where the rest shape is straight nothing
+///   is lost (an isotropic rod with a free tip has no twist at rest). A joint of a curled
+///   strand that happens to be straight has no direction to bend in (Hinge::delta).
+/// - second_neighbour has no linear stiffness against bending from straight: k angle^4,
+///   EI l^2 curvature^4/8 per length, which goes with l^2. The strand converges to a
+///   rope: a cantilever of weight w hangs down (4/3) (3 EI l^2/(8 w))^(1/4) beside its
+///   clamp, for w L^2/EI = 10 and N = 160 4.9 % of L where a rod has 65.6 %. A rest
+///   angle a is held with sin(a)^2 of the stiffness.
+/// - altitude holds the direction of curls. Where rest angles are below some 4e-3 rad
+///   there is no tetrahedron and no spring. The limit of small l is not Kirchhoff's rod:
+///   torsion of the centre line stands for twist, so the section cannot roll. A curly
+///   hair under its weight is 3.7 % of L beside the rod, its energy 2 %.
+///
+/// Selle et al. switch between the altitudes of a tetrahedron and add particles beside a
+/// straight strand to make some; one fixed altitude, its stiffness and the wall's are
+/// reconstruction here.
+struct MassSpringOptions {
+  enum class Bending { angular, second_neighbour };
+  Bending bending = Bending::angular;
+  bool altitude = false;      // springs against torsion
+  bool inextensible = false;  // |e| = l as constraints with multipliers, no stretch
+  SpringTangent tangent = SpringTangent::exact;
+  LinearKind solver = LinearKind::automatic;
+};
+
+/// Throws InputError naming `model` unless the strand is a chain.
+std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& model,
+                                    const MassSpringOptions& options, Effects effects);
+
+std::span<const Parameter> mass_spring_parameters();
+std::unique_ptr<System> make_mass_spring(const Parameters& parameters);
+
+/// The same with edges of constant length, held by n multipliers: the inextensible chain
+/// [Baraff 1996] with bending and rest angles.
+std::span<const Parameter> inextensible_strand_parameters();
+std::unique_ptr<System> make_inextensible_strand(const Parameters& parameters);
+
+}  // namespace tress

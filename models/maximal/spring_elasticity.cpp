@@ -1,0 +1,183 @@
+#include "models/maximal/spring_elasticity.h"
+
+#include <algorithm>
+
+namespace tress {
+namespace {
+
+template <class Strain>
+constexpr bool at_wall = requires(Strain s, Frame f) {
+  s.place(f);
+};
+template <class Strain>
+constexpr bool has_metric = requires(const Strain s, const Vec* e,
+                                     EdgeMatrix<Strain::edges>& m) {
+  s.metric(e, m);
+};
+
+/// A spring as it stands.
+template <class Strain>
+struct Stretched {
+  static constexpr int edges = Strain::edges;
+
+  Stretched(const Spring<Strain>& spring, const Placement& p)
+      : strain(spring.strain), stiffness(spring.stiffness), rest(spring.rest) {
+    for (int k = 0; k < edges; ++k) {
+      const std::size_t node = 3 * (spring.first + static_cast<std::size_t>(k));
+      e[k] = load3(&p.z[node + 3]) - load3(&p.z[node]);
+      rate[k] = load3(&p.rate[node + 3]) - load3(&p.rate[node]);
+    }
+    if constexpr (at_wall<Strain>) {
+      strain.place(p.root.frame);
+      for (int k = 0; k < edges; ++k) rate[k] = rate[k] - cross(p.root.omega, e[k]);
+    }
+    value = strain.gradient(e, slope);
+    for (int k = 0; k < edges; ++k) speed += dot(slope[k], rate[k]);
+    stress = stiffness * (value - rest) + spring.friction * speed;
+  }
+
+  Strain strain;
+  double stiffness, rest;
+  Vec e[edges], slope[edges];
+  Vec rate[edges];  // of the edges; at the wall as seen from the clamp
+  double value = 0, speed = 0, stress = 0;
+};
+
+/// Calls `act` with every spring of every kind and its number.
+template <class All, class Act>
+void for_each(All& springs, Act act) {
+  std::size_t number = 0;
+  const auto of_kind = [&](auto& kind) {
+    for (auto& spring : kind) act(spring, number++);
+  };
+  std::apply([&](auto&... kinds) { (of_kind(kinds), ...); }, springs);
+}
+
+template <class Strain>
+void add_exact(const Spring<Strain>& spring, const Stretched<Strain>& now,
+               const Placement& p, double pos, EdgeMatrix<Strain::edges>& s) {
+  constexpr int edges = Strain::edges, size = 3 * edges;
+  EdgeMatrix<edges> h;
+  now.strain.hessian(now.e, h);
+  Vec slope_of_speed[edges];
+  for (int i = 0; i < edges; ++i) {
+    double sum[3] = {};
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < edges; ++j) {
+        const double* row = &h.m[3 * i + k][3 * j];
+        sum[k] +=
+            row[0] * now.rate[j].x + row[1] * now.rate[j].y + row[2] * now.rate[j].z;
+      }
+    }
+    slope_of_speed[i] = {sum[0], sum[1], sum[2]};
+    if constexpr (at_wall<Strain>) {
+      slope_of_speed[i] = slope_of_speed[i] + cross(p.root.omega, now.slope[i]);
+    }
+  }
+  for (int i = 0; i < edges; ++i) {
+    for (int j = 0; j < edges; ++j) {
+      s.add_outer(i, j, pos * spring.friction, now.slope[i], slope_of_speed[j]);
+    }
+  }
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < size; ++j) s.m[i][j] += pos * now.stress * h.m[i][j];
+  }
+}
+
+template <class Strain>
+void add_filtered(const Stretched<Strain>& now, double pos,
+                  EdgeMatrix<Strain::edges>& s) {
+  if constexpr (has_metric<Strain>) {
+    const double across = pos * now.stiffness * std::max(0.0, 1 - now.rest / now.value);
+    EdgeMatrix<Strain::edges> metric;
+    now.strain.metric(now.e, metric);
+    for (int i = 0; i < metric.size; ++i) {
+      for (int j = 0; j < metric.size; ++j) s.m[i][j] += across * metric.m[i][j];
+    }
+    s.add_product(-across, now.slope, now.slope);
+  }
+}
+
+/// A matrix over edges as one over the nodes at their ends.
+template <int edges>
+void to_nodes(const EdgeMatrix<edges>& of_edges, EdgeMatrix<edges + 1>& of_nodes) {
+  for (int i = 0; i < of_edges.size; ++i) {
+    for (int j = 0; j < of_edges.size; ++j) {
+      const double x = of_edges.m[i][j];
+      of_nodes.m[i][j] += x;
+      of_nodes.m[i + 3][j] -= x;
+      of_nodes.m[i][j + 3] -= x;
+      of_nodes.m[i + 3][j + 3] += x;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> SpringElasticity::groups() const {
+  std::vector<std::vector<int>> all;
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
+    std::vector<int> group;
+    for (int k = 0; k < 3 * (Strain::edges + 1); ++k) {
+      group.push_back(static_cast<int>(3 * spring.first) + k);
+    }
+    all.push_back(std::move(group));
+  });
+  return all;
+}
+
+void SpringElasticity::add_force(const Placement& p, InOut f) noexcept {
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
+    const Stretched<Strain> now(spring, p);
+    for (int k = 0; k < Strain::edges; ++k) {
+      double* from = &f[3 * (spring.first + static_cast<std::size_t>(k))];
+      const Vec force = now.stress * now.slope[k];
+      store3(load3(from) - force, from);
+      store3(load3(from + 3) + force, from + 3);
+    }
+  });
+}
+
+void SpringElasticity::add_tangent(const Placement& p, double pos, double vel,
+                                   GroupSum& s) noexcept {
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t number) {
+    const Stretched<Strain> now(spring, p);
+    EdgeMatrix<Strain::edges> of_edges;
+    of_edges.add_product(pos * spring.stiffness + vel * spring.friction, now.slope,
+                         now.slope);
+    if (tangent_ == SpringTangent::exact) {
+      add_exact(spring, now, p, pos, of_edges);
+    } else {
+      add_filtered(now, pos, of_edges);
+    }
+    EdgeMatrix<Strain::edges + 1> of_nodes;
+    to_nodes(of_edges, of_nodes);
+    s.add(number, &of_nodes.m[0][0]);
+  });
+}
+
+double SpringElasticity::energy(const Placement& p) noexcept {
+  double sum = 0;
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
+    const double apart = Stretched<Strain>(spring, p).value - spring.rest;
+    sum += spring.stiffness / 2 * apart * apart;
+  });
+  return sum;
+}
+
+/// A turning clamp changes s faster than the nodes do: by s' less what they bring.
+double SpringElasticity::power(const Placement& p) noexcept {
+  double sum = 0;
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
+    const Stretched<Strain> now(spring, p);
+    sum -= spring.friction * now.speed * now.speed;
+    if constexpr (at_wall<Strain>) {
+      for (int k = 0; k < Strain::edges; ++k) {
+        sum -= now.stress * dot(now.slope[k], cross(p.root.omega, now.e[k]));
+      }
+    }
+  });
+  return sum;
+}
+
+}  // namespace tress

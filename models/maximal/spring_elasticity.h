@@ -1,0 +1,55 @@
+#pragma once
+
+#include <tuple>
+#include <vector>
+
+#include "models/maximal/elasticity.h"
+#include "models/maximal/spring_strain.h"
+
+namespace tress {
+
+/// Energy k (s - rest)^2/2 and friction c s' of a strain s (spring_strain.h) over
+/// neighbouring edges.
+template <class Strain>
+struct Spring {
+  Strain strain;
+  std::size_t first = 0;  // edge
+  double stiffness = 0;   // k: N/m, or N m where s is a number
+  double friction = 0;    // c: the same times s
+  double rest = 0;        // of s
+};
+
+/// All springs of a chain of nodes z = (x_0, ..., x_n). Strains at the wall turn with the
+/// clamp.
+using Springs =
+    std::tuple<std::vector<Spring<Chord<1>>>, std::vector<Spring<Chord<2>>>,
+               std::vector<Spring<Hinge>>, std::vector<Spring<Altitude>>,
+               std::vector<Spring<WallBend>>, std::vector<Spring<WallAltitude>>>;
+
+/// Which terms df/dz has. With g the gradient of s,
+///
+///     exact      k g g^T + (k (s - rest) + c s') H + c g (ds'/dz)^T
+///     filtered   k g g^T + k max(0, 1 - rest/s) (J^T J - g g^T), s = |b|, J = db/dz:
+///
+/// what a spring under pressure does across its direction is dropped, and with it all
+/// that could make the matrix indefinite or, with friction, unsymmetric.
+enum class SpringTangent { exact, filtered };
+
+class SpringElasticity final : public Elasticity {
+ public:
+  SpringElasticity(Springs springs, SpringTangent tangent)
+      : springs_(std::move(springs)), tangent_(tangent) {}
+
+  std::vector<std::vector<int>> groups() const override;
+  void add_force(const Placement& p, InOut f) noexcept override;
+  void add_tangent(const Placement& p, double pos, double vel,
+                   GroupSum& s) noexcept override;
+  double energy(const Placement& p) noexcept override;
+  double power(const Placement& p) noexcept override;
+
+ private:
+  Springs springs_;
+  SpringTangent tangent_;
+};
+
+}  // namespace tress

@@ -1,0 +1,182 @@
+#pragma once
+
+#include <cmath>
+
+#include "models/math/frame.h"
+
+/// What the springs of a chain of points measure, each a function of neighbouring edges e
+/// (m). `value` is the definition, for any scalar; `gradient` and `hessian` are its
+/// derivatives, written out. A strain that is the length of a vector b also has `metric`,
+/// J^T J with J = db/de, which is what is left of the second derivative of |b|^2/2
+/// without that of b.
+namespace tress {
+
+/// A matrix over edges, row-major in blocks of 3 x 3.
+template <int edges>
+struct EdgeMatrix {
+  static constexpr int size = 3 * edges;
+  double m[size][size] = {};
+
+  void add_identity(int i, int j, double factor) {
+    for (int k = 0; k < 3; ++k) m[3 * i + k][3 * j + k] += factor;
+  }
+  /// += factor a b^T.
+  void add_outer(int i, int j, double factor, const Vec& a, const Vec& b) {
+    const double x[3] = {a.x, a.y, a.z}, y[3] = {b.x, b.y, b.z};
+    for (int k = 0; k < 3; ++k) {
+      for (int l = 0; l < 3; ++l) m[3 * i + k][3 * j + l] += factor * x[k] * y[l];
+    }
+  }
+  /// += factor [a]x in block (i, j) and its transpose in (j, i).
+  void add_cross(int i, int j, double factor, const Vec& a) {
+    const double h[3][3] = {{0, -a.z, a.y}, {a.z, 0, -a.x}, {-a.y, a.x, 0}};
+    for (int k = 0; k < 3; ++k) {
+      for (int l = 0; l < 3; ++l) {
+        m[3 * i + k][3 * j + l] += factor * h[k][l];
+        m[3 * j + l][3 * i + k] += factor * h[k][l];
+      }
+    }
+  }
+  /// += factor (a b^T + b a^T)/2 over all edges.
+  void add_product(double factor, const Vec* a, const Vec* b) {
+    for (int i = 0; i < edges; ++i) {
+      for (int j = 0; j < edges; ++j) {
+        add_outer(i, j, factor / 2, a[i], b[j]);
+        add_outer(i, j, factor / 2, b[i], a[j]);
+      }
+    }
+  }
+};
+
+/// Distance between the ends of one edge, or of the chord over two (m): |sum e|.
+template <int n>
+struct Chord {
+  static constexpr int edges = n;
+
+  template <class T>
+  static Vec3<T> chord(const Vec3<T>* e) {
+    Vec3<T> d = e[0];
+    for (int k = 1; k < n; ++k) d = d + e[k];
+    return d;
+  }
+  template <class T>
+  T value(const Vec3<T>* e) const {
+    using std::sqrt;
+    const Vec3<T> d = chord(e);
+    return sqrt(dot(d, d));
+  }
+  double gradient(const Vec* e, Vec* g) const {
+    const double length = value(e);
+    for (int k = 0; k < n; ++k) g[k] = (1 / length) * chord(e);
+    return length;
+  }
+  void hessian(const Vec* e, EdgeMatrix<n>& h) const {
+    const double length = value(e);
+    const Vec t = (1 / length) * chord(e);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        h.add_identity(i, j, 1 / length);
+        h.add_outer(i, j, -1 / length, t, t);
+      }
+    }
+  }
+  void metric(const Vec*, EdgeMatrix<n>& m) const {
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) m.add_identity(i, j, 1);
+    }
+  }
+};
+
+/// Angle between two edges, as the length of the curvature binormal (kb, delta),
+/// kb = 2 e0 x e1/(|e0| |e1| + e0 . e1), so |kb| = 2 tan(angle/2) [Bergou et al. 2008].
+/// Three points have no direction in which a straight joint would bend: |kb| has a kink
+/// there, which delta rounds off. Not defined for edges that point against each other.
+struct Hinge {
+  static constexpr int edges = 2;
+  static constexpr double delta = 1e-6;
+
+  template <class T>
+  T value(const Vec3<T>* e) const {
+    using std::sqrt;
+    const Vec3<T> x = cross(e[0], e[1]);
+    const T c = sqrt(dot(e[0], e[0]) * dot(e[1], e[1])) + dot(e[0], e[1]);
+    return sqrt(4.0 * dot(x, x) / (c * c) + T(delta * delta));
+  }
+  double gradient(const Vec* e, Vec* g) const {
+    const Parts p(e);
+    const double by_x = 2 / (p.c * p.c * p.value);
+    const double by_c = -4 * p.xx / (p.c * p.c * p.c * p.value);
+    for (int k = 0; k < 2; ++k) g[k] = by_x * p.slope_x[k] + by_c * p.slope_c[k];
+    return p.value;
+  }
+  void hessian(const Vec* e, EdgeMatrix<2>& h) const;
+  void metric(const Vec* e, EdgeMatrix<2>& m) const;
+
+ private:
+  /// value^2 = 4 xx/c^2 + delta^2 with xx = |e0 x e1|^2, and the slopes of xx and c.
+  struct Parts {
+    explicit Parts(const Vec* e);
+    double length[2], along, c, xx, value;
+    Vec x, slope_x[2], slope_c[2];
+  };
+};
+
+/// Altitude of the tetrahedron of three edges (m): the signed distance between its
+/// diagonals e0 + e1 and e1 + e2, of a gently bent strand the shortest of the seven,
+///
+///     h = e0 . (e1 x e2)/sqrt(|n|^2 + floor),   n = (e0 + e1) x (e1 + e2);
+///
+/// `floor` (m^4) > 0 keeps it smooth where the diagonals are parallel.
+struct Altitude {
+  static constexpr int edges = 3;
+  double floor = 0;
+
+  template <class T>
+  T value(const Vec3<T>* e) const {
+    using std::sqrt;
+    const Vec3<T> n = cross(e[0] + e[1], e[1] + e[2]);
+    return dot(e[0], cross(e[1], e[2])) / sqrt(dot(n, n) + T(floor));
+  }
+  double gradient(const Vec* e, Vec* g) const;
+  void hessian(const Vec* e, EdgeMatrix<3>& h) const;
+};
+
+/// The same with a wall's tangent as the first edge, `length` long.
+struct WallAltitude {
+  static constexpr int edges = 2;
+  double floor = 0, length = 0;
+  Vec wall;
+
+  void place(const Frame& clamp) { wall = length * clamp.e0; }
+
+  template <class T>
+  T value(const Vec3<T>* e) const {
+    const Vec3<T> all[3] = {Vec3<T>(wall), e[0], e[1]};
+    return Altitude{floor}.value(all);
+  }
+  double gradient(const Vec* e, Vec* g) const;
+  void hessian(const Vec* e, EdgeMatrix<2>& h) const;
+};
+
+/// Curvature binormal between a wall's tangent and the first edge, along the wall's axis
+/// e1 or e2: kappa = 2 m . e/(|e| + t . e) with m = -e2 for e1, m = e1 for e2.
+struct WallBend {
+  static constexpr int edges = 1;
+  enum class About { e1, e2 } about = About::e1;
+  Vec t, m;
+
+  void place(const Frame& clamp) {
+    t = clamp.e0;
+    m = about == About::e1 ? -1.0 * clamp.e2 : clamp.e1;
+  }
+
+  template <class T>
+  T value(const Vec3<T>* e) const {
+    using std::sqrt;
+    return 2.0 * dot(Vec3<T>(m), e[0]) / (sqrt(dot(e[0], e[0])) + dot(Vec3<T>(t), e[0]));
+  }
+  double gradient(const Vec* e, Vec* g) const;
+  void hessian(const Vec* e, EdgeMatrix<1>& h) const;
+};
+
+}  // namespace tress
