@@ -20,8 +20,10 @@ namespace tress {
 /// rho A int N_k N_l ds is consistent (four points of Gauss a span, exact); bending is
 /// summed over two points a span, stretching over n + 2 in all: one a span and another in
 /// the first and the last, as many as there are ways to stretch a straight strand.
-/// Frequencies and statics are of order 4; with two or three points a span the cubic's
-/// own stretching, EA h^6 or so, makes a hair of ten spans a hundred times less exact.
+/// Frequencies, (beta h)^4/1440 too high, and statics are of order 4. With two or three
+/// points in every span what a bent cubic cannot help stretching, EA h^6 or so, takes two
+/// digits from a hair of ten spans (EA L^2/EI = 4e6). The initial shape is interpolated:
+/// its length is off by O(h^4).
 ///
 /// Clamped by multipliers: r = r_0(t) (3 rows) and r' across e1 and e2 of the clamp (2
 /// rows).

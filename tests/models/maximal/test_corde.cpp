@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numbers>
 
 #include "experiments/harness/fit.h"
 #include "models/maximal/corde_elasticity.h"
@@ -16,6 +17,25 @@ namespace {
 
 using namespace testing_support;
 using testing::variable;
+
+// Half turns about the axes have one entry of q each.
+TEST(Quaternion, HasTheAxesOfItsFrame) {
+  for (const Vec& axis :
+       {Vec{1, 0, 0}, Vec{0, 1, 0}, Vec{0, 0, 1}, Vec{0.48, 0.6, 0.64}}) {
+    for (const double angle : {0.0, 0.3, -2.0, 3.14159, std::numbers::pi}) {
+      const Frame frame = rotation(axis, angle);
+      const Quaternion q = quaternion_of(frame);
+      EXPECT_NEAR(dot(q, q), 1, 1e-15);
+      // q v conj(q) for the second axis.
+      const Quaternion e1 = q * (Quaternion{0, {0, 1, 0}} * Quaternion{q.w, -1.0 * q.v});
+      const Vec off[] = {first_axis(q) - frame.e0, e1.v - frame.e1};
+      for (const Vec& d : off) EXPECT_LE(std::sqrt(dot(d, d)), 4e-16 * 4);
+      const Vec turn = turn_between(quaternion_of({}), nearer({}, q));
+      EXPECT_NEAR(std::sqrt(dot(turn, turn)), 2 * std::sin(std::abs(angle) / 2),
+                  1e-15 * 4);
+    }
+  }
+}
 
 // A strand of three edges with numbers of order one, far from rest.
 TEST(Corde, ForcesAreTheGradientOfTheEnergy) {
