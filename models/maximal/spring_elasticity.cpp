@@ -1,6 +1,7 @@
 #include "models/maximal/spring_elasticity.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tress {
 namespace {
@@ -117,10 +118,8 @@ void to_nodes(const EdgeMatrix<edges>& of_edges, EdgeMatrix<edges + 1>& of_nodes
 std::vector<std::vector<int>> SpringElasticity::groups() const {
   std::vector<std::vector<int>> all;
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
-    std::vector<int> group;
-    for (int k = 0; k < 3 * (Strain::edges + 1); ++k) {
-      group.push_back(static_cast<int>(3 * spring.first) + k);
-    }
+    std::vector<int> group(3 * (Strain::edges + 1));
+    std::iota(group.begin(), group.end(), static_cast<int>(3 * spring.first));
     all.push_back(std::move(group));
   });
   return all;

@@ -7,35 +7,41 @@
 
 namespace tress::testing_support {
 
-/// Values on a pattern as a dense matrix.
-inline Eigen::MatrixXd dense(const Pattern& p, const std::vector<double>& values) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(p.rows, p.cols);
+/// Dense S(w) of a system at rest in q, out of its sparse form.
+inline Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
+  SparseForm& form = *system.sparse_form();
+  const Pattern& p = form.pattern();
+  const std::vector<double> zero = zeros(system);
+  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
+  EXPECT_EQ(form.values(0, q, zero, zero, w, values), Status::ok);
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(p.rows, p.cols);
   for (int j = 0; j < p.cols; ++j) {
     const auto column = static_cast<std::size_t>(j);
     for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      matrix(p.row[at], j) = values[at];
+      s(p.row[at], j) = values[at];
     }
   }
-  return matrix;
-}
-
-/// Dense S(w) of a system at rest in q, out of its sparse form.
-inline Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
-  SparseForm& form = *system.sparse_form();
-  const std::vector<double> zero = zeros(system);
-  std::vector<double> values(static_cast<std::size_t>(form.pattern().nonzeros()));
-  EXPECT_EQ(form.values(0, q, zero, zero, w, values), Status::ok);
-  return dense(form.pattern(), values);
+  return s;
 }
 
 /// Gradients of the constraints, one a column (n x m).
 inline Eigen::MatrixXd dense_gradient(System& system, In q) {
+  const Layout layout = system.layout();
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(layout.coordinates, layout.constraints);
   ConstraintForm* form = system.constraint_form();
-  if (form == nullptr) return Eigen::MatrixXd::Zero(system.layout().coordinates, 0);
-  std::vector<double> values(static_cast<std::size_t>(form->pattern().nonzeros()));
+  if (form == nullptr) return g;
+  const Pattern& p = form->pattern();
+  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
   EXPECT_EQ(form->gradient(0, q, values), Status::ok);
-  return dense(form->pattern(), values);
+  for (int j = 0; j < p.cols; ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      g(p.row[at], j) = values[at];
+    }
+  }
+  return g;
 }
 
 /// (beta L)^2 of cosh(beta L) cos(beta L) = -1, the clamped-free beam of Euler and
