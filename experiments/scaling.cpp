@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/harness/experiment.h"
+#include "experiments/harness/formulations.h"
 #include "experiments/harness/scaling_claims.h"
 #include "experiments/harness/scaling_grid.h"
 #include "experiments/harness/stability.h"
@@ -44,9 +45,11 @@ struct Moving {
 
 constexpr double timed_step = 1e-3;  // s; what a step costs does not depend on it
 
-Options step_of(double h) {
+Options step_of(double h, System& system) {
   Options options;
   options.step = h;
+  options.formulation =
+      usable_formulations(find_integrator("semi_implicit_euler"), system).front();
   return options;
 }
 
@@ -55,7 +58,7 @@ Moving moving(const ScalingCase& c, const Parameters& parameters) {
   set_known(cheapest, {{"solver", first_word(*c.model, "solver")}, {"tangent", "stiff"}});
   const auto system = c.model->make(cheapest);
   constexpr double t = 0.05;
-  Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step),
+  Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step, *system),
                             initial_state(*system), t);
   return {t, std::move(run.state)};
 }
@@ -64,7 +67,8 @@ Moving moving(const ScalingCase& c, const Parameters& parameters) {
 /// times, whichever is longer.
 double step_cost(System& system, const Moving& from, double time_s, int repeat) {
   constexpr double batch_s = 2e-3;
-  const auto method = make_integrator("semi_implicit_euler", system, step_of(timed_step));
+  const auto method =
+      make_integrator("semi_implicit_euler", system, step_of(timed_step, system));
   const auto run = [&](long steps) {
     Status s = method->start(from.t, from.state.q, from.state.v);
     if (s == Status::ok) {
@@ -92,8 +96,9 @@ StepLimit largest_step(const ScalingCase& c, const Parameters& parameters,
           ? stability_bounds(find_strand_scene("release"), cheapest, *system)
           : release_bounds(*system, start, t_end);
   return find_step_limit({.coarsest = frame}, [&](double dt) -> std::optional<Broken> {
-    const auto run = judge_run("semi_implicit_euler", *system, step_of(dt), start, t_end,
-                               bounds, [&deadline] { return deadline.passed(); });
+    const auto run =
+        judge_run("semi_implicit_euler", *system, step_of(dt, *system), start, t_end,
+                  bounds, [&deadline] { return deadline.passed(); });
     return run ? std::optional(run->broken) : std::nullopt;
   });
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/harness/experiment.h"
+#include "experiments/harness/formulations.h"
 #include "experiments/harness/stability.h"
 #include "experiments/harness/stability_claims.h"
 #include "experiments/harness/stability_grid.h"
@@ -87,6 +88,8 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
   const Deadline own(work.time_s);
   const GiveUp late = [&] { return own.passed() || deadline.passed(); };
   Options options = work.options;
+  options.formulation =
+      usable_formulations(find_integrator(c.integrator), *system).front();
   std::map<double, StabilityRun> runs;
   const StepLimit limit =
       find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {

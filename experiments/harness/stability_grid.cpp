@@ -4,8 +4,10 @@
 #include <span>
 #include <string>
 
+#include "experiments/harness/formulations.h"
 #include "experiments/harness/strand_models.h"
 #include "integrators/catalogue.h"
+#include "models/input_error.h"
 
 namespace tress {
 namespace {
@@ -154,8 +156,12 @@ bool possible(const StabilityCase& c, const Settings& settings) {
        {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
     if (!word.empty() && !has_word(*c.model, key, word)) return false;
   }
-  const auto system = c.model->make(c.parameters(settings));
-  return refusal(find_integrator(c.integrator), *system, Formulation::parametric).empty();
+  try {
+    const auto system = c.model->make(c.parameters(settings));
+    return !usable_formulations(find_integrator(c.integrator), *system).empty();
+  } catch (const InputError&) {
+    return false;  // a scene that the model does not take, such as curls on a spline
+  }
 }
 
 }  // namespace
@@ -200,7 +206,7 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
         for (const Method& m : all_methods(line, others)) {
           if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
           if (!chosen && line.quick && !of_the_seed(m.model) &&
-              !(contains(quick_scenes_of_others, scene.name) &&
+              !(damping.name == "none" && contains(quick_scenes_of_others, scene.name) &&
                 std::ranges::find(quick_elements_of_others, elements) !=
                     std::end(quick_elements_of_others))) {
             continue;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "integrators/formulation/projection.h"
 #include "models/input_error.h"
 #include "models/math/vec3.h"
 #include "models/strand/strand_parameters.h"
@@ -126,7 +128,7 @@ const StrandScene& find_strand_scene(std::string_view name) {
                                 : "did you mean '" + std::string(near) + "'?");
 }
 
-State perturbed_start(const System& system) {
+State perturbed_start(System& system) {
   State start = initial_state(system);
   std::vector<double> q_typ(start.q.size()), v_typ(start.v.size());
   system.scale(q_typ, v_typ);
@@ -135,6 +137,16 @@ State perturbed_start(const System& system) {
     const double x = golden * static_cast<double>(i + 1);
     start.v[i] += perturbation * (2 * (x - std::floor(x)) - 1) * v_typ[i];
   }
+  const Layout layout = system.layout();
+  if (layout.constraints == 0) return start;
+  Options options;
+  options.formulation = Formulation::projection;
+  Dynamics dynamics(system, options);
+  const std::vector<double> zero_n(start.q.size());
+  const std::vector<double> zero_m(static_cast<std::size_t>(layout.constraints));
+  Status s = dynamics.linearize(0, start.q, start.v, zero_n, zero_m, {1, 0, 0});
+  if (s == Status::ok) s = Projection(dynamics).velocities(0, start.q, start.v);
+  if (s != Status::ok) throw std::runtime_error("no velocities along the constraints");
   return start;
 }
 

@@ -27,8 +27,8 @@ const StrandScene& find_strand_scene(std::string_view name);
 
 /// The initial state with every rate off by up to 1e-3 of its typical size (a millionth
 /// of the energy), so that nothing unstable is spared by symmetry: a straight strand
-/// released in a plane never twists.
-State perturbed_start(const System& system);
+/// released in a plane never twists. Projected onto the constraints, where there are any.
+State perturbed_start(System& system);
 
 /// What a stable run of the scene keeps, for `system` made with `parameters`.
 ///
