@@ -37,7 +37,8 @@ constexpr Column columns[] = {
     {"overshoot", "largest opposite violation over the initial one"},
     {"steps", "accepted steps"},
     {"rank_deficiency", "redundant constraints met"},
-    {"wall_s", "median time of the run without measuring", true},
+    {"wall_s", "median time of the run without measuring (grid, recovery: one run)",
+     true},
 };
 
 // A bead that is this far (m) off its wire, or links this much too long, have failed.
@@ -125,7 +126,8 @@ void measure(const Study& s, int repeat, Row& row) {
   const auto again = [&] {
     (void)simulate(s.integrator, *system, s.options, start, s.t_end);
   };
-  row.set("wall_s", time_run(repeat, again));
+  // The other studies ask how far rather than at what cost.
+  row.set("wall_s", time_run(s.study == "formulation" ? repeat : 1, again));
 }
 
 // ---- the studies

@@ -13,7 +13,7 @@
 namespace tress {
 namespace {
 
-constexpr double quick_timeout_s = 7;
+constexpr double quick_timeout_s = 5;
 
 constexpr int most_jobs = 1024;
 constexpr int most_repeats = 1'000'000;
@@ -42,7 +42,7 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw) {
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
-                 "per row: 30s, 10m, 2h (default 10m; 7s with --quick)");
+                 "per row: 30s, 10m, 2h (default 10m; 5s with --quick)");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
   app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");

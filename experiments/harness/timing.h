@@ -17,11 +17,10 @@ struct Timing {
 };
 Timing summarize(const std::vector<double>& seconds);
 
-/// Calls f once unmeasured (caches, lazy allocation), then `repeats` times.
+/// Calls f `repeats` times, once at least.
 template <typename F>
-Timing time_it(int repeats, F&& f) {
+Timing time_calls(int repeats, F&& f) {
   using Clock = std::chrono::steady_clock;
-  f();
   std::vector<double> seconds;
   for (int i = 0; i < std::max(repeats, 1); ++i) {
     const auto start = Clock::now();
@@ -31,16 +30,20 @@ Timing time_it(int repeats, F&& f) {
   return summarize(seconds);
 }
 
+/// The same after a first call unmeasured (caches, lazy allocation).
+template <typename F>
+Timing time_it(int repeats, F&& f) {
+  f();
+  return time_calls(repeats, f);
+}
+
 /// Median wall time (s) of whole runs: one if it takes long, `repeats` if it does not,
 /// after a first one that warms the caches and does not count.
 template <typename F>
 double time_run(int repeats, F&& f) {
   constexpr double long_run = 0.05;  // s; beyond it one interruption is a small part
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  f();
-  const double first = std::chrono::duration<double>(Clock::now() - start).count();
-  return first > long_run ? first : time_it(repeats, f).median_s;
+  const double first = time_calls(1, f).median_s;
+  return first > long_run ? first : time_calls(repeats, f).median_s;
 }
 
 }  // namespace tress
