@@ -111,7 +111,7 @@ std::vector<Case> cases(const CommandLine& line) {
         const auto formulations = usable_formulations(entry, *system);
         if (formulations.empty()) continue;
         options.formulation = formulations.front();
-        const int points = line.full ? 5 : 3;
+        const int points = line.full ? 5 : line.quick ? 2 : 3;
         for (int level = 0; level < points; ++level) {
           Row identity;
           identity.set("model", model->id).set("integrator", entry.id);

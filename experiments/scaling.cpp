@@ -55,7 +55,8 @@ Options step_of(double h, System& system) {
 
 Moving moving(const ScalingCase& c, const Parameters& parameters) {
   Parameters cheapest = parameters;
-  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}, {"tangent", "stiff"}});
+  cheapest.set("solver", first_word(*c.model, "solver"));
+  if (has_word(*c.model, "tangent", "stiff")) cheapest.set("tangent", "stiff");
   const auto system = c.model->make(cheapest);
   constexpr double t = 0.05;
   Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step, *system),
