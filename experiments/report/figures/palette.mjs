@@ -172,6 +172,10 @@ export const order_colours = ['#F2B134', '#E8743B', '#C9366F', '#8E3FB0', '#4C5B
 // Solvers and tangents of the strand models; a later match of the same family takes the
 // next shade.
 const method_families = [
+  {
+    match: /(banded|klu)/,
+    colours: ['#56B4E9', '#9C8500', '#C9366F', '#7A7F87', '#4C5BD4', '#8C6D31'],
+  },
   { match: /^recursive(?!.*exact)/, colours: ['#1F7FC2', '#6CC0EE', '#8FA6D8'] },
   { match: /^composite(?!.*exact)/, colours: ['#E69F00', '#C9B03A', '#9C8500'] },
   { match: /^sparse(?!.*exact)/, colours: ['#8E6CC9', '#B9A3E0'] },

@@ -15,10 +15,12 @@ import {
 } from './common.mjs';
 import { method_style } from './palette.mjs';
 
-// All modes of every solver; fewer modes of the recursion alone, to keep lines apart.
+// All modes of every solver; fewer modes of the recursion alone and maximal coordinates by
+// the band solver alone, to keep lines apart.
 const drawn = ({ members: [row] }) =>
-  ['', 'bend_twist'].includes(row.modes ?? '') ||
-  (row.solver === 'recursive' && row.tangent !== 'exact');
+  row.solver !== 'klu' &&
+  (['', 'bend_twist'].includes(row.modes ?? '') ||
+    (row.solver === 'recursive' && row.tangent !== 'exact'));
 
 const label = ({ name, exponent }) =>
   is_positive(exponent) ? `${name}: slope ${exponent.toFixed(2)}` : name;
