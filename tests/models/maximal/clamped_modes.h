@@ -1,48 +1,18 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
+#include <string_view>
+#include <vector>
 
 #include "tests/models/reduced/static_equilibrium.h"
 
 namespace tress::testing_support {
 
 /// Dense S(w) of a system at rest in q, out of its sparse form.
-inline Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
-  SparseForm& form = *system.sparse_form();
-  const Pattern& p = form.pattern();
-  const std::vector<double> zero = zeros(system);
-  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
-  EXPECT_EQ(form.values(0, q, zero, zero, w, values), Status::ok);
-  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(p.rows, p.cols);
-  for (int j = 0; j < p.cols; ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      s(p.row[at], j) = values[at];
-    }
-  }
-  return s;
-}
+Eigen::MatrixXd dense_tangent(System& system, In q, Weights w);
 
-/// Gradients of the constraints, one a column (n x m).
-inline Eigen::MatrixXd dense_gradient(System& system, In q) {
-  const Layout layout = system.layout();
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(layout.coordinates, layout.constraints);
-  ConstraintForm* form = system.constraint_form();
-  if (form == nullptr) return g;
-  const Pattern& p = form->pattern();
-  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
-  EXPECT_EQ(form->gradient(0, q, values), Status::ok);
-  for (int j = 0; j < p.cols; ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      g(p.row[at], j) = values[at];
-    }
-  }
-  return g;
-}
+/// Of a symmetric matrix, ascending.
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
 
 /// (beta L)^2 of cosh(beta L) cos(beta L) = -1, the clamped-free beam of Euler and
 /// Bernoulli: frequencies over sqrt(EI/(rho S L^4)).
@@ -52,30 +22,7 @@ inline constexpr double beam[3] = {3.516015268500151, 22.03449156466677,
 /// Lowest frequencies (rad/s) of a straight clamped rod of circular section at rest, of
 /// its three lowest pairs of bending modes: K x = omega^2 M x on the motions that the
 /// constraints allow. The largest 1/omega^2 are what the solver finds to full precision.
-inline std::vector<double> bending_frequencies(std::string_view model,
-                                               const ModelSettings& settings) {
-  const auto system = make_model(model, settings);
-  std::vector<double> q = zeros(*system), v = q;
-  system->initial_state(q, v);
-  const Eigen::MatrixXd g = dense_gradient(*system, q);
-  const Eigen::MatrixXd basis =
-      Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(g).householderQ())
-          .rightCols(g.rows() - g.cols());
-  const Eigen::MatrixXd mass =
-      basis.transpose() * dense_tangent(*system, q, {1, 0, 0}) * basis;
-  const Eigen::MatrixXd stiffness =
-      basis.transpose() * dense_tangent(*system, q, {0, 0, 1}) * basis;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      mass, stiffness, Eigen::EigenvaluesOnly);
-  const Eigen::VectorXd& squares = modes.eigenvalues();  // ascending
-  std::vector<double> frequencies;
-  for (int mode = 0; mode < 3; ++mode) {
-    const double one = squares[squares.size() - 1 - 2 * mode];
-    const double other = squares[squares.size() - 2 - 2 * mode];
-    EXPECT_NEAR(other / one, 1, 1e-6) << "no pair of bending modes";
-    frequencies.push_back(1 / std::sqrt(one));
-  }
-  return frequencies;
-}
+std::vector<double> bending_frequencies(std::string_view model,
+                                        const ModelSettings& settings);
 
 }  // namespace tress::testing_support
