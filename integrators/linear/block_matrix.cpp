@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
+
+#include "integrators/linear/sparse_pattern.h"
 
 namespace tress {
 
@@ -48,24 +51,13 @@ void BlockMatrix::finish() {
     for (const Entry& e : entries)
       columns[static_cast<std::size_t>(e.col)].push_back(e.row);
   }
-  pattern_.start.assign(1, 0);
-  pattern_.row.clear();
-  for (auto& rows : columns) {
-    std::ranges::sort(rows);
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    pattern_.row.insert(pattern_.row.end(), rows.begin(), rows.end());
-    pattern_.start.push_back(static_cast<int>(pattern_.row.size()));
-  }
+  pattern_ = pattern_of(pattern_.rows, std::move(columns));
   slot_.clear();
   for (const auto& entries : entries_) {
     std::vector<std::size_t>& slot = slot_.emplace_back();
     slot.reserve(entries.size());
     for (const Entry& e : entries) {
-      const auto column = static_cast<std::size_t>(e.col);
-      const auto first = pattern_.row.begin() + pattern_.start[column];
-      const auto last = pattern_.row.begin() + pattern_.start[column + 1];
-      slot.push_back(static_cast<std::size_t>(std::lower_bound(first, last, e.row) -
-                                              pattern_.row.begin()));
+      slot.push_back(static_cast<std::size_t>(place_of(pattern_, e.row, e.col)));
     }
   }
   entries_.clear();

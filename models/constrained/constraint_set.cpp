@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "integrators/linear/sparse_pattern.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -138,12 +139,8 @@ void ConstraintSet::bind(const Pattern& s) {
     for (int i = 0; i < item.inputs; ++i) {
       for (int j = 0; j < item.inputs; ++j) {
         if (input[i] >= coordinates_ || input[j] >= coordinates_) continue;
-        const auto column = static_cast<std::size_t>(input[j]);
-        const auto begin = s.row.begin() + s.start[column];
-        const auto end = s.row.begin() + s.start[column + 1];
-        const auto place = std::lower_bound(begin, end, input[i]) - s.row.begin();
         coupling_[static_cast<std::size_t>(item.first_coupling + i * item.inputs + j)] =
-            static_cast<int>(place);
+            place_of(s, input[i], input[j]);
       }
     }
   }

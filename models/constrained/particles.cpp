@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "integrators/linear/sparse_pattern.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -120,21 +121,10 @@ void ParticleSystem::build_pattern() {
     }
   }
   constraints_.couple(columns);
-  pattern_.rows = pattern_.cols = coordinates_;
-  pattern_.start = {0};
-  for (auto& rows : columns) {
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    pattern_.row.insert(pattern_.row.end(), rows.begin(), rows.end());
-    pattern_.start.push_back(static_cast<int>(pattern_.row.size()));
-  }
+  pattern_ = pattern_of(coordinates_, std::move(columns));
   for (int i = 0; i < 3 * particles_; ++i) {
     for (int j = i - i % 3; j < i - i % 3 + 3; ++j) {
-      const auto column = static_cast<std::size_t>(j);
-      const auto begin = pattern_.row.begin() + pattern_.start[column];
-      const auto end = pattern_.row.begin() + pattern_.start[column + 1];
-      block_.push_back(
-          static_cast<int>(std::lower_bound(begin, end, i) - pattern_.row.begin()));
+      block_.push_back(place_of(pattern_, i, j));
     }
   }
 }

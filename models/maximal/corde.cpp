@@ -29,8 +29,7 @@ std::unique_ptr<System> corde(const Strand& strand, const CordeOptions& options,
   const std::size_t n = strand.segments.size();
   NodalStrand nodal(strand, "corde", 4 * n);
   MaximalStrand& parts = nodal.parts;
-  const Quaternion root = quaternion_of(nodal.root.frame);
-  const Vec spin = parts.clamped ? strand.root.at(0).omega : strand.free_root->spin;
+  const Quaternion root = quaternion_of(nodal.root.place.frame);
   std::vector<CordeEdge> edges;
   std::vector<RodJoint> joints;
   Quaternion now = root, natural = root;  // neighbours on the same side of the sphere
@@ -40,7 +39,7 @@ std::unique_ptr<System> corde(const Strand& strand, const CordeOptions& options,
     now = nearer(now, quaternion_of(nodal.initial[i]));
     const std::size_t at = 3 * (n + 1) + 4 * i;
     store_quaternion(now, &parts.z[at]);
-    store_quaternion(rate_of(now, spin), &parts.rate[at]);
+    store_quaternion(rate_of(now, nodal.root.spin), &parts.rate[at]);
     std::fill_n(&parts.inertia[4 * i], 4,
                 4 * strand.material.density * segment.section.polar() * segment.length);
     const Quaternion before = natural;

@@ -6,16 +6,15 @@
 #include "models/tangent_choice.h"
 
 namespace tress {
+
 std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
                             Effects effects) {
   const std::size_t n = strand.segments.size();
   NodalStrand nodal(strand, "der", n);
   MaximalStrand& parts = nodal.parts;
   std::vector<DerElasticity::EdgeData> edges;
-  std::vector<double> lengths;
   for (std::size_t i = 0; i < n; ++i) {
     const Segment& segment = strand.segments[i];
-    lengths.push_back(segment.length);
     const double stretch =
         strand.material.youngs_modulus * segment.section.area() / segment.length;
     edges.push_back(
@@ -25,20 +24,20 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
           strand.material.density * segment.section.polar() * segment.length;
     }
     // The frames of a rigid motion turn with the whole.
-    const Vec spin = parts.clamped ? strand.root.at(0).omega : strand.free_root->spin;
-    parts.rate[3 * (n + 1) + i] = dot(spin, nodal.initial[i].e0);
+    parts.rate[3 * (n + 1) + i] = dot(nodal.root.spin, nodal.initial[i].e0);
   }
   std::vector<RodJoint> joints;
   for (std::size_t i = 0; i < n; ++i) {
     const Segment* before = i > 0 ? &strand.segments[i - 1] : nullptr;
     if (before == nullptr && !parts.clamped) continue;
-    const Vec rest = joint_strain(
-        before != nullptr ? nodal.natural[i - 1] : nodal.root.frame, nodal.natural[i]);
+    const Vec rest =
+        joint_strain(before != nullptr ? nodal.natural[i - 1] : nodal.root.place.frame,
+                     nodal.natural[i]);
     joints.push_back(rod_joint(strand.material, before, strand.segments[i], rest));
   }
   parts.elasticity = std::make_unique<DerElasticity>(std::move(edges), std::move(joints),
                                                      parts.clamped, options.tangent);
-  if (options.inextensible) parts.constraints = inextensible(parts, lengths);
+  if (options.inextensible) parts.constraints = inextensible(parts, strand);
   parts.effects = std::move(effects);
   parts.solver = options.solver;
   return std::make_unique<MaximalSystem>(std::move(parts));

@@ -261,15 +261,16 @@ double DerElasticity::power(const Placement& p) noexcept {
   return sum;
 }
 
-bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
-  place({root, z, rate});
+bool DerElasticity::rebase(InOut z, InOut rate) {
   bool moved = false;
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const EdgeTurn& turn = edges_[i].turn;
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    Frame& reference = edge_data_[i].reference;
+    const Vec e = load3(&z[3 * i + 3]) - load3(&z[3 * i]);
+    const EdgeTurn turn(reference.e0, e);
     if (dot(turn.a, turn.t) >= far_turned) continue;
     const Vec de = load3(&rate[3 * i + 3]) - load3(&rate[3 * i]);
     rate[angles_ + i] += dot(turn.c, de);
-    edge_data_[i].reference = edges_[i].frame;
+    reference = edge_frame(reference, e, theta(z, i));
     z[angles_ + i] = 0;
     moved = true;
   }

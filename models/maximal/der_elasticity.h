@@ -26,7 +26,7 @@ class DerElasticity final : public Elasticity {
                    GroupSum& s) noexcept override;
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
-  bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  bool rebase(InOut z, InOut rate) override;
 
  private:
   struct Edge {

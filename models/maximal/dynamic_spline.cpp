@@ -1,9 +1,8 @@
 #include "models/maximal/dynamic_spline.h"
 
-#include <gsl/gsl_integration.h>
-
 #include "models/constrained/joints.h"
 #include "models/input_error.h"
+#include "models/math/gauss_legendre.h"
 #include "models/maximal/cubic_spline.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/maximal/spline_elasticity.h"
@@ -12,10 +11,10 @@
 namespace tress {
 namespace {
 
-constexpr std::size_t mass_points = 4, bend_points = 2;
+constexpr int mass_points = 4, bend_points = 2;
 
 /// n + 2 over all n spans, one for each motion along a straight strand that stretches it.
-std::size_t stretch_points(std::size_t span, std::size_t spans) {
+int stretch_points(std::size_t span, std::size_t spans) {
   if (spans == 1) return 3;
   return span == 0 || span + 1 == spans ? 2 : 1;
 }
@@ -35,20 +34,6 @@ void check_describable(const Strand& strand) {
     refuse(segment.section.a1 != segment.section.a2,
            "an elliptic section needs a material frame, which a spline has not",
            "set ellipticity = 1");
-  }
-}
-
-/// Calls visit(along, weight) for the points of Gauss over [0, length].
-template <class Visit>
-void integrate(std::size_t points, double length, const Visit& visit) {
-  const std::unique_ptr<gsl_integration_glfixed_table,
-                        decltype(&gsl_integration_glfixed_table_free)>
-      table(gsl_integration_glfixed_table_alloc(points),
-            gsl_integration_glfixed_table_free);
-  for (std::size_t i = 0; i < points; ++i) {
-    double along = 0, weight = 0;
-    gsl_integration_glfixed_point(0, length, i, &along, &weight, table.get());
-    visit(along, weight);
   }
 }
 
@@ -89,12 +74,9 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
   parts.nodes = static_cast<int>(spline.controls());
   parts.root = strand.root;
   // Starts as a rigid body; the control points move with it.
-  const StrandPlace root = root_place(strand);
-  const RootPose pose = strand.root.at(0);
-  const Vec spin = clamped ? pose.omega : strand.free_root->spin;
-  const Vec speed = clamped ? pose.v : strand.free_root->velocity;
-  for (const Vec& x : spline.through(joints(strand, ShapeOf::initial, root))) {
-    const Vec v = speed + cross(spin, x - root.x);
+  const RootStart root = root_start(strand);
+  for (const Vec& x : spline.through(joints(strand, ShapeOf::initial, root.place))) {
+    const Vec v = root.velocity_of(x);
     parts.z.insert(parts.z.end(), {x.x, x.y, x.z});
     parts.rate.insert(parts.rate.end(), {v.x, v.y, v.z});
   }
@@ -106,20 +88,21 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
   for (std::size_t i = 0; i < spline.spans(); ++i) {
     const CrossSection& section = strand.segments[i].section;
     const double modulus = strand.material.youngs_modulus, l = lengths[i];
-    integrate(mass_points, l, [&](double along, double weight) {
+    for (const auto& [along, weight] : gauss_legendre(mass_points, l)) {
       parts.mass.push_back({node_mean(i, spline.at(i, along)),
                             strand.material.density * section.area() * weight, weight});
-    });
-    integrate(bend_points, l, [&](double along, double weight) {
+    }
+    for (const auto& [along, weight] : gauss_legendre(bend_points, l)) {
       const CubicSpline::Basis basis = spline.at(i, along);
       points.push_back(
           {i, basis.first, basis.second, 0, modulus * section.inertia1() * weight});
-    });
-    integrate(stretch_points(i, spline.spans()), l, [&](double along, double weight) {
+    }
+    for (const auto& [along, weight] :
+         gauss_legendre(stretch_points(i, spline.spans()), l)) {
       const CubicSpline::Basis basis = spline.at(i, along);
       points.push_back(
           {i, basis.first, basis.second, modulus * section.area() * weight, 0});
-    });
+    }
     parts.shown.push_back(node_mean(i, spline.at(i, 0)));
     if (i + 1 == spline.spans()) parts.shown.push_back(node_mean(i, spline.at(i, l)));
   }

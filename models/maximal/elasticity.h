@@ -34,7 +34,7 @@ class Elasticity {
   virtual Vec spin(const Placement&, In /*inertia*/) noexcept { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True: the equations changed.
-  virtual bool rebase(const RootPose&, InOut /*z*/, InOut /*rate*/) { return false; }
+  virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
 };
 
 }  // namespace tress

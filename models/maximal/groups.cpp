@@ -1,6 +1,6 @@
 #include "models/maximal/groups.h"
 
-#include <algorithm>
+#include "integrators/linear/sparse_pattern.h"
 
 namespace tress {
 
@@ -29,31 +29,11 @@ void Groups::bind(const Pattern& pattern) {
     first_place_.push_back(place_.size());
     for (const int row : coordinates(g)) {
       for (const int column : coordinates(g)) {
-        if (row < held_ || column < held_) {
-          place_.push_back(-1);
-          continue;
-        }
-        const auto c = static_cast<std::size_t>(column - held_);
-        const auto begin = pattern.row.begin() + pattern.start[c];
-        const auto end = pattern.row.begin() + pattern.start[c + 1];
-        place_.push_back(static_cast<int>(std::lower_bound(begin, end, row - held_) -
-                                          pattern.row.begin()));
+        const bool dropped = row < held_ || column < held_;
+        place_.push_back(dropped ? -1 : place_of(pattern, row - held_, column - held_));
       }
     }
   }
-}
-
-Pattern pattern_of(std::vector<std::vector<int>> columns) {
-  Pattern pattern;
-  pattern.rows = pattern.cols = static_cast<int>(columns.size());
-  pattern.start = {0};
-  for (std::vector<int>& rows : columns) {
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    pattern.row.insert(pattern.row.end(), rows.begin(), rows.end());
-    pattern.start.push_back(static_cast<int>(pattern.row.size()));
-  }
-  return pattern;
 }
 
 }  // namespace tress

@@ -54,7 +54,4 @@ class GroupSum {
   Out values_;
 };
 
-/// Sorted, unique columns as a pattern.
-Pattern pattern_of(std::vector<std::vector<int>> columns);
-
 }  // namespace tress

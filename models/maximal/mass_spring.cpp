@@ -19,7 +19,7 @@ constexpr double flat = 1e-3;
 class Builder {
  public:
   Builder(const Strand& strand, const NodalStrand& nodal)
-      : strand_(strand), clamped_(nodal.parts.clamped), clamp_(nodal.root.frame) {
+      : strand_(strand), clamped_(nodal.parts.clamped), clamp_(nodal.root.place.frame) {
     for (std::size_t i = 0; i < strand.segments.size(); ++i) {
       rest_.push_back(strand.segments[i].length * nodal.natural[i].e0);
     }
@@ -122,9 +122,7 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
   MaximalStrand& parts = nodal.parts;
   Builder builder(strand, nodal);
   if (options.inextensible) {
-    std::vector<double> lengths;
-    for (const Segment& segment : strand.segments) lengths.push_back(segment.length);
-    parts.constraints = inextensible(parts, lengths);
+    parts.constraints = inextensible(parts, strand);
   } else {
     builder.add_stretch();
   }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "integrators/linear/finite.h"
+#include "integrators/linear/sparse_pattern.h"
+
 namespace tress {
 namespace {
 
@@ -44,10 +47,6 @@ void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
   }
 }
 
-bool finite(In x) {
-  return std::ranges::all_of(x, [](double y) { return std::isfinite(y); });
-}
-
 }  // namespace
 
 MaximalSystem::MaximalSystem(MaximalStrand strand)
@@ -77,7 +76,8 @@ void MaximalSystem::build_pattern() {
   std::vector<std::vector<int>> columns(z_.size() - held());
   for (const Groups* groups : {&elastic_, &massive_, &inert_}) groups->couple(columns);
   if (strand_.constraints) strand_.constraints->couple(columns);
-  pattern_ = pattern_of(std::move(columns));
+  const auto rows = static_cast<int>(columns.size());
+  pattern_ = pattern_of(rows, std::move(columns));
   for (Groups* groups : {&elastic_, &massive_, &inert_}) groups->bind(pattern_);
   if (strand_.constraints) strand_.constraints->bind(pattern_);
   values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
@@ -165,7 +165,7 @@ Status MaximalSystem::residual(double t, In q, In v, In a, Out r) noexcept {
   place(t, q, v);
   forces(t, a);
   std::ranges::copy(In(force_).subspan(held()), r.begin());
-  return finite(r) ? Status::ok : Status::retry;
+  return all_finite(r) ? Status::ok : Status::retry;
 }
 
 /// sum += w.acc M, and blocks_ of the effects as they stand.
@@ -206,7 +206,7 @@ Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcep
   if (w.pos != 0 || w.vel != 0) {
     strand_.elasticity->add_tangent(placement(), w.pos, w.vel, elastic);
   }
-  return finite(s) ? Status::ok : Status::retry;
+  return all_finite(s) ? Status::ok : Status::retry;
 }
 
 Status MaximalSystem::linearize(double t, In q, In v, In a, Weights w) noexcept {
@@ -221,7 +221,7 @@ Status MaximalSystem::solve(In b, Out x) noexcept {
 
 bool MaximalSystem::accept(double t, InOut q, InOut v) {
   place(t, q, v);
-  if (!strand_.elasticity->rebase(pose_, z_, rate_)) return false;
+  if (!strand_.elasticity->rebase(z_, rate_)) return false;
   std::ranges::copy(In(z_).subspan(held()), q.begin());
   std::ranges::copy(In(rate_).subspan(held()), v.begin());
   return true;

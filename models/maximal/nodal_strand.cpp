@@ -42,10 +42,13 @@ std::vector<Frame> edge_frames(const Strand& strand, ShapeOf shape,
 
 }  // namespace
 
-StrandPlace root_place(const Strand& strand) {
-  if (strand.free_root) return {strand.free_root->position, strand.free_root->frame};
+RootStart root_start(const Strand& strand) {
+  if (strand.free_root) {
+    const FreeRoot& root = *strand.free_root;
+    return {{root.position, root.frame}, root.velocity, root.spin};
+  }
   const RootPose pose = strand.root.at(0);
-  return {pose.x, pose.frame};
+  return {{pose.x, pose.frame}, pose.v, pose.omega};
 }
 
 double typical_rate(const Strand& strand) {
@@ -61,9 +64,9 @@ double typical_rate(const Strand& strand) {
 NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
                          std::size_t others) {
   check_unbranched(strand, model);
-  root = root_place(strand);
-  initial = edge_frames(strand, ShapeOf::initial, root);
-  natural = edge_frames(strand, ShapeOf::natural, root);
+  root = root_start(strand);
+  initial = edge_frames(strand, ShapeOf::initial, root.place);
+  natural = edge_frames(strand, ShapeOf::natural, root.place);
   parts.clamped = !strand.free_root.has_value();
   parts.root = strand.root;
   const std::size_t nodes = initial.size() + 1, coordinates = 3 * nodes;
@@ -78,14 +81,10 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   parts.z_rate = parts.z_typ;
   for (double& speed : parts.z_rate) speed *= rate;
   parts.inertia.assign(others, 0.0);
-  // A clamped strand starts as a rigid body with its root.
-  const RootPose pose = strand.root.at(0);
-  const Vec spin = strand.free_root ? strand.free_root->spin : pose.omega;
-  const Vec speed = strand.free_root ? strand.free_root->velocity : pose.v;
-  Vec x = root.x;
+  Vec x = root.place.x;
   for (std::size_t i = 0; i < nodes; ++i) {
     store3(x, &parts.z[3 * i]);
-    store3(speed + cross(spin, x - root.x), &parts.rate[3 * i]);
+    store3(root.velocity_of(x), &parts.rate[3 * i]);
     if (i + 1 < nodes) x = x + strand.segments[i].length * initial[i].e0;
     double mass = 0, carried = 0;
     for (const std::size_t k : {i, i + 1}) {  // segments on either side
@@ -109,24 +108,21 @@ Node constraint_node(const MaximalStrand& strand, int i) {
   return i == 0 ? Node{Node::Kind::anchor, 0} : Node{Node::Kind::particle, i - 1};
 }
 
-std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& strand,
-                                            const std::vector<double>& lengths) {
+std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& parts,
+                                            const Strand& strand) {
   Constraints constraints;
-  double extent = 0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
+  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const auto node = static_cast<int>(i);
-    constraints.push_back(distance(constraint_node(strand, node),
-                                   constraint_node(strand, node + 1), lengths[i]));
-    extent += lengths[i];
+    constraints.push_back(distance(constraint_node(parts, node),
+                                   constraint_node(parts, node + 1),
+                                   strand.segments[i].length));
   }
   std::vector<Anchor> anchors;
-  if (strand.clamped) {
-    anchors.push_back(root_anchor(strand.root, {}));
-  }
-  const int particles = strand.nodes - (strand.clamped ? 1 : 0);
-  const int others = static_cast<int>(strand.z.size()) - 3 * strand.nodes;
+  if (parts.clamped) anchors.push_back(root_anchor(parts.root, {}));
+  const int particles = parts.nodes - (parts.clamped ? 1 : 0);
+  const int others = static_cast<int>(parts.z.size()) - 3 * parts.nodes;
   return std::make_unique<ConstraintSet>(std::move(constraints), std::move(anchors),
-                                         particles, others, extent);
+                                         particles, others, strand.length());
 }
 
 LinearKind maximal_solver(const Parameters& parameters) {

@@ -9,6 +9,16 @@
 
 namespace tress {
 
+/// Where the root, clamped or free, is at t = 0 and how it moves there. The strand starts
+/// as a rigid body with it.
+struct RootStart {
+  StrandPlace place;
+  Vec velocity, spin;  // m/s; rad/s, world components
+
+  Vec velocity_of(const Vec& x) const { return velocity + cross(spin, x - place.x); }
+};
+RootStart root_start(const Strand& strand);
+
 /// What every model with nodes at the segments' ends has in common.
 struct NodalStrand {
   /// Nodes, masses and lengths lumped at them, motion of the root, typical sizes, and
@@ -19,14 +29,11 @@ struct NodalStrand {
   NodalStrand(const Strand& strand, const std::string& model, std::size_t others);
 
   MaximalStrand parts;
-  StrandPlace root;  // at t = 0
+  RootStart root;
   /// Of the edges, e0 along the chord: the material frame in the middle of the segment,
   /// turned on the shortest way.
   std::vector<Frame> initial, natural;
 };
-
-/// Where the strand's root is at t = 0.
-StrandPlace root_place(const Strand& strand);
 
 /// Typical rate (1/s) of swinging and bending of a strand of this length, stiffness and
 /// weight: sqrt(g/L + EI/(rho A L^4)), g = 10 m/s^2.
@@ -36,10 +43,10 @@ double typical_rate(const Strand& strand);
 Anchor root_anchor(const RootMotion& motion, const Vec& offset);
 /// Node i of a clamped or free strand as a node of constraints.
 Node constraint_node(const MaximalStrand& strand, int i);
-/// Constraints of distance between neighbouring nodes, with the clamped node as an
-/// anchor that moves with the root.
-std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& strand,
-                                            const std::vector<double>& lengths);
+/// Constraints of distance between neighbouring nodes, the lengths of the segments apart,
+/// with the clamped node as an anchor that moves with the root.
+std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& parts,
+                                            const Strand& strand);
 
 /// The catalogue parameter and choice of how a maximal model's equations are solved.
 inline constexpr Parameter maximal_solver_parameter{

@@ -1,15 +1,6 @@
 #include "models/maximal/rod_joint.h"
 
 namespace tress {
-namespace {
-
-Vec stiffness(const Material& material, const CrossSection& section) {
-  return {material.shear_modulus * section.torsion(),
-          material.youngs_modulus * section.inertia1(),
-          material.youngs_modulus * section.inertia2()};
-}
-
-}  // namespace
 
 RodJoint rod_joint(const Material& material, const Segment* before, const Segment& after,
                    const Vec& rest) {

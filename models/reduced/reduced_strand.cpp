@@ -1,13 +1,11 @@
 #include "models/reduced/reduced_strand.h"
 
-#include <gsl/gsl_integration.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 
 #include "models/input_error.h"
+#include "models/math/gauss_legendre.h"
 
 namespace tress {
 namespace {
@@ -82,23 +80,16 @@ void check_plane(const Strand& strand) {
 
 void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_area,
                 int points) {
-  const std::unique_ptr<gsl_integration_glfixed_table,
-                        decltype(&gsl_integration_glfixed_table_free)>
-      table(gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
-            gsl_integration_glfixed_table_free);
+  const std::vector<QuadraturePoint> rule = gauss_legendre(points, segment.length);
   segment.first_block = reduced.blocks.size();
   for (int first = 0; first < points; first += Pack::lanes) {
     PointBlock block;
     for (int lane = 0; lane < Pack::lanes; ++lane) {
-      double s = segment.length / 2, weight = 0;  // lanes without a point carry no mass
-      if (first + lane < points) {
-        gsl_integration_glfixed_point(0, segment.length,
-                                      static_cast<std::size_t>(first + lane), &s, &weight,
-                                      table.get());
-      }
-      block.s.set(lane, s);
-      block.length.set(lane, weight);
-      block.mass.set(lane, density_area * weight);
+      QuadraturePoint point{segment.length / 2, 0};  // lanes without one carry no mass
+      if (first + lane < points) point = rule[static_cast<std::size_t>(first + lane)];
+      block.s.set(lane, point.at);
+      block.length.set(lane, point.weight);
+      block.mass.set(lane, density_area * point.weight);
     }
     reduced.blocks.push_back(block);
   }
@@ -205,9 +196,7 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     segment.length = from.length;
     segment.mount = from.mount;
     segment.mounted = !identity(from.mount);
-    const Vec moduli{material.shear_modulus * from.section.torsion(),
-                     material.youngs_modulus * from.section.inertia1(),
-                     material.youngs_modulus * from.section.inertia2()};
+    const Vec moduli = stiffness(material, from.section);
     const double gamma = material.internal_friction;
     const double arc = joints ? joint_length(strand, i) : from.length;
     const double factor = joints ? 1 / arc : arc;

@@ -25,6 +25,12 @@ double CrossSection::torsion() const {
 }
 double CrossSection::polar() const { return inertia1() + inertia2(); }
 
+Vec stiffness(const Material& material, const CrossSection& section) {
+  return {material.shear_modulus * section.torsion(),
+          material.youngs_modulus * section.inertia1(),
+          material.youngs_modulus * section.inertia2()};
+}
+
 void check(const Material& material, const std::string& where) {
   require_positive(material.density, "density", where);
   require_positive(material.youngs_modulus, "Young's modulus", where);

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "models/math/vec3.h"
+
 namespace tress {
 
 /// What a strand is made of. Linear elastic, with Kelvin-Voigt friction in bending and
@@ -32,6 +34,9 @@ struct CrossSection {
   double torsion() const;   // J = pi a1^3 a2^3/(a1^2 + a2^2), m^4 (Saint-Venant)
   double polar() const;     // I1 + I2: rotational inertia about the tangent per density
 };
+
+/// GJ, EI1 and EI2: against twist and the two curvatures, N m^2.
+Vec stiffness(const Material& material, const CrossSection& section);
 
 /// Throw InputError naming `where` unless every number makes sense (positive density,
 /// moduli and half-axes, friction >= 0, all finite).

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/harness/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {
@@ -38,6 +44,22 @@ inline Drift drift(System& system, double step) {
       });
   EXPECT_EQ(run.status, Status::ok) << run.failure;
   return {std::sqrt(square / static_cast<double>(run.stats.steps)) / kinetic, momentum};
+}
+
+/// The rule keeps the momenta, bilinear in q and v, to `momentum`, and the energy at
+/// order 2 over `steps` (s).
+inline void expect_midpoint_keeps(std::string_view model, const ModelSettings& thrown,
+                                  const std::vector<double>& steps, double momentum) {
+  std::vector<double> errors;
+  for (const double step : steps) {
+    const auto system = make_model(model, thrown);
+    const Drift off = drift(*system, step);
+    errors.push_back(off.energy);
+    std::printf("%s, step %g s: energy off by %.2e, momentum by %.2e\n",
+                std::string(model).c_str(), step, off.energy, off.momentum);
+    EXPECT_LE(off.momentum, momentum);
+  }
+  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.1);
 }
 
 }  // namespace tress::testing_support

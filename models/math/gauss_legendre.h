@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+namespace tress {
+
+struct QuadraturePoint {
+  double at, weight;
+};
+
+/// Gauss-Legendre over [0, length] with `count` points (> 0): exact for polynomials of
+/// degree 2 count - 1.
+std::vector<QuadraturePoint> gauss_legendre(int count, double length);
+
+}  // namespace tress
