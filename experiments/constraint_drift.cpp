@@ -7,6 +7,7 @@
 
 #include "experiments/harness/drift_claims.h"
 #include "experiments/harness/drift_monitor.h"
+#include "experiments/harness/drift_studies.h"
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/simulation.h"
@@ -16,8 +17,9 @@ namespace tress {
 namespace {
 
 constexpr Column columns[] = {
-    {"study", "formulation, grid (of gains) or recovery"},
-    {"system", "what is simulated"},
+    {"study", "formulation, grid (of gains), recovery, or strands (shaken)"},
+    {"system", "what is simulated; of strands, the model"},
+    {"variant", "how the strand keeps its length, where the model has a choice"},
     {"formulation", "how the constraint enters"},
     {"integrator", "method"},
     {"alpha", "Baumgarte's gain on g, 1/s^2"},
@@ -32,7 +34,9 @@ constexpr Column columns[] = {
     {"g_max", "largest |g| over the run"},
     {"g_final", "|g| at the end"},
     {"g_rate_max", "largest |g'| over the run"},
-    {"energy_drift_rel", "largest energy error over the largest kinetic energy"},
+    {"length_error_rel", "strands: largest relative change of length of an element"},
+    {"energy_drift_rel",
+     "where energy is kept: its largest error over the largest kinetic energy"},
     {"recovery_time_s", "last time with |g| above a millionth of the violation"},
     {"overshoot", "largest opposite violation over the initial one"},
     {"steps", "accepted steps"},
@@ -44,24 +48,14 @@ constexpr Column columns[] = {
 // A bead that is this far (m) off its wire, or links this much too long, have failed.
 constexpr double escape = 10;
 
-struct Study {
-  std::string_view study;
-  std::string_view system;
-  const ModelEntry* model;
-  Parameters parameters;
-  std::string_view integrator;
-  Options options;
-  double t_end;
-  double violation = 0;
-};
-
 bool adaptive(std::string_view integrator) {
   return find_integrator(integrator).adaptive;
 }
 
-Row identity(const Study& s) {
+Row identity(const DriftStudy& s) {
   Row row;
   row.set("study", s.study).set("system", s.system);
+  if (!s.variant.empty()) row.set("variant", s.variant);
   row.set("formulation", name(s.options.formulation)).set("integrator", s.integrator);
   if (s.options.formulation == Formulation::baumgarte) {
     row.set("alpha", s.options.alpha).set("beta", s.options.beta);
@@ -71,7 +65,7 @@ Row identity(const Study& s) {
   } else {
     row.set("dt_s", s.options.step);
   }
-  if (s.integrator == "ida" && s.system != "parametric bead") {
+  if (s.integrator == "ida" && s.options.formulation != Formulation::parametric) {
     row.set("suppress_algebraic", s.options.suppress_algebraic);
     row.set("multiplier_atol", s.options.multiplier_atol);
   }
@@ -97,7 +91,7 @@ void violate(System& system, State& state, double violation) {
   }
 }
 
-void measure(const Study& s, int repeat, Row& row) {
+void measure(const DriftStudy& s, int repeat, Row& row) {
   const auto system = s.model->make(s.parameters);
   State start = initial_state(*system);
   violate(*system, start, s.violation);
@@ -110,7 +104,8 @@ void measure(const Study& s, int repeat, Row& row) {
   row.set("steps", run.stats.steps).set("rank_deficiency", run.stats.rank_deficiency);
   if (monitor.escaped() || !std::isfinite(monitor.g_max())) {
     row.failed("diverged", "violation beyond " + std::to_string(escape) +
-                               " m at t = " + std::to_string(run.t) + " s");
+                               " m or lengths tenfold at t = " + std::to_string(run.t) +
+                               " s");
     return;
   }
   if (run.status != Status::ok) {
@@ -118,7 +113,11 @@ void measure(const Study& s, int repeat, Row& row) {
     return;
   }
   row.set("g_final", monitor.g_final());
-  row.set("energy_drift_rel", monitor.energy_drift());
+  if (s.study == "strands") {
+    row.set("length_error_rel", monitor.length_error());
+  } else {
+    row.set("energy_drift_rel", monitor.energy_drift());
+  }
   if (s.violation > 0) {
     row.set("recovery_time_s", monitor.recovery_time());
     row.set("overshoot", monitor.overshoot());
@@ -127,155 +126,14 @@ void measure(const Study& s, int repeat, Row& row) {
     (void)simulate(s.integrator, *system, s.options, start, s.t_end);
   };
   // The other studies ask how far rather than at what cost.
-  row.set("wall_s", time_run(s.study == "formulation" ? repeat : 1, again));
-}
-
-// ---- the studies
-// --------------------------------------------------------------------------
-
-struct Scene {
-  std::string_view name;
-  const ModelEntry* model;
-  Parameters parameters;
-};
-
-/// The user's --set under what makes the scene what it is.
-Scene scene(std::string_view name, std::string_view model, const Settings& user,
-            const ModelSettings& fixed) {
-  const ModelEntry& entry = find_model(model);
-  Scene made{name, &entry, user.parameters(entry)};
-  for (const auto& [key, value] : fixed) made.parameters.set(key, value);
-  return made;
-}
-
-Scene circle_bead(const Settings& user) {
-  return scene("circle bead", "bead_on_wire", user,
-               {{"curve", "circle"}, {"form", "implicit"}});
-}
-
-std::vector<Scene> scenes(const Settings& user) {
-  return {circle_bead(user),
-          scene("parametric bead", "bead_on_wire", user,
-                {{"curve", "circle"}, {"form", "parametric"}}),
-          scene("chain of 10", "inextensible_chain", user, {{"links", "10"}}),
-          scene("truss", "tinkertoys", user, {{"structure", "truss"}, {"size", "1"}})};
-}
-
-// Baumgarte's gains for the table: a slow and a fast critically damped pair.
-constexpr double feedback_rates[] = {10, 100};  // omega, 1/s
-
-void add_formulations(const CommandLine& line, const Settings& user,
-                      std::vector<Study>& studies) {
-  const Options base = user.options();
-  const std::vector<double> steps =
-      line.full ? std::vector<double>{4e-3, 2e-3, 1e-3, 5e-4} : std::vector<double>{1e-3};
-  const std::vector<double> tolerances =
-      line.full ? std::vector<double>{1e-4, 1e-6, 1e-8} : std::vector<double>{1e-6};
-  for (const Scene& scene : scenes(user)) {
-    const auto system = scene.model->make(scene.parameters);
-    for (const IntegratorEntry& entry : integrators()) {
-      for (const Formulation formulation : entry.formulations) {
-        if (!refusal(entry, *system, formulation).empty()) continue;
-        // Redundant constraints are analysed anew at every factorisation: a tenth will
-        // do.
-        const double t_end = scene.name == "truss" ? 1 : 10;
-        Study study{"formulation", scene.name, scene.model, scene.parameters,
-                    entry.id,      base,       t_end};
-        study.options.formulation = formulation;
-        // IDA drags itself along when its multipliers are in the error test; enough steps
-        // to see by how much, then the row says so.
-        study.options.max_steps = std::min(base.max_steps, 200'000L);
-        const auto add_steps = [&] {
-          for (const double value : entry.adaptive ? tolerances : steps) {
-            (entry.adaptive ? study.options.rtol : study.options.step) = value;
-            study.options.atol = study.options.rtol;
-            studies.push_back(study);
-          }
-        };
-        if (formulation == Formulation::baumgarte) {
-          for (const double omega : feedback_rates) {
-            study.options.alpha = omega * omega;
-            study.options.beta = 2 * omega;
-            add_steps();
-          }
-        } else {
-          add_steps();
-        }
-        if (entry.id == "ida" && formulation == Formulation::index2_ggl) {
-          // Multipliers held to the tolerance of the coordinates: harmless out of the
-          // error test, ruinous in it.
-          study.options.multiplier_atol = 1;
-          add_steps();
-          study.options.suppress_algebraic = false;
-          add_steps();
-        }
-      }
-    }
-  }
-}
-
-/// from, from * ratio, ... up to `to`
-std::vector<double> geometric(double from, double to, double ratio) {
-  std::vector<double> values;
-  for (double x = from; x <= to * 1.0001; x *= ratio) values.push_back(x);
-  return values;
-}
-
-void add_grid(const CommandLine& line, const Settings& user,
-              std::vector<Study>& studies) {
-  const double ratio = line.full ? std::pow(10, 0.25) : std::sqrt(10);
-  const Scene scene = circle_bead(user);
-  for (const std::string_view id :
-       {"explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"}) {
-    Study study{"grid", scene.name,     scene.model, scene.parameters,
-                id,     user.options(), 10};
-    study.options.formulation = Formulation::acceleration;
-    studies.push_back(study);
-    study.options.formulation = Formulation::baumgarte;
-    for (const double alpha : geometric(1, 1e7, ratio)) {
-      for (const double beta : geometric(1, 1e4, ratio)) {
-        study.options.alpha = alpha;
-        study.options.beta = beta;
-        studies.push_back(study);
-      }
-    }
-  }
-}
-
-void add_recovery(const Settings& user, std::vector<Study>& studies) {
-  const Scene scene = circle_bead(user);
-  const Options base = user.options();
-  // RK4 at a tenth of the table's step: its own drift stays below a millionth of the
-  // violation, so that what is seen is the feedback.
-  for (const double omega : {20.0, 100.0}) {
-    for (const double ratio : {0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 10.0}) {
-      Study study{"recovery", scene.name, scene.model, scene.parameters, "rk4", base, 5};
-      study.options.formulation = Formulation::baumgarte;
-      study.options.step = base.step / 10;
-      study.options.alpha = omega * omega;
-      study.options.beta = 2 * omega * std::sqrt(ratio);
-      study.violation = 0.01;
-      studies.push_back(study);
-    }
-  }
-  for (const std::string_view id : {"rattle", "rk4", "generalized_alpha"}) {
-    Study study{"recovery", scene.name, scene.model, scene.parameters, id, base, 5};
-    study.options.formulation = id == "rattle" ? Formulation::rattle
-                                : id == "rk4"  ? Formulation::projection
-                                               : Formulation::index3;
-    study.violation = 0.01;
-    studies.push_back(study);
-  }
+  const bool cost_matters = s.study == "formulation" || s.study == "strands";
+  row.set("wall_s", time_run(cost_matters ? repeat : 1, again));
 }
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings user(line, {});
-  std::vector<Study> studies;
-  add_formulations(line, user, studies);
-  add_grid(line, user, studies);
-  add_recovery(user, studies);
   std::vector<Case> all;
-  for (const Study& study : studies) {
+  for (const DriftStudy& study : drift_studies(line, user)) {
     if (!wanted(line.models, study.model->id) ||
         !wanted(line.integrators, study.integrator)) {
       continue;
@@ -289,11 +147,12 @@ std::vector<Case> cases(const CommandLine& line) {
 
 /// Divergence beyond a limit is what the gains are for; the chain and the redundant truss
 /// are there to break methods; IDA on index 3, or with multipliers in its error test, is
-/// shown with its known failures. Anything else that fails on the bead is a mistake.
+/// shown with its known failures; a shaken strand is too much for some steps. Anything
+/// else that fails on the bead is a mistake.
 bool finding(const Row& row) {
   return row.status() == "diverged" || row.text("system") == "chain of 10" ||
-         row.text("system") == "truss" || row.text("formulation") == "index3" ||
-         row.text("suppress_algebraic") == "false";
+         row.text("study") == "strands" || row.text("system") == "truss" ||
+         row.text("formulation") == "index3" || row.text("suppress_algebraic") == "false";
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ constexpr std::array one_step_ode{parametric, acceleration, baumgarte, projectio
 constexpr std::array implicit_dae{parametric, acceleration, baumgarte, projection,
                                   index3};
 constexpr std::array rattle_only{rattle};
+constexpr std::array correction_only{correction};
 
 std::string any(System&, Formulation) { return {}; }
 
@@ -30,6 +31,26 @@ std::string inverts_mass(System& system, Formulation) {
 std::string constant_mass(System& system, Formulation) {
   if (system.traits().constant_mass) return {};
   return "needs a constant mass matrix";
+}
+
+/// Constraints met one by one weigh coordinates, not directions.
+std::string diagonal_mass(System& system, Formulation formulation) {
+  SparseForm* form = system.sparse_form();
+  const Pattern& pattern = form->pattern();
+  std::vector<double> q(static_cast<std::size_t>(pattern.cols)), v(q), a(q);
+  std::vector<double> mass(static_cast<std::size_t>(pattern.nonzeros()));
+  system.initial_state(q, v);
+  if (form->values(0, q, v, a, {1, 0, 0}, mass) != Status::ok) {
+    return "needs a mass matrix at the initial state";
+  }
+  std::size_t at = 0;
+  for (int column = 0; column < pattern.cols; ++column) {
+    for (; at < static_cast<std::size_t>(pattern.start[column + 1]); ++at) {
+      if (mass[at] != 0 && pattern.row[at] != column)
+        return "needs a diagonal mass matrix";
+    }
+  }
+  return constant_mass(system, formulation);
 }
 
 // A dense Jacobian by differences costs n^2 residual entries per step.
@@ -49,6 +70,7 @@ constexpr std::array table{
     IntegratorEntry{"velocity_verlet", "order 2, symplectic, conditionally stable", "Swope 1982", 2, false, one_step_ode, inverts_mass, make_velocity_verlet},
     IntegratorEntry{"rk4", "order 4, conditionally stable", "Kutta 1901", 4, false, one_step_ode, inverts_mass, make_rk4},
     IntegratorEntry{"rattle", "order 2, symplectic, exact constraints", "Andersen 1983", 2, false, rattle_only, constant_mass, make_rattle},
+    IntegratorEntry{"predictor_corrector", "order 1, lengths corrected between two implicit half steps", "Kim 2010; Provot 1995; Bridson 2002", 1, false, correction_only, diagonal_mass, make_predictor_corrector},
     IntegratorEntry{"semi_implicit_euler", "order 1, one linear solve, strong damping", "Baraff-Witkin 1998", 1, false, implicit_dae, any, make_semi_implicit_euler},
     IntegratorEntry{"backward_euler", "order 1, L-stable, strong damping", "Hairer-Wanner IV.3", 1, false, implicit_dae, any, make_backward_euler},
     IntegratorEntry{"implicit_midpoint", "order 2, A-stable, no damping, symplectic", "Gauss 1 stage", 2, false, one_step_ode, any, make_implicit_midpoint},
@@ -72,12 +94,15 @@ constexpr std::array table{
 std::string gap(const IntegratorEntry& entry, Formulation formulation) {
   switch (formulation) {
     case parametric:
-      return "is velocity_verlet when there is nothing to constrain";
+      return entry.id == "rattle"
+                 ? "is velocity_verlet when there is nothing to constrain"
+                 : "has no constraint to correct";
     case acceleration:
     case baumgarte:
       return "holds g = 0 itself";
     case projection:
-      return entry.id == "ida" || entry.id == "rattle"
+      return entry.id == "ida" || entry.id == "rattle" ||
+                     entry.id == "predictor_corrector"
                  ? "holds g = 0 itself: use its own formulations"
                  : "a projected state would not match the method's history";
     case index2_ggl:
@@ -86,6 +111,8 @@ std::string gap(const IntegratorEntry& entry, Formulation formulation) {
       return entry.id.ends_with("implicit_midpoint")
                  ? "Gauss methods are unstable on index 3"
                  : "an ODE method cannot hold g = 0 inside the step";
+    case correction:
+      return "only predictor_corrector leaves constraints out of its solves";
     case rattle:
       break;
   }
@@ -110,6 +137,8 @@ std::string_view name(Formulation formulation) {
       return "index3";
     case rattle:
       return "rattle";
+    case correction:
+      return "correction";
   }
   return "";
 }

@@ -18,11 +18,16 @@ enum class Formulation {
   index2_ggl,  // g = 0 and g' = 0 with a second multiplier (Gear, Gupta, Leimkuhler 1985)
   index3,      // g = 0 as it stands
   rattle,      // g = 0 and g' = 0 by half-step impulses (Andersen 1983)
+  correction,  // a step without constraints, then q moved onto g = 0 (Provot 1995)
 };
 std::string_view name(Formulation formulation);
 
 /// When an implicit method rebuilds its Newton matrix.
 enum class Refresh { every_iteration, every_step, when_slow };
+
+/// What moving q onto its constraints does to the velocity: it takes the impulse that
+/// would have moved it there [Bridson et al. 2002], or stays [Provot 1995].
+enum class Correction { impulse, position };
 
 /// Everything an integrator can be told; each reads what applies to it.
 struct Options {
@@ -48,6 +53,10 @@ struct Options {
   /// error test: on the pendulum 1e-2 is both more accurate and faster.
   double newton_coefficient = 1e-2;
 
+  Correction correction = Correction::impulse;  // predictor_corrector
+  bool second_filter = true;  // predictor_corrector: the implicit solve that ends a step
+  double correction_tolerance = 1e-8;  // the same: largest |g| left, over its scale
+
   bool suppress_algebraic = true;  // IDA: multipliers out of the local error test
   double multiplier_atol = 1e6;    // IDA: absolute tolerance of multipliers over atol
 
@@ -62,6 +71,7 @@ struct Stats {
   long linearizations = 0;
   long solves = 0;
   long newton_iterations = 0;
+  long sweeps = 0;                   // over constraints that are met one by one
   std::string_view solver = "none";  // the linear solver in use
   int rank_deficiency = 0;           // redundant constraints met and solved around
   double condition = 0;              // largest condition estimate met, 0: not estimated

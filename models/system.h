@@ -122,6 +122,8 @@ class MaterialPoints {
   virtual int count() const = 0;
   virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
+  /// Largest |length/rest - 1| of a piece of the body. False: the model does not say.
+  virtual bool stretch(double, In, double&) { return false; }
 };
 
 /// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing
@@ -142,6 +144,9 @@ class System {
   /// Called once after every accepted step; may move frames or contact sets and adjust
   /// the state to them. True: the equations changed, multistep methods must restart.
   virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
+
+  /// Forgets every accept(): coordinates mean again what initial_state() means by them.
+  virtual void reset() {}
 
   // Optional forms, null when absent; asked for once.
   virtual SparseForm* sparse_form() { return nullptr; }

@@ -7,6 +7,9 @@
 namespace tress {
 namespace {
 
+// Beyond this length error nothing is left of a strand.
+constexpr double longest = 10;
+
 double largest(In x) {
   double most = 0;
   for (const double entry : x) {
@@ -21,6 +24,7 @@ double largest(In x) {
 DriftMonitor::DriftMonitor(System& system, In q, In v, double escape)
     : constraints_(system.constraint_form()),
       energetics_(system.energetics()),
+      points_(system.material_points()),
       escape_(escape),
       g_(static_cast<std::size_t>(system.layout().constraints)),
       g_dot_(g_.size()),
@@ -41,7 +45,14 @@ bool DriftMonitor::operator()(double t, In q, In v) {
     energy_error_ = std::max(energy_error_, std::abs(e.total() - energy_start_));
     kinetic_max_ = std::max(kinetic_max_, e.kinetic);
   }
-  if (constraints_ == nullptr) return true;
+  double stretch = 0;
+  if (points_ == nullptr || !points_->stretch(t, q, stretch)) {
+    length_error_ = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    length_error_ = std::max(length_error_, stretch);
+    escaped_ = !(stretch <= longest);
+  }
+  if (constraints_ == nullptr) return !escaped_;
   if (constraints_->value(t, q, g_) != Status::ok) return false;
   if (constraints_->rate(t, q, v, g_dot_) != Status::ok) return false;
   g_final_ = largest(g_);
@@ -51,7 +62,7 @@ bool DriftMonitor::operator()(double t, In q, In v) {
   for (std::size_t k = 0; k < g_.size(); ++k) {
     if (g_start_[k] != 0) overshoot_ = std::max(overshoot_, -g_[k] / g_start_[k]);
   }
-  escaped_ = !(g_final_ <= escape_);
+  escaped_ = escaped_ || !(g_final_ <= escape_);
   return !escaped_;
 }
 

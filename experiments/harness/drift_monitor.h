@@ -21,6 +21,8 @@ class DriftMonitor {
   /// Largest |E - E_start| of a conservative system over the
   /// energy scale (largest kinetic energy met); NaN when the system has no energetics.
   double energy_drift() const;
+  /// Largest |length/rest - 1| of a piece of the body; NaN when the system does not say.
+  double length_error() const { return length_error_; }
   bool escaped() const { return escaped_; }
 
   /// The last time at which the violation was above `threshold`; set before the run.
@@ -32,11 +34,13 @@ class DriftMonitor {
  private:
   ConstraintForm* constraints_;
   Energetics* energetics_;
+  MaterialPoints* points_;
   double escape_;
   std::vector<double> g_, g_dot_, g_start_;
   double g_max_ = 0, g_final_ = 0, g_rate_max_ = 0;
   double energy_start_ = 0, energy_error_ = 0, kinetic_max_ = 0;
   double threshold_ = 0, recovery_time_ = 0, overshoot_ = 0;
+  double length_error_ = 0;
   bool escaped_ = false;
 };
 

@@ -29,13 +29,16 @@ char letter(Formulation formulation) {
       return '3';
     case Formulation::rattle:
       return 'r';
+    case Formulation::correction:
+      return 'c';
   }
   return '?';
 }
 
 constexpr const char* legend =
     "p parametric (or no constraints), a acceleration level, b Baumgarte, j projection, "
-    "g index 2 (GGL), 3 index 3, r RATTLE; a number is the reason for a gap, below";
+    "g index 2 (GGL), 3 index 3, r RATTLE, c corrected positions; a number is the reason "
+    "for a gap, below";
 
 /// Reasons in order of appearance, each kept once and known by its number.
 class Footnotes {

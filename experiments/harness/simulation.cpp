@@ -24,6 +24,7 @@ Simulation simulate(std::string_view integrator, System& system, const Options& 
                     const Observer& each_step) {
   const auto method = make_integrator(integrator, system, options);
   State state = start;
+  system.reset();
   Status status = method->start(0, start.q, start.v);
   for (const double t : stops) {
     if (status == Status::ok) status = method->advance(t, each_step);

@@ -34,8 +34,8 @@ struct Simulation {
   Stats stats;
 };
 
-/// One run from `start` at t = 0 through all `stops` (ascending), which are landed on
-/// exactly; `at_stop` sees the state at each.
+/// One run of the system as it was made, from `start` at t = 0 through all `stops`
+/// (ascending), which are landed on exactly; `at_stop` sees the state at each.
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, std::span<const double> stops,
                     const std::function<void(const State&)>& at_stop,

@@ -64,10 +64,11 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
   return reference;
 }
 
-TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling) {
+TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
+                           const RodModels& models) {
   TipReference reference;
-  reference.tip = rod(make, "super_helix", "implicit_midpoint", sampling);
-  reference.other = rod(make, "articulated_chain", "generalized_alpha", sampling);
+  reference.tip = rod(make, models.one, "implicit_midpoint", sampling);
+  reference.other = rod(make, models.other, "generalized_alpha", sampling);
   reference.gap = tip_error(reference.other, reference.tip, sampling.length);
   return reference;
 }

@@ -34,11 +34,19 @@ struct TipSampling {
 TipReference converged_model(const MakeStrand& make, std::string_view model, int elements,
                              const TipSampling& sampling);
 
-/// The continuous rod: super_helix at 80 and 160 elements by implicit_midpoint, each at
-/// two steps, extrapolated to none in the step (order 2) and then in the element length
-/// (order 2). The same of articulated_chain by generalized_alpha is the other side. About
-/// 10 s for 2 s of a hair.
-TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling);
+/// Models whose answers for the continuous rod are independent.
+struct RodModels {
+  std::string_view one, other;
+};
+inline constexpr RodModels clamped_rod{"super_helix", "articulated_chain"};
+inline constexpr RodModels free_rod{"super_helix", "der"};
+
+/// The continuous rod: one model at 80 and 160 elements by implicit_midpoint, each at two
+/// steps, extrapolated to none in the step (order 2) and then in the element length
+/// (order 2; what is left of a higher order is small already). The same of the other
+/// model by generalized_alpha is the other side. About 10 s for 2 s of a hair.
+TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
+                           const RodModels& models = clamped_rod);
 
 /// x + (x - coarse) / (ratio^2 - 1): what two answers of order 2 tend to when the second
 /// was made with steps or elements `ratio` times as fine [Richardson 1911].

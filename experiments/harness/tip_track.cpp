@@ -7,65 +7,92 @@
 #include "experiments/harness/simulation.h"
 #include "experiments/harness/timing.h"
 #include "integrators/catalogue.h"
+#include "models/math/vec3.h"
 
 namespace tress {
 namespace {
 
-/// Keeps q at equal times while a run passes them.
-class Samples {
+/// Where the tip is at equally spaced times, by the cubic through its places and
+/// velocities at both ends of a step. Places are read while the run is there: what q
+/// means may change as it goes on (System::accept).
+class TipSamples {
  public:
-  Samples(double t_end, int count, std::size_t n) : t_end_(t_end), count_(count) {
-    q_.reserve(n * static_cast<std::size_t>(count));
-  }
+  /// `growth`: a step is at most so many times as long as the one before.
+  TipSamples(System& system, double t_end, int count, double growth)
+      : points_(*system.material_points()),
+        t_end_(t_end),
+        count_(count),
+        growth_(growth),
+        x_(3 * static_cast<std::size_t>(points_.count())) {}
 
-  double time(int k) const { return t_end_ * k / count_; }
-  int taken() const { return taken_; }
-  In q(int k) const {
-    const std::size_t n = before_.q.size();
-    return In(q_).subspan(static_cast<std::size_t>(k - 1) * n, n);
-  }
+  std::vector<double> tips;  // (3 samples)
 
-  void start(const State& state) {
-    q_.clear();
-    taken_ = 0;
-    t_before_ = 0;
-    before_ = state;
+  void start(In q, In v) {
+    tips.clear();
+    before_ = read(0, q, v);
   }
 
   void step_to(double t, In q, In v) {
-    while (taken_ < count_ && time(taken_ + 1) <= t) interpolate(time(++taken_), t, q, v);
-    t_before_ = t;
-    std::ranges::copy(q, before_.q.begin());
-    std::ranges::copy(v, before_.v.begin());
-  }
-
- private:
-  void interpolate(double at, double t, In q, In v) {
-    const double h = t - t_before_, x = (at - t_before_) / h, y = 1 - x;
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      q_.push_back(y * y * (1 + 2 * x) * before_.q[i] + x * x * (1 + 2 * y) * q[i] +
-                   h * x * y * (y * before_.v[i] - x * v[i]));
+    const double h = t - before_.t;
+    // Only a step that ends beyond the next time of interest is read.
+    if (next() <= t + growth_ * h) {
+      const End now = read(t, q, v);
+      while (3 * static_cast<std::size_t>(count_) > tips.size() && next() <= t) {
+        interpolate(now);
+      }
+      before_ = now;
+    } else {
+      before_.t = t;
     }
   }
 
+ private:
+  struct End {
+    double t;
+    Vec x, u;
+  };
+
+  double next() const {
+    return t_end_ * (static_cast<double>(tips.size() / 3 + 1) / count_);
+  }
+
+  End read(double t, In q, In v) {
+    const std::size_t last = x_.size() - 3;
+    points_.positions(t, q, x_);
+    const Vec x = load3(&x_[last]);
+    points_.velocities(t, q, v, x_);
+    return {t, x, load3(&x_[last])};
+  }
+
+  void interpolate(const End& now) {
+    const double h = now.t - before_.t, s = (next() - before_.t) / h, r = 1 - s;
+    const Vec x = r * r * (1 + 2 * s) * before_.x + s * s * (1 + 2 * r) * now.x +
+                  h * s * r * (r * before_.u - s * now.u);
+    tips.insert(tips.end(), {x.x, x.y, x.z});
+  }
+
+  MaterialPoints& points_;
   double t_end_;
   int count_;
-  int taken_ = 0;
-  double t_before_ = 0;
-  State before_;
-  std::vector<double> q_;
+  double growth_;
+  std::vector<double> x_;
+  End before_{};
 };
 
 }  // namespace
 
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat) {
+  // Of all adaptive methods here SUNDIALS' let steps grow the most, tenfold.
+  constexpr double even = 1.5, uneven = 15;
   const auto method = make_integrator(integrator, system, options);
   const State start = initial_state(system);
-  Samples seen(t_end, samples, start.q.size());
+  TipSamples seen(system, t_end, samples,
+                  find_integrator(integrator).adaptive ? uneven : even);
   Status status = Status::ok;
   const auto once = [&] {
-    seen.start(start);
+    system.reset();
+    seen.start(start.q, start.v);
     status = method->start(0, start.q, start.v);
     if (status != Status::ok) return;
     status = method->advance(t_end, [&seen](double t, In q, In v) {
@@ -79,14 +106,7 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   } else {
     once();
   }
-  TipRun run{status, method->failure(), method->stats(), wall, {}};
-  MaterialPoints& points = *system.material_points();
-  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
-  for (int k = 1; k <= seen.taken(); ++k) {
-    points.positions(seen.time(k), seen.q(k), x);
-    run.tip.insert(run.tip.end(), x.end() - 3, x.end());
-  }
-  return run;
+  return {status, method->failure(), method->stats(), wall, std::move(seen.tips)};
 }
 
 double tip_error(In tip, In reference, double length) {

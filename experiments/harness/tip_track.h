@@ -13,14 +13,15 @@ struct TipRun {
   Status status;
   std::string failure;
   Stats stats;
-  double wall_s;  // of stepping: what is set up before and read out after is not in it
+  double wall_s;            // of stepping and reading the tip; setting up is not in it
   std::vector<double> tip;  // (3 samples) m; fewer when the run failed
 };
 
 /// Runs to t_end and gives the position of the last material point at t_end k / samples,
-/// k = 1 .. samples. Steps do not land on these times: in between, q is the cubic through
-/// q and v at both ends of a step, whose error falls as the fourth power of the step.
-/// repeat = 0: one run, not timed; else the median, as time_run.
+/// k = 1 .. samples. Steps do not land on these times: in between, the tip is on the
+/// cubic through its places and velocities at both ends of a step, whose error falls as
+/// the fourth power of the step. repeat = 0: one run, not timed; else the median, as
+/// time_run.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat = 0);
 

@@ -25,10 +25,12 @@ double scaled_norm(In x, In typ) noexcept {
 
 Dynamics::Dynamics(System& system, const Options& options)
     : system_(system),
-      layout_(system.layout()),
+      layout_{system.layout().coordinates, options.formulation == Formulation::correction
+                                               ? 0
+                                               : system.layout().constraints},
       sparse_(layout_.constraints > 0 ? system.sparse_form() : nullptr),
       constraints_(layout_.constraints > 0 ? system.constraint_form() : nullptr),
-      explicit_(layout_.constraints > 0 ? nullptr : system.explicit_form()),
+      explicit_(system.layout().constraints > 0 ? nullptr : system.explicit_form()),
       position_level_(options.formulation == Formulation::index3) {
   if (options.formulation == Formulation::baumgarte) {
     alpha_ = options.alpha;

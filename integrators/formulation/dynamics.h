@@ -16,8 +16,9 @@ namespace tress {
 ///         g'' + beta g' + alpha g   (acceleration: alpha = beta = 0; Baumgarte;
 ///         projection) g                         (index 3)
 ///
-/// Unconstrained systems pass through to System::linearize and solve. Constrained ones
-/// are solved by the KKT matrix of linear/kkt.h. No call allocates after the first.
+/// Unconstrained systems, and every system under `correction`, pass through to
+/// System::linearize and solve. Constrained ones are solved by the KKT matrix of
+/// linear/kkt.h. No call allocates after the first.
 class Dynamics {
  public:
   Dynamics(System& system, const Options& options);

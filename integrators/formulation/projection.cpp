@@ -31,7 +31,7 @@ Status iterate(Correct correct) {
   return Status::retry;
 }
 
-struct Correction {
+struct Iteration {
   Status status;
   double violation;
 };
@@ -52,7 +52,7 @@ Status Projection::project(double t, InOut q, InOut v) noexcept {
 }
 
 Status Projection::positions(double t, InOut q) noexcept {
-  return iterate([&]() -> Correction {
+  return iterate([&]() -> Iteration {
     Status s = dynamics_.constraints()->value(t, q, g_);
     const double violation = scaled_norm(g_, dynamics_.g_typ());
     if (s != Status::ok || violation <= rounding) return {s, violation};
@@ -67,7 +67,7 @@ Status Projection::velocities(double t, In q, InOut v) noexcept {
   // g' is compared with the speed that moves g by its own size in the system's time unit.
   const double rate_unit = std::max(
       1.0, *std::max_element(dynamics_.v_typ().begin(), dynamics_.v_typ().end()));
-  return iterate([&]() -> Correction {
+  return iterate([&]() -> Iteration {
     Status s = dynamics_.constraints()->rate(t, q, v, g_);
     const double violation = scaled_norm(g_, dynamics_.g_typ()) / rate_unit;
     if (s != Status::ok || violation <= rounding) return {s, violation};

@@ -38,7 +38,8 @@ void to_nodes(const double (&h)[8][8], double (&m)[11][11]) {
 
 DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints,
                              bool walled, Tangent tangent)
-    : edge_data_(std::move(edges)),
+    : edges_at_start_(std::move(edges)),
+      edge_data_(edges_at_start_),
       joint_data_(std::move(joints)),
       walled_(walled),
       tangent_(tangent),

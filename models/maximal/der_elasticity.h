@@ -27,6 +27,7 @@ class DerElasticity final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   bool rebase(InOut z, InOut rate) override;
+  void reset() override { edge_data_ = edges_at_start_; }
 
  private:
   struct Edge {
@@ -56,7 +57,7 @@ class DerElasticity final : public Elasticity {
                      Square& s) const noexcept;
   void edge_tangent(std::size_t edge, double pos, double (&h)[4][4]) const noexcept;
 
-  std::vector<EdgeData> edge_data_;
+  std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<RodJoint> joint_data_;
   bool walled_;
   Tangent tangent_;

@@ -32,9 +32,12 @@ class Elasticity {
   /// Angular momentum (kg m^2/s) of coordinates other than positions, of this inertia;
   /// 0 where the model neglects it.
   virtual Vec spin(const Placement&, In /*inertia*/) noexcept { return {}; }
+  /// Largest |length/rest - 1| where nodes are not on the curve (see MaximalStrand).
+  virtual double stretch(const Placement&) noexcept { return 0; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True: the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
+  virtual void reset() {}  // forgets every rebase()
 };
 
 }  // namespace tress

@@ -121,11 +121,8 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
   NodalStrand nodal(strand, model, 0);
   MaximalStrand& parts = nodal.parts;
   Builder builder(strand, nodal);
-  if (options.inextensible) {
-    parts.constraints = inextensible(parts, strand);
-  } else {
-    builder.add_stretch();
-  }
+  if (options.inextensible) parts.constraints = inextensible(parts, strand);
+  if (options.stretch) builder.add_stretch();
   builder.add_bending(options.bending);
   if (options.altitude) builder.add_altitudes();
   parts.elasticity =
@@ -161,14 +158,19 @@ std::unique_ptr<System> make_mass_spring(const Parameters& parameters) {
 }
 
 std::span<const Parameter> inextensible_strand_parameters() {
-  static const std::vector<Parameter> all =
-      with_strand_parameters(std::array{torsion_parameter, maximal_solver_parameter});
+  static const std::vector<Parameter> all = with_strand_parameters(std::array{
+      torsion_parameter,
+      Parameter{.name = "stretch_springs",
+                .help = "along the links, for integrators that correct lengths",
+                .choices = "none|linear"},
+      maximal_solver_parameter});
   return all;
 }
 
 std::unique_ptr<System> make_inextensible_strand(const Parameters& parameters) {
   MassSpringOptions options;
   options.inextensible = true;
+  options.stretch = parameters.word("stretch_springs") == "linear";
   options.altitude = parameters.word("torsion") == "altitude";
   options.solver = maximal_solver(parameters);
   return mass_spring(strand(parameters), "inextensible_strand", options,

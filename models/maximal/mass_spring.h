@@ -55,7 +55,8 @@ struct MassSpringOptions {
   enum class Bending { angular, second_neighbour };
   Bending bending = Bending::angular;
   bool altitude = false;      // springs against torsion
-  bool inextensible = false;  // |e| = l as constraints with multipliers, no stretch
+  bool inextensible = false;  // |e| = l as constraints with multipliers
+  bool stretch = true;        // springs along edges, which may give beside constraints
   SpringTangent tangent = SpringTangent::exact;
   LinearKind solver = LinearKind::automatic;
 };
@@ -68,7 +69,8 @@ std::span<const Parameter> mass_spring_parameters();
 std::unique_ptr<System> make_mass_spring(const Parameters& parameters);
 
 /// The same with edges of constant length, held by n multipliers: the inextensible chain
-/// [Baraff 1996] with bending and rest angles.
+/// [Baraff 1996] with bending and rest angles. Springs along the edges as well are for an
+/// integrator that lets lengths go and corrects them (predictor_corrector).
 std::span<const Parameter> inextensible_strand_parameters();
 std::unique_ptr<System> make_inextensible_strand(const Parameters& parameters);
 

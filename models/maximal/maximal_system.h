@@ -37,6 +37,7 @@ struct MaximalStrand {
   std::vector<double> inertia;        // of the other coordinates, >= 0
   std::vector<MassPoint> mass;
   std::vector<NodeMean> shown;  // root and segments' ends: MaterialPoints
+  std::vector<double> edges;    // m, between nodes at rest; none: Elasticity::stretch
   RootMotion root;
   std::unique_ptr<Elasticity> elasticity;
   Effects effects;
@@ -68,6 +69,7 @@ class MaximalSystem final : public System,
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
   bool accept(double t, InOut q, InOut v) override;
+  void reset() override { strand_.elasticity->reset(); }
 
   SparseForm* sparse_form() override { return this; }
   ExplicitForm* explicit_form() override;
@@ -85,6 +87,7 @@ class MaximalSystem final : public System,
   int count() const override { return static_cast<int>(strand_.shown.size()); }
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
+  bool stretch(double t, In q, double& relative) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
   void build_pattern();

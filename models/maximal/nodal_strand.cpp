@@ -81,6 +81,7 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   parts.z_rate = parts.z_typ;
   for (double& speed : parts.z_rate) speed *= rate;
   parts.inertia.assign(others, 0.0);
+  for (const Segment& segment : strand.segments) parts.edges.push_back(segment.length);
   Vec x = root.place.x;
   for (std::size_t i = 0; i < nodes; ++i) {
     store3(x, &parts.z[3 * i]);

@@ -1,5 +1,6 @@
 #include "models/maximal/spline_elasticity.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tress {
@@ -101,6 +102,15 @@ double SplineElasticity::energy(const Placement& p) noexcept {
                       sum(point.second, &p.z[3 * point.span]));
   }
   return total;
+}
+
+double SplineElasticity::stretch(const Placement& p) noexcept {
+  double most = 0;
+  for (const Point& point : points_) {
+    const Vec a = sum(point.first, &p.z[3 * point.span]);
+    most = std::max(most, std::abs(std::sqrt(dot(a, a)) - 1));
+  }
+  return most;
 }
 
 }  // namespace tress

@@ -38,6 +38,7 @@ class SplineElasticity final : public Elasticity {
                    GroupSum& s) noexcept override;
   double energy(const Placement& p) noexcept override;
   double power(const Placement&) noexcept override { return 0; }
+  double stretch(const Placement& p) noexcept override;
 
  private:
   std::size_t spans_;

@@ -29,6 +29,7 @@ class FreeRootFrame {
   void residual(const Vec& force, const Vec& moment, Out r) const;
   /// Moves the reference when theta has grown; true: q and v have changed.
   bool rebase(InOut q, InOut v);
+  void reset() { reference_ = start_.frame; }
 
   const Frame& frame() const { return frame_; }
   const Helix& joint() const { return joint_; }

@@ -107,6 +107,10 @@ class ReducedSystem final : public System,
     return kinematics_.free() && kinematics_.free_root().rebase(q.last(6), v.last(6));
   }
 
+  void reset() override {
+    if (kinematics_.free()) kinematics_.free_root().reset();
+  }
+
   ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
@@ -254,6 +258,11 @@ class ReducedSystem final : public System,
       const FrameMotion& tip = kinematics_.motion(i).tip;
       store3(tip.frame * tip.v, &u[3 * (i + 1)]);
     }
+  }
+  /// Lengths are no unknowns.
+  bool stretch(double, In, double& relative) override {
+    relative = 0;
+    return true;
   }
 
   Effects effects_;

@@ -83,6 +83,21 @@ TEST_P(SystemContract, TangentTestSeesAMissingTerm) {
   }
 }
 
+TEST_P(SystemContract, ResetForgetsAcceptedSteps) {
+  const auto untouched = GetParam().make();
+  States s(*system_), accepted(*system_);
+  // States far from the start and from each other, as if a run had come by.
+  for (int i = 0; i < 10; ++i) {
+    accepted.shake(2);
+    (void)system_->accept(t0, accepted.q, accepted.v);
+  }
+  system_->reset();
+  std::vector<double> expected(s.n), r(s.n);
+  ASSERT_EQ(untouched->residual(t0, s.q, s.v, s.a, expected), Status::ok);
+  ASSERT_EQ(system_->residual(t0, s.q, s.v, s.a, r), Status::ok);
+  EXPECT_EQ(r, expected);
+}
+
 TEST_P(SystemContract, SparseFormHoldsTheTangent) {
   SparseForm* form = system_->sparse_form();
   if (form == nullptr) GTEST_SKIP() << "no sparse form";

@@ -51,7 +51,11 @@ class Thrown final : public System, private MaterialPoints {
     x[3] = q[0];
     x[4] = t;
   }
-  void velocities(double, In, In, Out) override {}
+  void velocities(double, In, In v, Out u) override {
+    std::ranges::fill(u, 0.0);
+    u[3] = v[0];
+    u[4] = 1;
+  }
 };
 
 TEST(TipTrack, SamplesLieBetweenSteps) {

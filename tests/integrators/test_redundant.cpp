@@ -56,7 +56,9 @@ TEST_P(RedundantConstraints, AreReportedAndSolvedAround) {
       simulate(GetParam().entry->id, *truss, options, start, 0.02,
                [&monitor](double t, In q, In v) { return monitor(t, q, v); });
   ASSERT_EQ(run.status, Status::ok) << run.failure;
-  EXPECT_EQ(run.stats.rank_deficiency, 3);
+  // A method that meets constraints one by one needs no rank.
+  const bool one_by_one = GetParam().formulation == Formulation::correction;
+  EXPECT_EQ(run.stats.rank_deficiency, one_by_one ? 0 : 3);
   // Falling freely for h or 0.02 s the truss turns little: first-order methods at 1 ms
   // leave g t v^2 h, about 1e-4 m, and nothing leaves more.
   EXPECT_LE(monitor.g_max(), 1e-3);

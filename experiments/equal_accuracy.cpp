@@ -1,0 +1,293 @@
+// What does each strand model cost at the same accuracy, and what does it lose on the
+// way? For every model and integrator the cheapest elements and step whose tip is within
+// 1 % of the continuous rod, with what lengths, momentum and energy do in that run.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/cheapest_run.h"
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/formulations.h"
+#include "experiments/harness/model_variants.h"
+#include "experiments/harness/settings.h"
+#include "experiments/harness/strand_reference.h"
+#include "experiments/harness/strand_scenes.h"
+#include "experiments/harness/timing.h"
+#include "models/input_error.h"
+#include "models/strand/strand_parameters.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "release (clamped, falls) or flight (free, curved, spinning, no gravity)"},
+    {"model", "catalogue id"},
+    {"variant", "how it keeps its length, where there is a choice"},
+    {"integrator", "method"},
+    {"formulation", "how constraints enter"},
+    {"target_error_rel", "wanted tip error: root mean square over the run, over length"},
+    {"elements", "of the cheapest run that meets it"},
+    {"dt_s", "of that run"},
+    {"tip_error_rel", "of that run, against the continuous rod"},
+    {"reference_gap", "disagreement of the two references of the rod"},
+    {"wall_s_per_sim_s", "median wall time of that run per simulated second", true},
+    {"cost_per_step_s", "the same per step", true},
+    {"length_error_rel", "largest relative change of length of an element in that run"},
+    {"linear_error_rel", "flight: largest change of linear momentum, over m g 0.1 s"},
+    {"angular_error_rel", "flight: largest change of angular momentum, over itself"},
+    {"energy_error_rel",
+     "largest change of mechanical energy, over the largest kinetic energy"},
+    {"unknowns", "coordinates and multipliers"},
+    {"nonzeros", "of the matrix of a step; unknowns squared where it is dense"},
+    {"effect_cost_rel",
+     "what forces on points cost: a step with drag over one without, less 1", true},
+};
+
+constexpr double t_end = 0.25, length = 0.1;  // s, m
+constexpr int samples = 5;
+constexpr int ladder[] = {3, 5, 7, 10, 14, 20, 28, 40, 56};
+constexpr double coarsest = 1 / 60.0, finest = 2e-5;  // s
+constexpr std::string_view usual[] = {"semi_implicit_euler",
+                                      "implicit_midpoint",
+                                      "generalized_alpha",
+                                      "predictor_corrector",
+                                      "rattle",
+                                      "backward_euler"};
+constexpr std::size_t usual_quick = 4;  // the first of them
+// N s of the momentum that gravity gives a hair in 0.1 s: what a momentum error is
+// compared with where there is none at the start.
+constexpr double fall = 0.981;  // m/s
+
+struct Scene {
+  std::string_view name;
+  ModelSettings settings;
+  std::string_view root;  // the word a model must know
+  RodModels rod;
+};
+
+/// Nothing twists it.
+ModelSettings falling() {
+  ModelSettings all = find_strand_scene("release").settings;
+  all.emplace_back("modes", "bend");
+  return all;
+}
+
+const std::array scenes{
+    Scene{"release", falling(), "fixed", clamped_rod},
+    Scene{"flight",
+          {{"root", "free"}, {"gravity_m_s2", "0"}, {"natural_curvature_1_m", "20"}},
+          "free",
+          free_rod}};
+
+struct Work {
+  const Scene* scene;
+  ModelVariant variant;
+  Parameters parameters;
+  std::string_view integrator;
+  Options options;
+  double target;
+  TipReference reference;
+  int repeat;
+
+  std::unique_ptr<System> make(int elements, double drag = 0) const {
+    Parameters p = parameters;
+    p.set("elements", std::to_string(elements));
+    if (drag > 0) p.set("mass_damping_1_s", std::to_string(drag));
+    return variant.model->make(p);
+  }
+  Options at(double dt) const {
+    Options all = options;
+    all.step = dt;
+    return all;
+  }
+};
+
+double size_of(const std::array<double, 3>& x) { return std::hypot(x[0], x[1], x[2]); }
+double distance(std::array<double, 3> x, const std::array<double, 3>& y) {
+  for (std::size_t i = 0; i < 3; ++i) x[i] -= y[i];
+  return size_of(x);
+}
+
+std::optional<CheapRun> attempt(const Work& work, int elements, double dt) {
+  const auto system = work.make(elements);
+  TipRun run;
+  const double wall =
+      time_calls(1, [&] {
+        run = run_tip(work.integrator, *system, work.at(dt), t_end, samples);
+      }).median_s;
+  if (run.status != Status::ok) return {};
+  const double error = tip_error(run.tip, work.reference.tip, length);
+  if (!std::isfinite(error)) return {};
+  return CheapRun{elements, dt, error, wall};
+}
+
+/// What the run does to lengths, momentum and energy.
+void observe(const Work& work, const CheapRun& best, Row& row) {
+  const auto system = work.make(best.elements);
+  const State start = initial_state(*system);
+  Energetics& energetics = *system->energetics();
+  Momentum before, now;
+  const bool free =
+      work.scene->root == "free" && energetics.momentum(0, start.q, start.v, before);
+  const Energy at_start = energetics.energy(0, start.q, start.v);
+  double kinetic = at_start.kinetic, off = 0, linear = 0, angular = 0, longest = 0;
+  bool knows_lengths = true;
+  const Simulation run =
+      simulate(work.integrator, *system, work.at(best.dt), start, t_end,
+               [&](double t, In q, In v) {
+                 const Energy e = energetics.energy(t, q, v);
+                 kinetic = std::max(kinetic, e.kinetic);
+                 off = std::max(off, std::abs(e.total() - at_start.total()));
+                 double stretch = 0;
+                 knows_lengths = system->material_points()->stretch(t, q, stretch);
+                 longest = std::max(longest, stretch);
+                 if (!free) return true;
+                 energetics.momentum(t, q, v, now);
+                 linear = std::max(linear, distance(now.linear, before.linear));
+                 angular = std::max(angular, distance(now.angular, before.angular));
+                 return true;
+               });
+  if (run.status != Status::ok) {
+    row.failed("solver_error", run.failure);
+    return;
+  }
+  if (knows_lengths) row.set("length_error_rel", longest);
+  row.set("energy_error_rel", off / kinetic);
+  if (!free) return;
+  const Strand made = strand(work.parameters);
+  row.set("linear_error_rel", linear / (made.mass() * fall));
+  row.set("angular_error_rel", angular / size_of(before.angular));
+}
+
+/// Median wall time of the whole run.
+double cost(const Work& work, const CheapRun& best, System& system) {
+  return run_tip(work.integrator, system, work.at(best.dt), t_end, samples, work.repeat)
+      .wall_s;
+}
+
+void measure(const Work& work, const Deadline& deadline, Row& row) {
+  const auto best = cheapest_run(
+      {work.target, ladder, coarsest, finest},
+      [&work](int elements, double dt) { return attempt(work, elements, dt); },
+      [&deadline] { return deadline.remaining_s() < 1; });
+  if (!best) {
+    row.failed("not_met", deadline.remaining_s() < 1
+                              ? "no run within the target in the time there was"
+                              : "no run within the target");
+    return;
+  }
+  const auto system = work.make(best->elements);
+  const auto dragged = work.make(best->elements, 1e-6);
+  const Layout layout = system->layout();
+  const int unknowns = layout.coordinates + layout.constraints;
+  row.set("elements", best->elements).set("dt_s", best->dt);
+  row.set("tip_error_rel", best->error).set("reference_gap", work.reference.gap);
+  row.set("unknowns", unknowns);
+  SparseForm* sparse = system->sparse_form();
+  int nonzeros = sparse != nullptr ? sparse->pattern().nonzeros() : unknowns * unknowns;
+  if (layout.constraints > 0) {
+    nonzeros += 2 * system->constraint_form()->pattern().nonzeros();
+  }
+  row.set("nonzeros", nonzeros);
+  const double wall = cost(work, *best, *system);
+  row.set("wall_s_per_sim_s", wall / t_end);
+  row.set("cost_per_step_s", wall / std::ceil(t_end / best->dt - 1e-9));
+  row.set("effect_cost_rel", cost(work, *best, *dragged) / wall - 1);
+  observe(work, *best, row);
+}
+
+Parameters parameters(const Settings& settings, const Scene& scene,
+                      const ModelVariant& variant) {
+  Parameters p = settings.parameters(*variant.model);
+  for (const auto& [key, value] : known_to(*variant.model, scene.settings)) {
+    p.set(key, value);
+  }
+  for (const auto& [key, value] : variant.settings) p.set(key, value);
+  return p;
+}
+
+TipReference rod(const Settings& settings, const Scene& scene) {
+  const MakeStrand make = [&](std::string_view model, int elements) {
+    Parameters p = parameters(settings, scene, {&find_model(model), {}, ""});
+    p.set("elements", std::to_string(elements));
+    return find_model(model).make(p);
+  };
+  return converged_rod(make, {t_end, samples, length}, scene.rod);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, {});
+  std::vector<Case> all;
+  for (const Scene& scene : scenes) {
+    const TipReference reference = rod(settings, scene);
+    for (const ModelVariant& variant : length_variants()) {
+      const ModelEntry& model = *variant.model;
+      if (!wanted(line.models, model.id)) continue;
+      if (!has_word(model, "root", scene.root)) continue;
+      const Parameters p = parameters(settings, scene, variant);
+      std::unique_ptr<System> system;
+      try {
+        system = model.make(p);
+      } catch (const InputError&) {
+        continue;  // a model without curls
+      }
+      for (std::size_t i = 0; i < std::size(usual); ++i) {
+        const bool chosen = !line.integrators.empty();
+        if (chosen ? !wanted(line.integrators, usual[i]) : line.quick && i >= usual_quick)
+          continue;
+        const auto formulations = usable_formulations(find_integrator(usual[i]), *system);
+        if (formulations.empty()) continue;
+        Options options = settings.options();
+        options.formulation = formulations.front();
+        const Work work{&scene,  variant, p,         usual[i],
+                        options, 0.01,    reference, line.repeat};
+        Row identity;
+        identity.set("scene", scene.name).set("model", model.id);
+        if (!variant.words.empty()) identity.set("variant", variant.words);
+        identity.set("integrator", usual[i]);
+        identity.set("formulation", name(options.formulation));
+        identity.set("target_error_rel", work.target);
+        all.push_back({identity, [work](Row& row, const Deadline& deadline) {
+                         measure(work, deadline, row);
+                       }});
+      }
+    }
+  }
+  return all;
+}
+
+void check_momentum(const std::vector<Row>& rows, Verdicts& verdicts) {
+  for (const Row& row : rows) {
+    if (row.text("scene") != "flight" || !row.ok()) continue;
+    if (row.text("integrator") != "implicit_midpoint") continue;
+    verdicts.check("flight, " + std::string(row.text("model")) +
+                       ", implicit_midpoint: keeps angular momentum better than its tip",
+                   row.number("angular_error_rel") < row.number("target_error_rel"),
+                   row.number("angular_error_rel"));
+  }
+}
+
+/// That a method does not get there is an answer.
+bool finding(const Row&) { return true; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "equal_accuracy",
+      .question =
+          "what does each strand model cost at the same accuracy, and what does "
+          "it lose?",
+      .example = "--models der,super_helix --integrators implicit_midpoint",
+      .columns = columns,
+      .cases = cases,
+      .checks = check_momentum,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}
