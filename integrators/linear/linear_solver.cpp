@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "integrators/linear/banded.h"
+#include "integrators/linear/definite_band.h"
 #include "integrators/linear/dense.h"
 #include "integrators/linear/klu.h"
 
@@ -26,15 +27,13 @@ bool prefers_band(const Pattern& pattern, const BandOrdering& ordering) {
   return std::max(ordering.lower, ordering.upper) <= band_per_entry * mean_entries;
 }
 
-}  // namespace
-
-std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind,
-                                                 const Pattern& pattern) {
+template <class Band>
+std::unique_ptr<LinearSolver> make_solver(LinearKind kind, const Pattern& pattern) {
   switch (kind) {
     case LinearKind::dense:
       return std::make_unique<DenseSolver>(pattern);
     case LinearKind::banded:
-      return std::make_unique<BandedSolver>(pattern);
+      return std::make_unique<Band>(pattern);
     case LinearKind::klu:
       return std::make_unique<KluSolver>(pattern);
     case LinearKind::automatic: {
@@ -42,12 +41,24 @@ std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind,
         return std::make_unique<DenseSolver>(pattern);
       BandOrdering ordering = reverse_cuthill_mckee(pattern);
       if (prefers_band(pattern, ordering)) {
-        return std::make_unique<BandedSolver>(pattern, std::move(ordering));
+        return std::make_unique<Band>(pattern, std::move(ordering));
       }
       return std::make_unique<KluSolver>(pattern);
     }
   }
   throw std::invalid_argument("linear solver: unknown kind");
+}
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind,
+                                                 const Pattern& pattern) {
+  return make_solver<BandedSolver>(kind, pattern);
+}
+
+std::unique_ptr<LinearSolver> make_definite_solver(LinearKind kind,
+                                                   const Pattern& pattern) {
+  return make_solver<DefiniteBand>(kind, pattern);
 }
 
 }  // namespace tress

@@ -28,4 +28,9 @@ class LinearSolver {
 /// leaves a narrow band, KLU otherwise.
 std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind, const Pattern& pattern);
 
+/// The same for matrices that are symmetric and positive definite as a rule: a band is
+/// eliminated without pivoting where it can be (DefiniteBand).
+std::unique_ptr<LinearSolver> make_definite_solver(LinearKind kind,
+                                                   const Pattern& pattern);
+
 }  // namespace tress

@@ -61,7 +61,7 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   regular_mass_ =
       std::ranges::all_of(strand_.inertia, [](double inertia) { return inertia > 0; });
   build_pattern();
-  solver_ = make_linear_solver(strand_.solver, pattern_);
+  solver_ = make_definite_solver(strand_.solver, pattern_);
   const std::size_t count = strand_.mass.size();
   for (auto* x : {&x_, &v_, &tangent_, &load_}) x->resize(3 * count);
   for (const auto& point : strand_.mass) {
@@ -237,7 +237,7 @@ Status MaximalSystem::acceleration(double t, In q, In v, Out a) noexcept {
   if (s != Status::ok) return s;
   if (!mass_solver_) {
     // M is constant: factored once.
-    mass_solver_ = make_linear_solver(strand_.solver, pattern_);
+    mass_solver_ = make_definite_solver(strand_.solver, pattern_);
     const Status mass = values(t, q, v, a, {1, 0, 0}, values_);
     if (mass != Status::ok) return mass;
     if (const Status f = mass_solver_->factor(values_); f != Status::ok) return f;

@@ -236,6 +236,51 @@ TEST(CuthillMcKee, FindsTheBandOfAPermutedBand) {
   for (int i = 0; i < n; ++i) EXPECT_EQ(seen[static_cast<std::size_t>(i)], i);
 }
 
+TEST(DefiniteBand, SolvesDefiniteMatricesInAnyUnits) {
+  Random random(3);
+  constexpr int n = 40;
+  Eigen::MatrixXd a = poisson(n);
+  for (int i = 0; i + 4 < n; ++i) a(i, i + 4) = a(i + 4, i) = 0.1;
+  for (int i = 0; i < n; ++i) {
+    const double unit = std::pow(10, i % 7 - 3);
+    a.row(i) *= unit;
+    a.col(i) *= unit;
+  }
+  const Sparse s = sparse(a);
+  const auto solver = make_definite_solver(LinearKind::banded, s.pattern);
+  ASSERT_EQ(solver->factor(s.values), Status::ok);
+  const Eigen::VectorXd exact = random.vector(n);
+  Eigen::VectorXd x = a * exact;
+  ASSERT_EQ(solver->solve(span_of(x)), Status::ok);
+  // In the units in which the diagonal is one: n eps times the condition of Poisson's
+  // matrix of n points, n^2/2.
+  const Eigen::VectorXd unit = a.diagonal().cwiseSqrt();
+  EXPECT_LE(((x - exact).cwiseProduct(unit)).norm(),
+            eps * n * n * n / 2 * exact.cwiseProduct(unit).norm());
+  EXPECT_GE(solver->condition(), 1);
+  EXPECT_LE(solver->condition(), n * n);
+}
+
+TEST(DefiniteBand, PivotsWhereAMatrixIsIndefiniteOrUnsymmetric) {
+  Random random(4);
+  constexpr int n = 30;
+  Eigen::MatrixXd indefinite = poisson(n);
+  indefinite.diagonal().array() -= 1.7;
+  Eigen::MatrixXd unsymmetric = poisson(n);
+  unsymmetric(3, 4) += 1e-3;
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Identity(n, n);  // of its pattern too
+  lower.diagonal(-1).setConstant(0.5);
+  for (const Eigen::MatrixXd& a : {indefinite, unsymmetric, lower}) {
+    const Sparse s = sparse(a);
+    const auto solver = make_definite_solver(LinearKind::banded, s.pattern);
+    ASSERT_EQ(solver->factor(s.values), Status::ok);
+    expect_solves(*solver, a, random.vector(n));
+  }
+  const Sparse s = sparse(Eigen::MatrixXd(poisson(n) * 0));
+  EXPECT_EQ(make_definite_solver(LinearKind::banded, s.pattern)->factor(s.values),
+            Status::retry);
+}
+
 TEST(Automatic, FollowsThePattern) {
   const auto name = [](const Eigen::MatrixXd& a) {
     return make_linear_solver(LinearKind::automatic, sparse(a).pattern)->name();
