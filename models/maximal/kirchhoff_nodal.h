@@ -50,7 +50,8 @@ namespace tress {
 /// and their like in friction: on the grid the linear equations of a straight strand at
 /// rest, constant and banded. One solve a step by linearly_implicit_midpoint or
 /// semi_implicit_euler is then the paper's way to integrate; tension, geometry and loads
-/// are explicit.
+/// are explicit, and so is the twist that a naturally curved strand gets from bending,
+/// EI kappa/(rho J): the splitting is one for naturally straight strands.
 ///
 /// Rest strains are those between the chords of the natural shape. Neighbouring edges
 /// turn by less than pi.
