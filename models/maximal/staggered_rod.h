@@ -19,6 +19,24 @@ struct StaggeredRod {
   std::size_t edges() const { return length.size(); }
 };
 
+/// A constant times a vector: a third of the work of a product of derivative numbers.
+template <class T>
+Vec3<T> scaled(double s, const Vec3<T>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+
+/// cay(phi), seen from the frame that it turns, with c of kirchhoff_nodal.h:
+/// (1 - c |phi|^2/2) + c [phi]x + c phi phi^T/2.
+template <class T>
+FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
+  const Vec3<T> u = (0.5 * c) * phi, w = scaled(2, u);
+  const T xy = u.x * phi.y, xz = u.x * phi.z, yz = u.y * phi.z;
+  const T xx = u.x * phi.x, yy = u.y * phi.y, zz = u.z * phi.z;
+  return {{T(1) - yy - zz, xy + w.z, xz - w.y},
+          {xy - w.z, T(1) - xx - zz, yz + w.x},
+          {xz + w.y, yz - w.x, T(1) - xx - yy}};
+}
+
 /// Its motion for joint curvatures q (1/m; twist, curvature about e1, about e2) and their
 /// rates; equations in kirchhoff_nodal.h. T is double or a derivative number. O(n).
 template <class T>
@@ -46,7 +64,7 @@ class StaggeredMotion {
   /// After `accelerate`: of the first edge on the clamp, and its moment in the clamp's
   /// frame.
   const Vec3<T>& root_force() const { return force_.front(); }
-  Vec3<T> root_moment() const { return moment(joints_.front(), T(0.5)); }
+  Vec3<T> root_moment() const { return moment(joints_.front(), 0.5); }
 
   std::vector<Vec3<T>> x, v;  // of nodes: m, m/s; set by `place`
   std::vector<Vec3<T>> load;  // on nodes, N
@@ -70,10 +88,10 @@ class StaggeredMotion {
 
   /// The joint's moment in the components of the frame before it (half = 1/2) or behind
   /// it (-1/2).
-  static Vec3<T> moment(const Joint& joint, const T& half) {
+  static Vec3<T> moment(const Joint& joint, double half) {
     const Vec3<T>& phi = joint.strain;
-    return joint.stress + half * cross(phi, joint.stress) +
-           (T(0.25) * dot(phi, joint.stress)) * phi;
+    return joint.stress + scaled(half, cross(phi, joint.stress)) +
+           (0.25 * dot(phi, joint.stress)) * phi;
   }
   static FrameOf<T> frame_of(const RootPose& root) {
     return {Vec3<T>(root.frame.e0), Vec3<T>(root.frame.e1), Vec3<T>(root.frame.e2)};
@@ -91,57 +109,51 @@ class StaggeredMotion {
 template <class T>
 void StaggeredMotion<T>::place(const StaggeredRod& rod, const RootPose& root,
                                std::span<const T> q, std::span<const T> rate) noexcept {
-  const T half(0.5);
   FrameOf<T> frame = frame_of(root);
   Vec3<T> spin(root.omega);
   x[0] = Vec3<T>(root.x);
   v[0] = Vec3<T>(root.v);
   for (std::size_t j = 0; j < edges_.size(); ++j) {
-    const T arc(rod.arc[j]), length(rod.length[j]);
     Joint& joint = joints_[j];
-    const Vec3<T> phi = joint.strain = arc * load3(&q[3 * j]);
-    joint.rate = arc * load3(&rate[3 * j]);
-    joint.c = T(1) / (T(1) + T(0.25) * dot(phi, phi));
-    joint.turn = joint.c * (joint.rate + half * cross(phi, joint.rate));
-    const auto turned = [&](const Vec3<T>& e) {
-      const Vec3<T> across = cross(phi, e);
-      return frame * (e + joint.c * (across + half * cross(phi, across)));
-    };
+    Edge& edge = edges_[j];
+    const Vec3<T> phi = joint.strain = scaled(rod.arc[j], load3(&q[3 * j]));
+    joint.rate = scaled(rod.arc[j], load3(&rate[3 * j]));
+    joint.c = T(1) / (1.0 + 0.25 * dot(phi, phi));
+    joint.turn = joint.c * (joint.rate + scaled(0.5, cross(phi, joint.rate)));
     spin = spin + frame * joint.turn;
-    const FrameOf<T> axes;
-    frame = {turned(axes.e0), turned(axes.e1), turned(axes.e2)};
-    edges_[j].frame = frame;
-    edges_[j].spin = spin;
-    edges_[j].turning = cross(spin, frame.e0);
-    edges_[j].roll = dot(spin, frame.e0);
-    x[j + 1] = x[j] + length * frame.e0;
-    v[j + 1] = v[j] + length * edges_[j].turning;
+    frame = frame * cayley(phi, joint.c);
+    edge.frame = frame;
+    edge.spin = spin;
+    edge.turning = cross(spin, frame.e0);
+    edge.roll = dot(spin, frame.e0);
+    x[j + 1] = x[j] + scaled(rod.length[j], frame.e0);
+    v[j + 1] = v[j] + scaled(rod.length[j], edge.turning);
   }
 }
 
 /// Force across the edges and turning about them from the balance of moments.
 template <class T>
 void StaggeredMotion<T>::shear(const StaggeredRod& rod) noexcept {
-  const auto scaled = [](const Vec& k, const Vec3<T>& y) {
+  const auto times = [](const Vec& k, const Vec3<T>& y) {
     return Vec3<T>{k.x * y.x, k.y * y.y, k.z * y.z};
   };
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const RodJoint& law = rod.joints[j];
     Joint& joint = joints_[j];
-    joint.stress = scaled(law.stiffness, joint.strain - Vec3<T>(law.rest)) +
-                   scaled(law.friction, joint.rate);
+    joint.stress = times(law.stiffness, joint.strain - Vec3<T>(law.rest)) +
+                   times(law.friction, joint.rate);
   }
   for (std::size_t j = 0; j < edges_.size(); ++j) {
     Edge& edge = edges_[j];
     // In the edge's own frame: moments of neighbours are nearly equal there, and their
     // difference loses no digits to a rotation.
-    Vec3<T> gain = -T(1) * moment(joints_[j], T(-0.5));
-    if (j + 1 < edges_.size()) gain = gain + moment(joints_[j + 1], T(0.5));
+    Vec3<T> gain = scaled(-1, moment(joints_[j], -0.5));
+    if (j + 1 < edges_.size()) gain = gain + moment(joints_[j + 1], 0.5);
     edge.twisting = (1 / rod.rotor[j]) * gain.x;
     const Vec3<T> gyroscopic =
         (rod.rotor[j] * edge.roll) * cross(edge.frame.e0, edge.turning);
-    force_[j] = T(1 / rod.length[j]) *
-                (gain.y * edge.frame.e2 - gain.z * edge.frame.e1 - gyroscopic);
+    force_[j] = scaled(1 / rod.length[j],
+                       gain.y * edge.frame.e2 - gain.z * edge.frame.e1 - gyroscopic);
   }
 }
 
@@ -171,8 +183,8 @@ void StaggeredMotion<T>::tension(const StaggeredRod& rod) noexcept {
     coupling = rows_[j].lower;
     const Vec3<T> pull = behind * edges_[j].frame.e0;
     force_[j] = force_[j] + pull;
-    acceleration_[j + 1] = acceleration_[j + 1] - T(1 / rod.mass[j + 1]) * pull;
-    if (j > 0) acceleration_[j] = acceleration_[j] + T(1 / rod.mass[j]) * pull;
+    acceleration_[j + 1] = acceleration_[j + 1] - scaled(1 / rod.mass[j + 1], pull);
+    if (j > 0) acceleration_[j] = acceleration_[j] + scaled(1 / rod.mass[j], pull);
   }
 }
 
@@ -183,24 +195,23 @@ void StaggeredMotion<T>::accelerate(const StaggeredRod& rod, const RootPose& roo
   shear(rod);
   acceleration_[0] = Vec3<T>(root.a);
   for (std::size_t i = 1; i <= n; ++i) {
-    acceleration_[i] = T(1 / rod.mass[i]) * (force_[i] - force_[i - 1] + load[i]);
+    acceleration_[i] = scaled(1 / rod.mass[i], force_[i] - force_[i - 1] + load[i]);
   }
   tension(rod);
-  const T half(0.5);
   FrameOf<T> frame = frame_of(root);
   Vec3<T> spin(root.omega), spinning(root.alpha);
   for (std::size_t j = 0; j < n; ++j) {
     const Edge& edge = edges_[j];
     const Joint& joint = joints_[j];
     const Vec3<T> bending =
-        T(1 / rod.length[j]) * (acceleration_[j + 1] - acceleration_[j]);
+        scaled(1 / rod.length[j], acceleration_[j + 1] - acceleration_[j]);
     const Vec3<T> next = cross(edge.frame.e0, bending) + edge.roll * edge.turning +
                          edge.twisting * edge.frame.e0;
     const Vec3<T>& phi = joint.strain;
-    const Vec3<T> y = frame.back(next - spinning - cross(spin, edge.spin - spin)) +
-                      (half * joint.c * dot(phi, joint.rate)) * joint.turn;
-    const Vec3<T> strain = y - half * cross(phi, y) + (T(0.25) * dot(phi, y)) * phi;
-    store3(T(1 / rod.arc[j]) * strain, &a[3 * j]);
+    const Vec3<T> y = frame.back(next - spinning - cross(spin, edge.spin)) +
+                      (0.5 * joint.c * dot(phi, joint.rate)) * joint.turn;
+    const Vec3<T> strain = y - scaled(0.5, cross(phi, y)) + (0.25 * dot(phi, y)) * phi;
+    store3(scaled(1 / rod.arc[j], strain), &a[3 * j]);
     frame = edge.frame;
     spin = edge.spin;
     spinning = next;
