@@ -20,7 +20,7 @@ namespace {
 
 constexpr Column columns[] = {
     {"integrator", "method"},
-    {"tangent", "stiff: implicit in the terms of highest order only, as the paper is"},
+    {"tangent", "stiff: implicit in the terms of highest order only, as in the paper"},
     {"start",
      "space: shaken in all directions by 1e-3 of its rates; plane: not out of it"},
     {"elements", "number of nodes"},
