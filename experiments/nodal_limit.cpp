@@ -45,7 +45,7 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
     {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-7, .min = 1e-12},
     {.name = "row_s",
-     .help = "time to search for one row (s), 0: 30, with --quick 1",
+     .help = "time to search for one row (s), 0: 60, with --quick 1",
      .number = 0,
      .min = 0},
 };
@@ -180,7 +180,7 @@ std::vector<Case> cases(const CommandLine& line) {
                       settings.options(),
                       chosen("t_end_s", t_end),
                       line.quick ? 8.0 : 120,
-                      chosen("row_s", line.quick ? 1 : 30),
+                      chosen("row_s", line.quick ? 1 : 60),
                       {.coarsest = rows.number("cap_s"),
                        .finest = rows.number("floor_s"),
                        .depth = 1}};
