@@ -55,7 +55,7 @@ Options step_of(double h, System& system) {
 
 Moving moving(const ScalingCase& c, const Parameters& parameters) {
   Parameters cheapest = parameters;
-  cheapest.set("solver", first_word(*c.model, "solver"));
+  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
   if (has_word(*c.model, "tangent", "stiff")) cheapest.set("tangent", "stiff");
   const auto system = c.model->make(cheapest);
   constexpr double t = 0.05;
@@ -89,7 +89,7 @@ double step_cost(System& system, const Moving& from, double time_s, int repeat) 
 StepLimit largest_step(const ScalingCase& c, const Parameters& parameters,
                        const Deadline& deadline) {
   Parameters cheapest = parameters;
-  cheapest.set("solver", first_word(*c.model, "solver"));
+  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
   const auto system = c.model->make(cheapest);
   const State start = perturbed_start(*system);
   const StabilityBounds bounds =

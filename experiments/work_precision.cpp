@@ -62,10 +62,10 @@ struct Work {
     Row row;
     row.set("scene", problem.name).set("model", problem.model);
     row.set("integrator", integrator).set("formulation", name(options.formulation));
-    if (!solver.empty()) {
-      row.set("error_kind", problem.error_kind).set("solver", solver);
-      row.set("elements", problem.elements);
+    if (problem.elements > 0) {
+      row.set("error_kind", problem.error_kind).set("elements", problem.elements);
     }
+    if (!solver.empty()) row.set("solver", solver);
     return entry.adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
   }
 };
@@ -77,9 +77,8 @@ void measure(const Work& work, Row& row) {
     run = run_problem(problem, work.integrator, work.options, work.solver);
   });
   const Stats& stats = run->end.stats;
-  if (work.solver.empty()) {
-    row.set("elements", run->end.state.q.size()).set("solver", stats.solver);
-  }
+  if (problem.elements == 0) row.set("elements", run->end.state.q.size());
+  if (work.solver.empty()) row.set("solver", stats.solver);
   row.set("steps", stats.steps).set("rejected", stats.rejected);
   row.set("residuals", stats.residuals).set("linearizations", stats.linearizations);
   row.set("solves", stats.solves);

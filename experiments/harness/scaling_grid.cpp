@@ -50,15 +50,21 @@ std::vector<Method> methods_of_strands() {
   return all;
 }
 
-/// Every other strand model: each of its solvers, the first of its tangents.
+/// Every other strand model: each of its solvers, the first of its tangents; one without
+/// such a choice once, with the stiff tangent if it has one.
 std::vector<Method> methods_of_others() {
   const std::vector<Method> known = methods_of_strands();
   std::vector<Method> all;
   for (const ModelEntry* model : strand_models()) {
     if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
+    const std::string_view tangent = first_word(*model, "tangent");
+    if (first_word(*model, "solver").empty()) {
+      const bool stiff = has_word(*model, "tangent", "stiff");
+      all.push_back({model->id, "", stiff ? "stiff" : tangent, ""});
+    }
     for (const std::string_view solver : {"banded", "klu"}) {
       if (has_word(*model, "solver", solver)) {
-        all.push_back({model->id, solver, first_word(*model, "tangent"), ""});
+        all.push_back({model->id, solver, tangent, ""});
       }
     }
   }

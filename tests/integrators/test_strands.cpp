@@ -138,7 +138,9 @@ TEST_P(FixedStepOnStrands, ErrorFallsAtTheNominalOrder) {
     steps.push_back(options.step);
     errors.push_back(run(GetParam(), options).error);
   }
-  EXPECT_NEAR(log_log_slope(steps, errors), GetParam().entry->order, 0.25)
+  // The coarsest step may still be longer than the fastest waves.
+  const auto last = [](const std::vector<double>& x) { return std::span(x).subspan(1); };
+  EXPECT_NEAR(log_log_slope(last(steps), last(errors)), GetParam().entry->order, 0.25)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 

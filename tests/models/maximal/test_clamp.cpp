@@ -57,7 +57,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(StrandCase{"der", "der", {}},
                     StrandCase{"der_inextensible", "der", {{"stretch", "inextensible"}}},
                     StrandCase{"corde", "corde", {}},
-                    StrandCase{"dynamic_spline", "dynamic_spline", {}}),
+                    StrandCase{"dynamic_spline", "dynamic_spline", {}},
+                    StrandCase{"kirchhoff_nodal",
+                               "kirchhoff_nodal",
+                               {{"natural_curvature_1_m", "20"},
+                                {"internal_friction_kg_m3_s", "1e-9"}}}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "integrators/linear/linear_solver.h"
+#include "models/effects/effect.h"
+#include "models/math/dual.h"
+#include "models/maximal/staggered_rod.h"
+
+namespace tress {
+
+/// What the system of kirchhoff_nodal.h is made of.
+struct NodalParts {
+  StaggeredRod rod;
+  RootMotion root;
+  std::vector<double> node_length;  // that effects meet, m
+  std::vector<double> start;        // curvatures at t = 0
+  double curvature = 1, rate = 1;   // typical sizes, 1/m and 1/s
+  Tangent tangent = Tangent::exact;
+  Effects effects;
+};
+
+/// Kirchhoff's equations in curvatures behind the contract of models/system.h.
+class NodalSystem final : public System,
+                          private ExplicitForm,
+                          private Energetics,
+                          private MaterialPoints {
+ public:
+  explicit NodalSystem(NodalParts parts);
+
+  Layout layout() const override { return {static_cast<int>(parts_.start.size()), 0}; }
+  Traits traits() const override { return {.constant_mass = true}; }
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override;
+  Status residual(double t, In q, In v, In a, Out r) noexcept override;
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
+  Status solve(In b, Out x) noexcept override;
+
+  ExplicitForm* explicit_form() override { return this; }
+  Energetics* energetics() override { return this; }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  /// As many directions at once as fill the registers well.
+  static constexpr int directions = 8;
+  using Number = Dual<directions>;
+
+  Status acceleration(double t, In q, In v, Out a) noexcept override;
+  Energy energy(double t, In q, In v) override;
+  double power(double t, In q, In v) override;
+  int count() const override { return static_cast<int>(motion_.x.size()); }
+  void positions(double t, In q, Out x) override;
+  void velocities(double t, In q, In v, Out u) override;
+
+  void place(double t, In q, In v) noexcept;
+  Points points() noexcept;
+  void load(double t) noexcept;
+  void load_slopes(double t) noexcept;
+  void differentiate(const StaggeredRod& rod, const RootPose& root) noexcept;
+  void exact_tangent(double t, In q, In v, Weights w) noexcept;
+  Status stiff_tangent(Weights w) noexcept;
+  void find_leading_terms();
+
+  NodalParts parts_;
+  Needs needs_;
+  RootPose pose_;  // at the last time asked for
+  StaggeredMotion<double> motion_;
+  StaggeredMotion<Number> moved_;
+  std::vector<Number> q_, v_, a_;
+  std::vector<double> x_, u_, tangent_, load_;  // of the nodes, as effects see them
+  std::vector<double> load_by_x_, load_by_v_;   // (9 nodes)
+  std::vector<double> zero_;
+  Pattern pattern_;
+  std::vector<double> leading_by_q_,
+      leading_by_v_;  // of -a on the pattern, stiff tangent
+  std::vector<double> values_;
+  Weights factored_;  // of the stiff tangent in solver_
+  std::unique_ptr<LinearSolver> solver_;
+};
+
+}  // namespace tress
