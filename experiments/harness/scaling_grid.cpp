@@ -50,15 +50,16 @@ std::vector<Method> methods_of_strands() {
   return all;
 }
 
-/// Every other strand model: each of its solvers, the first of its tangents.
+/// Every other strand model: each of its solvers, the stiff tangent where it has one.
 std::vector<Method> methods_of_others() {
   const std::vector<Method> known = methods_of_strands();
   std::vector<Method> all;
   for (const ModelEntry* model : strand_models()) {
     if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
-    for (const std::string_view solver : {"banded", "klu"}) {
+    for (const std::string_view solver : {"banded", "klu", "sweep", "composite"}) {
       if (has_word(*model, "solver", solver)) {
-        all.push_back({model->id, solver, first_word(*model, "tangent"), ""});
+        all.push_back(
+            {model->id, solver, usual_tangent(*model), first_word(*model, "modes")});
       }
     }
   }

@@ -26,7 +26,8 @@ namespace tress {
 ///
 ///     M_ft(q) a = f(q, v),    M_ft = block lower triangle of M, diagonal included,
 ///
-/// solved from the root to the tip. What this makes of a rod:
+/// solved from the root to the tip: the first sweep, from a = 0, of a block Gauss-Seidel
+/// iteration on the chain's own equations. What this makes of a rod:
 ///
 /// - equilibria are those of articulated_chain;
 /// - straight, without gravity, joint j swings by itself, omega^2 = K_j / (its composite
@@ -34,10 +35,12 @@ namespace tress {
 ///
 ///       omega^2 = 3 n / (1 - 1/n)^3  EI/(rho S L^4),
 ///
-///   twice the rod's 3.516 sqrt(EI/(rho S L^4)) at n = 12, and growing with n: the
+///   twice the rod's 3.516 sqrt(EI/(rho S L^4)) at n = 13, and growing with n: the
 ///   equations do not tend to those of the rod;
 /// - M_ft is not symmetric, and energy is not conserved: the inertia left out does work,
-///   v^T (M - M_ft) a, which `power` counts.
+///   v^T (M - M_ft) a, which `power` counts;
+/// - under gravity small oscillations about rest grow: two hanging links without springs
+///   have omega^2 = (0.89 +- 0.22 i) g/l. No step size helps; damping has to.
 ///
 /// The thesis reports static errors that grow with n, "force lost in each integration";
 /// these equations have none. Handing on only the axial part of the force from beyond
