@@ -58,8 +58,7 @@ std::vector<Method> methods_of_others() {
     if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
     for (const std::string_view solver : {"banded", "klu", "sweep", "composite"}) {
       if (has_word(*model, "solver", solver)) {
-        all.push_back(
-            {model->id, solver, usual_tangent(*model), first_word(*model, "modes")});
+        all.push_back({model->id, solver, usual_tangent(*model), ""});
       }
     }
   }
@@ -133,7 +132,8 @@ Parameters ScalingCase::parameters(const Settings& settings) const {
   } else {
     set_tree(p, structure);
   }
-  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
+  set_known(p, {{"solver", solver}, {"tangent", tangent}});
+  if (!modes.empty()) p.set("modes", modes);
   return p;
 }
 
