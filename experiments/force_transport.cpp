@@ -12,6 +12,7 @@
 #include "experiments/harness/problems.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/strand_models.h"
+#include "experiments/harness/strand_scenes.h"
 #include "experiments/harness/tip_track.h"
 #include "experiments/harness/transport_claims.h"
 #include "models/strand/strand_parameters.h"
@@ -21,7 +22,8 @@ namespace {
 
 constexpr Column columns[] = {
     {"comparison",
-     "dynamics, statics, stiffness, modes, step (the seed's, for long) or cost"},
+     "dynamics, statics, stiffness, modes, transient, step (the seed's, for long) or "
+     "cost"},
     {"scene",
      "straight or curly, clamped horizontally and released; weightless, hanging"},
     {"model", "catalogue id"},
@@ -45,6 +47,7 @@ constexpr Column columns[] = {
     {"slowest_ratio", "the same over articulated_chain's"},
     {"growth_1_s", "rate at which small oscillations grow, 0: none does"},
     {"complex_modes", "number of them whose omega^2 is not real"},
+    {"energy_growth", "largest energy over that of a random small start, weightless"},
     {"energy_gain_rel", "largest mechanical energy above the start's, over m g L"},
     {"cost_per_element_step_s", "wall time of a step over the number of elements", true},
     {"cost_ratio", "the same of corde over it", true},
@@ -53,9 +56,10 @@ constexpr Column columns[] = {
 using namespace transport;
 
 constexpr int rod_elements = 80;
-constexpr double stiff_hair = 3e9;  // Pa
-constexpr double seed_step = 3e-3;  // s, the second seed's
-constexpr double fine_step = 1e-3;  // s, where models are compared, not steps
+constexpr double stiff_hair = 3e9;       // Pa
+constexpr double seed_step = 3e-3;       // s, the second seed's
+constexpr double fine_step = 1e-3;       // s, where models are compared, not steps
+constexpr double transient_step = 1e-4;  // s, below the periods of most bending modes
 
 struct Work {
   const ModelEntry* model;
@@ -183,6 +187,27 @@ void modes(const Work& work, Row& row) {
   row.set("complex_modes", found.complex_modes);
 }
 
+/// From small random rates: what the equations make of motions that no mode is alone in.
+void transient(const Work& work, Row& row) {
+  constexpr double enough = 1e6;
+  const auto system = work.make();
+  const State start = perturbed_start(*system);
+  Energetics& energetics = *system->energetics();
+  const double before = energetics.energy(0, start.q, start.v).total();
+  double growth = 1;
+  const Simulation run =
+      simulate(work.integrator, *system, work.options(), start, work.t_end,
+               [&](double t, In q, In v) {
+                 growth = std::max(growth, energetics.energy(t, q, v).total() / before);
+                 return growth < enough;
+               });
+  if (run.status != Status::ok && growth < enough) {
+    row.failed("solver_error", run.failure);
+    return;
+  }
+  row.set("energy_growth", growth);
+}
+
 void cost(const Work& work, Row& row) {
   constexpr int repeats = 5;
   const auto system = work.make();
@@ -205,6 +230,10 @@ struct Setup {
   double step = 0, t_end = 0, damping = 0;
 };
 
+bool planar(const Setup& setup) {
+  return setup.comparison == "modes" || setup.comparison == "transient";
+}
+
 std::string text(double x) {
   Row row;  // writes all digits
   return std::string(row.set("x", x).text("x"));
@@ -220,7 +249,7 @@ Parameters parameters(const Setup& setup, Parameters p, int elements) {
   }
   if (setup.scene == "weightless") p.set("gravity_m_s2", "0");
   if (setup.scene == "hanging") p.set("root_tangent", "down");
-  if (setup.comparison == "modes") p.set("modes", "bend_planar");
+  if (planar(setup)) p.set("modes", "bend_planar");
   if (setup.integrator == "semi_implicit_euler") set_known(p, {{"tangent", "stiff"}});
   return p;
 }
@@ -248,8 +277,8 @@ std::vector<Case> cases(const CommandLine& line) {
   const auto add_models = [&](const Setup& setup) {
     for (const int elements : counts) {
       for (const std::string_view model : {ours, theirs, chain}) {
-        if (model == theirs && setup.comparison == "modes")
-          continue;  // not at rest there
+        // corde is not at rest in its initial state, and stretches.
+        if (model == theirs && planar(setup)) continue;
         add(setup, model, elements);
       }
     }
@@ -264,6 +293,8 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   add_models({"statics", "straight", statics, 0});
   add_models({"modes", "weightless", modes, stiff_hair});
+  add_models({"transient", "weightless", transient, stiff_hair, "implicit_midpoint",
+              transient_step, 0.1});
   for (const double modulus : {seed_hair, stiff_hair}) {
     add_models({"modes", "hanging", modes, modulus});
     add_models(

@@ -102,6 +102,13 @@ void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdict("weightless: its slowest oscillation is 1.8 times as fast at 10 elements",
           slowest(10), slowest(10) > 1.8);
   verdict("weightless: and another 1.7 times at 40", stiffer, stiffer > 1.7);
+  const auto transient = [&rows](std::string_view model) {
+    return value(rows, "energy_growth", like("transient", model, 20));
+  };
+  verdict("weightless, 20 elements: small motions of force_transport gain energy (times)",
+          transient(ours), transient(ours) > 10);
+  verdict("weightless: those of articulated_chain keep it to 1 %", transient(chain),
+          transient(chain) < 1.01);
   const auto growth = [&rows](std::string_view model) {
     return value(rows, "growth_1_s",
                  like("modes", model, 10)

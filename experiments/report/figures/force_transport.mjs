@@ -90,6 +90,12 @@ export function transport_findings({ force_transport: rows = [] }) {
         'Slowest oscillation without gravity over that of the articulated chain: ' +
         `${listed(members, 'slowest_ratio')} elements.`,
     ),
+    ...sentence(
+      of('transient', 'weightless', 'energy_growth'),
+      (members) =>
+        'Without gravity small random motions gain energy within 0.1 s, by these factors: ' +
+        `${listed(members, 'energy_growth')} elements.`,
+    ),
     ...[...group_by(of('modes', 'hanging', 'growth_1_s'), (row) => row.youngs_modulus_pa)]
       .sort(([a], [b]) => a - b)
       .map(

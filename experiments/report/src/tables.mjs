@@ -158,6 +158,7 @@ export const known_tables = {
       'slowest_ratio',
       'growth_1_s',
       'complex_modes',
+      'energy_growth',
       'energy_gain_rel',
       'cost_per_element_step_s',
       'cost_ratio',
