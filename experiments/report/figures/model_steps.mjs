@@ -61,9 +61,9 @@ export const model_steps = {
   caption: `Largest stable time step against the number of elements without damping, one
     line per model: above by one linear solve a step (semi-implicit Euler), below by
     backward Euler with whole Newton steps, where a step is too long once Newton's iteration
-    finds no solution. super_helix, articulated_chain and force_transport: a sweep of linear
-    time, the papers' tangent above and the exact one below; others: their default solver
-    and tangent. The shaded
+    finds no solution. super_helix and articulated_chain: recursion, the papers' tangent
+    above and the exact one below, as of force_transport; others: their default solver and
+    tangent. The shaded
     band holds the runs that were stable up to the end of the scan. Made from
     stability_limit.csv, scenes that every model was run on.`,
 
