@@ -18,6 +18,7 @@
 #include "models/published/double_pendulum.h"
 #include "models/published/slider_crank.h"
 #include "models/reduced/articulated_chain.h"
+#include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
 
 namespace tress {
@@ -35,6 +36,7 @@ std::span<const ModelEntry> models() {
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), make_super_helix},
       ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), make_articulated_chain},
+      ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), make_force_transport},
       ModelEntry{"der", "discrete elastic rod of n edges; 3n positions and n angles, extensible or with n multipliers", "Bergou 2008, 2010", der_parameters(), make_der},
       ModelEntry{"corde", "Cosserat rod of n edges; 3n positions and n quaternions held together by penalties", "Spillmann & Teschner 2007", corde_parameters(), make_corde},
       ModelEntry{"dynamic_spline", "cubic B-spline of n spans, naturally straight; 3(n + 3) control points, clamped by 5 multipliers", "Lenoir 2004; Theetten 2008", dynamic_spline_parameters(), make_dynamic_spline},

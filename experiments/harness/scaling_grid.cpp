@@ -50,21 +50,19 @@ std::vector<Method> methods_of_strands() {
   return all;
 }
 
-/// Every other strand model: each of its solvers, the first of its tangents; one without
-/// such a choice once, with the stiff tangent if it has one.
+/// Every other strand model: each of its solvers, or once where it has no choice, with the
+/// stiff tangent where it has one.
 std::vector<Method> methods_of_others() {
   const std::vector<Method> known = methods_of_strands();
   std::vector<Method> all;
   for (const ModelEntry* model : strand_models()) {
     if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
-    const std::string_view tangent = first_word(*model, "tangent");
     if (first_word(*model, "solver").empty()) {
-      const bool stiff = has_word(*model, "tangent", "stiff");
-      all.push_back({model->id, "", stiff ? "stiff" : tangent, ""});
+      all.push_back({model->id, "", usual_tangent(*model), ""});
     }
-    for (const std::string_view solver : {"banded", "klu"}) {
+    for (const std::string_view solver : {"banded", "klu", "sweep", "composite"}) {
       if (has_word(*model, "solver", solver)) {
-        all.push_back({model->id, solver, tangent, ""});
+        all.push_back({model->id, solver, usual_tangent(*model), ""});
       }
     }
   }
@@ -138,7 +136,8 @@ Parameters ScalingCase::parameters(const Settings& settings) const {
   } else {
     set_tree(p, structure);
   }
-  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
+  set_known(p, {{"solver", solver}, {"tangent", tangent}});
+  if (!modes.empty()) p.set("modes", modes);
   return p;
 }
 

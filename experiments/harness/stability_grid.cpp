@@ -66,14 +66,11 @@ constexpr Method methods[] = {
 };
 
 /// Every other strand model, by the usual step and by whole Newton steps: its first
-/// solver and tangent.
+/// solver.
 std::vector<Method> methods_of(const ModelEntry& model) {
-  std::vector<Method> all;
-  for (const std::string_view integrator : {"semi_implicit_euler", "backward_euler"}) {
-    all.push_back({model.id, integrator, first_word(model, "solver"),
-                   first_word(model, "tangent")});
-  }
-  return all;
+  const std::string_view solver = first_word(model, "solver");
+  return {{model.id, "semi_implicit_euler", solver, usual_tangent(model)},
+          {model.id, "backward_euler", solver, first_word(model, "tangent")}};
 }
 
 bool of_the_seed(std::string_view model) {

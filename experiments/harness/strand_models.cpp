@@ -33,6 +33,10 @@ bool has_word(const ModelEntry& model, std::string_view key, std::string_view wo
   return std::ranges::find(words, word) != words.end();
 }
 
+std::string_view usual_tangent(const ModelEntry& model) {
+  return has_word(model, "tangent", "stiff") ? "stiff" : first_word(model, "tangent");
+}
+
 void set_known(
     Parameters& parameters,
     std::initializer_list<std::pair<std::string_view, std::string_view>> settings) {

@@ -19,6 +19,9 @@ std::string_view first_word(const ModelEntry& model, std::string_view key);
 
 bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
 
+/// Of the seeds' semi-implicit step: the stiff tangent, the default of models without.
+std::string_view usual_tangent(const ModelEntry& model);
+
 /// Sets those parameters that the model has.
 void set_known(
     Parameters& parameters,

@@ -15,10 +15,10 @@ namespace tress {
 /// linearize and solve: the mass tangent, or the exact one, by the chosen method. The
 /// acceleration of the explicit form comes from the recursion whatever the method.
 template <class Kernel, int dofs>
-class ReducedSystem final : public System,
-                            private ExplicitForm,
-                            private Energetics,
-                            private MaterialPoints {
+class ReducedSystem : public System,
+                      protected ExplicitForm,
+                      protected Energetics,
+                      protected MaterialPoints {
  public:
   explicit ReducedSystem(ReducedStrand strand)
       : effects_(std::move(strand.effects)),
@@ -88,12 +88,7 @@ class ReducedSystem final : public System,
       kinematics_.shape(q);
       return factored_ = factor(w, mass_, *mass_solver_);
     }
-    dynamics_.residual(t, q, v, a, scratch_);
-    const auto effects = effect_blocks(t);
-    for (std::size_t i = 0; i < full_.segments.size(); ++i) {
-      exact_tangent_.segment(i, w, effects, full_.segments[i]);
-    }
-    if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
+    take_exact_tangent(t, q, v, a, w);
     return factored_ = full_solver_->factor(full_);
   }
 
@@ -115,7 +110,7 @@ class ReducedSystem final : public System,
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
 
- private:
+ protected:  // ForceTransport changes how accelerations enter
   using K = Kinematics<Kernel, dofs>;
   using Mass = MassShape<dofs>;
   using Exact = ExactShape<dofs>;
@@ -146,6 +141,15 @@ class ReducedSystem final : public System,
     }
     if (tangent.free_root) mass_root_tangent(kinematics_, w, tangent.root);
     return solver.factor(tangent);
+  }
+
+  void take_exact_tangent(double t, In q, In v, In a, Weights w) {
+    dynamics_.residual(t, q, v, a, scratch_);
+    const auto effects = effect_blocks(t);
+    for (std::size_t i = 0; i < full_.segments.size(); ++i) {
+      exact_tangent_.segment(i, w, effects, full_.segments[i]);
+    }
+    if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
   }
 
   typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {

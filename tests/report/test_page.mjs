@@ -15,6 +15,7 @@ const figures = [
   'stability_limit',
   'scaling',
   'swing',
+  'force_transport',
 ];
 let directory, browser, url;
 
@@ -103,6 +104,7 @@ for (const [figure, entry] of [
   ['stability_limit', 'composite'],
   ['scaling', 'recursive: slope 1.01'],
   ['swing', 'implicit_midpoint'],
+  ['force_transport', 'corde'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
     await browser.open(url);

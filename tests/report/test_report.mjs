@@ -28,6 +28,7 @@ const figures = {
   stability_limit: ['largest stable dt (ms)', 'elements', '≥ 100', '33'],
   scaling: ['cost per step (µs)', 'composite / recursive', 'composite: slope 2.62'],
   swing: ['wall time (ms)', 'tip error (%)', '20 ms', '50 ms'],
+  force_transport: ['off the rod / length', 'elements', 'time (s)'],
 };
 
 // Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser
@@ -121,6 +122,7 @@ test('MissingTables_SayHowToProduceThem', () => {
     'stability_limit',
     'scaling',
     'swing',
+    'force_transport',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);
   }

@@ -3,6 +3,7 @@ import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
+import { force_transport } from './force_transport.mjs';
 import { model_steps } from './model_steps.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
@@ -19,6 +20,7 @@ export const figures = [
   model_steps,
   scaling,
   swing,
+  force_transport,
 ];
 
 // A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.

@@ -62,7 +62,8 @@ export const model_steps = {
     line per model: above by one linear solve a step (semi-implicit Euler), below by
     backward Euler with whole Newton steps, where a step is too long once Newton's iteration
     finds no solution. super_helix and articulated_chain: recursion, the papers' tangent
-    above and the exact one below; others: their default solver and tangent. The shaded
+    above and the exact one below, as of force_transport; others: their default solver and
+    tangent. The shaded
     band holds the runs that were stable up to the end of the scan. Made from
     stability_limit.csv, scenes that every model was run on.`,
 

@@ -1,4 +1,5 @@
 // The text of the page: answers, sections, findings, places for figures and tables.
+import { transport_findings } from '../figures/force_transport.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
 import { figures } from '../figures/all.mjs';
 import { escape_html } from './format.mjs';
@@ -50,6 +51,11 @@ const sections = [
     findings: swing_findings,
     summary: swing_summary,
     tables: ['swing', 'peers_swing'],
+  },
+  {
+    figure: 'force_transport',
+    findings: transport_findings,
+    tables: ['force_transport'],
   },
 ];
 

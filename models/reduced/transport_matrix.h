@@ -1,0 +1,217 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <vector>
+
+#include "models/reduced/kinematics.h"
+#include "models/reduced/mass_tangent.h"
+
+namespace tress {
+
+/// M_ft of ForceTransport: the block lower triangle, diagonal included, of the mass
+/// matrix of a chain of rigid links behind ball joints. With I_j the composite inertia of
+/// link j and all beyond it, held rigid, and S_j the axes of joint j, both in the frame
+/// at the start of link j,
+///
+///     (M_ft a)_j = S_j^T I_j (c_j + S_j a_j),
+///
+/// c_j the acceleration of that frame by the joints before it. Frames, wrenches and
+/// blocks as in TreeTangent. Products and solves are sweeps from the root, O(N).
+template <class Kernel, int dofs>
+class TransportMatrix {
+ public:
+  using Shape = MassShape<dofs>;
+  using Dofs = Eigen::Matrix<double, dofs, 1>;
+
+  explicit TransportMatrix(std::size_t segments)
+      : full_(segments), inverse_(segments), start_(segments + 1) {}
+
+  /// Sums up composite bodies from the mass tangent at weights {1, 0, 0}.
+  void compose(const TreeTangent<Shape>& mass) {
+    mass_ = &mass;
+    Inertia hanging;
+    for (std::size_t i = full_.size(); i-- > 0;) {
+      const SegmentTangent<Shape>& segment = mass.segments[i];
+      hanging = i + 1 < full_.size() ? inertia(i + 1) + segment.tip : segment.tip;
+      full_[i] = with_hanging(segment, hanging);
+    }
+  }
+
+  /// r += M_ft a
+  void add_product(In a, Out r) {
+    sweep(a);
+    for (std::size_t i = 0; i < full_.size(); ++i) {
+      Eigen::Map<Dofs> equation(&r[dofs * i]);
+      equation += coupling(i) * start_[i] + own(i) * at(a, i);
+    }
+  }
+
+  /// Readies solve() with acc M_ft + diagonal; `retry` when a pivot is not usable.
+  Status factor(double acc, In diagonal) {
+    acc_ = acc;
+    for (std::size_t i = 0; i < full_.size(); ++i) {
+      Square pivot = acc * own(i);
+      pivot.diagonal() += at(diagonal, i);
+      inverse_[i] = pivot.inverse();
+      if (!std::isfinite(inverse_[i].sum())) return Status::retry;
+    }
+    return Status::ok;
+  }
+
+  void solve(In b, Out x) {
+    start_[0].setZero();
+    for (std::size_t i = 0; i < full_.size(); ++i) {
+      const Dofs rest = at(b, i) - acc_ * (coupling(i) * start_[i]);
+      Eigen::Map<Dofs> unknowns(&x[dofs * i]);
+      unknowns = inverse_[i] * rest;
+      start_[i + 1] = moved(i, start_[i], unknowns);
+    }
+  }
+
+  /// dense += factor M_ft
+  void add_dense(double factor, Eigen::MatrixXd& dense) const {
+    for (std::size_t m = 0; m < full_.size(); ++m) {
+      block(dense, m, m) += factor * own(m);
+      add_below(m, factor * from_axes(m), dense);
+    }
+  }
+
+  /// dense += factor d(M_ft a)/dq. A turn of joint m moves all beyond it as one body: by
+  /// the twist xi = S_m e its motions change by xi x, its wrenches by xi x*, so that for
+  /// j < m the composite inertia I_j changes by that of I_m,
+  ///
+  ///     dI_m b = xi x* (I_m b) - I_m (xi x b).
+  ///
+  /// The links before m stay where they are, so that c_j changes for j > m only: at the
+  /// start of link m by -xi x (c_m + S_m a_m) + dS_m a_m, handed on rigidly.
+  void add_slope(const Kinematics<Kernel, dofs>& kinematics, double factor, In a,
+                 Eigen::MatrixXd& dense) {
+    sweep(a);
+    for (std::size_t m = 0; m < full_.size(); ++m) {
+      const auto& g = kinematics.geometry(m);
+      const Vec second = Kinematics<Kernel, dofs>::components(a, m);
+      Vec turning;
+      for (int k = 0; k < dofs; ++k) turning = turning + component(second, k) * g.turn[k];
+      State motion = start_[m];
+      Frames::put(translation(motion), rotation(motion) + turning, motion);
+      const State wrench = inertia(m) * motion;
+
+      Axes change;  // of the motion, by each unknown
+      for (int l = 0; l < dofs; ++l) {
+        const Vec e = Kinematics<Kernel, dofs>::unit(l);
+        State turned;
+        Frames::put({}, g.kernel.dW(e, second).at(g.tip), turned);
+        change.col(l) = turned - crossed(g.turn[l], motion);
+        const State load = inertia(m) * change.col(l) + crossed(g.turn[l], wrench);
+        for (int k = 0; k < dofs; ++k) {
+          const Vec axis = Kinematics<Kernel, dofs>::unit(k);
+          block(dense, m, m)(k, l) +=
+              factor * (dot(g.turn[k], rotation(load)) +
+                        dot(g.kernel.dW(e, axis).at(g.tip), rotation(wrench)));
+        }
+      }
+      add_below(m, factor * product(rigid(m), change), dense);
+      add_right(kinematics, m, factor, dense);
+    }
+  }
+
+ private:
+  using S = Space<dofs>;
+  using Frames = SegmentFrames<Shape>;
+  static constexpr int size = S::size;
+  using Inertia = Eigen::Matrix<double, size, size>;
+  using State = Eigen::Matrix<double, size, 1>;
+  using Axes = Eigen::Matrix<double, size, dofs>;
+  using Square = Eigen::Matrix<double, dofs, dofs>;
+
+  static Dofs at(In x, std::size_t i) { return Eigen::Map<const Dofs>(&x[dofs * i]); }
+  static double component(const Vec& x, int k) {
+    return dot(Kinematics<Kernel, dofs>::unit(k), x);
+  }
+
+  static auto block(Eigen::MatrixXd& dense, std::size_t row, std::size_t column) {
+    return dense.template block<dofs, dofs>(static_cast<Eigen::Index>(dofs * row),
+                                            static_cast<Eigen::Index>(dofs * column));
+  }
+
+  // Of joint i: its composite inertia, what links the start's motion to its equation, and
+  // its own term; the motion its unknowns give to the tip, and the start's handed on.
+  auto inertia(std::size_t i) const {
+    return full_[i].template topLeftCorner<size, size>();
+  }
+  auto coupling(std::size_t i) const {
+    return full_[i].template bottomLeftCorner<dofs, size>();
+  }
+  auto own(std::size_t i) const {
+    return full_[i].template bottomRightCorner<dofs, dofs>();
+  }
+  auto from_axes(std::size_t i) const {
+    return mass_->segments[i].transfer.template rightCols<dofs>();
+  }
+  auto rigid(std::size_t i) const {
+    return mass_->segments[i].transfer.template leftCols<size>();
+  }
+
+  State moved(std::size_t i, const State& start, const Dofs& x) const {
+    return rigid(i) * start + from_axes(i) * x;
+  }
+  void sweep(In a) {
+    start_[0].setZero();
+    for (std::size_t i = 0; i < full_.size(); ++i) {
+      start_[i + 1] = moved(i, start_[i], at(a, i));
+    }
+  }
+
+  static Vec translation(const State& s) {
+    return spread(s, S::translation, 0, S::translations);
+  }
+  static Vec rotation(const State& s) {
+    return spread(s, S::rotation, S::translations, S::rotations);
+  }
+  static Vec spread(const State& s, const int* axes, int first, int count) {
+    double x[3] = {};
+    for (int i = 0; i < count; ++i) x[axes[i]] = s[first + i];
+    return {x[0], x[1], x[2]};
+  }
+  /// phi x of a motion or a wrench about the same point.
+  static State crossed(const Vec& phi, const State& s) {
+    State turned;
+    Frames::put(cross(phi, translation(s)), cross(phi, rotation(s)), turned);
+    return turned;
+  }
+
+  /// Block column m below the diagonal, of motions of the tip of link m.
+  void add_below(std::size_t m, Axes motion, Eigen::MatrixXd& dense) const {
+    for (std::size_t j = m + 1; j < full_.size(); ++j) {
+      block(dense, j, m) += product(coupling(j), motion);
+      motion = product(rigid(j), motion);
+    }
+  }
+
+  /// Block row j of the slope beyond the diagonal; after sweep().
+  void add_right(const Kinematics<Kernel, dofs>& kinematics, std::size_t j, double factor,
+                 Eigen::MatrixXd& dense) const {
+    State motion = start_[j + 1];
+    Axes axes = factor * from_axes(j);
+    for (std::size_t m = j + 1; m < full_.size(); ++m) {
+      const State wrench = inertia(m) * motion;
+      Axes change;
+      for (int l = 0; l < dofs; ++l) {
+        const Vec& turn = kinematics.geometry(m).turn[l];
+        change.col(l) = crossed(turn, wrench) - inertia(m) * crossed(turn, motion);
+      }
+      block(dense, j, m) += axes.transpose() * change;
+      motion = rigid(m) * motion;
+      axes = product(rigid(m), axes);
+    }
+  }
+
+  const TreeTangent<Shape>* mass_ = nullptr;
+  std::vector<Eigen::Matrix<double, Shape::rows, Shape::columns>> full_;
+  std::vector<Square> inverse_;
+  std::vector<State> start_;  // motion of each link's start, and of the last tip
+  double acc_ = 0;
+};
+
+}  // namespace tress
