@@ -24,6 +24,11 @@ std::string_view name(Formulation formulation);
 /// When an implicit method rebuilds its Newton matrix.
 enum class Refresh { every_iteration, every_step, when_slow };
 
+/// In which order xpbd goes through the blocks of a strand: from the root to the tip, or
+/// from both ends in turn, even places upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+enum class SweepOrder { root_to_tip, bilateral };
+
 /// Everything an integrator can be told; each reads what applies to it.
 struct Options {
   Formulation formulation = Formulation::parametric;
@@ -47,6 +52,9 @@ struct Options {
   /// own defaults (0.33, 0.1, 0.1; ask with 0) leave stale-matrix errors that break the
   /// error test: on the pendulum 1e-2 is both more accurate and faster.
   double newton_coefficient = 1e-2;
+
+  int sweeps = 10;  // xpbd: of Gauss-Seidel per step
+  SweepOrder sweep_order = SweepOrder::root_to_tip;
 
   bool suppress_algebraic = true;  // IDA: multipliers out of the local error test
   double multiplier_atol = 1e6;    // IDA: absolute tolerance of multipliers over atol

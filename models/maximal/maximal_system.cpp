@@ -101,9 +101,15 @@ void MaximalSystem::scale(Out q_typ, Out v_typ) const {
   std::ranges::copy(In(strand_.z_rate).subspan(held()), v_typ.begin());
 }
 
+void MaximalSystem::look_at(double t) noexcept {
+  if (t == pose_time_) return;
+  pose_ = strand_.root.at(t);
+  pose_time_ = t;
+}
+
 void MaximalSystem::place(double t, In q) noexcept {
   std::ranges::copy(q, z_.begin() + static_cast<std::ptrdiff_t>(held()));
-  pose_ = strand_.root.at(t);
+  look_at(t);
   if (strand_.clamped) store3(pose_.x, z_.data());
 }
 
@@ -135,14 +141,18 @@ Points MaximalSystem::points(Needs wanted) noexcept {
   return p;
 }
 
+/// load_ = of the effects on the mass points.
+void MaximalSystem::loads(double t) noexcept {
+  if (strand_.effects.empty()) return;
+  std::ranges::fill(load_, 0.0);
+  const Points p = points(needs_);
+  for (const auto& effect : strand_.effects) effect->add_load(t, p, load_);
+}
+
 /// force_ = M z'' + dE/dz + friction - loads over all coordinates.
 void MaximalSystem::forces(double t, In a) noexcept {
   std::ranges::fill(force_, 0.0);
-  if (!strand_.effects.empty()) {
-    std::ranges::fill(load_, 0.0);
-    const Points p = points(needs_);
-    for (const auto& effect : strand_.effects) effect->add_load(t, p, load_);
-  }
+  loads(t);
   for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
     const auto& point = strand_.mass[i];
     Vec acceleration;
