@@ -99,8 +99,8 @@ class ConstraintForm {
 /// position-based methods take [Macklin, Mueller & Chentanez 2016, XPBD, eqs. 4 and 26].
 /// With W = M^-1 diagonal and constant, alpha the compliances and c the friction,
 ///
-///     E = sum_k C_k^T alpha^-1 C_k/2,    a = rest - W sum_k G_k^T (alpha^-1 C_k + c
-///     C_k'), G = dC/dq,  C' = G v + C_t.
+///     E = sum_k C_k^T alpha^-1 C_k/2,    a = rest - W sum_k G_k^T s_k,
+///     s = alpha^-1 C + c C',    G = dC/dq,    C' = G v + C_t.
 ///
 /// Units of C are the model's, u: alpha in u^2/J, c in J s/u^2. Only of unconstrained
 /// systems.

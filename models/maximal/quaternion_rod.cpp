@@ -215,40 +215,46 @@ std::vector<ComplianceForm::Block> QuaternionRod<Edge>::strain_blocks() const {
 template <class Edge>
 void QuaternionRod<Edge>::strain(std::size_t k, const RootPose& root, const double* z,
                                  ComplianceForm::Value& value) noexcept {
-  const std::size_t shifted = walled_ ? k : k + 1;
-  const std::size_t i = shifted / 2;
   std::ranges::fill(value.drift, 0.0);
-  if (shifted % 2 == 0) {
-    const std::size_t j = walled_ ? i : i - 1;
-    double g[3][8], x[8], wall_rate[4];
-    if (clamp(j)) {
-      store_wall(root, load_quaternion(z), x, wall_rate);
-      std::copy_n(z, 4, x + 4);
-    } else {
-      std::copy_n(z, 8, x);
-    }
-    joints_[j].strain(x, value.c);
-    joints_[j].gradient(x, g);
-    for (int m = 0; m < 3; ++m) {
-      if (!clamp(j)) {
-        std::copy_n(g[m], 8, value.gradient[m]);
-        continue;
-      }
-      for (int l = 0; l < 4; ++l) value.drift[m] += g[m][l] * wall_rate[l];
-      std::copy_n(g[m] + 4, 4, value.gradient[m]);
-    }
-    return;
+  const std::size_t place = walled_ ? k : k + 1;  // joints even, edges odd
+  if (place % 2 == 1) {
+    edge_strain(place / 2, z, value);
+  } else if (walled_ && k == 0) {
+    wall_strain(root, z, value);
+  } else {
+    const QuaternionJoint& joint = joints_[walled_ ? place / 2 : place / 2 - 1];
+    double g[3][8];
+    joint.strain(z, value.c);
+    joint.gradient(z, g);
+    for (int m = 0; m < 3; ++m) std::copy_n(g[m], 8, value.gradient[m]);
   }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::wall_strain(const RootPose& root, const double* z,
+                                      ComplianceForm::Value& value) const noexcept {
+  double g[3][8], x[8], wall_rate[4];
+  store_wall(root, load_quaternion(z), x, wall_rate);
+  std::copy_n(z, 4, x + 4);
+  joints_[0].strain(x, value.c);
+  joints_[0].gradient(x, g);
+  for (int m = 0; m < 3; ++m) {
+    for (int l = 0; l < 4; ++l) value.drift[m] += g[m][l] * wall_rate[l];
+    std::copy_n(g[m] + 4, 4, value.gradient[m]);
+  }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::edge_strain(std::size_t i, const double* z,
+                                      ComplianceForm::Value& value) const noexcept {
   double g[Edge::strains][7], x[7];
   store3(load3(z + 3) - load3(z), x);
   std::copy_n(z + 6, 4, x + 3);
   edges_[i].strain(x, value.c);
   edges_[i].gradient(x, g);
   for (int m = 0; m < Edge::strains; ++m) {
-    const Vec by_edge = load3(g[m]);
-    store3(-1.0 * by_edge, value.gradient[m]);
-    store3(by_edge, value.gradient[m] + 3);
-    std::copy_n(g[m] + 3, 4, value.gradient[m] + 6);
+    store3(-1.0 * load3(g[m]), value.gradient[m]);
+    std::copy_n(g[m], 7, value.gradient[m] + 3);
   }
 }
 

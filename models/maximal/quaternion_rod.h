@@ -62,6 +62,10 @@ class QuaternionRod final : public Elasticity, private StrainForm {
   std::vector<ComplianceForm::Block> strain_blocks() const override;
   void strain(std::size_t k, const RootPose& root, const double* z,
               ComplianceForm::Value& value) noexcept override;
+  void wall_strain(const RootPose& root, const double* z,
+                   ComplianceForm::Value& value) const noexcept;
+  void edge_strain(std::size_t i, const double* z,
+                   ComplianceForm::Value& value) const noexcept;
 
   bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
   /// Place in z of the quaternion of an edge.
