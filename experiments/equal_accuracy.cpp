@@ -55,9 +55,10 @@ constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "implicit_midpoint",
                                       "generalized_alpha",
                                       "predictor_corrector",
+                                      "xpbd",
                                       "rattle",
                                       "backward_euler"};
-constexpr std::size_t usual_quick = 4;  // the first of them
+constexpr std::size_t usual_quick = 5;  // the first of them
 // N s of the momentum that gravity gives a hair in 0.1 s: what a momentum error is
 // compared with where there is none at the start.
 constexpr double fall = 0.981;  // m/s

@@ -20,6 +20,7 @@ constexpr std::array implicit_dae{parametric, acceleration, baumgarte, projectio
                                   index3};
 constexpr std::array rattle_only{rattle};
 constexpr std::array correction_only{correction};
+constexpr std::array unconstrained_only{parametric};
 
 std::string any(System&, Formulation) { return {}; }
 
@@ -53,6 +54,11 @@ std::string diagonal_mass(System& system, Formulation formulation) {
   return constant_mass(system, formulation);
 }
 
+std::string compliances(System& system, Formulation) {
+  if (system.compliance_form() != nullptr) return {};
+  return "needs the model's energy as compliant constraints";
+}
+
 // A dense Jacobian by differences costs n^2 residual entries per step.
 constexpr int most_dense_coordinates = 200;
 
@@ -78,6 +84,7 @@ constexpr std::array table{
     IntegratorEntry{"bdf2", "order 2, L-stable, damps fast modes", "Gear 1971", 2, false, implicit_dae, any, make_bdf2},
     IntegratorEntry{"newmark", "order 2, average acceleration, no damping", "Newmark 1959", 2, false, implicit_dae, any, make_newmark},
     IntegratorEntry{"generalized_alpha", "order 2, damping by rho_inf", "Chung-Hulbert 1993", 2, false, implicit_dae, any, make_generalized_alpha},
+    IntegratorEntry{"xpbd", "order 1, position-based, Gauss-Seidel on compliances", "Macklin-Mueller-Chentanez 2016", 1, false, unconstrained_only, compliances, make_xpbd},
     IntegratorEntry{"gsl_rkf45", "order 5(4) explicit Runge-Kutta", "GSL odeiv2", 5, true, one_step_ode, inverts_mass, make_gsl_rkf45},
     IntegratorEntry{"gsl_rk8pd", "order 8(7) explicit Runge-Kutta", "GSL odeiv2", 8, true, one_step_ode, inverts_mass, make_gsl_rk8pd},
     IntegratorEntry{"gsl_msadams", "orders 1-12 Adams", "GSL odeiv2", 12, true, ode_formulations, inverts_mass, make_gsl_msadams},
@@ -92,6 +99,7 @@ constexpr std::array table{
 
 /// Why a method that lacks `formulation` lacks it.
 std::string gap(const IntegratorEntry& entry, Formulation formulation) {
+  if (entry.id == "xpbd") return "takes energies, not constraints with multipliers";
   switch (formulation) {
     case parametric:
       return entry.id == "rattle"

@@ -29,6 +29,11 @@ enum class Refresh { every_iteration, every_step, when_slow };
 /// would have moved it there [Bridson et al. 2002], or stays [Provot 1995].
 enum class Correction { impulse, position };
 
+/// In which order xpbd goes through the blocks of a strand: from the root to the tip, or
+/// from both ends in turn, even places upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+enum class SweepOrder { root_to_tip, bilateral };
+
 /// Everything an integrator can be told; each reads what applies to it.
 struct Options {
   Formulation formulation = Formulation::parametric;
@@ -56,6 +61,8 @@ struct Options {
   Correction correction = Correction::impulse;  // predictor_corrector
   bool second_filter = true;  // predictor_corrector: the implicit solve that ends a step
   double correction_tolerance = 1e-8;  // the same: largest |g| left, over its scale
+  int sweeps = 10;                     // xpbd: of Gauss-Seidel per step
+  SweepOrder sweep_order = SweepOrder::root_to_tip;
 
   bool suppress_algebraic = true;  // IDA: multipliers out of the local error test
   double multiplier_atol = 1e6;    // IDA: absolute tolerance of multipliers over atol

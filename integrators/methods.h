@@ -81,6 +81,20 @@ std::unique_ptr<Integrator> make_generalized_alpha(System& system,
 std::unique_ptr<Integrator> make_predictor_corrector(System& system,
                                                      const Options& options);
 
+/// Position-based dynamics with compliance: backward Euler on the energy, explicit on all
+/// other forces, by a fixed number of Gauss-Seidel sweeps over the blocks of the model's
+/// ComplianceForm, Options::sweeps and sweep_order. From x = q + h v + h^2 rest(q, v) and
+/// lambda = 0 every block is corrected in turn by x += W G^T dlambda with
+///
+///     ((1 + gamma) G W G^T + alpha/h^2) dlambda
+///         = -C - alpha lambda/h^2 - gamma (G (x - q) + h C_t),   gamma = alpha c/h,
+///
+/// then v = (x - q)/h. Order 1. Few sweeps leave it softer than the model, the more so
+/// the longer the step and the finer the strand. Converged sweeps are backward Euler's
+/// step but for the change of G on the way, O(h^2) of the force (none for linear C, much
+/// where light coordinates turn far). [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
+std::unique_ptr<Integrator> make_xpbd(System& system, const Options& options);
+
 // ---- GSL odeiv2, adaptive, on y = (q, v)
 // --------------------------------------------------
 

@@ -13,6 +13,7 @@
 #include "models/maximal/dynamic_spline.h"
 #include "models/maximal/kirchhoff_nodal.h"
 #include "models/maximal/mass_spring.h"
+#include "models/maximal/xpbd_cosserat.h"
 #include "models/published/andrews_squeezer.h"
 #include "models/published/beam.h"
 #include "models/published/double_pendulum.h"
@@ -39,6 +40,7 @@ std::span<const ModelEntry> models() {
       ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), make_force_transport},
       ModelEntry{"der", "discrete elastic rod of n edges; 3n positions and n angles, extensible or with n multipliers", "Bergou 2008, 2010", der_parameters(), make_der},
       ModelEntry{"corde", "Cosserat rod of n edges; 3n positions and n quaternions held together by penalties", "Spillmann & Teschner 2007", corde_parameters(), make_corde},
+      ModelEntry{"xpbd_cosserat", "Cosserat rod of n edges as compliant constraints; 3n positions and n quaternions", "Kugelstadt & Schoemer 2016; Deul 2018", xpbd_cosserat_parameters(), make_xpbd_cosserat},
       ModelEntry{"dynamic_spline", "cubic B-spline of n spans, naturally straight; 3(n + 3) control points, clamped by 5 multipliers", "Lenoir 2004; Theetten 2008", dynamic_spline_parameters(), make_dynamic_spline},
       ModelEntry{"kirchhoff_nodal", "Kirchhoff's equations by finite differences; 3n curvatures and twists of inextensible edges", "Hou, Klapper & Si 1998", kirchhoff_nodal_parameters(), make_kirchhoff_nodal},
       ModelEntry{"mass_spring", "point masses with springs for stretch, bending and torsion; 3n", "Rosenblum 1991; Selle 2008", mass_spring_parameters(), make_mass_spring},

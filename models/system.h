@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -93,6 +94,42 @@ class ConstraintForm {
                                InOut s) noexcept = 0;
 };
 
+/// Elastic energy and friction as sums over blocks k of few constraints C_k(t, x), x the
+/// coordinates that the block touches, and everything else as an acceleration: what
+/// position-based methods take [Macklin, Mueller & Chentanez 2016, XPBD, eqs. 4 and 26].
+/// With W = M^-1 diagonal and constant, alpha the compliances and c the friction,
+///
+///     E = sum_k C_k^T alpha^-1 C_k/2,    a = rest - W sum_k G_k^T s_k,
+///     s = alpha^-1 C + c C',    G = dC/dq,    C' = G v + C_t.
+///
+/// Units of C are the model's, u: alpha in u^2/J, c in J s/u^2. Only of unconstrained
+/// systems.
+class ComplianceForm {
+ public:
+  static constexpr int most_rows = 5, most_coordinates = 12;
+
+  struct Block {
+    std::vector<int> coordinates;              // of q, ascending
+    int rows = 0;                              // constraints
+    std::array<double, most_rows> alpha{};     // >= 0
+    std::array<double, most_rows> friction{};  // c >= 0
+  };
+  struct Value {
+    double c[most_rows];
+    double drift[most_rows];  // C_t
+    double gradient[most_rows][most_coordinates];
+  };
+
+  virtual ~ComplianceForm() = default;
+  /// In the order along the body from the root, fixed for life.
+  virtual const std::vector<Block>& blocks() const = 0;
+  virtual void inverse_mass(Out w) const = 0;  // (n) the diagonal of W, > 0
+  /// Of every force that is not in the blocks.
+  virtual Status rest(double t, In q, In v, Out a) noexcept = 0;
+  /// Of block k at x, the values of its coordinates.
+  virtual void evaluate(double t, std::size_t k, In x, Value& value) noexcept = 0;
+};
+
 struct Energy {
   double kinetic = 0;    // J
   double potential = 0;  // J
@@ -152,6 +189,7 @@ class System {
   virtual SparseForm* sparse_form() { return nullptr; }
   virtual ExplicitForm* explicit_form() { return nullptr; }
   virtual ConstraintForm* constraint_form() { return nullptr; }
+  virtual ComplianceForm* compliance_form() { return nullptr; }
   virtual Energetics* energetics() { return nullptr; }
   virtual MaterialPoints* material_points() { return nullptr; }
 };

@@ -148,8 +148,8 @@ void add_recovery(const Settings& user, std::vector<DriftStudy>& studies) {
 
 /// The methods that a strand of stiff springs or rigid links is commonly stepped with.
 constexpr std::string_view usual[] = {"semi_implicit_euler", "backward_euler",
-                                      "generalized_alpha", "rattle",
-                                      "predictor_corrector"};
+                                      "generalized_alpha",   "rattle",
+                                      "predictor_corrector", "xpbd"};
 
 /// Lengths of a shaken strand by every model that knows its lengths, at the step of one
 /// frame in two and at a short one.

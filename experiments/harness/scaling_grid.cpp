@@ -50,8 +50,8 @@ std::vector<Method> methods_of_strands() {
   return all;
 }
 
-/// Every other strand model: each of its solvers, or once where it has no choice, with the
-/// stiff tangent where it has one.
+/// Every other strand model: each of its solvers, or once where it has no choice, with
+/// the stiff tangent where it has one.
 std::vector<Method> methods_of_others() {
   const std::vector<Method> known = methods_of_strands();
   std::vector<Method> all;

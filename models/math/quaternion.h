@@ -44,6 +44,16 @@ Vec3<T> first_axis(const QuaternionOf<T>& q) {
           two * (v.x * v.z - w * v.y)};
 }
 
+/// All axes of the frame times |q|^2.
+template <class T>
+FrameOf<T> axes(const QuaternionOf<T>& q) {
+  const auto& [w, v] = q;
+  const T two(2), ww = w * w, xx = v.x * v.x, yy = v.y * v.y, zz = v.z * v.z;
+  return {first_axis(q),
+          {two * (v.x * v.y - w * v.z), ww - xx + yy - zz, two * (v.y * v.z + w * v.x)},
+          {two * (v.x * v.z + w * v.y), two * (v.y * v.z - w * v.x), ww - xx - yy + zz}};
+}
+
 /// 2 vec(conj(p) q): of norm 2 |p| |q| sin(angle/2) along the axis of the rotation from p
 /// to q, in components of either. Bilinear, changes sign with p or q.
 template <class T>
@@ -61,5 +71,17 @@ void store_quaternion(const QuaternionOf<T>& q, T* p) {
   p[0] = q.w;
   store3(q.v, p + 1);
 }
+
+/// One of the four of the basis.
+inline Quaternion unit_quaternion(int k) {
+  double q[4] = {};
+  q[k] = 1;
+  return load_quaternion(q);
+}
+
+/// d first_axis/dq.
+void axis_gradient(const Quaternion& q, double (&g)[3][4]);
+/// d turn_between(p, q)/dq; that by p is turn_slope(-q).
+void turn_slope(const Quaternion& p, double (&g)[3][4]);
 
 }  // namespace tress

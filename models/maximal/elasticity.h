@@ -14,6 +14,19 @@ struct Placement {
   In z, rate;
 };
 
+/// The energy and friction of an Elasticity as those of strains s(z, clamp), for the
+/// ComplianceForm of models/system.h.
+class StrainForm {
+ public:
+  virtual ~StrainForm() = default;
+  /// In the order along the strand from the root; coordinates are places in z.
+  virtual std::vector<ComplianceForm::Block> strain_blocks() const = 0;
+  /// Of block k at z, the values of its coordinates. The drift is what a turning clamp
+  /// makes of it.
+  virtual void strain(std::size_t k, const RootPose& root, const double* z,
+                      ComplianceForm::Value& value) noexcept = 0;
+};
+
 /// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are
 /// sets of coordinates (places in z) that one term couples; the tangent comes group by
 /// group, in the order of groups(), as square matrices.
@@ -38,6 +51,8 @@ class Elasticity {
   /// True: the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
   virtual void reset() {}  // forgets every rebase()
+  /// Null where the energy is not that of strains.
+  virtual StrainForm* strain_form() { return nullptr; }
 };
 
 }  // namespace tress

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct NodeMean {
   int first = 0;  // node
   int nodes = 1;
   std::array<double, 4> weight{1};
+
+  Vec of(In values) const;  // (3 nodes)
 };
 
 /// What a strand of redundant coordinates is made of. All coordinates are
@@ -52,10 +55,12 @@ struct MaximalStrand {
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///
 /// M is constant. Loads of effects act on the mass points. linearize assembles S in a
-/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand.
+/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. Where mass
+/// points are nodes and the elasticity has strains, so does the system (ComplianceForm).
 class MaximalSystem final : public System,
                             private SparseForm,
                             private ExplicitForm,
+                            private ComplianceForm,
                             private Energetics,
                             private MaterialPoints {
  public:
@@ -74,6 +79,7 @@ class MaximalSystem final : public System,
   SparseForm* sparse_form() override { return this; }
   ExplicitForm* explicit_form() override;
   ConstraintForm* constraint_form() override { return strand_.constraints.get(); }
+  ComplianceForm* compliance_form() override;
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
 
@@ -81,6 +87,10 @@ class MaximalSystem final : public System,
   const Pattern& pattern() const override { return pattern_; }
   Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
   Status acceleration(double t, In q, In v, Out a) noexcept override;
+  const std::vector<Block>& blocks() const override { return compliant_; }
+  void inverse_mass(Out w) const override;
+  Status rest(double t, In q, In v, Out a) noexcept override;
+  void evaluate(double t, std::size_t k, In x, Value& value) noexcept override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   bool momentum(double t, In q, In v, Momentum& total) override;
@@ -91,11 +101,14 @@ class MaximalSystem final : public System,
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
   void build_pattern();
+  bool diagonal_mass() const;
+  void look_at(double t) noexcept;
   void place(double t, In q) noexcept;
   void place(double t, In q, In v) noexcept;
   Placement placement() const { return {pose_, z_, rate_}; }
   Points points(Needs wanted) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;
+  void loads(double t) noexcept;
   void forces(double t, In a) noexcept;
   Status constrained_acceleration(double t, In q, In v, Out a) noexcept;
   double root_power(double t, In q, In v);
@@ -108,11 +121,15 @@ class MaximalSystem final : public System,
   std::unique_ptr<LinearSolver> solver_;
   std::unique_ptr<LinearSolver> mass_solver_;  // made when first asked for
   std::unique_ptr<Kkt> kkt_;                   // the same
-  RootPose pose_;                              // at the last time asked for
-  std::vector<double> z_, rate_, force_;       // all coordinates
+  RootPose pose_;                              // at pose_time_
+  double pose_time_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> z_, rate_, force_;                        // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points
   std::vector<double> blocks_;                                  // (9 mass points)
   std::vector<double> values_, scratch_;
+  // Made when first asked for: blocks, and how many coordinates of each are prescribed.
+  std::vector<Block> compliant_;
+  std::vector<std::size_t> prescribed_;
 };
 
 }  // namespace tress

@@ -52,6 +52,11 @@ class NodalSystem final : public System,
   int count() const override { return static_cast<int>(motion_.x.size()); }
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
+  /// Lengths are no unknowns.
+  bool stretch(double, In, double& relative) override {
+    relative = 0;
+    return true;
+  }
 
   void place(double t, In q, In v) noexcept;
   Points points() noexcept;

@@ -113,7 +113,32 @@ void to_nodes(const EdgeMatrix<edges>& of_edges, EdgeMatrix<edges + 1>& of_nodes
   }
 }
 
+/// Calls `act` with the spring of this number.
+template <class All, class Act>
+void at_number(All& springs, std::size_t number, Act act) {
+  const auto of_kind = [&](auto& kind) {
+    const bool here = number < kind.size();
+    if (here) {
+      act(kind[number]);
+    } else {
+      number -= kind.size();
+    }
+    return here;
+  };
+  std::apply([&](auto&... kinds) { (of_kind(kinds) || ...); }, springs);
+}
+
 }  // namespace
+
+SpringElasticity::SpringElasticity(Springs springs, SpringTangent tangent)
+    : springs_(std::move(springs)), tangent_(tangent) {
+  std::vector<std::size_t> middle;  // in half edges
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t number) {
+    along_.push_back(number);
+    middle.push_back(2 * spring.first + Strain::edges);
+  });
+  std::ranges::stable_sort(along_, {}, [&](std::size_t k) { return middle[k]; });
+}
 
 std::vector<std::vector<int>> SpringElasticity::groups() const {
   std::vector<std::vector<int>> all;
@@ -177,6 +202,40 @@ double SpringElasticity::power(const Placement& p) noexcept {
     }
   });
   return sum;
+}
+
+std::vector<ComplianceForm::Block> SpringElasticity::strain_blocks() const {
+  const std::vector<std::vector<int>> coordinates = groups();
+  std::vector<ComplianceForm::Block> blocks;
+  for (const std::size_t number : along_) {
+    at_number(springs_, number, [&](const auto& spring) {
+      blocks.push_back(
+          {coordinates[number], 1, {1 / spring.stiffness}, {spring.friction}});
+    });
+  }
+  return blocks;
+}
+
+void SpringElasticity::strain(std::size_t k, const RootPose& root, const double* z,
+                              ComplianceForm::Value& value) noexcept {
+  at_number(springs_, along_[k], [&]<class Strain>(const Spring<Strain>& spring) {
+    constexpr int edges = Strain::edges;
+    Vec e[edges], slope[edges];
+    for (int i = 0; i < edges; ++i) e[i] = load3(z + 3 * i + 3) - load3(z + 3 * i);
+    Strain now = spring.strain;
+    if constexpr (at_wall<Strain>) now.place(root.frame);
+    value.c[0] = now.gradient(e, slope) - spring.rest;
+    value.drift[0] = 0;
+    double* gradient = value.gradient[0];
+    std::fill_n(gradient, 3 * (edges + 1), 0.0);
+    for (int i = 0; i < edges; ++i) {
+      if constexpr (at_wall<Strain>) {
+        value.drift[0] -= dot(slope[i], cross(root.omega, e[i]));
+      }
+      store3(load3(gradient + 3 * i) - slope[i], gradient + 3 * i);
+      store3(slope[i], gradient + 3 * i + 3);
+    }
+  });
 }
 
 }  // namespace tress

@@ -35,10 +35,9 @@ using Springs =
 /// that could make the matrix indefinite or, with friction, unsymmetric.
 enum class SpringTangent { exact, filtered };
 
-class SpringElasticity final : public Elasticity {
+class SpringElasticity final : public Elasticity, private StrainForm {
  public:
-  SpringElasticity(Springs springs, SpringTangent tangent)
-      : springs_(std::move(springs)), tangent_(tangent) {}
+  SpringElasticity(Springs springs, SpringTangent tangent);
 
   std::vector<std::vector<int>> groups() const override;
   void add_force(const Placement& p, InOut f) noexcept override;
@@ -46,10 +45,16 @@ class SpringElasticity final : public Elasticity {
                    GroupSum& s) noexcept override;
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
+  StrainForm* strain_form() override { return this; }
 
  private:
+  std::vector<ComplianceForm::Block> strain_blocks() const override;
+  void strain(std::size_t k, const RootPose& root, const double* z,
+              ComplianceForm::Value& value) noexcept override;
+
   Springs springs_;
   SpringTangent tangent_;
+  std::vector<std::size_t> along_;  // numbers of all springs, from the root to the tip
 };
 
 }  // namespace tress

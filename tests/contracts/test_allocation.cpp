@@ -103,6 +103,23 @@ TEST_P(Allocation, DynamicsAllocateNothingAfterTheFirstSolve) {
   EXPECT_EQ(count(once), 0);
 }
 
+TEST_P(Allocation, ComplianceFormAllocatesNothing) {
+  const auto system = GetParam().make();
+  ComplianceForm* form = system->compliance_form();
+  if (form == nullptr) GTEST_SKIP() << "no compliance form";
+  States s(*system);
+  ComplianceForm::Value value;
+  std::vector<double> x(ComplianceForm::most_coordinates, 0.1);
+  const auto once = [&] {
+    (void)form->rest(0, s.q, s.v, s.a);
+    form->inverse_mass(s.a);
+    for (std::size_t k = 0; k < form->blocks().size(); ++k) {
+      form->evaluate(0, k, In(x).first(form->blocks()[k].coordinates.size()), value);
+    }
+  };
+  EXPECT_EQ(count(once), 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Catalogue, Allocation, testing::ValuesIn(catalogue_cases()),
                          [](const auto& test) { return test.param.name(); });
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "integrators/formulation/projection.h"
-#include "tests/support/tangent.h"
+#include "tests/support/compliance.h"
 
 namespace tress {
 namespace {
@@ -157,6 +157,16 @@ TEST_P(SystemContract, ResidualVanishesOnExplicitAcceleration) {
   for (std::size_t i = 0; i < s.n; ++i) size[i] += std::abs(f[i]);
   ASSERT_GT(largest(size), 0);
   EXPECT_LE(largest(r), 1e3 * static_cast<double>(s.n) * 2.2e-16 * largest(size));
+}
+
+TEST_P(SystemContract, ComplianceFormIsTheResidual) {
+  ComplianceForm* form = system_->compliance_form();
+  if (form == nullptr) GTEST_SKIP() << "no compliance form";
+  States s(*system_);
+  s.shake(0.05);
+  // Strains are differences of numbers of order one: a hundred times their rounding, and
+  // that of forces that nearly cancel.
+  EXPECT_LE(compliance_error(*system_, *form, s), 1e-12);
 }
 
 TEST_P(SystemContract, InitialStateSatisfiesTheConstraints) {

@@ -57,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(StrandCase{"der", "der", {}},
                     StrandCase{"der_inextensible", "der", {{"stretch", "inextensible"}}},
                     StrandCase{"corde", "corde", {}},
+                    StrandCase{"xpbd_cosserat", "xpbd_cosserat", {}},
                     StrandCase{"dynamic_spline", "dynamic_spline", {}},
                     StrandCase{"kirchhoff_nodal",
                                "kirchhoff_nodal",

@@ -24,9 +24,10 @@ inline constexpr std::array master_curve = {
 
 /// Relative error of height over width, the ordinate of the gravito-bending curve.
 inline double master_error(std::string_view model, const ModelSettings& rod,
-                           const Master& exact, int elements, double accuracy = 1e-11) {
+                           const Master& exact, int elements, double accuracy = 1e-11,
+                           double growth = 3) {
   const Hung hung = hang(model, with(rod, {{"elements", std::to_string(elements)}}),
-                         exact.gamma / line_density, accuracy);
+                         exact.gamma / line_density, accuracy, growth);
   const std::vector<double> x = points(hung);
   const double width = x[x.size() - 3], height = -x[x.size() - 1];
   EXPECT_NEAR(x[x.size() - 2], 0, 1e-12);  // planar
@@ -57,13 +58,13 @@ struct CurlyError {
   double points, energy;
 };
 inline CurlyError curly_error(std::string_view model, const ModelSettings& rod,
-                              std::size_t n, double accuracy = 1e-11) {
+                              std::size_t n, double accuracy = 1e-11, double growth = 3) {
   const Hung hung = hang(model,
                          with(rod, {{"elements", std::to_string(n)},
                                     {"root_tangent", "down"},
                                     {"natural_curvature2_1_m", "18.0361544841071"},
                                     {"natural_twist_1_m", "3.58817892564338"}}),
-                         curly_gamma / line_density, accuracy);
+                         curly_gamma / line_density, accuracy, growth);
   const std::vector<double> x = points(hung);
   double farthest = 0;
   for (std::size_t i = 0; i < 12; ++i) {

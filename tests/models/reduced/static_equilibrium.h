@@ -45,15 +45,15 @@ inline void static_correction(System& system, In q, std::vector<double>& lambda,
   for (double& of_row : lambda) of_row = -of_row;
 }
 
-/// Newton on residual(v = a = 0), gravity raised by a factor of 3 at a time up to `g`,
-/// until corrections are `accuracy` of the typical sizes.
+/// Newton on residual(v = a = 0), gravity raised by a factor of `growth` at a time up to
+/// `g`, until corrections are `accuracy` of the typical sizes.
 inline Hung hang(std::string_view model, const ModelSettings& settings, double g,
-                 double accuracy = 1e-11) {
+                 double accuracy = 1e-11, double growth = 3) {
   Hung hung;
   std::vector<double> lambda;
-  constexpr int loads = 8;
+  const int loads = static_cast<int>(std::ceil(8 * std::log(3.0) / std::log(growth)));
   for (int load = loads; load-- > 0;) {
-    const double now = g * std::pow(3.0, -load);
+    const double now = g * std::pow(growth, -load);
     hung.system = make_model(model, with(settings, {{"gravity_m_s2", text(now)}}));
     System& system = *hung.system;
     const std::vector<double> zero = zeros(system);

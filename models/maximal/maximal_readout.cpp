@@ -1,0 +1,105 @@
+// What a strand of redundant coordinates tells of itself: energy, momentum, places.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "models/maximal/maximal_system.h"
+
+namespace tress {
+
+Energy MaximalSystem::energy(double t, In q, In v) {
+  place(t, q, v);
+  const Points p = points({.position = true, .velocity = true});
+  Energy e;
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    const Vec u = load3(&v_[3 * i]);
+    e.kinetic += mass_[i] / 2 * dot(u, u);
+  }
+  const std::size_t others = z_.size() - strand_.inertia.size();
+  for (std::size_t i = 0; i < strand_.inertia.size(); ++i) {
+    e.kinetic += strand_.inertia[i] / 2 * rate_[others + i] * rate_[others + i];
+  }
+  e.potential = strand_.elasticity->energy(placement());
+  for (const auto& effect : strand_.effects) e.potential += effect->potential(t, p);
+  return e;
+}
+
+double MaximalSystem::power(double t, In q, In v) {
+  place(t, q, v);
+  const Points p =
+      points({.position = true, .velocity = true, .tangent = needs_.tangent});
+  double sum = strand_.elasticity->power(placement());
+  for (const auto& effect : strand_.effects) sum += effect->power(t, p);
+  return sum + root_power(t, q, v);
+}
+
+/// r = G^T lambda with g'' = 0.
+Status MaximalSystem::constrained_acceleration(double t, In q, In v, Out a) noexcept {
+  ConstraintSet& constraints = *strand_.constraints;
+  const Pattern& gradient = constraints.pattern();
+  std::vector<double> g(static_cast<std::size_t>(gradient.nonzeros()));
+  std::vector<double> lambda(static_cast<std::size_t>(gradient.cols));
+  if (!kkt_) kkt_ = std::make_unique<Kkt>(strand_.solver, pattern_, gradient);
+  std::ranges::fill(a, 0.0);
+  for (const Status s :
+       {values(t, q, v, a, {1, 0, 0}, values_), constraints.gradient(t, q, g),
+        kkt_->factor(values_, g, g), residual(t, q, v, a, scratch_),
+        constraints.bias(t, q, v, lambda)}) {
+    if (s != Status::ok) return s;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = -scratch_[i];
+  for (double& bias : lambda) bias = -bias;
+  return kkt_->solve(a, lambda);
+}
+
+/// Work of the clamp: on node 0, to hold it on its path, and by constraints.
+double MaximalSystem::root_power(double t, In q, In v) {
+  if (strand_.root.fixed() || !regular_mass_) return 0;
+  if (!strand_.clamped && !strand_.constraints) return 0;
+  std::vector<double> a(q.size());
+  const Status s = strand_.constraints ? constrained_acceleration(t, q, v, a)
+                                       : acceleration(t, q, v, a);
+  if (s != Status::ok) return std::nan("");
+  place(t, q, v);
+  forces(t, a);
+  return std::inner_product(force_.begin(), force_.end(), rate_.begin(), 0.0);
+}
+
+bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {
+  place(t, q, v);
+  points({.position = true, .velocity = true});
+  Vec linear, angular = strand_.elasticity->spin(placement(), strand_.inertia);
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    const Vec p = mass_[i] * load3(&v_[3 * i]);
+    linear = linear + p;
+    angular = angular + cross(load3(&x_[3 * i]), p);
+  }
+  total = {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
+  return true;
+}
+
+void MaximalSystem::positions(double t, In q, Out x) {
+  place(t, q);
+  for (std::size_t i = 0; i < strand_.shown.size(); ++i) {
+    store3(strand_.shown[i].of(z_), &x[3 * i]);
+  }
+}
+
+void MaximalSystem::velocities(double t, In q, In v, Out u) {
+  place(t, q, v);
+  for (std::size_t i = 0; i < strand_.shown.size(); ++i) {
+    store3(strand_.shown[i].of(rate_), &u[3 * i]);
+  }
+}
+
+bool MaximalSystem::stretch(double t, In q, double& relative) {
+  place(t, q);
+  relative = strand_.elasticity->stretch(placement());
+  for (std::size_t i = 0; i < strand_.edges.size(); ++i) {
+    const Vec e = load3(&z_[3 * i + 3]) - load3(&z_[3 * i]);
+    relative = std::max(relative, std::abs(std::sqrt(dot(e, e)) / strand_.edges[i] - 1));
+  }
+  return true;
+}
+
+}  // namespace tress
