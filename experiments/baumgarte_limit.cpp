@@ -118,6 +118,7 @@ int main(int argc, char** argv) {
       .name = "baumgarte_limit",
       .question = "how large may Baumgarte's gains be, and does theory predict it?",
       .example = "--integrators symplectic_euler,rk4",
+      .timed = false,
       .columns = columns,
       .cases = cases,
       .checks = check};

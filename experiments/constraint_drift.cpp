@@ -41,7 +41,7 @@ constexpr Column columns[] = {
     {"overshoot", "largest opposite violation over the initial one"},
     {"steps", "accepted steps"},
     {"rank_deficiency", "redundant constraints met"},
-    {"wall_s", "median time of the run without measuring (grid, recovery: one run)",
+    {"wall_s", "median time of the run without measuring (grid, recovery: with it, once)",
      true},
 };
 
@@ -97,9 +97,12 @@ void measure(const DriftStudy& s, int repeat, Row& row) {
   violate(*system, start, s.violation);
   DriftMonitor monitor(*system, start.q, start.v, escape);
   monitor.watch_recovery(1e-6 * s.violation);
-  const Simulation run =
-      simulate(s.integrator, *system, s.options, start, s.t_end,
-               [&monitor](double t, In q, In v) { return monitor(t, q, v); });
+  Simulation run;
+  const auto measured = [&] {
+    run = simulate(s.integrator, *system, s.options, start, s.t_end,
+                   [&monitor](double t, In q, In v) { return monitor(t, q, v); });
+  };
+  const double wall = time_calls(1, measured).median_s;
   row.set("g_max", monitor.g_max()).set("g_rate_max", monitor.g_rate_max());
   row.set("steps", run.stats.steps).set("rank_deficiency", run.stats.rank_deficiency);
   if (monitor.escaped() || !std::isfinite(monitor.g_max())) {
@@ -122,12 +125,12 @@ void measure(const DriftStudy& s, int repeat, Row& row) {
     row.set("recovery_time_s", monitor.recovery_time());
     row.set("overshoot", monitor.overshoot());
   }
+  // The other studies ask how far rather than at what cost.
+  const bool cost_matters = s.study == "formulation" || s.study == "strands";
   const auto again = [&] {
     (void)simulate(s.integrator, *system, s.options, start, s.t_end);
   };
-  // The other studies ask how far rather than at what cost.
-  const bool cost_matters = s.study == "formulation" || s.study == "strands";
-  row.set("wall_s", time_run(cost_matters ? repeat : 1, again));
+  row.set("wall_s", cost_matters ? time_run(repeat, again) : wall);
 }
 
 std::vector<Case> cases(const CommandLine& line) {

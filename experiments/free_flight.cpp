@@ -163,6 +163,7 @@ int main(int argc, char** argv) {
       .name = "free_flight",
       .question = "what do integrators do to momentum and energy that no force changes?",
       .example = "--models der --integrators backward_euler,implicit_midpoint",
+      .timed = false,
       .columns = columns,
       .cases = cases,
       .checks = check,

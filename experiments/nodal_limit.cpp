@@ -255,6 +255,7 @@ int main(int argc, char** argv) {
       .name = "nodal_limit",
       .question = "is the nodal scheme unstable with 200 nodes at steps of 1e-5 s?",
       .example = "--elements 20,200 --integrators linearly_implicit_midpoint",
+      .timed = false,
       .columns = columns,
       .settings = settings_of_rows,
       .cases = cases,

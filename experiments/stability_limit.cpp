@@ -158,6 +158,7 @@ int main(int argc, char** argv) {
       .name = "stability_limit",
       .question = "what is the largest stable step against the number of elements?",
       .example = "--elements 5,20 --integrators backward_euler --set scene=shake",
+      .timed = false,
       .columns = columns,
       .settings = stability_settings(),
       .cases = cases,

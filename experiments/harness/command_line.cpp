@@ -37,7 +37,9 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw) {
                  "result table (default results/<experiment>.csv), or -");
   app.add_flag("--quick", line.quick, "a minute or less on two cores");
   app.add_flag("--full", line.full, "every row of the published tables");
-  app.add_option("--jobs", raw.jobs, "rows run at the same time (default 1)");
+  app.add_option("--jobs", raw.jobs,
+                 "rows run at the same time (default 1; as many as processors where "
+                 "time is not what is measured)");
   app.add_option("--shard", raw.shard, "run part i of n, as in 1/4");
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);

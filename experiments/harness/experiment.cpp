@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <thread>
 
 #include "experiments/harness/csv.h"
 #include "experiments/harness/files.h"
@@ -243,8 +244,11 @@ int dry_run(const Experiment& experiment, const CommandLine& line) {
 }
 
 int answer(const Experiment& experiment, int argc, char** argv) {
-  const CommandLine line = parse_command_line(experiment.name, experiment.question,
-                                              experiment.example, argc, argv);
+  CommandLine line = parse_command_line(experiment.name, experiment.question,
+                                        experiment.example, argc, argv);
+  if (!experiment.timed && line.places.count("jobs") == 0) {
+    line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  }
   const Settings checked(line, experiment.settings);
   if (line.list) {
     write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),

@@ -40,7 +40,10 @@ struct Case {
 /// One executable, one question.
 struct Experiment {
   std::string_view name, question;
-  std::string_view example;         // arguments only: "--models bead_on_wire --quick"
+  std::string_view example;  // arguments only: "--models bead_on_wire --quick"
+  /// False: no time in the table is what is asked for, and as many rows run at once as
+  /// the machine has processors unless --jobs says otherwise. True: one at a time.
+  bool timed = true;
   std::span<const Column> columns;  // status, reason and run_id are added to them
   std::span<const Parameter> settings =
       {};  // keys of --set that are the experiment's own

@@ -11,6 +11,8 @@ namespace {
 // Local errors of 1e-5 leave 1e-7 of the length after 2 s, as the gap of the two shows.
 constexpr double tolerance = 1e-5;
 
+constexpr int steps_per_sample = 8;
+
 constexpr int finest = 160;
 constexpr double finest_step = 2.5e-4;     // s: an error of 2e-5 of the length before
                                            // extrapolation
@@ -57,6 +59,8 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
                              const TipSampling& sampling) {
   Options options;
   options.rtol = options.atol = tolerance;
+  // Of few elements steps would be longer than what the cubic between them follows.
+  options.max_step = sampling.t_end / sampling.samples / steps_per_sample;
   TipReference reference;
   reference.tip = tip(make, model, elements, "gsl_rk8pd", options, sampling);
   reference.other = tip(make, model, elements, "cvode_adams", options, sampling);
