@@ -1,4 +1,5 @@
-#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "integrators/fixed_step.h"
@@ -41,6 +42,7 @@ class Xpbd final : public FixedStep {
  private:
   static constexpr int columns = ComplianceForm::most_coordinates;
   using Rows = std::array<double, ComplianceForm::most_rows>;
+  using Square = std::array<Rows, ComplianceForm::most_rows>;
 
   Status step(double t, double h) override {
     if (const Status s = form_.rest(t, q_, v_, x_); s != Status::ok) return s;
@@ -56,60 +58,62 @@ class Xpbd final : public FixedStep {
     return Status::ok;
   }
 
+  /// Rows of methods.h's equation divided by 1 + gamma: symmetric, positive definite.
   void correct(double t, double h, std::size_t k) {
-    switch (blocks_[k].rows) {
-      case 1:
-        return correct_rows<1>(t, h, k);
-      case 2:
-        return correct_rows<2>(t, h, k);
-      case 3:
-        return correct_rows<3>(t, h, k);
-      case 4:
-        return correct_rows<4>(t, h, k);
-      default:
-        return correct_rows<5>(t, h, k);
+    const Block& block = blocks_[k];
+    const std::size_t size = block.coordinates.size();
+    const auto rows = static_cast<std::size_t>(block.rows);
+    double x[columns], moved[columns], w[columns];
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto from = static_cast<std::size_t>(block.coordinates[i]);
+      x[i] = x_[from];
+      moved[i] = x_[from] - q_[from];
+      w[i] = w_[from];
+    }
+    form_.evaluate(t, k, {x, size}, value_);
+    Rows& lambda = lambda_of_[k];
+    Square matrix;
+    Rows change;
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double* slope = value_.gradient[r];
+      for (std::size_t c = 0; c <= r; ++c) {
+        double sum = 0;
+        for (std::size_t i = 0; i < size; ++i)
+          sum += slope[i] * w[i] * value_.gradient[c][i];
+        matrix[r][c] = sum;
+      }
+      double along = 0;
+      for (std::size_t i = 0; i < size; ++i) along += slope[i] * moved[i];
+      const double alpha = block.alpha[r] / (h * h);
+      const double gamma = block.alpha[r] * block.friction[r] / h;
+      matrix[r][r] += alpha / (1 + gamma);
+      change[r] =
+          -(value_.c[r] + alpha * lambda[r] + gamma * (along + h * value_.drift[r])) /
+          (1 + gamma);
+    }
+    solve(matrix, change, rows);
+    for (std::size_t r = 0; r < rows; ++r) {
+      lambda[r] += change[r];
+      for (std::size_t i = 0; i < size; ++i) {
+        x_[static_cast<std::size_t>(block.coordinates[i])] +=
+            w[i] * value_.gradient[r][i] * change[r];
+      }
     }
   }
 
-  /// Rows of methods.h's equation divided by 1 + gamma: symmetric, positive definite.
-  /// Columns beyond the block's have no inverse mass and do nothing.
-  template <int rows>
-  void correct_rows(double t, double h, std::size_t k) {
-    const Block& block = blocks_[k];
-    const std::size_t size = block.coordinates.size();
-    Eigen::Array<double, columns, 1> x, moved, w;
-    w.setZero();
-    moved.setZero();
-    for (std::size_t i = 0; i < size; ++i) {
-      const auto from = static_cast<std::size_t>(block.coordinates[i]);
-      const auto to = static_cast<Eigen::Index>(i);
-      x(to) = x_[from];
-      moved(to) = x_[from] - q_[from];
-      w(to) = w_[from];
+  /// Cholesky's method on the lower triangle of a, in place; b becomes the solution.
+  static void solve(Square& a, Rows& b, std::size_t rows) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t c = 0; c <= r; ++c) {
+        for (std::size_t i = 0; i < c; ++i) a[r][c] -= a[r][i] * a[c][i];
+        a[r][c] = c < r ? a[r][c] / a[c][c] : std::sqrt(a[r][r]);
+      }
+      for (std::size_t i = 0; i < r; ++i) b[r] -= a[r][i] * b[i];
+      b[r] /= a[r][r];
     }
-    form_.evaluate(t, k, {x.data(), size}, value_);
-    const Eigen::Map<const Eigen::Matrix<double, rows, columns, Eigen::RowMajor>> slope(
-        value_.gradient[0]);
-    const Eigen::Matrix<double, rows, columns> weighted = slope * w.matrix().asDiagonal();
-    Eigen::Matrix<double, rows, rows> matrix = weighted * slope.transpose();
-    Eigen::Matrix<double, rows, 1> change = slope * moved.matrix();
-    Rows& lambda = lambda_of_[k];
-    for (int r = 0; r < rows; ++r) {
-      const auto row = static_cast<std::size_t>(r);
-      const double alpha = block.alpha[row] / (h * h);
-      const double gamma = block.alpha[row] * block.friction[row] / h;
-      matrix(r, r) += alpha / (1 + gamma);
-      change(r) = -(value_.c[r] + alpha * lambda[row] +
-                    gamma * (change(r) + h * value_.drift[r])) /
-                  (1 + gamma);
-    }
-    const Eigen::Matrix<double, rows, 1> more = matrix.llt().solve(change);
-    const Eigen::Matrix<double, columns, 1> correction = weighted.transpose() * more;
-    for (std::size_t r = 0; r < rows; ++r)
-      lambda[r] += more(static_cast<Eigen::Index>(r));
-    for (std::size_t i = 0; i < size; ++i) {
-      x_[static_cast<std::size_t>(block.coordinates[i])] +=
-          correction(static_cast<Eigen::Index>(i));
+    for (std::size_t r = rows; r-- > 0;) {
+      for (std::size_t i = r + 1; i < rows; ++i) b[r] -= a[i][r] * b[i];
+      b[r] /= a[r][r];
     }
   }
 

@@ -1,13 +1,14 @@
 #include "experiments/harness/amplification.h"
 
-#include <Eigen/Dense>
 #include <cmath>
+
+#include "experiments/harness/eigenvalues.h"
 
 namespace tress {
 namespace {
 
 double spectral_radius(const Eigen::MatrixXd& step) {
-  return step.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(step).cwiseAbs().maxCoeff();
 }
 
 /// (C, h C')' = h A (C, h C'), with a = alpha h^2 and b = beta h.

@@ -1,6 +1,5 @@
 #include "experiments/harness/linear_modes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "experiments/harness/eigenvalues.h"
 
 namespace tress {
 namespace {
@@ -49,7 +50,7 @@ LinearModes linear_modes(System& system, In q) {
   modes.slowest_rad_s = std::numeric_limits<double>::infinity();
   // A double real eigenvalue computes to a pair apart by sqrt(eps).
   constexpr double real = 1e-7;
-  for (const std::complex<double> square : dynamics.eigenvalues()) {
+  for (const std::complex<double> square : eigenvalues(dynamics)) {
     const std::complex<double> s = std::sqrt(-square);
     modes.slowest_rad_s = std::min(modes.slowest_rad_s, std::abs(s));
     if (std::abs(square.imag()) > real * std::abs(square)) ++modes.complex_modes;

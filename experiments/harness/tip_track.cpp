@@ -89,23 +89,19 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   const State start = initial_state(system);
   TipSamples seen(system, t_end, samples,
                   find_integrator(integrator).adaptive ? uneven : even);
-  Status status = Status::ok;
-  const auto once = [&] {
+  const auto run = [&](const Observer& observer) {
     system.reset();
-    seen.start(start.q, start.v);
-    status = method->start(0, start.q, start.v);
-    if (status != Status::ok) return;
-    status = method->advance(t_end, [&seen](double t, In q, In v) {
-      seen.step_to(t, q, v);
-      return true;
-    });
+    const Status s = method->start(0, start.q, start.v);
+    return s == Status::ok ? method->advance(t_end, observer) : s;
   };
-  double wall = 0;
-  if (repeat > 0) {
-    wall = time_run(repeat, once);
-  } else {
-    once();
-  }
+  system.reset();
+  seen.start(start.q, start.v);
+  const Status status = run([&seen](double t, In q, In v) {
+    seen.step_to(t, q, v);
+    return true;
+  });
+  const double wall =
+      repeat > 0 ? time_run(repeat, [&] { static_cast<void>(run({})); }) : 0;
   return {status, method->failure(), method->stats(), wall, std::move(seen.tips)};
 }
 

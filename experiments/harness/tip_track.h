@@ -13,7 +13,7 @@ struct TipRun {
   Status status;
   std::string failure;
   Stats stats;
-  double wall_s;            // of stepping and reading the tip; setting up is not in it
+  double wall_s;            // of stepping: setting up and reading the tip are not in it
   std::vector<double> tip;  // (3 samples) m; fewer when the run failed
 };
 

@@ -1,10 +1,16 @@
 #include "models/reduced/articulated_chain.h"
 
-#include "models/reduced/ball_link.h"
-#include "models/reduced/reduced_system.h"
+#include "models/reduced/ball_chain.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {
+
+template class ReducedSystem<BallLink, 1>;
+template class ReducedSystem<BallLink, 2>;
+template class ReducedSystem<BallLink, 3>;
+template class ExactTangent<BallLink, 1>;
+template class ExactTangent<BallLink, 2>;
+template class ExactTangent<BallLink, 3>;
 
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options,

@@ -1,9 +1,8 @@
 #include "models/reduced/force_transport.h"
 
-#include "models/reduced/ball_link.h"
+#include "models/reduced/ball_chain.h"
 #include "models/reduced/composite_matrix.h"
 #include "models/reduced/dense_factor.h"
-#include "models/reduced/reduced_system.h"
 #include "models/reduced/transport_matrix.h"
 #include "models/strand/geometry.h"
 #include "models/strand/strand_parameters.h"

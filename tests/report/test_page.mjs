@@ -13,6 +13,8 @@ const figures = [
   'work_precision',
   'bdf_order',
   'stability_limit',
+  'equal_accuracy',
+  'nodal_limit',
   'scaling',
   'swing',
   'force_transport',

@@ -26,6 +26,8 @@ const figures = {
   work_precision: ['wall time per simulated second (s/s)', 'relative error'],
   bdf_order: ['relative error', 'steps', 'wall time (s)'],
   stability_limit: ['largest stable dt (ms)', 'elements', '≥ 100', '33'],
+  equal_accuracy: ['wall time per simulated second (ms)', 'super helix'],
+  nodal_limit: ['largest stable step (µs)', 'nodes'],
   scaling: ['cost per step (µs)', 'composite / recursive', 'composite: slope 2.62'],
   swing: ['wall time (ms)', 'tip error (%)', '20 ms', '50 ms'],
   force_transport: ['off the rod / length', 'elements', 'time (s)'],

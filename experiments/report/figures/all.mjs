@@ -3,8 +3,10 @@ import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
+import { equal_accuracy } from './equal_accuracy.mjs';
 import { force_transport } from './force_transport.mjs';
 import { model_steps } from './model_steps.mjs';
+import { nodal_limit } from './nodal_limit.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
 import { swing } from './swing.mjs';
@@ -18,6 +20,8 @@ export const figures = [
   bdf_order,
   stability_limit,
   model_steps,
+  equal_accuracy,
+  nodal_limit,
   scaling,
   swing,
   force_transport,

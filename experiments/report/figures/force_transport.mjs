@@ -1,4 +1,4 @@
-// Figure 10: what moving the rest of a strand rigidly does to its tip.
+// Figure 12: what moving the rest of a strand rigidly does to its tip.
 import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
 import { spaced } from '../src/strand.mjs';

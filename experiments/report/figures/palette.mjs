@@ -74,6 +74,11 @@ export const families = [
     members: ['cvode_bdf', 'arkode_dirk', 'ida', 'gsl_bsimp'],
   },
   { name: 'structure preserving', colours: ['#7A7F87'], members: ['rattle'] },
+  {
+    name: 'position-based',
+    colours: ['#4C5BD4', '#8FA6D8'],
+    members: ['predictor_corrector', 'xpbd'],
+  },
   { name: 'other', colours: ['#8E6CC9', '#B9A3E0'], members: [] },
 ];
 

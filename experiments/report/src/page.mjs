@@ -1,6 +1,8 @@
 // The text of the page: answers, sections, findings, places for figures and tables.
+import { equal_accuracy_findings } from '../figures/equal_accuracy.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
+import { nodal_limit_findings } from '../figures/nodal_limit.mjs';
 import { figures } from '../figures/all.mjs';
 import { escape_html } from './format.mjs';
 import {
@@ -40,6 +42,12 @@ const sections = [
     tables: ['stability_limit'],
   },
   { figure: 'model_steps', findings: model_step_findings, tables: [] },
+  {
+    figure: 'equal_accuracy',
+    findings: equal_accuracy_findings,
+    tables: ['equal_accuracy'],
+  },
+  { figure: 'nodal_limit', findings: nodal_limit_findings, tables: ['nodal_limit'] },
   {
     figure: 'scaling',
     findings: scaling_findings,

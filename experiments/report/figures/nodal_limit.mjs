@@ -1,0 +1,129 @@
+// Figure 11: the step that nodal finite differences of a rod need.
+import { distinct, is_positive } from '../src/tables.mjs';
+import { format_time } from '../src/format.mjs';
+import { spaced } from '../src/strand.mjs';
+import {
+  dimmed_unless,
+  layout,
+  legend_selection,
+  log_channel,
+  log_extent,
+  panels,
+  series_channels,
+  tooltips,
+  with_parameters,
+} from './common.mjs';
+import { series_style } from './palette.mjs';
+
+const claimed_s = 1e-5;
+const claimed_nodes = 200;
+
+const method_of = (row) =>
+  row.integrator +
+  (row.tangent === 'stiff' ? ', split' : '') +
+  (row.start === 'plane' ? ', in a plane' : '');
+
+const rows_of = (tables) =>
+  (tables.nodal_limit ?? [])
+    .filter((row) => is_positive(row.dt_max_s))
+    .map((row) => ({ ...row, method: method_of(row), dt_us: 1e6 * row.dt_max_s }));
+
+export function nodal_limit_findings(tables) {
+  const at = (tables.nodal_limit ?? []).filter((row) => row.elements === claimed_nodes);
+  return at.map((row) => {
+    const outcome =
+      row.at_claim === 'nothing'
+        ? 'stable'
+        : `breaks (${row.at_claim}) after ${format_time(row.t_claim_s)}`;
+    const limit = is_positive(row.dt_max_s)
+      ? `; largest stable step found ${format_time(row.dt_max_s)}`
+      : '';
+    return (
+      `${spaced(method_of(row))}, ${claimed_nodes} nodes at ${format_time(claimed_s)}: ` +
+      `${outcome}${limit}.`
+    );
+  });
+}
+
+export const nodal_limit = {
+  id: 'nodal_limit',
+  title: 'The step of a nodal scheme',
+  table: 'nodal_limit',
+  caption: `Largest stable step of finite differences of Kirchhoff's equations in curvatures
+    against the number of nodes, a straight hair of 10 cm let go horizontally. Split:
+    implicit in the terms of highest order only. The cross is the source's claim,
+    200 nodes at 10 µs. Made from nodal_limit.csv.`,
+
+  rows: rows_of,
+
+  spec(tables, { width, theme }) {
+    const rows = rows_of(tables);
+    const style = series_style(rows.map((row) => row.method));
+    const { columns, panel_width, legend } = layout(width, 1, {
+      columns_max: 1,
+      labels: style.domain,
+      above: true,
+    });
+    const sizes = distinct(rows.map((row) => row.elements)).sort((a, b) => a - b);
+    const x = log_channel('elements', 'nodes', { domain: [16, 250], ticks: sizes });
+    const y = log_channel(
+      'dt_us',
+      'largest stable step (µs)',
+      log_extent(rows.map((row) => row.dt_us), 7),
+    );
+    const series = series_channels('method', 'method', style, legend);
+    const opacity = dimmed_unless(['pick_method']);
+    const claim = [{ elements: claimed_nodes, dt_us: 1e6 * claimed_s }];
+    const plot = {
+      width: panel_width,
+      height: 320,
+      layer: [
+        {
+          data: { values: rows },
+          mark: { type: 'line', strokeWidth: 1.8 },
+          encoding: { x, y, ...series, shape: undefined, opacity },
+        },
+        {
+          data: { values: rows },
+          mark: { type: 'point', filled: true, size: 65 },
+          encoding: {
+            x,
+            y,
+            ...series,
+            strokeDash: undefined,
+            opacity,
+            tooltip: tooltips([
+              ['method', 'method'],
+              ['elements', 'nodes'],
+              ['dt_us', 'largest stable step (µs)', '.3g'],
+              ['at_claim', 'at 10 µs'],
+            ]),
+          },
+        },
+        {
+          data: { values: claim },
+          mark: {
+            type: 'point',
+            shape: 'cross',
+            filled: false,
+            size: 190,
+            strokeWidth: 2,
+            color: theme.text,
+          },
+          encoding: { x, y },
+        },
+      ],
+    };
+    return panels(
+      with_parameters([plot], [legend_selection('pick_method', 'method')]),
+      columns,
+    );
+  },
+
+  describe(tables) {
+    const rows = rows_of(tables);
+    return `Largest stable step in microseconds, log scale, against the number of nodes, for
+      ${distinct(rows.map((row) => row.method)).length} methods; the claimed point of 200 nodes
+      at 10 microseconds is marked.`;
+  },
+};

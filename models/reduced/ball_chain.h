@@ -1,0 +1,16 @@
+#pragma once
+
+#include "models/reduced/ball_link.h"
+#include "models/reduced/reduced_system.h"
+
+namespace tress {
+
+/// Chains of rigid links: compiled once, in articulated_chain.cpp.
+extern template class ReducedSystem<BallLink, 1>;
+extern template class ReducedSystem<BallLink, 2>;
+extern template class ReducedSystem<BallLink, 3>;
+extern template class ExactTangent<BallLink, 1>;
+extern template class ExactTangent<BallLink, 2>;
+extern template class ExactTangent<BallLink, 3>;
+
+}  // namespace tress
