@@ -66,7 +66,7 @@ function panel(rows, title, names, field, axis, { panel_width, legend, style }) 
     type: 'nominal',
     title: null,
     scale: { domain: names },
-    axis: { labelLimit: 200, grid: true },
+    axis: { labelLimit: 0, grid: true },
   };
   return {
     title,
