@@ -46,11 +46,9 @@ Relaxation::Relaxation(System& system, double tolerance)
 
 Status Relaxation::linearize(double t, In q) noexcept {
   const Pattern& pattern = constraints_.pattern();
-  for (std::size_t k = 0; k < g_.size(); ++k) {
-    stiffness_[k] = 0;
-  }
   if (const Status s = constraints_.gradient(t, q, values_); s != Status::ok) return s;
   for (std::size_t k = 0; k < g_.size(); ++k) {
+    stiffness_[k] = 0;
     for (auto at = size(pattern.start[k]); at < size(pattern.start[k + 1]); ++at) {
       stiffness_[k] += values_[at] * values_[at] * inverse_mass_[size(pattern.row[at])];
     }

@@ -204,3 +204,19 @@ export const tooltips = (fields) =>
     title,
     ...(format ? { type: 'quantitative', format } : { type: 'nominal' }),
   }));
+
+// Two layers: a line, and its points with their tooltips.
+export function marked_line(rows, { x, y, series, opacity, tooltip }) {
+  return [
+    {
+      data: { values: rows },
+      mark: { type: 'line', strokeWidth: 1.8 },
+      encoding: { x, y, ...series, shape: undefined, opacity },
+    },
+    {
+      data: { values: rows },
+      mark: { type: 'point', filled: true, size: 65 },
+      encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip },
+    },
+  ];
+}

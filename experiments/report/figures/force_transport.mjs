@@ -9,6 +9,7 @@ import {
   linear_channel,
   log_channel,
   log_extent,
+  marked_line,
   panels,
   series_channels,
   tooltips,
@@ -28,36 +29,22 @@ const rows_of = (tables) =>
     .map((row) => ({ ...row, method: spaced(row.model) }));
 
 function panel(rows, title, x, { panel_width, legend, style, y }) {
-  const series = series_channels('method', 'model', style, legend);
-  const opacity = dimmed_unless(['pick_method']);
   return {
     title,
     width: panel_width,
     height: 260,
-    layer: [
-      {
-        data: { values: rows },
-        mark: { type: 'line', strokeWidth: 1.8 },
-        encoding: { x, y, ...series, shape: undefined, opacity },
-      },
-      {
-        data: { values: rows },
-        mark: { type: 'point', filled: true, size: 65 },
-        encoding: {
-          x,
-          y,
-          ...series,
-          strokeDash: undefined,
-          opacity,
-          tooltip: tooltips([
-            ['method', 'model'],
-            ['elements', 'elements'],
-            ['t_s', 'time (s)'],
-            ['rod_difference_rel', "off the rod's tip, over the length", '.3g'],
-          ]),
-        },
-      },
-    ],
+    layer: marked_line(rows, {
+      x,
+      y,
+      series: series_channels('method', 'model', style, legend),
+      opacity: dimmed_unless(['pick_method']),
+      tooltip: tooltips([
+        ['method', 'model'],
+        ['elements', 'elements'],
+        ['t_s', 'time (s)'],
+        ['rod_difference_rel', "off the rod's tip, over the length", '.3g'],
+      ]),
+    }),
   };
 }
 

@@ -8,6 +8,7 @@ import {
   legend_selection,
   log_channel,
   log_extent,
+  marked_line,
   panels,
   series_channels,
   tooltips,
@@ -71,35 +72,23 @@ export const nodal_limit = {
       'largest stable step (µs)',
       log_extent(rows.map((row) => row.dt_us), 7),
     );
-    const series = series_channels('method', 'method', style, legend);
-    const opacity = dimmed_unless(['pick_method']);
     const claim = [{ elements: claimed_nodes, dt_us: 1e6 * claimed_s }];
     const plot = {
       width: panel_width,
       height: 320,
       layer: [
-        {
-          data: { values: rows },
-          mark: { type: 'line', strokeWidth: 1.8 },
-          encoding: { x, y, ...series, shape: undefined, opacity },
-        },
-        {
-          data: { values: rows },
-          mark: { type: 'point', filled: true, size: 65 },
-          encoding: {
-            x,
-            y,
-            ...series,
-            strokeDash: undefined,
-            opacity,
-            tooltip: tooltips([
-              ['method', 'method'],
-              ['elements', 'nodes'],
-              ['dt_us', 'largest stable step (µs)', '.3g'],
-              ['at_claim', 'at 10 µs'],
-            ]),
-          },
-        },
+        ...marked_line(rows, {
+          x,
+          y,
+          series: series_channels('method', 'method', style, legend),
+          opacity: dimmed_unless(['pick_method']),
+          tooltip: tooltips([
+            ['method', 'method'],
+            ['elements', 'nodes'],
+            ['dt_us', 'largest stable step (µs)', '.3g'],
+            ['at_claim', 'at 10 µs'],
+          ]),
+        }),
         {
           data: { values: claim },
           mark: {
