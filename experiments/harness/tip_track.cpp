@@ -53,7 +53,8 @@ class TipSamples {
   };
 
   double next() const {
-    return t_end_ * (static_cast<double>(tips.size() / 3 + 1) / count_);
+    const std::size_t taken = tips.size() / 3;
+    return t_end_ * (static_cast<double>(taken + 1) / count_);
   }
 
   End read(double t, In q, In v) {
