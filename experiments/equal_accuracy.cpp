@@ -3,16 +3,19 @@
 // 1 % of the continuous rod, with what lengths, momentum and energy do in that run.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/harness/cheapest_run.h"
+#include "experiments/harness/drift_monitor.h"
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/formulations.h"
 #include "experiments/harness/model_variants.h"
+#include "experiments/harness/momentum_drift.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/strand_reference.h"
 #include "experiments/harness/strand_scenes.h"
@@ -104,12 +107,6 @@ struct Work {
   }
 };
 
-double size_of(const std::array<double, 3>& x) { return std::hypot(x[0], x[1], x[2]); }
-double distance(std::array<double, 3> x, const std::array<double, 3>& y) {
-  for (std::size_t i = 0; i < 3; ++i) x[i] -= y[i];
-  return size_of(x);
-}
-
 std::optional<CheapRun> attempt(const Work& work, int elements, double dt) {
   const auto system = work.make(elements);
   TipRun run;
@@ -125,40 +122,29 @@ std::optional<CheapRun> attempt(const Work& work, int elements, double dt) {
 
 /// What the run does to lengths, momentum and energy.
 void observe(const Work& work, const CheapRun& best, Row& row) {
+  constexpr double never = std::numeric_limits<double>::infinity();
   const auto system = work.make(best.elements);
   const State start = initial_state(*system);
-  Energetics& energetics = *system->energetics();
-  Momentum before, now;
-  const bool free =
-      work.scene->root == "free" && energetics.momentum(0, start.q, start.v, before);
-  const Energy at_start = energetics.energy(0, start.q, start.v);
-  double kinetic = at_start.kinetic, off = 0, linear = 0, angular = 0, longest = 0;
-  bool knows_lengths = true;
-  const Simulation run =
-      simulate(work.integrator, *system, work.at(best.dt), start, t_end,
-               [&](double t, In q, In v) {
-                 const Energy e = energetics.energy(t, q, v);
-                 kinetic = std::max(kinetic, e.kinetic);
-                 off = std::max(off, std::abs(e.total() - at_start.total()));
-                 double stretch = 0;
-                 knows_lengths = system->material_points()->stretch(t, q, stretch);
-                 longest = std::max(longest, stretch);
-                 if (!free) return true;
-                 energetics.momentum(t, q, v, now);
-                 linear = std::max(linear, distance(now.linear, before.linear));
-                 angular = std::max(angular, distance(now.angular, before.angular));
-                 return true;
-               });
+  DriftMonitor drift(*system, start.q, start.v, never);
+  std::optional<MomentumDrift> momentum;
+  if (work.scene->root == "free") {
+    momentum.emplace(*system->energetics(), start.q, start.v);
+  }
+  const Simulation run = simulate(work.integrator, *system, work.at(best.dt), start,
+                                  t_end, [&](double t, In q, In v) {
+                                    if (momentum) momentum->see(t, q, v);
+                                    return drift(t, q, v);
+                                  });
   if (run.status != Status::ok) {
     row.failed("solver_error", run.failure);
     return;
   }
-  if (knows_lengths) row.set("length_error_rel", longest);
-  row.set("energy_error_rel", off / kinetic);
-  if (!free) return;
-  const Strand made = strand(work.parameters);
-  row.set("linear_error_rel", linear / (made.mass() * fall));
-  row.set("angular_error_rel", angular / size_of(before.angular));
+  row.set("length_error_rel", drift.length_error());
+  row.set("energy_error_rel", drift.energy_drift());
+  if (!momentum) return;
+  row.set("linear_error_rel",
+          momentum->linear() / (strand(work.parameters).mass() * fall));
+  row.set("angular_error_rel", momentum->angular() / momentum->angular_start());
 }
 
 void measure(const Work& work, const Deadline& deadline, Row& row) {
@@ -195,10 +181,8 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
 Parameters parameters(const Settings& settings, const Scene& scene,
                       const ModelVariant& variant) {
   Parameters p = settings.parameters(*variant.model);
-  for (const auto& [key, value] : known_to(*variant.model, scene.settings)) {
-    p.set(key, value);
-  }
-  for (const auto& [key, value] : variant.settings) p.set(key, value);
+  set_known(p, scene.settings);
+  set_known(p, variant.settings);
   return p;
 }
 

@@ -1,13 +1,13 @@
 // What does an integrator do to momentum and energy that no force changes? A hair thrown
 // in space without gravity, spinning, by every strand model whose root can be free.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/formulations.h"
+#include "experiments/harness/momentum_drift.h"
 #include "experiments/harness/settings.h"
 #include "experiments/harness/strand_models.h"
 #include "integrators/catalogue.h"
@@ -32,14 +32,6 @@ constexpr Column columns[] = {
 
 constexpr double t_end = 0.5;        // s: three quarters of a turn
 constexpr double energy_bound = 10;  // times the start's: diverged
-
-using Three = std::array<double, 3>;
-
-double norm(const Three& x) { return std::hypot(x[0], x[1], x[2]); }
-double distance(Three x, const Three& y) {
-  for (std::size_t i = 0; i < 3; ++i) x[i] -= y[i];
-  return norm(x);
-}
 
 Parameters thrown(const Settings& settings, const ModelEntry& model, int elements) {
   Parameters p = settings.parameters(model);
@@ -68,18 +60,15 @@ void measure(const Work& work, Row& row) {
   const auto system = work.model->make(work.parameters);
   const State start = initial_state(*system);
   Energetics& energetics = *system->energetics();
-  Momentum before, now;
-  energetics.momentum(0, start.q, start.v, before);
+  MomentumDrift momentum(energetics, start.q, start.v);
   const double energy = energetics.energy(0, start.q, start.v).total();
-  double linear = 0, angular = 0, total = energy;
-  const Simulation run = simulate(
-      work.integrator, *system, work.options, start, t_end, [&](double t, In q, In v) {
-        energetics.momentum(t, q, v, now);
-        total = energetics.energy(t, q, v).total();
-        linear = std::max(linear, distance(now.linear, before.linear));
-        angular = std::max(angular, distance(now.angular, before.angular));
-        return std::abs(total) <= energy_bound * energy;
-      });
+  double total = energy;
+  const Simulation run = simulate(work.integrator, *system, work.options, start, t_end,
+                                  [&](double t, In q, In v) {
+                                    momentum.see(t, q, v);
+                                    total = energetics.energy(t, q, v).total();
+                                    return std::abs(total) <= energy_bound * energy;
+                                  });
   row.set("t_end_s", run.t).set("steps", run.stats.steps);
   if (!(std::abs(total) <= energy_bound * energy)) {
     row.failed("diverged", "energy beyond ten times that of the start");
@@ -89,9 +78,9 @@ void measure(const Work& work, Row& row) {
     row.failed("solver_error", run.failure);
     return;
   }
-  row.set("linear_error_rel", linear / norm(before.linear));
-  row.set("angular_error_rel", angular / norm(before.angular));
-  row.set("angular_change_rel", norm(now.angular) / norm(before.angular) - 1);
+  row.set("linear_error_rel", momentum.linear() / momentum.linear_start());
+  row.set("angular_error_rel", momentum.angular() / momentum.angular_start());
+  row.set("angular_change_rel", momentum.angular_now() / momentum.angular_start() - 1);
   row.set("energy_change_rel", total / energy - 1);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "integrators/formulation/relaxation.h"
 #include "integrators/methods.h"
 #include "integrators/sundials/factories.h"
 #include "models/input_error.h"
@@ -35,22 +36,8 @@ std::string constant_mass(System& system, Formulation) {
 }
 
 /// Constraints met one by one weigh coordinates, not directions.
-std::string diagonal_mass(System& system, Formulation formulation) {
-  SparseForm* form = system.sparse_form();
-  const Pattern& pattern = form->pattern();
-  std::vector<double> q(static_cast<std::size_t>(pattern.cols)), v(q), a(q);
-  std::vector<double> mass(static_cast<std::size_t>(pattern.nonzeros()));
-  system.initial_state(q, v);
-  if (form->values(0, q, v, a, {1, 0, 0}, mass) != Status::ok) {
-    return "needs a mass matrix at the initial state";
-  }
-  std::size_t at = 0;
-  for (int column = 0; column < pattern.cols; ++column) {
-    for (; at < static_cast<std::size_t>(pattern.start[column + 1]); ++at) {
-      if (mass[at] != 0 && pattern.row[at] != column)
-        return "needs a diagonal mass matrix";
-    }
-  }
+std::string weighs_coordinates(System& system, Formulation formulation) {
+  if (!diagonal_mass(system)) return "needs a diagonal mass matrix";
   return constant_mass(system, formulation);
 }
 
@@ -76,7 +63,7 @@ constexpr std::array table{
     IntegratorEntry{"velocity_verlet", "order 2, symplectic, conditionally stable", "Swope 1982", 2, false, one_step_ode, inverts_mass, make_velocity_verlet},
     IntegratorEntry{"rk4", "order 4, conditionally stable", "Kutta 1901", 4, false, one_step_ode, inverts_mass, make_rk4},
     IntegratorEntry{"rattle", "order 2, symplectic, exact constraints", "Andersen 1983", 2, false, rattle_only, constant_mass, make_rattle},
-    IntegratorEntry{"predictor_corrector", "order 1, lengths corrected between two implicit half steps", "Kim 2010; Provot 1995; Bridson 2002", 1, false, correction_only, diagonal_mass, make_predictor_corrector},
+    IntegratorEntry{"predictor_corrector", "order 1, lengths corrected between two implicit half steps", "Kim 2010; Provot 1995; Bridson 2002", 1, false, correction_only, weighs_coordinates, make_predictor_corrector},
     IntegratorEntry{"semi_implicit_euler", "order 1, one linear solve, strong damping", "Baraff-Witkin 1998", 1, false, implicit_dae, any, make_semi_implicit_euler},
     IntegratorEntry{"backward_euler", "order 1, L-stable, strong damping", "Hairer-Wanner IV.3", 1, false, implicit_dae, any, make_backward_euler},
     IntegratorEntry{"implicit_midpoint", "order 2, A-stable, no damping, symplectic", "Gauss 1 stage", 2, false, one_step_ode, any, make_implicit_midpoint},

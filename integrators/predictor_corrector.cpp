@@ -1,10 +1,7 @@
-#include <algorithm>
-
 #include "integrators/fixed_step.h"
 #include "integrators/formulation/relaxation.h"
 #include "integrators/methods.h"
-#include "integrators/stage.h"
-#include "integrators/vector_ops.h"
+#include "integrators/semi_implicit_step.h"
 
 namespace tress {
 namespace {
@@ -24,46 +21,40 @@ class PredictorCorrector final : public FixedStep {
  public:
   PredictorCorrector(System& system, const Options& options)
       : FixedStep(system, options),
-        stage_(dynamics_, options),
+        filter_(dynamics_, options),
         relaxation_(system, options.correction_tolerance),
-        a_(vector_n()),
-        a_last_(vector_n()),
-        q_bar_(vector_n()) {}
+        predicted_(vector_n()) {}
 
  private:
   Status reset(double /*t*/) override {
-    std::ranges::fill(a_, 0.0);
+    filter_.reset();
     return Status::ok;
   }
 
   /// v_ += h/2 a(q_, v_), from time t on.
   Status filter(double t, double h) {
-    shifted(q_bar_, q_, h / 2, v_);
-    std::swap(a_, a_last_);
-    std::ranges::fill(a_, 0.0);
-    const Status s =
-        stage_.single_step(t + h / 2, q_bar_, v_, {1, h / 2, h * h / 4}, a_last_, a_, {});
-    add(v_, h / 2, a_);
+    const Status s = filter_.take(t, h / 2, q_, v_, {});
+    std::ranges::copy(filter_.v(), v_.begin());
     return s;
   }
 
   Status step(double t, double h) override {
     if (const Status s = filter(t, h); s != Status::ok) return s;
     add(q_, h, v_);
-    q_bar_ = q_;
+    predicted_ = q_;
     const long before = relaxation_.sweeps();
     const Status corrected = relaxation_.positions(t + h, q_);
     dynamics_.stats.sweeps += relaxation_.sweeps() - before;
     if (corrected != Status::ok) return corrected;
     if (options_.correction == Correction::impulse) {
-      for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += (q_[i] - q_bar_[i]) / h;
+      for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += (q_[i] - predicted_[i]) / h;
     }
     return options_.second_filter ? filter(t + h, h) : Status::ok;
   }
 
-  Stage stage_;
+  SemiImplicitStep filter_;
   Relaxation relaxation_;
-  std::vector<double> a_, a_last_, q_bar_;
+  std::vector<double> predicted_;
 };
 
 }  // namespace

@@ -158,11 +158,9 @@ void add_strands(const CommandLine& line, const Settings& user,
   const StrandScene& scene = find_strand_scene("shake");
   for (const ModelVariant& variant : length_variants()) {
     Parameters parameters = user.parameters(*variant.model);
-    for (const auto& [key, value] : known_to(*variant.model, scene.settings)) {
-      parameters.set(key, value);
-    }
+    set_known(parameters, scene.settings);
     if (!user.chosen("elements")) parameters.set("elements", "20");
-    for (const auto& [key, value] : variant.settings) parameters.set(key, value);
+    set_known(parameters, variant.settings);
     const auto system = variant.model->make(parameters);
     for (const std::string_view id : usual) {
       const IntegratorEntry& entry = find_integrator(id);

@@ -45,6 +45,12 @@ void set_known(
   }
 }
 
+void set_known(Parameters& parameters, const ModelSettings& settings) {
+  for (const auto& [key, value] : settings) {
+    if (parameters.knows(key)) parameters.set(key, value);
+  }
+}
+
 ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings) {
   ModelSettings known;
   for (const auto& [key, value] : settings) {

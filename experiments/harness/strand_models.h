@@ -27,6 +27,8 @@ void set_known(
     Parameters& parameters,
     std::initializer_list<std::pair<std::string_view, std::string_view>> settings);
 
+void set_known(Parameters& parameters, const ModelSettings& settings);
+
 /// The settings whose keys the model knows.
 ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings);
 

@@ -101,8 +101,8 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
     seen.step_to(t, q, v);
     return true;
   });
-  const double wall =
-      repeat > 0 ? time_run(repeat, [&] { static_cast<void>(run({})); }) : 0;
+  const bool timed = repeat > 0 && status == Status::ok;
+  const double wall = timed ? time_run(repeat, [&] { static_cast<void>(run({})); }) : 0;
   return {status, method->failure(), method->stats(), wall, std::move(seen.tips)};
 }
 

@@ -20,8 +20,8 @@ struct TipRun {
 /// Runs to t_end and gives the position of the last material point at t_end k / samples,
 /// k = 1 .. samples. Steps do not land on these times: in between, the tip is on the
 /// cubic through its places and velocities at both ends of a step, whose error falls as
-/// the fourth power of the step. repeat = 0: one run, not timed; else the median, as
-/// time_run.
+/// the fourth power of the step. repeat = 0, or a failure: one run, not timed; else the
+/// median, as time_run.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat = 0);
 

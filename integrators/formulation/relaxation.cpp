@@ -19,6 +19,25 @@ std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 }  // namespace
 
+std::optional<std::vector<double>> diagonal_mass(System& system) {
+  SparseForm& form = *system.sparse_form();
+  const Pattern& pattern = form.pattern();
+  const std::size_t n = size(pattern.cols);
+  std::vector<double> q(n), v(n), a(n), diagonal(n), mass(size(pattern.nonzeros()));
+  system.initial_state(q, v);
+  if (form.values(0, q, v, a, {1, 0, 0}, mass) != Status::ok) return {};
+  for (std::size_t j = 0; j < n; ++j) {
+    for (auto at = size(pattern.start[j]); at < size(pattern.start[j + 1]); ++at) {
+      if (size(pattern.row[at]) == j) {
+        diagonal[j] = mass[at];
+      } else if (mass[at] != 0) {
+        return {};
+      }
+    }
+  }
+  return diagonal;
+}
+
 Relaxation::Relaxation(System& system, double tolerance)
     : constraints_(*system.constraint_form()),
       tolerance_(tolerance),
@@ -31,16 +50,10 @@ Relaxation::Relaxation(System& system, double tolerance)
   const double m = static_cast<double>(g_.size());
   factor_ = 2 / (1 + std::sin(std::numbers::pi / (2 * m + 1)));
   constraints_.scale(g_typ_);
-  SparseForm& form = *system.sparse_form();
-  const Pattern& pattern = form.pattern();
-  std::vector<double> q(step_), v(step_), a(step_), mass(size(pattern.nonzeros()));
-  system.initial_state(q, v);
-  // A diagonal that cannot be had is 0 and holds its coordinate.
-  if (form.values(0, q, v, a, {1, 0, 0}, mass) != Status::ok) return;
-  for (std::size_t j = 0; j < step_.size(); ++j) {
-    for (auto at = size(pattern.start[j]); at < size(pattern.start[j + 1]); ++at) {
-      if (size(pattern.row[at]) == j && mass[at] > 0) inverse_mass_[j] = 1 / mass[at];
-    }
+  // Without a mass a coordinate is held.
+  const std::vector<double> mass = diagonal_mass(system).value_or(inverse_mass_);
+  for (std::size_t j = 0; j < mass.size(); ++j) {
+    if (mass[j] > 0) inverse_mass_[j] = 1 / mass[j];
   }
 }
 

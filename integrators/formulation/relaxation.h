@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "integrators/integrator.h"
 
 namespace tress {
+
+/// Of M at the start; nothing where M is not diagonal or cannot be had.
+std::optional<std::vector<double>> diagonal_mass(System& system);
 
 /// Moves positions onto g = 0 constraint after constraint, each by its share of the
 /// masses, again and again until all hold: successive relaxation. A sweep applies, in the
