@@ -4,7 +4,9 @@
 #include <span>
 #include <string_view>
 
+#include "models/effects/effect.h"
 #include "models/parameters.h"
+#include "models/strand/strand.h"
 #include "models/system.h"
 
 namespace tress {
@@ -17,6 +19,11 @@ struct ModelEntry {
   std::string_view source;   // author year, or test set
   std::span<const Parameter> parameters;
   std::unique_ptr<System> (*make)(const Parameters&);
+  /// Of models of a strand: the model on any strand under any effects. Of the parameters
+  /// it reads those that models do not share (models/strand/strand_parameters.h). Null:
+  /// the model brings its own geometry.
+  std::unique_ptr<System> (*on_strand)(const Strand&, const Parameters&,
+                                       Effects) = nullptr;
 };
 
 std::span<const ModelEntry> models();

@@ -41,6 +41,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 double parse_number(const Parameter& declared, std::string_view text,
                     const std::string& where) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
   double x = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
   const std::string name(declared.name);
@@ -51,13 +53,43 @@ double parse_number(const Parameter& declared, std::string_view text,
   if (x < declared.min || x > declared.max) {
     throw InputError(name + " = " + std::string(text) + " is out of range", where,
                      "give a number between " + shortest(declared.min) + " and " +
-                         shortest(declared.max));
+                         shortest(declared.max) + ": " + std::string(declared.help));
   }
   if (declared.whole && x != std::floor(x)) {
     throw InputError(name + " = " + std::string(text) + " is not a whole number", where,
                      "give a whole number: " + std::string(declared.help));
   }
   return x;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end != std::string_view::npos) text.remove_prefix(end + 1);
+  }
+  return parts;
+}
+
+std::vector<double> parse_numbers(const Parameter& declared, std::string_view text,
+                                  const std::string& where) {
+  std::vector<double> all;
+  if (declared.rows && text.empty()) return all;
+  const auto rows = declared.rows ? split(text, ';') : std::vector{text};
+  for (const std::string_view row : rows) {
+    const auto parts = declared.components > 1 ? split(row, ',') : std::vector{row};
+    if (parts.size() != static_cast<std::size_t>(declared.components)) {
+      throw InputError(std::string(declared.name) + " has " +
+                           std::to_string(parts.size()) + " numbers instead of " +
+                           std::to_string(declared.components),
+                       where, "give " + std::string(declared.help));
+    }
+    for (const std::string_view part : parts) {
+      all.push_back(parse_number(declared, part, where));
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -87,11 +119,23 @@ std::string_view nearest(std::string_view word,
   return best;
 }
 
+std::string Parameter::default_text() const {
+  if (!choices.empty()) return std::string(choices.substr(0, choices.find('|')));
+  if (text || rows || components > 1) return std::string(fallback);
+  return shortest(number);
+}
+
 Parameters::Parameters(std::span<const Parameter> declared, std::string where)
-    : declared_(declared), where_(std::move(where)) {
-  for (const Parameter& p : declared_) {
-    const std::string_view first = p.choices.substr(0, p.choices.find('|'));
-    values_.push_back({p.number, std::string(first)});
+    : declared_(declared), values_(declared.size()), where_(std::move(where)) {
+  for (std::size_t i = 0; i < declared.size(); ++i) {
+    const Parameter& p = declared[i];
+    if (p.text || !p.choices.empty()) {
+      values_[i].word = p.default_text();
+    } else if (p.rows || p.components > 1) {
+      values_[i].numbers = parse_numbers(p, p.fallback, where_);
+    } else {
+      values_[i].numbers = {p.number};
+    }
   }
 }
 
@@ -100,43 +144,52 @@ bool Parameters::knows(std::string_view key) const {
                      [key](const Parameter& p) { return p.name == key; });
 }
 
-std::size_t Parameters::index(std::string_view key) const {
+std::size_t Parameters::index(std::string_view key, const std::string& where) const {
   for (std::size_t i = 0; i < declared_.size(); ++i) {
     if (declared_[i].name == key) return i;
   }
   std::vector<std::string_view> names;
   for (const Parameter& p : declared_) names.push_back(p.name);
   const std::string_view near = nearest(key, names);
-  throw InputError("unknown key '" + std::string(key) + "'", where_,
+  throw InputError("unknown key '" + std::string(key) + "'", where,
                    near.empty() ? "use one of: " + join(names)
                                 : "did you mean '" + std::string(near) + "'?");
 }
 
 void Parameters::set(std::string_view key, std::string_view value) {
-  const std::size_t i = index(key);
+  set(key, value, where_);
+}
+
+void Parameters::set(std::string_view key, std::string_view value,
+                     const std::string& where) {
+  const std::size_t i = index(key, where);
   const Parameter& declared = declared_[i];
-  if (declared.choices.empty()) {
-    values_[i].number = parse_number(declared, value, where_);
+  if (!declared.text && declared.choices.empty()) {
+    values_[i].numbers = parse_numbers(declared, value, where);
     return;
   }
   const auto words = words_of(declared.choices);
-  if (std::find(words.begin(), words.end(), value) == words.end()) {
+  if (!declared.text && std::find(words.begin(), words.end(), value) == words.end()) {
     throw InputError(std::string(key) + " = '" + std::string(value) + "' is unknown",
-                     where_, "use one of: " + join(words));
+                     where, "use one of: " + join(words));
   }
   values_[i].word = value;
 }
 
-double Parameters::number(std::string_view key) const {
-  return values_[index(key)].number;
-}
+double Parameters::number(std::string_view key) const { return value(key).numbers[0]; }
 
 int Parameters::whole(std::string_view key) const {
-  return static_cast<int>(values_[index(key)].number);
+  return static_cast<int>(number(key));
 }
 
-std::string_view Parameters::word(std::string_view key) const {
-  return values_[index(key)].word;
+std::string_view Parameters::word(std::string_view key) const { return value(key).word; }
+
+Vec Parameters::vec(std::string_view key) const {
+  return load3(value(key).numbers.data());
+}
+
+std::span<const double> Parameters::numbers(std::string_view key) const {
+  return value(key).numbers;
 }
 
 }  // namespace tress

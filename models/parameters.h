@@ -6,10 +6,17 @@
 #include <string_view>
 #include <vector>
 
+#include "models/math/vec3.h"
+
 namespace tress {
 
-/// Declares one parameter of a catalogue entry. `choices` non-empty: a word out of that
-/// list (separated by '|'); otherwise a number in [min, max], whole when `whole`.
+/// Declares one parameter of a catalogue entry: a number in [min, max], whole when
+/// `whole`, unless
+///
+///     choices is set     a word out of that list, separated by '|'
+///     components > 1     that many such numbers, "x,y,z"
+///     rows               any number of such tuples, "x,y,z;x,y,z"; may be empty
+///     text               any text: a file, a name
 struct Parameter {
   std::string_view name;
   std::string_view help;  // with unit
@@ -18,6 +25,13 @@ struct Parameter {
   double max = std::numeric_limits<double>::infinity();
   bool whole = false;
   std::string_view choices = {};  // first one is the default
+  int components = 1;
+  bool rows = false;
+  bool text = false;
+  std::string_view fallback = {};  // the default of components, rows and text
+
+  /// The default as set() would take it.
+  std::string default_text() const;
 };
 
 /// Values for one entry's declared parameters: the defaults, then what the user set.
@@ -29,18 +43,24 @@ class Parameters {
   /// Throws InputError on an unknown key, a malformed or non-finite number, a number out
   /// of range or a word not among the choices; the message lists what would be accepted.
   void set(std::string_view key, std::string_view value);
+  /// The same, `where` (file:line:column) instead of the owner in messages.
+  void set(std::string_view key, std::string_view value, const std::string& where);
   bool knows(std::string_view key) const;
 
   double number(std::string_view key) const;
   int whole(std::string_view key) const;
-  std::string_view word(std::string_view key) const;
+  std::string_view word(std::string_view key) const;  // of choices, or text
+  Vec vec(std::string_view key) const;                // of three components
+  /// Components of all rows, one row after the other.
+  std::span<const double> numbers(std::string_view key) const;
 
  private:
   struct Value {
-    double number = 0;
+    std::vector<double> numbers;
     std::string word;
   };
-  std::size_t index(std::string_view key) const;
+  std::size_t index(std::string_view key, const std::string& where) const;
+  const Value& value(std::string_view key) const { return values_[index(key, where_)]; }
 
   std::span<const Parameter> declared_;
   std::vector<Value> values_;

@@ -161,6 +161,16 @@ class MaterialPoints {
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
   /// Largest |length/rest - 1| of a piece of the body. False: the model does not say.
   virtual bool stretch(double, In, double&) { return false; }
+
+  /// Point i as a mean of coordinates and a prescribed part,
+  /// x_i = prescribed(t) + sum_k weight_k (q[c_k], q[c_k + 1], q[c_k + 2]).
+  struct Mean {
+    int count = 0;
+    std::array<int, 4> coordinate{};  // c_k
+    std::array<double, 4> weight{};
+  };
+  /// Fixed for life. False: points are not linear in the coordinates.
+  virtual bool mean(int /*point*/, Mean&) { return false; }
 };
 
 /// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing
@@ -184,6 +194,11 @@ class System {
 
   /// Forgets every accept(): coordinates mean again what initial_state() means by them.
   virtual void reset() {}
+
+  /// All that accept() has changed since reset(); recall() gives it to a system made
+  /// alike, which then continues as this one would.
+  virtual std::vector<double> memory() const { return {}; }
+  virtual void recall(In /*memory*/) {}
 
   // Optional forms, null when absent; asked for once.
   virtual SparseForm* sparse_form() { return nullptr; }

@@ -5,6 +5,23 @@
 #include "models/input_error.h"
 
 namespace tress {
+namespace {
+
+constexpr Parameter parameters_of_gravity[] = {{.name = "acceleration_m_s2",
+                                                .help = "acceleration x, y, z (m/s^2)",
+                                                .min = -1e6,
+                                                .max = 1e6,
+                                                .components = 3,
+                                                .fallback = "0,0,-9.81"}};
+
+}  // namespace
+
+std::span<const Parameter> gravity_parameters() { return parameters_of_gravity; }
+
+std::unique_ptr<const Effect> make_gravity(const Parameters& parameters,
+                                           const RootMotion&) {
+  return std::make_unique<Gravity>(parameters.vec("acceleration_m_s2"));
+}
 
 Gravity::Gravity(Vec acceleration) : g_(acceleration) {
   if (!std::isfinite(dot(g_, g_))) {

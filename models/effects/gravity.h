@@ -3,6 +3,7 @@
 #include "models/effects/effect.h"
 #include "models/math/vec3.h"
 #include "models/parameters.h"
+#include "models/strand/root_motion.h"
 
 namespace tress {
 
@@ -12,6 +13,8 @@ inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
                                              .number = 9.81,
                                              .min = 0,
                                              .max = 1e6};
+
+std::span<const Parameter> gravity_parameters();
 
 /// Uniform gravity: f = m g per point, potential energy -m g.x (zero at the origin).
 /// Reads mass and, for the potential only, position. O(points).
@@ -32,5 +35,8 @@ class Gravity final : public Effect {
  private:
   Vec g_;
 };
+
+std::unique_ptr<const Effect> make_gravity(const Parameters& parameters,
+                                           const RootMotion& head);
 
 }  // namespace tress

@@ -8,9 +8,29 @@
 namespace tress {
 namespace {
 
+constexpr Parameter parameters_of_drag[] = {
+    {.name = "nu_kg_m_s",
+     .help = "force per length and velocity, of a hair in air 1e-6 to 1e-4 (kg/(m s))",
+     .number = 2e-5,
+     .min = 0,
+     .max = 1e6},
+    {.name = "mass_damping_1_s",
+     .help = "force per mass and velocity (1/s)",
+     .number = 0,
+     .min = 0,
+     .max = 1e6}};
+
 bool finite_and_not_negative(double x) { return std::isfinite(x) && x >= 0; }
 
 }  // namespace
+
+std::span<const Parameter> linear_drag_parameters() { return parameters_of_drag; }
+
+std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
+                                               const RootMotion&) {
+  return std::make_unique<LinearDrag>(parameters.number("nu_kg_m_s"),
+                                      parameters.number("mass_damping_1_s"));
+}
 
 LinearDrag::LinearDrag(double nu, double mass_damping)
     : nu_(nu), mass_damping_(mass_damping) {

@@ -1,8 +1,12 @@
 #pragma once
 
 #include "models/effects/effect.h"
+#include "models/parameters.h"
+#include "models/strand/root_motion.h"
 
 namespace tress {
+
+std::span<const Parameter> linear_drag_parameters();
 
 /// Viscous drag of still air on a thin strand and damping in proportion to mass: f = -r v
 /// per point with r = nu l + c m, l the strand length (m) and m the mass (kg) that the
@@ -29,5 +33,8 @@ class LinearDrag final : public Effect {
   double nu_;            // kg/(m s)
   double mass_damping_;  // 1/s
 };
+
+std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
+                                               const RootMotion& head);
 
 }  // namespace tress

@@ -38,6 +38,14 @@ inline Frame rotation(const Vec& axis, double angle) {
   return {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})};
 }
 
+/// As nine numbers, axis by axis.
+inline void store9(const Frame& f, double* p) {
+  store3(f.e0, p);
+  store3(f.e1, p + 3);
+  store3(f.e2, p + 6);
+}
+inline Frame load9(const double* p) { return {load3(p), load3(p + 3), load3(p + 6)}; }
+
 /// Whether the axes have length 1, are orthogonal (both to 1e-12, false on NaN) and
 /// right-handed.
 bool is_rotation(const Frame& frame);

@@ -50,13 +50,14 @@ std::span<const Parameter> corde_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_corde(const Parameters& parameters) {
-  return corde(strand(parameters),
+std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& parameters,
+                                   Effects effects) {
+  return corde(strand,
                {.coupling = parameters.number("coupling"),
                 .norm = parameters.number("norm"),
                 .stretch_friction = parameters.number("stretch_friction_n_s"),
                 .solver = maximal_solver(parameters)},
-               strand_effects(parameters));
+               std::move(effects));
 }
 
 }  // namespace tress

@@ -51,6 +51,7 @@ std::unique_ptr<System> corde(const Strand& strand, const CordeOptions& options,
                               Effects effects);
 
 std::span<const Parameter> corde_parameters();
-std::unique_ptr<System> make_corde(const Parameters& parameters);
+std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& parameters,
+                                   Effects effects);
 
 }  // namespace tress

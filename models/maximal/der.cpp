@@ -55,13 +55,14 @@ std::span<const Parameter> der_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_der(const Parameters& parameters) {
+std::unique_ptr<System> make_der(const Strand& strand, const Parameters& parameters,
+                                 Effects effects) {
   DerOptions options;
   options.inextensible = parameters.word("stretch") == "inextensible";
   options.quasi_static_twist = parameters.word("twist") == "quasi_static";
   options.tangent = tangent_choice(parameters);
   options.solver = maximal_solver(parameters);
-  return der(strand(parameters), options, strand_effects(parameters));
+  return der(strand, options, std::move(effects));
 }
 
 }  // namespace tress

@@ -42,6 +42,7 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
                             Effects effects);
 
 std::span<const Parameter> der_parameters();
-std::unique_ptr<System> make_der(const Parameters& parameters);
+std::unique_ptr<System> make_der(const Strand& strand, const Parameters& parameters,
+                                 Effects effects);
 
 }  // namespace tress

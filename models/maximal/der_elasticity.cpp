@@ -278,4 +278,18 @@ bool DerElasticity::rebase(InOut z, InOut rate) {
   return moved;
 }
 
+std::vector<double> DerElasticity::memory() const {
+  std::vector<double> references(9 * edge_data_.size());
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    store9(edge_data_[i].reference, &references[9 * i]);
+  }
+  return references;
+}
+
+void DerElasticity::recall(In memory) {
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    edge_data_[i].reference = load9(&memory[9 * i]);
+  }
+}
+
 }  // namespace tress

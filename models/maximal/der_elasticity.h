@@ -28,6 +28,8 @@ class DerElasticity final : public Elasticity {
   double power(const Placement& p) noexcept override;
   bool rebase(InOut z, InOut rate) override;
   void reset() override { edge_data_ = edges_at_start_; }
+  std::vector<double> memory() const override;
+  void recall(In memory) override;
 
  private:
   struct Edge {

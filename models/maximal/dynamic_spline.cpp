@@ -120,9 +120,11 @@ std::span<const Parameter> dynamic_spline_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_dynamic_spline(const Parameters& parameters) {
-  return dynamic_spline(strand(parameters), {.solver = maximal_solver(parameters)},
-                        strand_effects(parameters));
+std::unique_ptr<System> make_dynamic_spline(const Strand& strand,
+                                            const Parameters& parameters,
+                                            Effects effects) {
+  return dynamic_spline(strand, {.solver = maximal_solver(parameters)},
+                        std::move(effects));
 }
 
 }  // namespace tress

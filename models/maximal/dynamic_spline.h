@@ -42,6 +42,8 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
                                        Effects effects);
 
 std::span<const Parameter> dynamic_spline_parameters();
-std::unique_ptr<System> make_dynamic_spline(const Parameters& parameters);
+std::unique_ptr<System> make_dynamic_spline(const Strand& strand,
+                                            const Parameters& parameters,
+                                            Effects effects);
 
 }  // namespace tress

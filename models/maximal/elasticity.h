@@ -50,7 +50,9 @@ class Elasticity {
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True: the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
-  virtual void reset() {}  // forgets every rebase()
+  virtual void reset() {}                                    // forgets every rebase()
+  virtual std::vector<double> memory() const { return {}; }  // as System::memory()
+  virtual void recall(In /*memory*/) {}
   /// Null where the energy is not that of strains.
   virtual StrainForm* strain_form() { return nullptr; }
 };

@@ -74,9 +74,11 @@ std::span<const Parameter> kirchhoff_nodal_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_kirchhoff_nodal(const Parameters& parameters) {
-  return kirchhoff_nodal(strand(parameters), {.tangent = tangent_choice(parameters)},
-                         strand_effects(parameters));
+std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
+                                             const Parameters& parameters,
+                                             Effects effects) {
+  return kirchhoff_nodal(strand, {.tangent = tangent_choice(parameters)},
+                         std::move(effects));
 }
 
 }  // namespace tress

@@ -69,6 +69,8 @@ std::unique_ptr<System> kirchhoff_nodal(const Strand& strand,
                                         Effects effects);
 
 std::span<const Parameter> kirchhoff_nodal_parameters();
-std::unique_ptr<System> make_kirchhoff_nodal(const Parameters& parameters);
+std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
+                                             const Parameters& parameters,
+                                             Effects effects);
 
 }  // namespace tress

@@ -145,7 +145,8 @@ std::span<const Parameter> mass_spring_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_mass_spring(const Parameters& parameters) {
+std::unique_ptr<System> make_mass_spring(const Strand& strand,
+                                         const Parameters& parameters, Effects effects) {
   MassSpringOptions options;
   if (parameters.word("bending") == "second_neighbour") {
     options.bending = Bending::second_neighbour;
@@ -153,8 +154,7 @@ std::unique_ptr<System> make_mass_spring(const Parameters& parameters) {
   options.altitude = parameters.word("torsion") == "altitude";
   if (parameters.word("tangent") == "filtered") options.tangent = SpringTangent::filtered;
   options.solver = maximal_solver(parameters);
-  return mass_spring(strand(parameters), "mass_spring", options,
-                     strand_effects(parameters));
+  return mass_spring(strand, "mass_spring", options, std::move(effects));
 }
 
 std::span<const Parameter> inextensible_strand_parameters() {
@@ -167,14 +167,15 @@ std::span<const Parameter> inextensible_strand_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_inextensible_strand(const Parameters& parameters) {
+std::unique_ptr<System> make_inextensible_strand(const Strand& strand,
+                                                 const Parameters& parameters,
+                                                 Effects effects) {
   MassSpringOptions options;
   options.inextensible = true;
   options.stretch = parameters.word("stretch_springs") == "linear";
   options.altitude = parameters.word("torsion") == "altitude";
   options.solver = maximal_solver(parameters);
-  return mass_spring(strand(parameters), "inextensible_strand", options,
-                     strand_effects(parameters));
+  return mass_spring(strand, "inextensible_strand", options, std::move(effects));
 }
 
 }  // namespace tress

@@ -66,12 +66,15 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
                                     const MassSpringOptions& options, Effects effects);
 
 std::span<const Parameter> mass_spring_parameters();
-std::unique_ptr<System> make_mass_spring(const Parameters& parameters);
+std::unique_ptr<System> make_mass_spring(const Strand& strand,
+                                         const Parameters& parameters, Effects effects);
 
 /// The same with edges of constant length, held by n multipliers: the inextensible chain
 /// [Baraff 1996] with bending and rest angles. Springs along the edges as well are for an
 /// integrator that lets lengths go and corrects them (predictor_corrector).
 std::span<const Parameter> inextensible_strand_parameters();
-std::unique_ptr<System> make_inextensible_strand(const Parameters& parameters);
+std::unique_ptr<System> make_inextensible_strand(const Strand& strand,
+                                                 const Parameters& parameters,
+                                                 Effects effects);
 
 }  // namespace tress

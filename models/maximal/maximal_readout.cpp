@@ -92,6 +92,19 @@ void MaximalSystem::velocities(double t, In q, In v, Out u) {
   }
 }
 
+bool MaximalSystem::mean(int point, Mean& mean) {
+  const NodeMean& at = strand_.shown[static_cast<std::size_t>(point)];
+  mean.count = 0;
+  for (int k = 0; k < at.nodes; ++k) {
+    const int coordinate = 3 * (at.first + k) - static_cast<int>(held());
+    if (coordinate < 0) continue;  // of the clamp
+    const auto entry = static_cast<std::size_t>(mean.count++);
+    mean.coordinate[entry] = coordinate;
+    mean.weight[entry] = at.weight[static_cast<std::size_t>(k)];
+  }
+  return true;
+}
+
 bool MaximalSystem::stretch(double t, In q, double& relative) {
   place(t, q);
   relative = strand_.elasticity->stretch(placement());

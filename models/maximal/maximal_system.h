@@ -75,6 +75,8 @@ class MaximalSystem final : public System,
   Status solve(In b, Out x) noexcept override;
   bool accept(double t, InOut q, InOut v) override;
   void reset() override { strand_.elasticity->reset(); }
+  std::vector<double> memory() const override { return strand_.elasticity->memory(); }
+  void recall(In memory) override { strand_.elasticity->recall(memory); }
 
   SparseForm* sparse_form() override { return this; }
   ExplicitForm* explicit_form() override;
@@ -98,6 +100,7 @@ class MaximalSystem final : public System,
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
   bool stretch(double t, In q, double& relative) override;
+  bool mean(int point, Mean& mean) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
   void build_pattern();

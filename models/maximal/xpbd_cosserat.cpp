@@ -52,13 +52,15 @@ std::span<const Parameter> xpbd_cosserat_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_xpbd_cosserat(const Parameters& parameters) {
-  return xpbd_cosserat(strand(parameters),
+std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
+                                           const Parameters& parameters,
+                                           Effects effects) {
+  return xpbd_cosserat(strand,
                        {.shear_factor = parameters.number("shear_factor"),
                         .norm = parameters.number("norm"),
                         .edge_inertia = parameters.number("edge_inertia"),
                         .solver = maximal_solver(parameters)},
-                       strand_effects(parameters));
+                       std::move(effects));
 }
 
 }  // namespace tress

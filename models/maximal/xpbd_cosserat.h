@@ -58,6 +58,7 @@ std::unique_ptr<System> xpbd_cosserat(const Strand& strand,
                                       Effects effects);
 
 std::span<const Parameter> xpbd_cosserat_parameters();
-std::unique_ptr<System> make_xpbd_cosserat(const Parameters& parameters);
+std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
+                                           const Parameters& parameters, Effects effects);
 
 }  // namespace tress

@@ -32,9 +32,10 @@ std::span<const Parameter> articulated_chain_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_articulated_chain(const Parameters& parameters) {
-  return articulated_chain(strand(parameters), reduced_options(parameters),
-                           strand_effects(parameters));
+std::unique_ptr<System> make_articulated_chain(const Strand& strand,
+                                               const Parameters& parameters,
+                                               Effects effects) {
+  return articulated_chain(strand, reduced_options(parameters), std::move(effects));
 }
 
 }  // namespace tress

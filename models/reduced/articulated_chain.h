@@ -19,6 +19,8 @@ std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options, Effects effects);
 
 std::span<const Parameter> articulated_chain_parameters();
-std::unique_ptr<System> make_articulated_chain(const Parameters& parameters);
+std::unique_ptr<System> make_articulated_chain(const Strand& strand,
+                                               const Parameters& parameters,
+                                               Effects effects);
 
 }  // namespace tress

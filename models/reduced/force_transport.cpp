@@ -154,9 +154,10 @@ std::span<const Parameter> force_transport_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_force_transport(const Parameters& parameters) {
-  return force_transport(strand(parameters), reduced_options(parameters),
-                         strand_effects(parameters));
+std::unique_ptr<System> make_force_transport(const Strand& strand,
+                                             const Parameters& parameters,
+                                             Effects effects) {
+  return force_transport(strand, reduced_options(parameters), std::move(effects));
 }
 
 }  // namespace tress

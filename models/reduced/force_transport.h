@@ -57,6 +57,8 @@ std::unique_ptr<System> force_transport(const Strand& strand,
                                         const ReducedOptions& options, Effects effects);
 
 std::span<const Parameter> force_transport_parameters();
-std::unique_ptr<System> make_force_transport(const Parameters& parameters);
+std::unique_ptr<System> make_force_transport(const Strand& strand,
+                                             const Parameters& parameters,
+                                             Effects effects);
 
 }  // namespace tress

@@ -30,6 +30,8 @@ class FreeRootFrame {
   /// Moves the reference when theta has grown; true: q and v have changed.
   bool rebase(InOut q, InOut v);
   void reset() { reference_ = start_.frame; }
+  const Frame& reference() const { return reference_; }
+  void recall(const Frame& reference) { reference_ = reference; }
 
   const Frame& frame() const { return frame_; }
   const Helix& joint() const { return joint_; }

@@ -106,6 +106,16 @@ class ReducedSystem : public System,
     if (kinematics_.free()) kinematics_.free_root().reset();
   }
 
+  std::vector<double> memory() const override {
+    if (!kinematics_.free()) return {};
+    std::vector<double> reference(9);
+    store9(kinematics_.free_root().reference(), reference.data());
+    return reference;
+  }
+  void recall(In memory) override {
+    if (kinematics_.free()) kinematics_.free_root().recall(load9(memory.data()));
+  }
+
   ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }

@@ -19,9 +19,9 @@ std::span<const Parameter> super_helix_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_super_helix(const Parameters& parameters) {
-  return super_helix(strand(parameters), reduced_options(parameters),
-                     strand_effects(parameters));
+std::unique_ptr<System> make_super_helix(const Strand& strand,
+                                         const Parameters& parameters, Effects effects) {
+  return super_helix(strand, reduced_options(parameters), std::move(effects));
 }
 
 std::span<const Parameter> super_helix_tree_parameters() {

@@ -22,7 +22,8 @@ std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& 
                                     Effects effects);
 
 std::span<const Parameter> super_helix_parameters();
-std::unique_ptr<System> make_super_helix(const Parameters& parameters);
+std::unique_ptr<System> make_super_helix(const Strand& strand,
+                                         const Parameters& parameters, Effects effects);
 
 /// The trees of models/reduced/trees.h.
 std::span<const Parameter> super_helix_tree_parameters();

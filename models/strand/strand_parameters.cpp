@@ -1,5 +1,6 @@
 #include "models/strand/strand_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/effects/gravity.h"
@@ -172,6 +173,12 @@ Vec initial_darboux(const Parameters& p) {
 
 std::vector<Parameter> with_strand_parameters(std::span<const Parameter> own) {
   return joined({geometry_parameters, material_parameters, own});
+}
+
+bool shared_by_strands(std::string_view parameter) {
+  const auto is_it = [parameter](const Parameter& p) { return p.name == parameter; };
+  return std::ranges::any_of(geometry_parameters, is_it) ||
+         std::ranges::any_of(material_parameters, is_it);
 }
 
 std::vector<Parameter> with_material_parameters(std::span<const Parameter> own) {

@@ -44,6 +44,9 @@ std::optional<FreeRoot> free_root(const Parameters& parameters);
 /// is 0.
 Effects strand_effects(const Parameters& parameters);
 
+/// Whether with_strand_parameters() adds this one to every model's own.
+bool shared_by_strands(std::string_view parameter);
+
 /// Material, section, cut, shapes and root. The section has half-axes radius_m
 /// sqrt(ellipticity) along e1 and radius_m / sqrt(ellipticity) along e2: its area does
 /// not depend on ellipticity.

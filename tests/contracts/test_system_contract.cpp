@@ -98,6 +98,47 @@ TEST_P(SystemContract, ResetForgetsAcceptedSteps) {
   EXPECT_EQ(r, expected);
 }
 
+TEST_P(SystemContract, RecallContinuesWhereMemoryWasTaken) {
+  const auto other = GetParam().make();
+  States s(*system_), accepted(*system_);
+  for (int i = 0; i < 10; ++i) {
+    accepted.shake(2);
+    (void)system_->accept(t0, accepted.q, accepted.v);
+  }
+  other->recall(system_->memory());
+  std::vector<double> expected(s.n), r(s.n);
+  ASSERT_EQ(system_->residual(t0, s.q, s.v, s.a, expected), Status::ok);
+  ASSERT_EQ(other->residual(t0, s.q, s.v, s.a, r), Status::ok);
+  EXPECT_EQ(r, expected);
+}
+
+TEST_P(SystemContract, MeansOfCoordinatesMoveThePoints) {
+  MaterialPoints* points = system_->material_points();
+  MaterialPoints::Mean mean;
+  if (points == nullptr || !points->mean(0, mean)) GTEST_SKIP() << "no means";
+  States s(*system_), moved(*system_);
+  moved.shake(0.1);
+  const auto count = 3 * static_cast<std::size_t>(points->count());
+  std::vector<double> x(count), y(count);
+  // Sums of up to four products, three times.
+  const double rounding =
+      24 * std::numeric_limits<double>::epsilon() * (largest(s.q) + largest(moved.q));
+  points->positions(t0, s.q, x);
+  points->positions(t0, moved.q, y);
+  for (int i = 0; i < points->count(); ++i) {
+    ASSERT_TRUE(points->mean(i, mean));
+    for (std::size_t c = 0; c < 3; ++c) {
+      double shift = 0;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(mean.count); ++k) {
+        const std::size_t at = static_cast<std::size_t>(mean.coordinate[k]) + c;
+        shift += mean.weight[k] * (moved.q[at] - s.q[at]);
+      }
+      const std::size_t at = 3 * static_cast<std::size_t>(i) + c;
+      EXPECT_NEAR(y[at] - x[at], shift, rounding);
+    }
+  }
+}
+
 TEST_P(SystemContract, SparseFormHoldsTheTangent) {
   SparseForm* form = system_->sparse_form();
   if (form == nullptr) GTEST_SKIP() << "no sparse form";
