@@ -8,6 +8,7 @@
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/effects/quadratic_drag.h"
+#include "models/effects/tether.h"
 #include "models/effects/wind.h"
 #include "models/input_error.h"
 
@@ -21,6 +22,7 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"constant_force", "uniform force per length and per mass", "Newton", constant_force_parameters(), make_constant_force},
       EffectEntry{"quadratic_drag", "drag of still air in the square of the speed, across and along the strand", "Ablow & Schechter 1983; White 2006, section 3-11", quadratic_drag_parameters(), make_quadratic_drag},
       EffectEntry{"wind", "load of moving air: steady, sine or gusts", "Ablow & Schechter 1983; Bridson et al. 2007; Kraichnan 1970", wind_parameters(), make_wind},
+      EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
   };
   return entries;
 }
