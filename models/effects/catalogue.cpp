@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "models/effects/body.h"
 #include "models/effects/constant_force.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
@@ -23,6 +24,7 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"quadratic_drag", "drag of still air in the square of the speed, across and along the strand", "Ablow & Schechter 1983; White 2006, section 3-11", quadratic_drag_parameters(), make_quadratic_drag},
       EffectEntry{"wind", "load of moving air: steady, sine or gusts", "Ablow & Schechter 1983; Bridson et al. 2007; Kraichnan 1970", wind_parameters(), make_wind},
       EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
+      EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15", body_parameters(), make_body, true},
   };
   return entries;
 }
