@@ -130,11 +130,11 @@ std::span<const Parameter> body_parameters() { return parameters_of_body; }
 
 std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                                         const RootMotion& head) {
-  const ContactLaw law{.stiffness = parameters.number("stiffness_n_m2"),
-                       .damping = parameters.number("damping_s_m"),
-                       .friction = parameters.number("friction"),
-                       .slip = parameters.number("slip_speed_m_s"),
-                       .offset = parameters.number("strand_radius_m")};
+  const BodyContact law{.stiffness = parameters.number("stiffness_n_m2"),
+                        .damping = parameters.number("damping_s_m"),
+                        .friction = parameters.number("friction"),
+                        .slip = parameters.number("slip_speed_m_s"),
+                        .offset = parameters.number("strand_radius_m")};
   const StrandPlace place{parameters.vec("centre_m"),
                           turned_by(parameters.vec("rotation_rad"))};
   std::optional<RootMotion> follows;
@@ -142,7 +142,7 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
   return std::make_unique<Body>(make_shape(parameters), place, law, std::move(follows));
 }
 
-Body::Body(BodyShape shape, const StrandPlace& place, const ContactLaw& law,
+Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
            std::optional<RootMotion> head)
     : shape_(std::move(shape)), place_(place), law_(law), head_(std::move(head)) {
   if (!std::visit([](const auto& one) { return has_size(one); }, shape_)) {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <variant>
 
+#include "models/effects/body_contact.h"
 #include "models/effects/body_shapes.h"
-#include "models/effects/contact_law.h"
 #include "models/effects/distance_grid.h"
 #include "models/effects/effect.h"
 #include "models/parameters.h"
@@ -27,7 +27,7 @@ struct BodyPose {
   Vec surface_velocity(const Vec& at) const { return v + cross(omega, at - x); }
 };
 
-/// Contact of the strand with a rigid body: per point l times the load of ContactLaw,
+/// Contact of the strand with a rigid body: per point l times the load of BodyContact,
 /// which is a force per length, so that the answer does not depend on how many points a
 /// strand has; points that carry no length feel nothing. The elastic part is the
 /// potential; power is what damping and friction take (<= 0 on a body at rest) and the
@@ -39,7 +39,7 @@ class Body final : public Effect {
   /// at its rest; nothing: it stays there. Throws InputError on numbers that are negative
   /// or not finite, a frame that is no rotation, and a grid whose surface comes within
   /// two spacings of contact with its second layer, where it could not be felt any more.
-  Body(BodyShape shape, const StrandPlace& place, const ContactLaw& law,
+  Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
        std::optional<RootMotion> head = {});
 
   std::string_view name() const override { return "body"; }
@@ -63,7 +63,7 @@ class Body final : public Effect {
  private:
   BodyShape shape_;
   StrandPlace place_;
-  ContactLaw law_;
+  BodyContact law_;
   std::optional<RootMotion> head_;
 };
 

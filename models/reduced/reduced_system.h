@@ -229,10 +229,9 @@ class ReducedSystem : public System,
 
   double power(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
-    const Points points =
-        dynamics_.points({.position = true,
-                          .velocity = true,
-                          .tangent = dynamics_.effect_needs().tangent});
+    const Points points = dynamics_.points({.position = true,
+                                            .velocity = true,
+                                            .tangent = dynamics_.effect_needs().tangent});
     double sum = 0;
     for (const auto& effect : effects_) sum += effect->power(t, points);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {

@@ -211,7 +211,7 @@ TEST(Body, TellsTheDeepestPoint) {
 }
 
 TEST(Body, ASampledSphereActsAsASphere) {
-  const ContactLaw law{.stiffness = 50, .friction = 0.5};
+  const BodyContact law{.stiffness = 50, .friction = 0.5};
   const Body exact(Sphere{0.6}, {}, law);
   const Body sampled(DistanceGrid(sphere_samples(0.6, 1, 81), "test"), {}, law);
   Cloud one(1);
@@ -226,7 +226,7 @@ TEST(Body, ASampledSphereActsAsASphere) {
 }
 
 TEST(Body, RefusesWhatHasNoMeaning) {
-  const ContactLaw law{.stiffness = 1};
+  const BodyContact law{.stiffness = 1};
   EXPECT_THROW(Body(Sphere{0}, {}, law), InputError);
   EXPECT_THROW(Body(Ellipsoid({1, 0, 1}), {}, law), InputError);
   EXPECT_THROW(Body(Capsule{1, -1}, {}, law), InputError);
