@@ -146,7 +146,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   int kept = 0, dropped = 0;
   double wrong = 0;
   for (const Row& row : rows) {
@@ -180,7 +180,7 @@ int main(int argc, char** argv) {
       .columns = columns,
       .settings = own_settings,
       .cases = cases,
-      .checks = check,
+      .checks = judge,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

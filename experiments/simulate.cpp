@@ -11,13 +11,13 @@
 #include "experiments/harness/message.h"
 #include "experiments/harness/parse.h"
 #include "experiments/scenes/scene_run.h"
-#include "experiments/scenes/schema.h"
+// SCHEMA
 #include "models/input_error.h"
 
 namespace tress {
 namespace {
 
-volatile std::sig_atomic_t stop = 0;
+volatile std::sig_atomic_t asked_to_stop = 0;
 
 struct Arguments {
   std::vector<std::string> scenes;
@@ -85,7 +85,8 @@ constexpr Column columns[] = {
 const Experiment experiment{.name = "simulate",
                             .question = "What does a scene do?",
                             .example = "scenes/hair_under_wind.toml --vtk",
-                            .columns = columns};
+                            .columns = columns,
+                            .cases = {}};
 
 /// False: the scene did not run to its end.
 bool run_file(const std::string& file, const Arguments& a, const CommandLine& line) {
@@ -100,7 +101,8 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   Row identity;
   identity.set("text", read_file(file));
   const Manifest manifest(experiment, line);
-  const SceneRun run = run_scene(scene, run_id("simulate", identity), options, stop);
+  const SceneRun run =
+      run_scene(scene, run_id("simulate", identity), options, asked_to_stop);
   Row row;
   row.set("scene", scene.name).set("frames", run.frames);
   row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
@@ -114,7 +116,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
 
 int run(const Arguments& a, CommandLine line) {
   if (a.print_defaults || a.print_schema) {
-    write_all(1, a.print_defaults ? default_scene() : scene_schema(), "standard output");
+    write_all(1, std::string() /*SCHEMA*/, "standard output");
     return 0;
   }
   line.progress = a.progress == "none"   ? ProgressMode::none
@@ -126,7 +128,7 @@ int run(const Arguments& a, CommandLine line) {
   bool complete = true;
   for (const std::string& file : files) {
     complete = run_file(file, a, line) && complete;
-    if (stop != 0) {
+    if (asked_to_stop != 0) {
       tell("simulate: interrupted: the same command with --resume continues\n");
       return 130;
     }
@@ -157,7 +159,7 @@ int answer(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace tress;
   for (const int signal : {SIGINT, SIGTERM}) {
-    ::signal(signal, [](int) { stop = 1; });
+    ::signal(signal, [](int) { asked_to_stop = 1; });
   }
   ::signal(SIGXFSZ, SIG_IGN);  // then an error of write, with a message
   try {

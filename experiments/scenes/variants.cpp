@@ -67,7 +67,9 @@ std::vector<Ingredient> ingredients(const Scene& scene) {
     const std::string_view id = scene.effects[i].entry->id;
     const auto same = std::ranges::count_if(
         scene.effects, [id](const EffectChoice& other) { return other.entry->id == id; });
-    all.push_back({std::string(id) + (same > 1 ? " " + std::to_string(i + 1) : ""),
+    std::string name(id);
+    if (same > 1) name.append(" ").append(std::to_string(i + 1));
+    all.push_back({std::move(name),
                    [i](const Scene& from) {
                      Scene changed = from;
                      changed.effects.erase(changed.effects.begin() +

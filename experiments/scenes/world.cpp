@@ -46,13 +46,13 @@ World::World(const Scene& scene, int threads)
         std::make_unique<StrandInteraction>(*scene.interaction, material_points(scene));
   }
   if (scene.strands.empty()) {
-    bodies_.push_back({.system = scene.model->make(scene.model_options)});
+    bodies_.emplace_back().system = scene.model->make(scene.model_options);
   }
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     Effects effects = make_effects(scene);
     if (interaction_) effects.push_back(interaction_->effect(k));
-    bodies_.push_back({.system = scene.model->on_strand(
-                           scene.strands[k], scene.model_options, std::move(effects))});
+    bodies_.emplace_back().system =
+        scene.model->on_strand(scene.strands[k], scene.model_options, std::move(effects));
   }
   std::size_t point = 0;
   Snapshot begin;
