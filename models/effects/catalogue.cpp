@@ -6,6 +6,7 @@
 
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
+#include "models/effects/self_contact.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -15,6 +16,7 @@ std::span<const EffectEntry> effects() {
   static const std::array entries = {
       EffectEntry{"gravity", "uniform acceleration of all mass", "Newton", gravity_parameters(), make_gravity},
       EffectEntry{"linear_drag", "force against the velocity, per length and per mass", "Bertails 2006, section 4.2", linear_drag_parameters(), make_linear_drag},
+      EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact},
   };
   return entries;
 }
