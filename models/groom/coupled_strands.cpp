@@ -155,11 +155,10 @@ void CoupledStrands::add_contacts(Weights w) noexcept {
       for (std::size_t n = 0; n < static_cast<std::size_t>(column.count); ++n) {
         const double weight = row.weight[m] * column.weight[n];
         for (int j = 0; j < 3; ++j) {
-          const int at = place_of(coupling_, row.coordinate[m], column.coordinate[n] + j);
-          for (int i = 0; i < 3; ++i) {
-            coupling_values_[static_cast<std::size_t>(at + i)] +=
-                weight * block[3 * i + j];
-          }
+          const int place =
+              place_of(coupling_, row.coordinate[m], column.coordinate[n] + j);
+          double* at = &coupling_values_[static_cast<std::size_t>(place)];
+          for (int i = 0; i < 3; ++i) at[i] += weight * block[3 * i + j];
         }
       }
     }
