@@ -23,7 +23,7 @@ Effects smooth_effects() {
       "wind", LinearAirLaw{2e-5}, Gusts({1, 0.3, 0}, 0.8, 0.2, 0.4, 3)));
   effects.push_back(std::make_unique<Body>(
       Ellipsoid({9, 11, 10}), StrandPlace{{0, 0, -9}, {}},
-      ContactLaw{.stiffness = 1e-4, .damping = 1e-3, .friction = 0.3, .slip = 1e4}));
+      BodyContact{.stiffness = 1e-4, .damping = 1e-3, .friction = 0.3, .slip = 1e4}));
   effects.push_back(
       std::make_unique<Tether>(Tether::Settings{.at = 0.7,
                                                 .stiffness = 1e-4,
