@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "experiments/harness/parse.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -33,7 +34,7 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
   try {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& error) {
-    throw InputError(std::string(error.description()), place_of(error.source(), file),
+    throw InputError(one_line(error.description()), place_of(error.source(), file),
                      "correct the TOML there");
   }
 }

@@ -89,7 +89,7 @@ std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
   if (wanted == 0) {
     wanted = std::floor(p.number("density_1_m2") * cap.area());
     key = "density_1_m2";
-  } else if (table.given("density_1_m2")) {
+  } else if (p.number("density_1_m2") > 0) {
     throw InputError("density_1_m2 beside a count", table.place("density_1_m2"),
                      "leave it out, or give count = 0");
   }

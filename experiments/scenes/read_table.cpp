@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "experiments/harness/parse.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -72,8 +73,8 @@ std::string value_text(const Parameter& p, const toml::node& node,
   if (p.text || !p.choices.empty()) {
     const bool flag = p.choices == "true|false" && node.is_boolean();
     if (!node.is_string() && !flag) wrong_type(p, node, file);
-    const std::string text = scalar_text(node);
-    if (!p.text || p.name != "file" || text.empty()) return text;
+    const std::string text = one_line(scalar_text(node));
+    if (!p.text || !p.name.ends_with("file") || text.empty()) return text;
     return (std::filesystem::path(file).parent_path() / text).string();
   }
   if (p.rows) return rows_text(p, node, file);
@@ -87,7 +88,7 @@ std::string value_text(const Parameter& p, const toml::node& node,
   std::vector<std::string_view> known(nested.begin(), nested.end());
   for (const Parameter& p : declared) known.push_back(p.name);
   const std::string_view near = nearest(key, known);
-  throw InputError(fmt::format("unknown key '{}' in {}", key, name), where,
+  throw InputError(fmt::format("unknown key '{}' in {}", one_line(key), name), where,
                    near.empty() ? fmt::format("use one of: {}", fmt::join(known, ", "))
                                 : fmt::format("did you mean '{}'?", near));
 }

@@ -11,8 +11,8 @@ namespace tress {
 
 /// The table of a scene as one with `declared` parameters. A number is a TOML number, a
 /// word or a text a string (or true, false), components a list of numbers, rows a list of
-/// such lists; the text of a parameter called file is a path seen from the folder of the
-/// scene. Keys in `nested` are left to the caller. Throws InputError with
+/// such lists; the text of a parameter whose name ends in file is a path seen from the
+/// folder of the scene. Keys in `nested` are left to the caller. Throws InputError with
 /// file:line:column, naming the nearest key where there is one.
 Table read_table(const toml::table& table, std::span<const Parameter> declared,
                  const std::string& name, const std::string& file,

@@ -4,6 +4,7 @@
 
 #include "experiments/scenes/directions.h"
 #include "models/input_error.h"
+#include "models/strand/signals.h"
 
 namespace tress {
 namespace {

@@ -7,10 +7,12 @@
 
 #include "experiments/harness/files.h"
 #include "experiments/harness/integrator_options.h"
+#include "experiments/harness/parse.h"
 #include "experiments/scenes/groom.h"
 #include "experiments/scenes/read_table.h"
 #include "experiments/scenes/scene_check.h"
 #include "experiments/scenes/scene_tables.h"
+#include "models/effects/strand_interaction.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -189,18 +191,41 @@ class Reader {
     const toml::table* all = table("effects");
     if (all == nullptr) return;
     for (const auto& [key, node] : *all) {
-      const EffectEntry& entry = find_effect(key.str(), place_of(key.source(), file_));
-      const std::string name = "effects." + std::string(entry.id);
-      for (const toml::table* one : each(node, name, entry.many)) {
-        const Table read = read_table(*one, entry.parameters, "[" + name + "]", file_);
-        scene_.effects.push_back({&entry, read.values()});
-        places_.effects.push_back(read.place());
-        if (scene_.effects.size() > most_effects) {
-          throw InputError(fmt::format("more than {} effects", most_effects),
-                           read.place(), "leave some out");
-        }
+      if (key.str() == interaction_id) {
+        read_interaction(node);
+      } else {
+        read_effect(key, node);
       }
     }
+  }
+
+  void read_effect(const toml::key& key, const toml::node& node) {
+    const std::string where = place_of(key.source(), file_);
+    const std::string_view others[] = {interaction_id};
+    if (!nearest(key.str(), others).empty()) {
+      throw InputError(fmt::format("unknown effect '{}'", one_line(key.str())), where,
+                       fmt::format("did you mean '{}'?", interaction_id));
+    }
+    const EffectEntry& entry = find_effect(one_line(key.str()), where);
+    const std::string name = fmt::format("effects.{}", entry.id);
+    for (const toml::table* one : each(node, name, entry.many)) {
+      const Table read =
+          read_table(*one, entry.parameters, fmt::format("[{}]", name), file_);
+      scene_.effects.push_back({&entry, read.values()});
+      places_.effects.push_back(read.place());
+      if (scene_.effects.size() > most_effects) {
+        throw InputError(fmt::format("more than {} effects", most_effects), read.place(),
+                         "leave some out");
+      }
+    }
+  }
+
+  void read_interaction(const toml::node& node) {
+    const std::string name = fmt::format("effects.{}", interaction_id);
+    const Table read = read_table(as_table(node, name, file_),
+                                  strand_interaction_parameters(), name, file_);
+    scene_.interaction = read.values();
+    places_.interaction = read.place();
   }
 
   const std::string& file_;
@@ -212,7 +237,7 @@ class Reader {
 
 void refuse_large(std::size_t bytes, const std::string& file) {
   if (bytes <= most_bytes) return;
-  throw InputError(fmt::format("a scene of {} bytes", bytes), file,
+  throw InputError(fmt::format("a scene of {} bytes", bytes), file + ":1:1",
                    fmt::format("give at most {} bytes", most_bytes));
 }
 

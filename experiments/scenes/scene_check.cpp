@@ -5,6 +5,7 @@
 #include <new>
 
 #include "integrators/catalogue.h"
+#include "models/effects/contact_law.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -61,6 +62,11 @@ void check(const Scene& scene, const ScenePlaces& places) {
         at_place(places.model, [&] { return scene.model->make(scene.model_options); });
     check_integrator(scene, *system, places);
     return;
+  }
+  if (scene.interaction) {
+    at_place(places.interaction, [&] {
+      return ContactLaw(*scene.interaction, "effects.strand_interaction");
+    });
   }
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {

@@ -12,6 +12,7 @@ struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
   std::vector<std::string> strands;  // of each strand's table
   std::vector<std::string> effects;
+  std::string interaction;
 };
 
 /// Builds once what a run will build: effects, the model on one strand of each table, the

@@ -12,6 +12,7 @@
 #include "experiments/scenes/strand_table.h"
 #include "integrators/catalogue.h"
 #include "models/effects/catalogue.h"
+#include "models/effects/strand_interaction.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {
@@ -82,6 +83,11 @@ std::span<const Parameter> integrator_table_parameters() {
     std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
     for (Parameter p : integrator_options()) {
       if (p.name == "step") p.name = "dt_s";
+      if (p.name == "table") {  // the other names belong to SUNDIALS, which checks them
+        p.fallback = p.choices;
+        p.choices = {};
+        p.text = true;
+      }
       list.push_back(p);
     }
     return list;
@@ -127,6 +133,9 @@ std::vector<TableEntry> table_entries() {
     entry.many = effect.many;
     all.push_back(std::move(entry));
   }
+  all.push_back({.name = fmt::format("effects.{}", interaction_id),
+                 .summary = "strands repel and drag each other (Wang, thesis, NCTU)",
+                 .parameters = strand_interaction_parameters()});
   return all;
 }
 

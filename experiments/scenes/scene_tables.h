@@ -23,6 +23,9 @@ std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 /// `id`, `dt_s` and the integrators' options.
 std::span<const Parameter> integrator_table_parameters();
 
+/// The effect that is not one of a single strand.
+inline constexpr std::string_view interaction_id = "strand_interaction";
+
 /// A table of a scene, described.
 struct TableEntry {
   std::string name;     // "strand"

@@ -26,7 +26,8 @@ struct PointCurve {
   Shape shape;        // constant over each segment of the cut
 };
 
-/// The curve is a natural cubic spline over the length of the polyline; frames are
+/// The curve is a natural cubic spline over the length of the polyline, straight at its
+/// two ends (felt over about two points); frames are
 /// carried along it without twist (double reflection: Wang, Juttler, Zheng & Liu 2008).
 /// Each segment takes the Darboux vector that turns the frame at its start into that at
 /// its end: tangents at the joints are those of the spline, positions are off by an error

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "models/input_error.h"
-#include "models/strand/root_motion.h"
+#include "models/strand/signals.h"
 
 namespace tress {
 namespace {

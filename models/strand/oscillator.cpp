@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "models/input_error.h"
-#include "models/strand/root_motion.h"
+#include "models/strand/signals.h"
 
 namespace tress {
 namespace {

@@ -6,6 +6,7 @@
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/input_error.h"
+#include "models/strand/signals.h"
 
 namespace tress {
 namespace {
