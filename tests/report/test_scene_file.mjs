@@ -163,14 +163,17 @@ test('Bodies_HideWhatIsBehindThem', () => {
   assert.equal(ball.hides([0, 0.2, 0.2]), false);
   assert.equal(ball.hides([0.4, 0.2, 0]), true);
 
-  // A quarter turn about x lays the capsule's axis, its local y, along z.
-  const up = [0, 0, 0, Math.SQRT1_2, Math.SQRT1_2, 0, 0];
-  const capsule = body_of('capsule', [0.1, 0.5, 0.1], up);
+  const capsule = body_of('capsule', [0.1, 0.1, 0.5]);
   assert.equal(capsule.hides([0, 0.3, 0.55]), true);
   assert.equal(capsule.hides([0, 0.3, -0.55]), true);
   assert.equal(capsule.hides([0.3, 0.3, 0]), false);
   assert.equal(capsule.hides([0, -0.3, 0]), false);
   assert.equal(capsule.hides([0, 0.3, 0.8]), false);
+  // A quarter turn about y lays its axis, local z, along x.
+  const lying = [0, 0, 0, Math.SQRT1_2, 0, Math.SQRT1_2, 0];
+  const across = body_of('capsule', [0.1, 0.1, 0.5], lying);
+  assert.equal(across.hides([0.3, 0.3, 0]), true);
+  assert.equal(across.hides([0, 0.3, 0.3]), false);
 
   const raised = body_of('plane', undefined, [0, 0, -0.5, 1, 0, 0, 0]);
   assert.equal(raised.hides([0, 0, -0.6]), true);

@@ -29,7 +29,7 @@ async function open(hash = '', ...size) {
   await browser.open(url + hash, ...size);
 }
 
-const keys = { right: '\uE014', left: '\uE012', end: '\uE010', home: '\uE011' };
+const keys = { right: '\uE014', left: '\uE012', end: '\uE010', home: '\uE011', escape: '\uE00C' };
 const frame = async () =>
   Number(
     await browser.run("return document.getElementById('scene-canvas').dataset.frame"),
@@ -116,6 +116,7 @@ test('Playing_EndsAtTheLastFrameAndStartsAgain', async () => {
 
 test('Keyboard_StepsAndPlays', async () => {
   await open('#scene=fixture_head&frame=5');
+  await choose('speed', 0.1); // so that the end is far when the next key comes
   await browser.run("document.getElementById('scene-canvas').focus()");
   for (const [key, wanted] of [
     [keys.right, 6],
@@ -132,6 +133,15 @@ test('Keyboard_StepsAndPlays', async () => {
   assert.ok(await comes(async () => (await frame()) > 0));
   await browser.press(' ');
   assert.equal(await text_of('#scene-play'), 'Play');
+  // With the focus on the button itself a space must not count twice.
+  await browser.press(keys.home);
+  await browser.run("document.getElementById('scene-play').focus()");
+  await browser.press(' ');
+  assert.equal(await text_of('#scene-play'), 'Pause');
+  await browser.press(' ');
+  await browser.press(keys.home);
+  await browser.press(keys.right);
+  assert.equal(await frame(), 1);
 });
 
 test('Drag_TurnsAndTheAddressBringsTheSamePictureBack', async () => {
@@ -228,4 +238,6 @@ test('FillWindow_LeavesOnlyThePicture', async () => {
       document.getElementById('scene-play').offsetParent === null];`);
   assert.ok(width > 700 && height > 500, `${width} x ${height}`);
   assert.equal(tools, true);
+  await browser.press(keys.escape);
+  assert.ok(await browser.run("return document.getElementById('scene-play').offsetParent !== null"));
 });

@@ -62,7 +62,8 @@ ${select_html(
 </div>
 <p class="note" id="scene-caption"></p>
 <p class="note keys">Drag turns, wheel or two fingers zoom, shift-drag or two fingers move.
-Space plays, arrow keys step a frame (with shift ten), Home and End go to the ends.</p>
+Space plays, arrow keys step a frame (with shift ten), Home and End go to the ends, Escape
+leaves the full window.</p>
 </div>
 <h2>Time series</h2>
 <p class="note">One plot for every column; the line marks the frame shown above, a click

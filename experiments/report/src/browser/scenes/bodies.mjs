@@ -110,10 +110,10 @@ function piece_distance(p, u, q, v) {
   return Math.hypot(...add(add(w, u, back), v, -s));
 }
 
-// half_axes_m: radius, half the length of the axis between the centres of the caps, radius.
-// The axis is local y.
-function capsule({ half_axes_m: [radius, half] }, { centre, axes }, view) {
-  const axis = axes[1];
+// half_axes_m: radius, radius, half the distance between the centres of the caps, which lie
+// on local z.
+function capsule({ half_axes_m: [radius, , half] }, { centre, axes }, view) {
+  const axis = axes[2];
   const ends = [add(centre, axis, half), add(centre, axis, -half)];
   const caps = ends.map((end) => {
     const edge = edge_of_unit_ball(scaled(add(view.eye, end, -1), 1 / radius));

@@ -1,7 +1,11 @@
 // Mouse, touch and keyboard of the player.
 
-// Elements that use these keys themselves.
-const own_keys = 'select, input, button, [role="tab"]';
+// Whether an element uses the key itself.
+function is_own_key(element, key) {
+  if (element.matches('button:not([role="tab"])')) return key === ' ';
+  if (element.matches('input')) return key !== ' ';
+  return element.matches('select, [role="tab"], summary, a');
+}
 
 function keys(player, event) {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
@@ -13,8 +17,9 @@ function keys(player, event) {
     ArrowLeft: () => player.go_to(Math.floor(player.moment) - step),
     Home: () => player.go_to(0),
     End: () => player.go_to(player.scene.frames - 1),
+    Escape: () => player.fill(''),
   };
-  if (actions[key] === undefined || target.closest?.(own_keys)) return;
+  if (actions[key] === undefined || is_own_key(target, key)) return;
   event.preventDefault();
   actions[key]();
 }

@@ -11,7 +11,7 @@ function extent({ low, high, bodies }) {
   const [least, most] = [[...low], [...high]];
   for (const { shape, half_axes_m: half, poses } of bodies) {
     if (shape === 'plane') continue;
-    const reach = shape === 'capsule' ? half[0] + half[1] : Math.max(...half);
+    const reach = shape === 'capsule' ? half[0] + half[2] : Math.max(...half);
     for (const pose of poses) {
       for (let i = 0; i < 3; ++i) {
         least[i] = Math.min(least[i], pose[i] - reach);
