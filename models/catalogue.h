@@ -6,10 +6,11 @@
 
 #include "models/effects/effect.h"
 #include "models/parameters.h"
-#include "models/strand/strand.h"
 #include "models/system.h"
 
 namespace tress {
+
+struct Strand;
 
 /// One line of the list of models: what `--list` prints and how a model is made from its
 /// parameters. Adding a model = its own files, one line here, one CMake line.

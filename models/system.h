@@ -157,6 +157,8 @@ class MaterialPoints {
  public:
   virtual ~MaterialPoints() = default;
   virtual int count() const = 0;
+  /// The point that point i hangs on, an earlier one; -1: none.
+  virtual int before(int i) const { return i - 1; }
   virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
   /// Largest |length/rest - 1| of a piece of the body. False: the model does not say.

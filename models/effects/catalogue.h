@@ -6,9 +6,10 @@
 
 #include "models/effects/effect.h"
 #include "models/parameters.h"
-#include "models/strand/root_motion.h"
 
 namespace tress {
+
+struct RootMotion;
 
 /// One line of the list of effects: what a scene may name as [effects.id]. Adding an
 /// effect = its own files, one line here, one CMake line.

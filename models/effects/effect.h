@@ -57,7 +57,8 @@ class Effect {
   virtual double power(double t, const Points& p) const noexcept = 0;
 };
 
-using Effects = std::vector<std::unique_ptr<const Effect>>;
+/// Effects hold no state: strands may share them.
+using Effects = std::vector<std::shared_ptr<const Effect>>;
 
 inline Needs needs(const Effects& effects) {
   Needs all;

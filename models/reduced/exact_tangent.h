@@ -2,6 +2,7 @@
 
 #include "models/reduced/inverse_dynamics.h"
 #include "models/reduced/mass_tangent.h"
+#include "models/reduced/point_matrix.h"
 
 namespace tress {
 
@@ -129,34 +130,6 @@ class ExactTangent {
     std::array<std::array<Second, dofs>, dofs> curvature;  // d2P/dq_k dq_l
   };
 
-  /// A 3x3 block of each lane, in the components of the segment's start.
-  struct Blocks {
-    Vec3<Pack> column[3];
-    Vec3<Pack> operator*(const Vec3<Pack>& x) const {
-      return x.x * column[0] + x.y * column[1] + x.z * column[2];
-    }
-  };
-
-  static Blocks gathered(In blocks, std::size_t b, const Frame& f) {
-    const Vec3<Pack> axes[3] = {Vec3<Pack>(f.e0), Vec3<Pack>(f.e1), Vec3<Pack>(f.e2)};
-    Vec3<Pack> rows[3];  // of the block in world components
-    for (std::size_t r = 0; r < 3; ++r) {
-      Pack entry[3];
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double* p = &blocks[9 * Pack::lanes * b + 3 * r + c];
-        entry[c] = Pack(Pack::Vector{p[0], p[9], p[18], p[27]});
-      }
-      rows[r] = {entry[0], entry[1], entry[2]};
-    }
-    Blocks seen;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3<Pack> world{dot(rows[0], axes[c]), dot(rows[1], axes[c]),
-                             dot(rows[2], axes[c])};
-      seen.column[c] = {dot(axes[0], world), dot(axes[1], world), dot(axes[2], world)};
-    }
-    return seen;
-  }
-
   /// Variation of omega in the components of a frame that turns by `axis`, omega itself
   /// staying as it is.
   static Vec in_plane(const Vec& omega, const Vec& axis) { return cross(omega, axis); }
@@ -177,11 +150,11 @@ class ExactTangent {
       const Vec3<Pack>& load = dynamics_.load(b);
       const Vec3<Pack>& force = dynamics_.force(b);
       const Vec3<Pack> turning = cross(omega, p);
-      Blocks by_x, by_v;
+      PointMatrix by_x, by_v;
       Vec3<Pack> u;  // velocity of the point
       if (blocks) {
-        by_x = gathered(effects.position, b, from.frame);
-        by_v = gathered(effects.velocity, b, from.frame);
+        by_x = PointMatrix(effects.position, b, from.frame);
+        by_v = PointMatrix(effects.velocity, b, from.frame);
         u = Vec3<Pack>(from.v) + turning + velocity;
       }
       const auto add = [&](int column, const Vec3<Pack>& dF) {

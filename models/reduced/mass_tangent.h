@@ -1,6 +1,7 @@
 #pragma once
 
 #include "models/reduced/kinematics.h"
+#include "models/reduced/point_matrix.h"
 #include "models/reduced/tree_tangent.h"
 
 namespace tress {
@@ -56,14 +57,45 @@ inline Vec restoring(const ReducedSegment& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
+/// local += sum J^T (B + B^T)/2 J over the points of a segment, B the matrices that
+/// effects have there: their part of a tangent that is to stay symmetric.
+template <class Kernel, int dofs>
+void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i,
+                        In matrices, SegmentTangent<MassShape<dofs>>& tangent) {
+  using Frames = SegmentFrames<MassShape<dofs>>;
+  using S = Space<dofs>;
+  constexpr int t = S::translations, size = S::size, columns = size + dofs;
+  const ReducedSegment& segment = kinematics.segments()[i];
+  for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+    const auto& block = kinematics.block_geometry(b);
+    const PointMatrix matrix(matrices, b, kinematics.start(i).frame);
+    Vec3<Pack> j[columns];
+    for (int c = 0; c < t; ++c) j[c] = Vec3<Pack>(Frames::axis(S::translation[c]));
+    for (int c = 0; c < S::rotations; ++c) {
+      j[t + c] = cross(Vec3<Pack>(Frames::axis(S::rotation[c])), block.position);
+    }
+    for (std::size_t k = 0; k < dofs; ++k)
+      j[static_cast<std::size_t>(size) + k] = block.slope[k];
+    for (int c = 0; c < columns; ++c) {
+      const Vec3<Pack> pushed = matrix * j[c];
+      for (int r = 0; r < columns; ++r) {
+        const double half = sum(dot(j[r], pushed)) / 2;
+        tangent.local(r, c) += half;
+        tangent.local(c, r) += half;
+      }
+    }
+  }
+}
+
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
 /// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
 /// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
-/// matrix is sum m J^T J over the quadrature points. Expects zeros in tip and local, or
-/// what an earlier call left there.
+/// matrix is sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times
+/// minus the derivatives of the loads, (9) a point, or empty. Expects zeros in tip and
+/// local, or what an earlier call left there.
 template <class Kernel, int dofs>
 void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
-                  SegmentTangent<MassShape<dofs>>& tangent) {
+                  SegmentTangent<MassShape<dofs>>& tangent, In of_effects = {}) {
   using Frames = SegmentFrames<MassShape<dofs>>;
   using S = Space<dofs>;
   constexpr int t = S::translations, size = S::size;
@@ -101,7 +133,8 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   }
 
   auto& local = tangent.local;
-  if (segment.mounted) local.setZero();  // its zeros are turned below, up to rounding
+  // What is not assigned below: turned by the mount, or added to.
+  if (segment.mounted || !of_effects.empty()) local.setZero();
   const double total = w.acc * sum(mass);
   const Vec p{w.acc * sum(first.x), w.acc * sum(first.y), w.acc * sum(first.z)};
   double pp[3][3];
@@ -135,6 +168,8 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
         dot(Kinematics<Kernel, dofs>::unit(static_cast<int>(k)), restoring(segment, w));
     local(column, column) += tangent.stiffness[static_cast<int>(k)];
   }
+
+  if (!of_effects.empty()) add_effect_tangent(kinematics, i, of_effects, tangent);
 
   auto& transfer = tangent.transfer;
   const Frame& f = g.rotation;

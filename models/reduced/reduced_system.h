@@ -41,14 +41,14 @@ class ReducedSystem : public System,
     const auto n = static_cast<std::size_t>(kinematics_.unknowns());
     zero_.assign(n, 0.0);
     scratch_.assign(n, 0.0);
-    if (!exact_) return;
-    ready(full_);
-    full_solver_ = make_tree_solver<Exact>(strand.method, full_);
     if (dynamics_.effect_needs().derivatives) {
       for (auto* x : {&by_position_, &by_velocity_}) {
         x->resize(9 * Pack::lanes * kinematics_.blocks().size());
       }
     }
+    if (!exact_) return;
+    ready(full_);
+    full_solver_ = make_tree_solver<Exact>(strand.method, full_);
   }
 
   Layout layout() const override { return {kinematics_.unknowns(), 0}; }
@@ -85,8 +85,8 @@ class ReducedSystem : public System,
     // With neither velocity nor position weight there is nothing but mass.
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
     if (!full_in_use_) {
-      kinematics_.shape(q);
-      return factored_ = factor(w, mass_, *mass_solver_);
+      const In of_effects = effect_tangent(t, q, v, w);
+      return factored_ = factor(w, mass_, *mass_solver_, of_effects);
     }
     take_exact_tangent(t, q, v, a, w);
     return factored_ = full_solver_->factor(full_);
@@ -145,9 +145,10 @@ class ReducedSystem : public System,
                : Status::retry;
   }
 
-  Status factor(Weights w, TreeTangent<Mass>& tangent, TreeSolver<Mass>& solver) {
+  Status factor(Weights w, TreeTangent<Mass>& tangent, TreeSolver<Mass>& solver,
+                In of_effects = {}) {
     for (std::size_t i = 0; i < tangent.segments.size(); ++i) {
-      mass_tangent(kinematics_, i, w, tangent.segments[i]);
+      mass_tangent(kinematics_, i, w, tangent.segments[i], of_effects);
     }
     if (tangent.free_root) mass_root_tangent(kinematics_, w, tangent.root);
     return solver.factor(tangent);
@@ -160,6 +161,21 @@ class ReducedSystem : public System,
       exact_tangent_.segment(i, w, effects, full_.segments[i]);
     }
     if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
+  }
+
+  /// What the effects add to the stiff tangent at the points; places the segments at q.
+  In effect_tangent(double t, In q, In v, Weights w) {
+    if (by_position_.empty() || (w.vel == 0 && w.pos == 0)) {
+      kinematics_.shape(q);
+      return {};
+    }
+    kinematics_.move(t, q, v, zero_);
+    const Points points = dynamics_.points(dynamics_.effect_needs());
+    std::ranges::fill(by_position_, 0.0);
+    for (const auto& effect : effects_) {
+      effect->add_derivatives(t, points, -w.pos, -w.vel, by_position_);
+    }
+    return by_position_;
   }
 
   typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
@@ -213,7 +229,9 @@ class ReducedSystem : public System,
 
   double power(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
-    const Points points = dynamics_.points({.position = true, .velocity = true});
+    const Points points = dynamics_.points({.position = true,
+                                            .velocity = true,
+                                            .tangent = dynamics_.effect_needs().tangent});
     double sum = 0;
     for (const auto& effect : effects_) sum += effect->power(t, points);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
@@ -258,6 +276,10 @@ class ReducedSystem : public System,
 
   // Material points: the root and the tips of all segments.
   int count() const override { return kinematics_.count() + 1; }
+  int before(int i) const override {
+    return i == 0 ? -1
+                  : kinematics_.segments()[static_cast<std::size_t>(i) - 1].parent + 1;
+  }
   void positions(double t, In q, Out x) override {
     kinematics_.move(t, q, zero_, zero_);
     store3(kinematics_.root().x, &x[0]);

@@ -101,6 +101,55 @@ TEST_P(Solvers, AgreeOnRandomStates) {
   }
 }
 
+/// The stiff tangent has no derivatives of inertial and geometric terms, but all of drag:
+/// with y = S^-1 b of the strand with drag and D y = r_v y the force of drag at rates y,
+/// the strand without drag has S y = b - w.vel D y.
+TEST_P(Solvers, StiffTangentHoldsTheDerivativesOfEffects) {
+  const Weights w{1, 1e-3, 1e-6};
+  // h nu L = 1e-5 kg against a hair's 6.5e-7 kg; trees are heavier.
+  const ModelSettings drag{{"drag_kg_m_s", "0.1"}}, none{};
+  const auto force = [](System& system, In q, In v) {
+    std::vector<double> r = zeros(system), a = zeros(system);
+    EXPECT_EQ(system.residual(t0, q, v, a, r), Status::ok);
+    return r;
+  };
+  const auto by_drag = GetParam().make(drag), bare = GetParam().make(none);
+  for (const std::string solver : solvers) {
+    const ModelSettings stiff{{"tangent", "stiff"}, {"solver", solver}};
+    const auto with_drag = GetParam().make(with(stiff, drag));
+    const auto without = GetParam().make(stiff);
+    States s(*with_drag, 3);
+    s.shake(0.5);
+    const std::vector<double> b = force(*with_drag, s.q, s.v), still = zeros(*with_drag);
+    std::vector<double> y = still, x = still;
+    ASSERT_EQ(with_drag->linearize(t0, s.q, s.v, s.a, w), Status::ok);
+    ASSERT_EQ(with_drag->solve(b, y), Status::ok);
+    ASSERT_EQ(without->linearize(t0, s.q, s.v, s.a, w), Status::ok);
+    ASSERT_EQ(without->solve(b, x), Status::ok);
+    const double without_drag = relative_difference(x, y, s.a_typ);
+    // At rates of typical size: linear in them up to inertial terms, which the bare
+    // strand has alike. What rounding leaves of the difference: eps |r| over it.
+    double fastest = 0, largest_force = 0, largest_drag = 0;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      fastest = std::max(fastest, std::abs(y[k]) / s.v_typ[k]);
+    }
+    std::vector<double> rate = y, rest = b;
+    for (double& entry : rate) entry /= fastest;
+    const auto r = force(*by_drag, s.q, rate), r0 = force(*by_drag, s.q, still);
+    const auto i = force(*bare, s.q, rate), i0 = force(*bare, s.q, still);
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      const double of_drag = (r[k] - r0[k]) - (i[k] - i0[k]);
+      largest_force = std::max({largest_force, std::abs(r[k]), std::abs(i[k])});
+      largest_drag = std::max(largest_drag, std::abs(of_drag));
+      rest[k] -= w.vel * fastest * of_drag;
+    }
+    const double tolerance = 1e-10 + 100 * eps * largest_force / largest_drag;
+    EXPECT_GT(without_drag, 1e3 * tolerance) << "drag should matter";
+    ASSERT_EQ(without->solve(rest, x), Status::ok);
+    EXPECT_LE(relative_difference(x, y, s.a_typ), tolerance) << solver;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Reduced, Solvers, testing::ValuesIn(solver_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
