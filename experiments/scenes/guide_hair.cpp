@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
+#include "experiments/scenes/random.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -45,29 +45,36 @@ void set_weights(GuideHair::Neighbours& neighbours, const std::array<double, 3>&
   }
 }
 
-GuideHair::Neighbours nearest(const std::vector<Vec>& guide_roots, const Vec& root) {
-  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::array<double, 4> distance{infinity, infinity, infinity, infinity};
-  std::array<std::size_t, 4> guide{none, none, none, none};
-  for (std::size_t g = 0; g < guide_roots.size(); ++g) {
-    const double d = length(root - guide_roots[g]);
-    // Insertion into the four nearest; of equal ones the earlier guide stays in front.
-    std::size_t k = 4;
-    while (k > 0 && d < distance[k - 1]) --k;
-    for (std::size_t j = 3; j > k; --j) {
-      distance[j] = distance[j - 1];
-      guide[j] = guide[j - 1];
-    }
-    if (k < 4) {
+/// The n guides with the nearest roots, the nearest first; of equally far ones the
+/// earlier. Where there are fewer, the first again, infinitely far.
+template <std::size_t n>
+struct Nearest {
+  std::array<std::size_t, n> guide{};
+  std::array<double, n> distance;
+
+  Nearest(std::span<const Vec> guide_roots, const Vec& root) {
+    distance.fill(infinity);
+    for (std::size_t g = 0; g < guide_roots.size(); ++g) {
+      const double d = length(root - guide_roots[g]);
+      if (!(d < distance[n - 1])) continue;
+      std::size_t k = n - 1;
+      for (; k > 0 && d < distance[k - 1]; --k) {
+        distance[k] = distance[k - 1];
+        guide[k] = guide[k - 1];
+      }
       distance[k] = d;
       guide[k] = g;
     }
+    for (std::size_t k = guide_roots.size(); k < n; ++k) guide[k] = guide[0];
   }
-  GuideHair::Neighbours neighbours;
-  for (std::size_t k = 0; k < 3; ++k) {
-    neighbours.guide[k] = guide[k] == none ? guide[0] : guide[k];
-  }
-  set_weights(neighbours, {distance[0], distance[1], distance[2]}, distance[3]);
+};
+
+GuideHair::Neighbours neighbours_of(std::span<const Vec> guide_roots, const Vec& root) {
+  const Nearest<4> near(guide_roots, root);
+  GuideHair::Neighbours neighbours{
+      .guide = {near.guide[0], near.guide[1], near.guide[2]}};
+  set_weights(neighbours, {near.distance[0], near.distance[1], near.distance[2]},
+              near.distance[3]);
   return neighbours;
 }
 
@@ -126,6 +133,38 @@ void check(const std::vector<Vec>& guide_roots, const std::vector<Vec>& hair_roo
 
 }  // namespace
 
+std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
+                               std::uint64_t seed) {
+  if (guide_roots.empty()) return {};
+  // Two different ones of the nearest four, as far as there are so many.
+  const std::size_t others = std::min<std::size_t>(guide_roots.size() - 1, 4);
+  Random random(seed, 1);
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+  };
+  std::vector<Vec> roots;
+  roots.reserve(count);
+  for (std::size_t h = 0; h < count; ++h) {
+    const Vec& corner = guide_roots[h % guide_roots.size()];
+    const Nearest<5> near(guide_roots, corner);  // the first is the corner itself
+    const std::size_t first = below(others);
+    const std::size_t second =
+        others < 2 ? first : (first + 1 + below(others - 1)) % others;
+    const auto edge = [&](std::size_t k) {
+      return guide_roots[near.guide[others == 0 ? 0 : 1 + k]] - corner;
+    };
+    const Vec a = edge(first), b = edge(second);
+    // Two numbers folded into half their square: every place is as probable (Turk 1990).
+    double u = random.uniform(), v = random.uniform();
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    roots.push_back(corner + u * a + v * b);
+  }
+  return roots;
+}
+
 GuideHair::GuideHair(std::vector<Vec> guide_roots, std::vector<Vec> hair_roots,
                      std::size_t points, const GuideHairOptions& options)
     : guide_roots_(std::move(guide_roots)),
@@ -135,13 +174,11 @@ GuideHair::GuideHair(std::vector<Vec> guide_roots, std::vector<Vec> hair_roots,
   check(guide_roots_, hair_roots_, points_, options_);
   neighbours_.reserve(hair_roots_.size());
   clumpiness_.reserve(hair_roots_.size());
-  std::mt19937_64 bits(options.seed);
+  Random random(options.seed, 0);
   const double c = options.clumpiness;
   for (const Vec& root : hair_roots_) {
-    neighbours_.push_back(nearest(guide_roots_, root));
-    // The library's distributions differ between compilers, the generator does not.
-    const double u = 2 * static_cast<double>(bits() >> 11) * 0x1p-53 - 1;
-    clumpiness_.push_back(c + 0.4 * c * (1 - c) * u);
+    neighbours_.push_back(neighbours_of(guide_roots_, root));
+    clumpiness_.push_back(c + 0.4 * c * (1 - c) * (2 * random.uniform() - 1));
   }
 }
 

@@ -10,6 +10,13 @@
 
 namespace tress {
 
+/// `count` roots between those of the guides: root h lies in the triangle of guide
+/// h mod guides and two of its four nearest, drawn at random, each place of it as
+/// probable. In a round scalp of radius R it lies up to e^2/(6R) deep, e the longest
+/// edge. A root does not depend on how many come after it. O(count guides).
+std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
+                               std::uint64_t seed);
+
 struct GuideHairOptions {
   /// 0: every hair is interpolated up to its tip; 1: disjoint locks from the root on.
   double clumpiness = 0.5;

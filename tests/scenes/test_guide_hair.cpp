@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -231,6 +232,52 @@ TEST(GuideHair, IsTheSameForTheSameSeedAndOthersForAnother) {
   Groom fewer = groom;
   fewer.hair_roots.resize(50);
   EXPECT_TRUE(same(fewer.hair({.seed = 5}), first));
+}
+
+// Guides on a sphere of radius 10 cm: hair stays between them, so not above the sphere,
+// and below by no more than the header says; every guide has its part of it.
+TEST(ScatterRoots, LieBetweenTheGuides) {
+  std::vector<Vec> guides;
+  for (int g = 0; g < 200; ++g) {
+    const double z = 1 - (g + 0.5) / 200, a = 2.399963 * g, w = std::sqrt(1 - z * z);
+    guides.push_back(0.1 * Vec{w * std::cos(a), w * std::sin(a), z});
+  }
+  const auto roots = scatter_roots(guides, 3000, 4);
+  ASSERT_EQ(roots.size(), 3000);
+  // Two of the four nearest are no farther apart than twice the way to the fourth.
+  double edge = 0;
+  for (const Vec& guide : guides) {
+    std::vector<double> distance;
+    for (const Vec& other : guides) distance.push_back(apart(guide, other));
+    std::ranges::nth_element(distance, distance.begin() + 4);
+    edge = std::max(edge, 2 * distance[4]);
+  }
+  std::vector<int> own(guides.size());
+  const GuideHair hair(guides, roots, 2, {});
+  for (std::size_t h = 0; h < roots.size(); ++h) {
+    EXPECT_LE(length(roots[h]), 0.1 * (1 + 2 * eps));
+    EXPECT_GE(length(roots[h]), 0.1 - edge * edge / 0.6);
+    ++own[hair.neighbours(h).guide[0]];
+  }
+  EXPECT_THAT(own, testing::Each(testing::Gt(0)));
+  const auto fewer = scatter_roots(guides, 100, 4), other = scatter_roots(guides, 100, 5);
+  for (std::size_t h = 0; h < fewer.size(); ++h) {
+    EXPECT_EQ(apart(fewer[h], roots[h]), 0);
+    EXPECT_GT(apart(fewer[h], other[h]), 0);
+  }
+}
+
+TEST(ScatterRoots, OfOneGuideAreItsOwnAndOfTwoLieBetween) {
+  const std::vector<Vec> two{{0, 0, 0}, {1, 0, 0}};
+  for (const Vec& root : scatter_roots(std::span(two).first(1), 5, 1)) {
+    EXPECT_EQ(length(root), 0);
+  }
+  for (const Vec& root : scatter_roots(two, 100, 1)) {
+    EXPECT_GE(root.x, 0);
+    EXPECT_LE(root.x, 1);
+    EXPECT_EQ(root.y, 0);
+  }
+  EXPECT_TRUE(scatter_roots({}, 5, 1).empty());
 }
 
 // Points that coincide and a strand folded onto itself have no tangent or no smallest
