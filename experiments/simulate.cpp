@@ -116,7 +116,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
 
 int run(const Arguments& a, CommandLine line) {
   if (a.print_defaults || a.print_schema) {
-    write_all(1, std::string() /*SCHEMA*/, "standard output");
+    write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
     return 0;
   }
   line.progress = a.progress == "none"   ? ProgressMode::none
