@@ -10,6 +10,11 @@ namespace {
 
 constexpr double margin = 0.5;  // of the reach
 
+// A cell over the reach with its margin. Larger cells are filled faster and hold more
+// that is too far: 1000 segments of 1 cm, 100 strands, are filled in 0.65 ms by 1 and in
+// 0.38 ms by this, which costs loads 7 %.
+constexpr double coarse = 1.4;
+
 // No segment is longer than this many cells: one that a failing run has torn out to
 // nowhere makes cells large, and search slow, but not memory.
 constexpr double longest = 64;
@@ -52,7 +57,7 @@ void SegmentGrid::fill(In x) {
     square = std::max(square, dot(piece.edge, piece.edge));
   }
   const double wide = (1 + margin) * reach_;
-  cell_ = std::max(wide, std::min(std::sqrt(square), 1e100) / longest);
+  cell_ = std::max(coarse * wide, std::min(std::sqrt(square), 1e100) / longest);
   inverse_cell_ = 1 / cell_;
 
   // Counting sort by bucket; marks of one bucket keep their order, that of segments.

@@ -84,12 +84,12 @@ TEST(SegmentGrid, TestsFewCandidatesHoweverManySegments) {
       }
     }
     // Close by chance: the volume pi reach^2 (l + 4/3 reach) about a segment, 2e-6 m^3.
-    // A cell's catch: 1.5 reach and up to half of the cell's diagonal, 1.5 reach
-    // sqrt(3)/2, farther: 2.8 reach, 2.8^2 (l + 3.7 reach)/(l + 1.3 reach) = 14 times
+    // A cell's catch: 1.5 reach and up to half of the cell's diagonal, 2.1 reach
+    // sqrt(3)/2, farther: 3.3 reach, 3.3^2 (l + 4.4 reach)/(l + 1.3 reach) = 22 times
     // that; besides what shares a bucket by chance.
-    EXPECT_LE(candidates, 14 * close);
-    // The same catch over the volume of a cell: 2.8e-5/(9e-3)^3 = 38.
-    EXPECT_LE(grid.entries(), 38 * grid.segments());
+    EXPECT_LE(candidates, 22 * close);
+    // The same catch over the volume of a cell: 4.5e-5/(12.6e-3)^3 = 23.
+    EXPECT_LE(grid.entries(), 23 * grid.segments());
   }
 }
 
