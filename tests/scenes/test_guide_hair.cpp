@@ -247,8 +247,9 @@ TEST(ScatterRoots, LieBetweenTheGuides) {
   // Two of the four nearest are no farther apart than twice the way to the fourth.
   double edge = 0;
   for (const Vec& guide : guides) {
-    std::vector<double> distance;
-    for (const Vec& other : guides) distance.push_back(apart(guide, other));
+    std::vector<double> distance(guides.size());
+    std::ranges::transform(guides, distance.begin(),
+                           [&](const Vec& other) { return apart(guide, other); });
     std::ranges::nth_element(distance, distance.begin() + 4);
     edge = std::max(edge, 2 * distance[4]);
   }
