@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/calibrate_claims.h"
 #include "experiments/harness/experiment.h"
 #include "experiments/harness/friction_fit.h"
 #include "experiments/harness/parse.h"
@@ -17,6 +18,8 @@
 
 namespace tress {
 namespace {
+
+using calibrate::damping, calibrate::fitting;
 
 constexpr Column columns[] = {
     {"data", "file, or the name of one in experiments/data, whose truth is known"},
@@ -74,10 +77,9 @@ struct Shown {
   std::string_view data, fit, integrator;
   bool slow = false;  // not with --quick
 };
-constexpr double usual_step = 2e-3;                        // s
-constexpr std::string_view fitting = "implicit_midpoint";  // does not damp by itself
+constexpr double usual_step = 2e-3;  // s
 constexpr Shown shown[] = {
-    {"two_lengths", "both", fitting},          {"two_lengths", "both", "backward_euler"},
+    {"two_lengths", "both", fitting},          {"two_lengths", "both", damping},
     {"two_lengths_envelope", "both", fitting}, {"one_length", "both", fitting},
     {"one_length", "gamma", fitting},          {"one_length", "nu", fitting},
     {"curly_span", "gamma", fitting, true},
@@ -166,6 +168,20 @@ class Cases {
     return how;
   }
 
+  Observed observed() const {
+    return own_.word("signal") == "envelope" ? Observed::envelope
+                                             : Observed::displacement;
+  }
+
+  std::vector<std::string_view> methods(std::string_view usual) const {
+    std::vector<std::string_view> chosen;
+    for (const std::string& id : line_.integrators) {
+      chosen.push_back(find_integrator(id).id);
+    }
+    if (chosen.empty()) chosen.push_back(usual);
+    return chosen;
+  }
+
   std::vector<const ModelEntry*> models() const {
     if (line_.models.empty()) return {&find_model("super_helix")};
     std::vector<const ModelEntry*> chosen;
@@ -193,19 +209,15 @@ class Cases {
   }
 
   void add_measured() {
-    const Observed observed =
-        own_.word("signal") == "envelope" ? Observed::envelope : Observed::displacement;
-    std::vector<std::string> methods = line_.integrators;
-    if (methods.empty()) methods.emplace_back(fitting);
     const std::string_view fit = own_.word("fit");
     for (const std::string& file :
          split(own_.word("data"), ',', line_.place("set:data"))) {
-      const auto records = std::make_shared<const Records>(read_records(file, observed));
+      const auto records =
+          std::make_shared<const Records>(read_records(file, observed()));
       for (const ModelEntry* model : models()) {
-        for (const std::string& method : methods) {
-          Work work{file,  records, nullptr,
-                    model, {},      options(find_integrator(method).id, fit)};
-          work.how.observed = observed;
+        for (const std::string_view method : methods(fitting)) {
+          Work work{file, records, nullptr, model, {}, options(method, fit)};
+          work.how.observed = observed();
           add(work, settings_.parameters(*model), fit);
         }
       }
@@ -213,26 +225,38 @@ class Cases {
   }
 
   void add_shipped() {
+    if (own_.word("axis") != "z") {
+      throw InputError("the files of experiments/data tell heights",
+                       line_.place("set:axis"), "leave it out, or give data=file.csv");
+    }
     for (const Shown& row : shown) {
       if (settings_.chosen("fit") && own_.word("fit") != row.fit) continue;
       if (line_.quick && row.slow) continue;
-      if (!wanted(line_.integrators, row.integrator)) continue;
+      // The methods chosen stand in for the one that fits.
+      if (!line_.integrators.empty() && row.integrator != fitting) continue;
       const ShippedRecords& shipped =
           *std::ranges::find(shipped_records(), row.data, &ShippedRecords::name);
+      if (settings_.chosen("signal") && observed() != shipped.observed) continue;
       const auto records = std::make_shared<const Records>(
           read_records(file_of(shipped), shipped.observed));
       for (const ModelEntry* model : models()) {
-        Work work{std::string(row.data),           records, &shipped, model, {},
-                  options(row.integrator, row.fit)};
-        work.how.observed = shipped.observed;
-        Parameters p = settings_.parameters(*model);
-        for (const auto& [key, value] : settings_of(shipped, shipped.elements)) {
-          const bool word_known = key != "modes" || has_word(*model, key, value);
-          if (p.knows(key) && word_known && !settings_.chosen(key)) p.set(key, value);
+        for (const std::string_view method : methods(row.integrator)) {
+          Work work{std::string(row.data),   records, &shipped, model, {},
+                    options(method, row.fit)};
+          work.how.observed = shipped.observed;
+          add(work, parameters(shipped, *model), row.fit);
         }
-        add(work, p, row.fit);
       }
     }
+  }
+
+  Parameters parameters(const ShippedRecords& shipped, const ModelEntry& model) const {
+    Parameters p = settings_.parameters(model);
+    for (const auto& [key, value] : settings_of(shipped, shipped.elements)) {
+      const bool word_known = key != "modes" || has_word(model, key, value);
+      if (p.knows(key) && word_known && !settings_.chosen(key)) p.set(key, value);
+    }
+    return p;
   }
 
   const CommandLine& line_;
@@ -242,34 +266,6 @@ class Cases {
 };
 
 std::vector<Case> cases(const CommandLine& line) { return Cases(line).all(); }
-
-/// Known or inside its interval.
-bool holds(const Row& row, const std::string& name, const std::string& unit) {
-  const double truth = row.number(name + "_true" + unit);
-  return !row.has(name + "_low" + unit) || (row.number(name + "_low" + unit) <= truth &&
-                                            truth <= row.number(name + "_high" + unit));
-}
-
-void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
-  for (const Row& row : rows) {
-    if (!row.has("gamma_true_kg_m3_s") || row.text("model") != "super_helix") continue;
-    const std::string what =
-        std::string(row.text("data")) + ", fit of " + std::string(row.text("fit")) + ": ";
-    if (row.text("integrator") != fitting) {
-      verdicts.check(what + std::string(row.text("integrator")) +
-                         "'s own damping is seen by halving the step",
-                     row.status() == "time_error", row.number("step_shift"));
-    } else if (row.text("data") == "one_length" && row.text("fit") == "both") {
-      verdicts.check(what + "one length cannot tell gamma from nu, and the row says so",
-                     row.status() == "not_identified", row.number("correlation"));
-    } else {
-      verdicts.check(
-          what + "the truth is inside the interval",
-          row.ok() && holds(row, "gamma", "_kg_m3_s") && holds(row, "nu", "_kg_m_s"),
-          row.number("gamma_kg_m3_s") / row.number("gamma_true_kg_m3_s"));
-    }
-  }
-}
 
 /// Of simulated records: what they are there to show.
 bool finding(const Row& row) {
@@ -291,7 +287,7 @@ int main(int argc, char** argv) {
       .columns = columns,
       .settings = settings_of_rows,
       .cases = cases,
-      .checks = check_claims,
+      .checks = check_calibrate_claims,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }
