@@ -228,10 +228,12 @@ void Fit::judge(const std::vector<double>& half, FrictionFit& fit) const {
     say("not_identified",
         fmt::format("the interval of {} spans a factor of {:.3g} each way: it may be 0",
                     of_gamma ? "gamma" : "nu", std::exp(wide)));
-  } else if (!(fit.step_shift <= largest_shift)) {
+  } else if (std::isnan(fit.step_shift) || std::isnan(fit.elements_shift)) {
+    say("solver_error", "a run with half the step or twice the elements fails");
+  } else if (fit.step_shift > largest_shift) {
     say("time_error", fmt::format("half the step moves a value by {:.3g} half-intervals",
                                   fit.step_shift));
-  } else if (!(fit.elements_shift <= largest_shift)) {
+  } else if (fit.elements_shift > largest_shift) {
     say("space_error",
         fmt::format("twice as many elements move a value by {:.3g} half-intervals",
                     fit.elements_shift));

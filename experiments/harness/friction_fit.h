@@ -71,7 +71,8 @@ std::vector<Parameters> strands_of(const Records& records, const Parameters& par
 ///     space_error     twice as many elements do
 ///     misfit          residuals follow each other as errors of measurement do not: model
 ///                     or strand are not those of the record, the interval is too narrow
-///     solver_error    the fit did not converge, or a run failed
+///     solver_error    the fit did not converge, or a run failed, one of half the step
+///     too
 FrictionFit fit_friction(const Records& records, const ModelEntry& model,
                          const std::vector<Parameters>& strands, const FitOptions& how);
 
