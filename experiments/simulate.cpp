@@ -11,7 +11,7 @@
 #include "experiments/harness/message.h"
 #include "experiments/harness/parse.h"
 #include "experiments/scenes/scene_run.h"
-// SCHEMA
+#include "experiments/scenes/schema.h"
 #include "models/input_error.h"
 
 namespace tress {
