@@ -36,7 +36,7 @@ TEST_P(WrongSceneTest, IsRefusedWithPlaceAndRemedy) {
 const std::string strand = "[strand]\n";
 const Wrong wrong_scenes[] = {
     {"MalformedToml", "[strand\n", "2:8", "correct the TOML"},
-    {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:1", "correct the TOML"},
+    {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:12", "correct the TOML"},
     {"UnknownTable", "[strnd]\n", "2:2", "did you mean 'strand'?"},
     {"UnknownKey", "[strand]\nlenth_m = 1\n", "3:1", "did you mean 'length_m'?"},
     {"FarKey", "[strand]\nxyzzyplugh = 1\n", "3:1", "use one of: material, position_m"},
