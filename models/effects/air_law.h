@@ -36,9 +36,9 @@ struct SquareDrag {
 };
 
 /// b(u) = rho C(Re) r u of a cylinder of radius r across the flow, Re = 2 r rho u/mu,
-/// with C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White 2006, Viscous Fluid Flow, 3rd ed.,
-/// section 3-11]. The fit has no linear law at Re -> 0, where C Re of a cylinder falls
-/// slower than any power of Re; here
+/// with C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White, Viscous Fluid Flow, curve
+/// fit for the circular cylinder]. The fit has no linear law at Re -> 0, where C Re of a
+/// cylinder falls slower than any power of Re; here
 ///
 ///     C Re = Re + 10 (Re^2 + Re_0^2)^(1/6),   Re_0 = 0.1,    b = mu C Re/2,
 ///

@@ -82,6 +82,11 @@ Ellipsoid::Nearest Ellipsoid::nearest(const Vec& x) const {
   return {(s - shift) * length, (1 / length) * n, length};
 }
 
+double Ellipsoid::at_least(const Vec& x) const {
+  const Vec scaled{x.x / a_.x, x.y / a_.y, x.z / a_.z};
+  return std::min({a_.x, a_.y, a_.z}) * (std::sqrt(dot(scaled, scaled)) - 1);
+}
+
 Distance Ellipsoid::distance(const Vec& x) const {
   const Nearest y = nearest(x);
   return {y.phi, y.normal};

@@ -48,6 +48,9 @@ class Ellipsoid {
   const Vec& half_axes() const { return a_; }
   Distance distance(const Vec& x) const;
   Mat3 curvature(const Vec& x) const;
+  /// A bound of phi from below outside, without the search (m): |x_i/a_i| changes by 1
+  /// over the least half axis at most along any path, and is 1 on the surface.
+  double at_least(const Vec& x) const;
 
  private:
   struct Nearest {

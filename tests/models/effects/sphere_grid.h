@@ -37,7 +37,7 @@ inline DistanceGrid::Samples sphere_samples(double radius, double edge, std::siz
 inline std::string write_file(const std::string& name, const std::string& text) {
   const auto folder = std::filesystem::path(TRESS_BINARY_DIR) / "effect_files";
   std::filesystem::create_directories(folder);
-  const std::string file = (folder / name).string();
+  std::string file = (folder / name).string();
   // Tests run side by side: a file is whole as soon as it has its name.
   const std::string draft = file + "." + std::to_string(std::hash<std::string>{}(text)) +
                             "." + std::to_string(::getpid());

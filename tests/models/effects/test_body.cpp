@@ -11,7 +11,6 @@ namespace tress {
 namespace {
 
 using testing_support::Cloud;
-using testing_support::derivatives;
 using testing_support::FreePoints;
 using testing_support::load;
 using testing_support::sphere_samples;

@@ -115,6 +115,9 @@ TEST(BodyShapes, NoPointOfAnEllipsoidIsNearerThanTheNearest) {
       const double inside =
           x.x * x.x / (a.x * a.x) + x.y * x.y / (a.y * a.y) + x.z * x.z / (a.z * a.z);
       EXPECT_EQ(to.value < 0, inside < 1);
+      if (inside > 1) {
+        EXPECT_LE(shape.at_least(x), to.value + 10 * eps);
+      }
       double least = 1e9;
       for (const Vec& p : points) least = std::min(least, length(p - x));
       EXPECT_GE(least, std::abs(to.value) * (1 - 100 * eps) - 10 * eps) << i;
