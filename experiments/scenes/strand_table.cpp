@@ -1,6 +1,9 @@
 #include "experiments/scenes/strand_table.h"
 
+#include <cmath>
 #include <iterator>
+#include <numbers>
+#include <string>
 
 #include "experiments/scenes/directions.h"
 #include "experiments/scenes/shapes.h"
@@ -11,6 +14,8 @@ namespace tress {
 namespace {
 
 constexpr double most = 1e6;
+// Models integrate an element by points that grow with the angle it winds.
+constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {
     {.name = "position_m",
@@ -84,8 +89,18 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
   const Parameters& p = table.values();
   const Discretisation cut{p.whole("elements"), length, p.number("grading")};
   const bool straight = p.word("initial") == "straight";
-  return make_strand(material.material, material.section, cut, natural,
-                     straight ? uniform_shape({}) : Shape{});
+  Strand strand = make_strand(material.material, material.section, cut, natural,
+                              straight ? uniform_shape({}) : Shape{});
+  for (const Segment& segment : strand.segments) {
+    const Vec& darboux = segment.natural;
+    const double turns = std::sqrt(dot(darboux, darboux)) * segment.length / turn;
+    if (turns <= most_turns) continue;
+    throw InputError("an element winds by " + std::to_string(turns) + " turns",
+                     table.place(),
+                     "give more elements, a shorter strand or less curvature: at most "
+                     "20 turns each");
+  }
+  return strand;
 }
 
 Strand scene_strand(const Table& table, const Table* own_material, const Common& common,

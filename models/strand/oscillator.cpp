@@ -48,7 +48,8 @@ Signal driven_oscillator(const Oscillator& body, double t0) {
   const double f = body.force / body.inertia;
   const double away = w2 - drive * drive, friction = 2 * d * drive;
   const double norm = away * away + friction * friction;
-  if (!(norm > 0)) {
+  const double rounding = 1e-14 * (w2 + drive * drive);
+  if (!(norm > rounding * rounding)) {
     throw InputError("an undamped oscillator is driven at its own frequency",
                      "signal of a root motion", "give damping > 0 or another frequency");
   }

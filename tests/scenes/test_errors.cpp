@@ -36,7 +36,7 @@ TEST_P(WrongSceneTest, IsRefusedWithPlaceAndRemedy) {
 const std::string strand = "[strand]\n";
 const Wrong wrong_scenes[] = {
     {"MalformedToml", "[strand\n", "2:8", "correct the TOML"},
-    {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:1", "correct the TOML"},
+    {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:12", "correct the TOML"},
     {"UnknownTable", "[strnd]\n", "2:2", "did you mean 'strand'?"},
     {"UnknownKey", "[strand]\nlenth_m = 1\n", "3:1", "did you mean 'length_m'?"},
     {"FarKey", "[strand]\nxyzzyplugh = 1\n", "3:1", "use one of: material, position_m"},
@@ -87,6 +87,8 @@ const Wrong wrong_scenes[] = {
      "brings its own geometry"},
     {"MassiveGroom", "[groom]\ncount = 10000\nelements = 10000\n", "3:9", "1 to 20"},
     {"MassiveStrand", "[strand]\nelements = 99999999\n", "3:12", "out of range"},
+    {"WindingElements", "[strand]\nlength_m = 1e6\nshape = \"helix\"\n", "2:1",
+     "give more elements"},
     {"TooManyFrames", "duration_s = 1e6\nframes_1_s = 1e6\n" + strand, "3:14",
      "frames_1_s times duration_s"},
     {"ModelRefuses",
