@@ -69,11 +69,8 @@ Readout::Readout(const Scene& scene) : scene_(scene), effects_(make_effects(scen
     lump(strand, mass_.back(), length_.back());
     Twins twins;
     twins.bare = scene.model->on_strand(strand, scene.model_options, {});
-    for (const EffectChoice& choice : scene.effects) {
-      Effects one;
-      one.push_back(choice.entry->make(choice.parameters, scene.head));
-      twins.with.push_back(
-          scene.model->on_strand(strand, scene.model_options, std::move(one)));
+    for (const auto& effect : effects_) {
+      twins.with.push_back(scene.model->on_strand(strand, scene.model_options, {effect}));
     }
     twins_.push_back(std::move(twins));
   }

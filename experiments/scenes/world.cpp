@@ -48,8 +48,9 @@ World::World(const Scene& scene, int threads)
   if (scene.strands.empty()) {
     bodies_.emplace_back().system = scene.model->make(scene.model_options);
   }
+  const Effects shared = make_effects(scene);
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
-    Effects effects = make_effects(scene);
+    Effects effects = shared;
     if (interaction_) effects.push_back(interaction_->effect(k));
     bodies_.emplace_back().system =
         scene.model->on_strand(scene.strands[k], scene.model_options, std::move(effects));
@@ -64,8 +65,8 @@ World::World(const Scene& scene, int threads)
     point += static_cast<std::size_t>(points_.back());
     begin.strands.push_back(initial_state_of(*body.system));
   }
-  x_.resize(3 * point);
-  u_.resize(3 * point);
+  x_.values.resize(3 * point);
+  u_.values.resize(3 * point);
   restore(begin);
 }
 
@@ -77,6 +78,7 @@ void World::restore(const Snapshot& snapshot) {
     bodies_[k].status = bodies_[k].integrator->start(t_, state.q, state.v);
   }
   failure_.clear();
+  x_.done = u_.done = false;
   exchange();
 }
 
@@ -104,6 +106,7 @@ Status World::advance(double t_end) {
       if (body.status == Status::ok) body.status = body.integrator->advance(t);
     });
     t_ = t;
+    x_.done = u_.done = false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       if (bodies_[k].status == Status::ok) continue;
       failure_ = fmt::format("strand {}: {}", k, bodies_[k].integrator->failure());
@@ -131,7 +134,7 @@ const std::vector<double>& World::positions() {
         body.system->material_points()->positions(t_, body.integrator->q(), of_strand);
       },
       x_);
-  return x_;
+  return x_.values;
 }
 
 const std::vector<double>& World::velocities() {
@@ -141,18 +144,22 @@ const std::vector<double>& World::velocities() {
                                                    body.integrator->v(), of_strand);
       },
       u_);
-  return u_;
+  return u_.values;
 }
 
 void World::exchange() {
   if (interaction_) interaction_->update(positions(), velocities());
 }
 
-void World::look(const std::function<void(Body&, Out)>& read, std::vector<double>& to) {
+void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
+  if (to.done) return;
   crew_.run(bodies_.size(), [&](std::size_t k) {
     const auto count = 3 * static_cast<std::size_t>(points_[k]);
-    if (count > 0) read(bodies_[k], Out(to).subspan(3 * bodies_[k].first_point, count));
+    if (count > 0) {
+      read(bodies_[k], Out(to.values).subspan(3 * bodies_[k].first_point, count));
+    }
   });
+  to.done = true;
 }
 
 }  // namespace tress

@@ -46,7 +46,7 @@ class World {
   /// Null where strands do not touch.
   const StrandInteraction* interaction() const { return interaction_.get(); }
 
-  /// Material points of all strands, strand after strand.
+  /// Material points of all strands, strand after strand; read once after each advance.
   const std::vector<int>& points() const { return points_; }
   const std::vector<double>& positions();   // (3 points)
   const std::vector<double>& velocities();  // (3 points)
@@ -59,14 +59,19 @@ class World {
     Status status = Status::ok;
   };
 
-  void look(const std::function<void(Body&, Out)>& read, std::vector<double>& to);
+  /// Coordinates of all points at the present state.
+  struct Read {
+    std::vector<double> values;  // (3 points)
+    bool done = false;
+  };
+  void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();
 
   double step_;  // s, between two exchanges
   std::unique_ptr<StrandInteraction> interaction_;
   std::vector<Body> bodies_;
   std::vector<int> points_;
-  std::vector<double> x_, u_;
+  Read x_, u_;
   double t_ = 0;
   std::string failure_;
   Crew crew_;
