@@ -19,7 +19,7 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
   ForceTransport(ReducedStrand strand, bool sweeps)
       : Base(std::move(strand)),
         sweeps_(sweeps),
-        transport_(mass_.segments.size()),
+        transport_(kinematics_.segments().size()),
         dense_(Base::exact_ || !sweeps ? kinematics_.unknowns() : 0, false),
         gyroscopic_(Base::full_, dense_.matrix),
         restoring_(zero_) {}
@@ -64,15 +64,12 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
   /// Composite bodies at q, kept for the next call.
   void compose(In q) {
     if (std::ranges::equal(q, composed_)) return;
-    for (std::size_t i = 0; i < mass_.segments.size(); ++i) {
-      mass_tangent(kinematics_, i, {1, 0, 0}, mass_.segments[i]);
-    }
-    transport_.compose(mass_);
+    transport_.compose(mass_.here({1, 0, 0}));
     composed_.assign(q.begin(), q.end());
   }
 
   In restoring(Weights w) {
-    for (std::size_t i = 0; i < mass_.segments.size(); ++i) {
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       const Vec of_segment = tress::restoring(kinematics_.segments()[i], w);
       for (int k = 0; k < dofs; ++k) {
         restoring_[dofs * i + static_cast<std::size_t>(k)] =
