@@ -105,9 +105,9 @@ HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
 
 }  // namespace helix
 
-/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa, or one a
-/// lane; longest is the largest |s| of the element, so that all its points take the same
-/// way, and so do the elements of a pack.
+/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa, or one
+/// a lane; longest is the largest |s| of the element, so that all its points take the
+/// same way, and so do the elements of a pack.
 ///
 /// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
 /// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,

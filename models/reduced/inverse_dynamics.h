@@ -215,9 +215,8 @@ class InverseDynamics {
           dot(e, segment.stiffness) * dot(e, kappa - segment.rest) +
           dot(e, segment.friction) * dot(e, rate);
     }
-    Wrench start{
-        sum_over<Real>(sum_force) + force,
-        sum_over<Real>(sum_moment) + moment + cross(g.position, force)};
+    Wrench start{sum_over<Real>(sum_force) + force,
+                 sum_over<Real>(sum_moment) + moment + cross(g.position, force)};
     if (segment.mounted) {
       start = {segment.mount * start.force, segment.mount * start.moment};
     }
@@ -227,7 +226,7 @@ class InverseDynamics {
   }
 
   K& kinematics_;
-  std::size_t count_;  // points of one strand
+  std::size_t count_;                                // points of one strand
   std::vector<Effects> effects_;                     // of each
   std::vector<std::vector<const Effect*>> loading_;  // those of them that are not uniform
   bool loaded_ = false;

@@ -38,7 +38,7 @@ class SegmentFrames {
   template <class Column>
   static void put(const Vec& translation, const Vec& rotation, Column&& column) {
     const Real from[2][3] = {{translation.x, translation.y, translation.z},
-                               {rotation.x, rotation.y, rotation.z}};
+                             {rotation.x, rotation.y, rotation.z}};
     for (int i = 0; i < S::translations; ++i) column[i] = from[0][S::translation[i]];
     for (int i = 0; i < S::rotations; ++i) {
       column[S::translations + i] = from[1][S::rotation[i]];

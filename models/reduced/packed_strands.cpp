@@ -58,7 +58,8 @@ PointBlock packed_point(const std::vector<const ReducedStrand*>& strands,
                         std::size_t point) {
   PointBlock all;
   for (int lane = 0; lane < Pack::lanes; ++lane) {
-    const PointBlock& four = strands[static_cast<std::size_t>(lane)]->blocks[point / width];
+    const PointBlock& four =
+        strands[static_cast<std::size_t>(lane)]->blocks[point / width];
     const int at = static_cast<int>(point % width);
     all.s.set(lane, four.s[at]);
     all.mass.set(lane, four.mass[at]);

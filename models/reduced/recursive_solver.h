@@ -105,7 +105,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   using Square = Eigen::Matrix<Real, n, n>;
 
   struct Eliminated {
-    Square inverse;                             // of the pivot H
+    Square inverse;                           // of the pivot H
     Eigen::Matrix<Real, n, states> z;         // x = u - z s
     Eigen::Matrix<Real, wrench, n> response;  // of the wrench handed on to rest
     Dofs u;

@@ -12,7 +12,8 @@ namespace {
 template <template <class> class Kernel, template <class> class PlanarKernel>
 std::unique_ptr<System> make_batch(std::span<const Strand> strands, Unknown unknown,
                                    const ReducedOptions& given,
-                                   std::vector<Effects> effects, decltype(super_helix) alone) {
+                                   std::vector<Effects> effects,
+                                   decltype(super_helix) alone) {
   const ReducedOptions options = with_same_points(strands, unknown, given);
   PackedStrands all = packed(strands, unknown, options, effects);
   std::vector<std::unique_ptr<System>> systems;
@@ -39,6 +40,13 @@ std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
                                           std::vector<Effects> effects) {
   return make_batch<HelixOf, ArcOf>(strands, Unknown::curvature, options,
                                     std::move(effects), super_helix);
+}
+
+std::unique_ptr<System> articulated_chain_batch(std::span<const Strand> strands,
+                                                const ReducedOptions& options,
+                                                std::vector<Effects> effects) {
+  return make_batch<BallLinkOf, BallLinkOf>(strands, Unknown::joint_angle, options,
+                                            std::move(effects), articulated_chain);
 }
 
 }  // namespace tress

@@ -27,12 +27,12 @@ struct ReducedSegmentOf {
   T length{};
   bool mounted = false;  // mount is not the identity
   FrameOf<T> mount;
-  T rotor{};            // rotational inertia about the tangent at the tip, kg m^2
-  Vec3<T> held;         // components that are not unknowns keep this value
-  Vec3<T> rest;         // unknowns at rest
-  Vec3<T> initial;      // and at t = 0
-  Vec3<T> stiffness;    // moment per unknown
-  Vec3<T> friction;     // and per its rate
+  T rotor{};          // rotational inertia about the tangent at the tip, kg m^2
+  Vec3<T> held;       // components that are not unknowns keep this value
+  Vec3<T> rest;       // unknowns at rest
+  Vec3<T> initial;    // and at t = 0
+  Vec3<T> stiffness;  // moment per unknown
+  Vec3<T> friction;   // and per its rate
   std::size_t first_block = 0, last_block = 0;
 };
 using ReducedSegment = ReducedSegmentOf<double>;

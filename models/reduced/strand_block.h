@@ -31,7 +31,9 @@ class StrandBlock : public System,
   std::size_t unknowns() const { return unknowns_; }  // of each strand
 
  private:
-  In of(std::size_t strand, In x) const { return x.subspan(strand * unknowns_, unknowns_); }
+  In of(std::size_t strand, In x) const {
+    return x.subspan(strand * unknowns_, unknowns_);
+  }
   Out of(std::size_t strand, Out x) const {
     return x.subspan(strand * unknowns_, unknowns_);
   }
