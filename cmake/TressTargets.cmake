@@ -26,9 +26,11 @@ function(tress_library name)
   tress_warnings(tress_${name})
 endfunction()
 
-# tress_test(name source... ): an executable whose GoogleTest cases ctest runs one by one.
+# tress_test(name source... [SHARDS n]): an executable whose GoogleTest cases ctest runs one
+# by one, or in n parts: thousands of cases that take a millisecond each are all start-up.
 function(tress_test name)
-  add_executable(test_${name} ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "")
+  add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE tress_harness tress::integrators tress::models
                         GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE
@@ -37,5 +39,14 @@ function(tress_test name)
   # Tests run once: optimising them costs more than it brings.
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   tress_warnings(test_${name})
-  gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  if(NOT arg_SHARDS)
+    gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+    return()
+  endif()
+  math(EXPR last "${arg_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${name}_${shard} COMMAND test_${name} --gtest_brief=1)
+    set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT 300 ENVIRONMENT
+      "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

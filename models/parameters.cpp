@@ -170,8 +170,11 @@ void Parameters::set(std::string_view key, std::string_view value,
   }
   const auto words = words_of(declared.choices);
   if (!declared.text && std::find(words.begin(), words.end(), value) == words.end()) {
+    const std::string_view near = nearest(value, words);
     throw InputError(std::string(key) + " = '" + std::string(value) + "' is unknown",
-                     where, "use one of: " + join(words));
+                     where,
+                     (near.empty() ? "" : "did you mean '" + std::string(near) + "'? ") +
+                         "use one of: " + join(words));
   }
   values_[i].word = value;
 }

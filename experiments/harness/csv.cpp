@@ -18,10 +18,13 @@ class Reader {
 
   bool done() const { return at_ >= text_.size(); }
 
-  std::vector<std::string> line() {
+  /// The cells of the next line; `places` becomes where each of them begins.
+  std::vector<std::string> line(std::vector<CellPlace>& places) {
+    places = {{line_, column_}};
     std::vector<std::string> cells{cell()};
     while (!done() && peek() == ',') {
       step();
+      places.push_back({line_, column_});
       cells.push_back(cell());
     }
     if (!done() && peek() == '\r') step();
@@ -109,7 +112,7 @@ std::string to_csv(std::span<const std::string> header, std::span<const Row> row
 Table parse_csv(std::string_view text, const std::string& file) {
   Reader reader(text, file);
   Table table;
-  if (!reader.done()) table.header = reader.line();
+  if (!reader.done()) table.header = reader.line(table.places.emplace_back());
   for (std::size_t i = 0; i < table.header.size(); ++i) {
     const auto rest = table.header.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     if (std::find(rest, table.header.end(), table.header[i]) != table.header.end()) {
@@ -118,7 +121,7 @@ Table parse_csv(std::string_view text, const std::string& file) {
     }
   }
   while (!reader.done()) {
-    const std::vector<std::string> cells = reader.line();
+    const std::vector<std::string> cells = reader.line(table.places.emplace_back());
     if (cells.size() != table.header.size()) {
       reader.fail(fmt::format("the line before has {} cells, the header {}", cells.size(),
                               table.header.size()));

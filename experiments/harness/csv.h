@@ -9,10 +9,17 @@
 
 namespace tress {
 
+/// Where a cell of a file begins, counted from 1.
+struct CellPlace {
+  int line = 1, column = 1;
+};
+
 /// A table as read: every line has as many cells as the header.
 struct Table {
   std::vector<std::string> header;
   std::vector<Row> rows;
+  /// Of every cell, the header's first: those of rows[i] are places[i + 1].
+  std::vector<std::vector<CellPlace>> places;
 };
 
 /// RFC 4180: comma, quotes around cells that hold comma, quote or line break, quotes

@@ -22,23 +22,14 @@ namespace fs = std::filesystem;
                         : "choose a file in a writable directory");
 }
 
-/// A descriptor that is closed on every path.
-class File {
- public:
-  File(const std::string& file, int flags)
-      : descriptor_(::open(file.c_str(), flags, 0644)) {
-    if (descriptor_ < 0) cannot_write(file, errno);
-  }
-  ~File() { ::close(descriptor_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
 }  // namespace
+
+File::File(const std::string& file, int flags)
+    : descriptor_(::open(file.c_str(), flags, 0644)) {
+  if (descriptor_ < 0) cannot_write(file, errno);
+}
+
+File::~File() { ::close(descriptor_); }
 
 std::string read_file(const std::string& file) {
   const auto refuse = [&file](const std::string& problem) {

@@ -8,6 +8,20 @@ namespace tress {
 /// The whole file; throws InputError when it is missing, a directory or unreadable.
 std::string read_file(const std::string& file);
 
+/// An open file; closed on every path.
+class File {
+ public:
+  /// As open(2) with mode 0644; throws InputError naming `file` when it cannot.
+  File(const std::string& file, int flags);
+  ~File();
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
 /// Writes all bytes to the descriptor; throws InputError naming `file` when it cannot
 /// (disk full, file too large, device gone).
 void write_all(int descriptor, std::string_view text, const std::string& file);

@@ -1,59 +1,17 @@
 #include "experiments/harness/scene_file.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "experiments/harness/files.h"
 #include "experiments/harness/parse.h"
+#include "experiments/harness/toml_text.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
 
 namespace tress {
 namespace {
-
-std::string place_of(const toml::source_region& source, const std::string& file) {
-  return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
-}
-
-/// toml++ has aborted on NUL bytes in some builds, so they are looked for first.
-void refuse_nul_bytes(std::string_view text, const std::string& file) {
-  const std::size_t at = text.find('\0');
-  if (at == std::string_view::npos) return;
-  int row = 1, column = 1;
-  for (const char c : text.substr(0, at)) {
-    column = c == '\n' ? 1 : column + 1;
-    row += c == '\n' ? 1 : 0;
-  }
-  throw InputError("NUL byte in a scene file", fmt::format("{}:{}:{}", file, row, column),
-                   "scene files are plain text");
-}
-
-toml::table parse(const std::string& file) {
-  const std::string text = read_file(file);
-  refuse_nul_bytes(text, file);
-  try {
-    return toml::parse(text, std::string_view(file));
-  } catch (const toml::parse_error& error) {
-    throw InputError(std::string(error.description()), place_of(error.source(), file),
-                     "correct the TOML there");
-  }
-}
-
-/// Text of a scalar as `--set` would give it; empty when it is not a scalar.
-std::string scalar_text(const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
-  if (const auto* yes = node.as_boolean()) return yes->get() ? "true" : "false";
-  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
-  if (const auto* real = node.as_floating_point()) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, real->get());
-    return std::string(buffer, end.ptr);
-  }
-  return {};
-}
 
 /// A scalar, or a list of scalars joined by commas: what the option of that name accepts.
 std::string option_text(const toml::node& node, const std::string& where) {
@@ -156,7 +114,7 @@ constexpr std::pair<std::string_view, Reader> readers[] = {
 }  // namespace
 
 void read_scene_options(const std::string& file, CommandLine& line) {
-  const toml::table scene = parse(file);
+  const toml::table scene = parse_toml(read_file(file), file);
   for (const auto& [key, value] : scene) {
     const std::string name(key.str());
     const std::string where = place_of(value.source(), file);

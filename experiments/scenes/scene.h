@@ -27,7 +27,7 @@ struct Scene {
   const ModelEntry* model = nullptr;
   /// The model's own options; of a model that brings its own geometry (no `strands`) all
   /// of its parameters.
-  Parameters model_options;
+  Parameters model_options{{}, "model"};
   std::string integrator;
   Options options;  // options.step: s
 

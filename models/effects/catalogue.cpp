@@ -4,8 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "models/effects/body.h"
+#include "models/effects/constant_force.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
+#include "models/effects/quadratic_drag.h"
+#include "models/effects/self_contact.h"
+#include "models/effects/tether.h"
+#include "models/effects/wind.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -15,6 +21,12 @@ std::span<const EffectEntry> effects() {
   static const std::array entries = {
       EffectEntry{"gravity", "uniform acceleration of all mass", "Newton", gravity_parameters(), make_gravity},
       EffectEntry{"linear_drag", "force against the velocity, per length and per mass", "Bertails 2006, section 4.2", linear_drag_parameters(), make_linear_drag},
+      EffectEntry{"constant_force", "uniform force per length and per mass", "Newton", constant_force_parameters(), make_constant_force},
+      EffectEntry{"quadratic_drag", "drag of still air in the square of the speed, across and along the strand", "Ablow & Schechter 1983; White, Viscous Fluid Flow", quadratic_drag_parameters(), make_quadratic_drag},
+      EffectEntry{"wind", "load of moving air: steady, sine or gusts", "Ablow & Schechter 1983; Bridson et al. 2007; Kraichnan 1970", wind_parameters(), make_wind},
+      EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
+      EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15", body_parameters(), make_body, true},
+      EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact},
   };
   return entries;
 }

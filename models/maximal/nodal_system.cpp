@@ -72,20 +72,27 @@ void NodalSystem::place(double t, In q, In v) noexcept {
   motion_.place(parts_.rod, pose_, q, v);
 }
 
-Points NodalSystem::points() noexcept {
+Points NodalSystem::points(Needs wanted) noexcept {
+  Points p{count(), {}, {}, {}, parts_.rod.mass, parts_.node_length};
   const std::size_t nodes = motion_.x.size();
-  for (std::size_t i = 0; i < nodes; ++i) {
-    store3(motion_.x[i], &x_[3 * i]);
-    store3(motion_.v[i], &u_[3 * i]);
-    store3(motion_.tangent(std::min(i, nodes - 2)), &tangent_[3 * i]);
+  const auto fill = [nodes](std::vector<double>& to, auto&& of_node) {
+    for (std::size_t i = 0; i < nodes; ++i) store3(of_node(i), &to[3 * i]);
+    return In(to);
+  };
+  if (wanted.position) p.x = fill(x_, [this](std::size_t i) { return motion_.x[i]; });
+  if (wanted.velocity) p.v = fill(u_, [this](std::size_t i) { return motion_.v[i]; });
+  if (wanted.tangent) {
+    p.tangent = fill(tangent_, [this, nodes](std::size_t i) {
+      return motion_.tangent(std::min(i, nodes - 2));
+    });
   }
-  return {count(), x_, u_, tangent_, parts_.rod.mass, parts_.node_length};
+  return p;
 }
 
 /// Loads of the effects on the nodes as they are placed.
 void NodalSystem::load(double t) noexcept {
   if (parts_.effects.empty()) return;
-  const Points p = points();
+  const Points p = points(needs_);
   std::ranges::fill(load_, 0.0);
   for (const auto& effect : parts_.effects) effect->add_load(t, p, load_);
   for (std::size_t i = 0; i < motion_.load.size(); ++i) {
@@ -95,7 +102,7 @@ void NodalSystem::load(double t) noexcept {
 
 void NodalSystem::load_slopes(double t) noexcept {
   if (!needs_.derivatives) return;
-  const Points p = points();
+  const Points p = points(needs_);
   std::ranges::fill(load_by_x_, 0.0);
   std::ranges::fill(load_by_v_, 0.0);
   for (const auto& effect : parts_.effects) {
@@ -230,7 +237,8 @@ Energy NodalSystem::energy(double t, In q, In v) {
                     k.z * strain.z * strain.z) /
                    2;
   }
-  const Points p = points();
+  const Points p =
+      points({.position = true, .velocity = true, .tangent = needs_.tangent});
   for (const auto& effect : parts_.effects) e.potential += effect->potential(t, p);
   return e;
 }
@@ -244,7 +252,8 @@ double NodalSystem::power(double t, In q, In v) {
     const Vec &rate = motion_.strain_rate(j), &c = rod.joints[j].friction;
     sum -= c.x * rate.x * rate.x + c.y * rate.y * rate.y + c.z * rate.z * rate.z;
   }
-  const Points p = points();
+  const Points p =
+      points({.position = true, .velocity = true, .tangent = needs_.tangent});
   for (const auto& effect : parts_.effects) sum += effect->power(t, p);
   // The clamp holds node 0 on its path and turns against the moment of joint 0.
   const Vec force = rod.mass[0] * pose_.a - motion_.load[0] - motion_.root_force();

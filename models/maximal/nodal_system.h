@@ -59,7 +59,7 @@ class NodalSystem final : public System,
   }
 
   void place(double t, In q, In v) noexcept;
-  Points points() noexcept;
+  Points points(Needs wanted) noexcept;
   void load(double t) noexcept;
   void load_slopes(double t) noexcept;
   void differentiate(const StaggeredRod& rod, const RootPose& root) noexcept;

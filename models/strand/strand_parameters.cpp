@@ -6,6 +6,7 @@
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/input_error.h"
+#include "models/strand/signals.h"
 
 namespace tress {
 namespace {
@@ -226,9 +227,7 @@ RootMotion root_motion(const Parameters& parameters) {
                              parameters.number("stop_time_s")));
   }
   if (root == "drop_pull") {
-    const double half = 1 / (2 * frequency);
-    translate(down,
-              sum(smooth_step(amplitude, 0, half), smooth_step(-amplitude, half, half)));
+    translate(down, there_and_back(amplitude, 1 / (2 * frequency)));
   }
   return motion;
 }

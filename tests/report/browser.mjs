@@ -140,6 +140,46 @@ export class Browser {
     });
   }
 
+  // The mouse pressed at one place of the viewport and let go at another.
+  async drag([x, y], [to_x, to_y]) {
+    const move = (px, py) => ({
+      type: 'pointerMove',
+      x: Math.round(px),
+      y: Math.round(py),
+      duration: 50,
+    });
+    await this.command('/actions', {
+      actions: [
+        {
+          type: 'pointer',
+          id: 'mouse',
+          actions: [
+            move(x, y),
+            { type: 'pointerDown', button: 0 },
+            move(to_x, to_y),
+            { type: 'pointerUp', button: 0 },
+          ],
+        },
+      ],
+    });
+  }
+
+  // A key pressed and released; special keys by their WebDriver code points.
+  async press(key) {
+    await this.command('/actions', {
+      actions: [
+        {
+          type: 'key',
+          id: 'keyboard',
+          actions: [
+            { type: 'keyDown', value: key },
+            { type: 'keyUp', value: key },
+          ],
+        },
+      ],
+    });
+  }
+
   async log(kind) {
     return this.command('/se/log', { type: kind });
   }

@@ -16,6 +16,7 @@ import { stability_answer, stability_findings } from './findings/stability.mjs';
 import { swing_answer, swing_findings } from './findings/swing.mjs';
 import { bdf_findings, work_answer, work_findings } from './findings/work.mjs';
 import { manifest_html } from './manifest.mjs';
+import { scenes_html } from './scenes_page.mjs';
 import { scaling_summary, stability_summary, swing_summary } from './summaries.mjs';
 import { known_tables } from './tables.mjs';
 
@@ -138,7 +139,7 @@ function section_html(section, tables, objects) {
 function header_html(objects) {
   const none = (name) =>
     `No answer yet: ${name}.csv is missing or holds no finished runs.`;
-  return `<header><p class="kicker">tress report</p>
+  return `<header>
 <h1>Constraint drift, stable steps, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
@@ -157,8 +158,27 @@ function header_html(objects) {
     .join('')}<a href="#made">How this was made</a></nav>`;
 }
 
-// `tables` as load_results returns them, `objects` the same rows as objects.
-export function body_html(tables, objects) {
+const tab_html = (name, text, selected) =>
+  `<button type="button" role="tab" id="tab-${name}" aria-controls="panel-${name}" ` +
+  `aria-selected="${selected}"${selected ? '' : ' tabindex="-1"'}>${text}</button>`;
+
+const panel_html = (name, content, attribute = '') =>
+  `<div role="tabpanel" id="panel-${name}" aria-labelledby="tab-${name}"${attribute}>\n` +
+  `${content}\n</div>`;
+
+// `tables` as load_results returns them, `objects` the same rows as objects, `scenes` as
+// load_scenes returns them.
+export function body_html(tables, objects, scenes) {
+  return [
+    '<div class="tabs"><span class="kicker">tress report</span><div role="tablist" ' +
+      `aria-label="Parts of the report">${tab_html('measured', 'Measurements', true)}` +
+      `${tab_html('scenes', 'Scenes', false)}</div></div>`,
+    panel_html('measured', measured_html(tables, objects)),
+    panel_html('scenes', scenes_html(scenes), ' hidden'),
+  ].join('\n');
+}
+
+function measured_html(tables, objects) {
   const extra = Object.keys(tables).filter((name) => !(name in known_tables));
   return [
     header_html(objects),

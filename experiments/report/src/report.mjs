@@ -7,6 +7,8 @@ import { fileURLToPath } from 'node:url';
 import { as_objects, InputError } from './csv.mjs';
 import { load_results } from './load.mjs';
 import { body_html } from './page.mjs';
+import { load_scenes } from './scene_file.mjs';
+import { scene_data_html } from './scenes_page.mjs';
 
 export const sources = TRESS_SOURCES;
 
@@ -52,7 +54,7 @@ const script_hash = (text) =>
   `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
 
 // The page: the template with policy, text and data filled in.
-export function page_html(template, tables, objects) {
+export function page_html(template, tables, objects, scenes) {
   const script = /<script id="program">([\s\S]*?)<\/script>/.exec(template)[1];
   const policy =
     "default-src 'none'; base-uri 'none'; form-action 'none'; " +
@@ -62,11 +64,12 @@ export function page_html(template, tables, objects) {
   );
   const values = {
     POLICY: policy,
-    BODY: body_html(tables, objects),
+    BODY: body_html(tables, objects, scenes),
     DATA: embedded_json(data),
+    SCENES: scene_data_html(scenes, embedded_json),
   };
   return template.replace(
-    /<!--TRESS_(POLICY|BODY|DATA)-->|TRESS_(POLICY)_VALUE/g,
+    /<!--TRESS_(POLICY|BODY|DATA|SCENES)-->|TRESS_(POLICY)_VALUE/g,
     (_, slot, attribute) => values[slot ?? attribute],
   );
 }
@@ -78,6 +81,7 @@ async function main(argv) {
     return;
   }
   const tables = load_results(directory);
+  const scenes = load_scenes(directory);
   const objects = Object.fromEntries(
     Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
   );
@@ -88,8 +92,11 @@ async function main(argv) {
   const { render_figures } = await import('./render.mjs');
   const drawn = await render_figures(objects);
   for (const { id, svg } of drawn) write(join(directory, `${id}.svg`), svg);
-  write(out, page_html(template, tables, objects));
-  console.error(`${out}: ${Object.keys(tables).length} tables, ${drawn.length} figures`);
+  write(out, page_html(template, tables, objects, scenes));
+  console.error(
+    `${out}: ${Object.keys(tables).length} tables, ${drawn.length} figures, ` +
+      `${scenes.length} scenes`,
+  );
 }
 
 main(process.argv.slice(2)).catch((error) => {

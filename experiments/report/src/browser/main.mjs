@@ -4,7 +4,9 @@ import { expressionInterpreter } from 'vega-interpreter';
 import { figures, figure_spec } from '../../figures/all.mjs';
 import { page_theme, vega_config } from '../../figures/common.mjs';
 import { as_objects } from '../csv.mjs';
+import { Player } from './scenes/player.mjs';
 import { fill_table } from './table.mjs';
+import { start_tabs } from './tabs.mjs';
 
 const tables = JSON.parse(document.getElementById('data').textContent);
 const objects = Object.fromEntries(
@@ -85,6 +87,26 @@ for (const details of document.querySelectorAll('[data-table]')) {
   );
 }
 
-Promise.all(places.map(draw)).then(() => {
+// Scenes: read when their tab is opened for the first time, or an address names one.
+const scene_texts = new Map(
+  [...document.querySelectorAll('[data-scene]')].map((element) => [
+    element.dataset.scene,
+    element.textContent,
+  ]),
+);
+const player = scene_texts.size > 0 ? new Player(scene_texts) : undefined;
+let scenes_drawn;
+
+start_tabs((scenes_shown) => {
+  if (player === undefined) return;
+  player.shown = scenes_shown;
+  if (!scenes_shown) {
+    if (player.playing) player.play(false);
+  } else if (player.scene === undefined || location.hash.startsWith('#scene')) {
+    scenes_drawn = player.read_address(location.hash);
+  }
+});
+
+Promise.all([...places.map(draw), scenes_drawn]).then(() => {
   document.documentElement.dataset.ready = 'yes';
 });

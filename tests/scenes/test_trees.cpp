@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <filesystem>
 #include <string>
 
-#include "experiments/harness/scene_file.h"
+#include "experiments/scenes/scene.h"
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
@@ -13,26 +12,12 @@ namespace {
 
 const std::filesystem::path scenes = TRESS_SCENES;
 
-TEST(Scenes, AreRead) {
-  int count = 0;
-  for (const auto& file : std::filesystem::directory_iterator(scenes)) {
-    CommandLine line;
-    EXPECT_NO_THROW(read_scene_options(file.path().string(), line)) << file.path();
-    EXPECT_FALSE(line.models.empty()) << file.path();
-    ++count;
-  }
-  EXPECT_GE(count, 5);
-}
-
 class TreeSceneTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(TreeSceneTest, NamesItsTreeWithItsMaterialAndRoot) {
-  CommandLine line;
-  read_scene_options((scenes / (GetParam() + ".toml")).string(), line);
-  const std::array own = {Parameter{.name = "tree", .help = "", .choices = tree_choices}};
-  const std::vector<Parameter> declared = with_material_parameters(own);
-  Parameters parameters(declared, GetParam());
-  for (const auto& [key, value] : line.set) parameters.set(key, value);
+  const Scene read = read_scene((scenes / (GetParam() + ".toml")).string());
+  EXPECT_EQ(read.model->id, "super_helix_tree");
+  const Parameters& parameters = read.model_options;
   EXPECT_EQ(parameters.word("tree"), GetParam());
   const Material scene = material(parameters);
   const Material tree = tree_material(GetParam());

@@ -1,0 +1,186 @@
+// Which effects of a scene change the result, by how much, and what does each cost?
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.h"
+#include "experiments/harness/settings.h"
+#include "experiments/scenes/numbers.h"
+#include "experiments/scenes/variants.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "name of the scene"},
+    {"effect", "what is left out; none: the scene as it is"},
+    {"accuracy_rel", "wanted accuracy of the tips, over the length"},
+    {"error_without_rel",
+     "how far the tips are from those of the whole scene when it is left out: rms over "
+     "frames and strands, over the length"},
+    {"change_error_rel",
+     "by how much that changes with twice the elements, half the step"},
+    {"discretisation_rel",
+     "how far the tips of the whole scene move with twice the elements, half the step"},
+    {"change_over_discretisation", "error_without_rel over discretisation_rel"},
+    {"error_alone_rel", "how far it alone takes the tips from those without any effect"},
+    {"cost_share", "part of the wall time that goes when it is left out", true},
+    {"cost_alone_share", "what it alone adds to the time without any effect", true},
+    {"wall_s", "wall time of the whole scene, median", true},
+    {"load_over_weight", "its load, rms over frames and points, over the weight"},
+    {"gravito_bending", "rho g S L^3/(EI): weight over bending, first strand"},
+    {"inertia_bending", "rho a S L^3/(EI), a the root's rms acceleration"},
+    {"twist_bending", "GJ/(EI)"},
+    {"verdict", "keep, drop or too close to call, for this accuracy"},
+};
+
+constexpr Parameter own_settings[] = {
+    {.name = "accuracy",
+     .help = "wanted accuracy of the tips over the length",
+     .number = 0.01,
+     .min = 1e-9,
+     .max = 10},
+    {.name = "scenes",
+     .help = "scene files, as in scenes/a.toml,scenes/b.toml",
+     .text = true,
+     .fallback = "scenes/cantilever.toml,scenes/hair_under_wind.toml,"
+                 "scenes/head_shaking.toml,scenes/long_shaking.toml"},
+};
+
+/// An effect is worth its cost when it changes more than is wanted and more than the
+/// discretisation does; the change itself is known as well as a finer run confirms it.
+std::string verdict(double change, double change_error, double discretisation,
+                    double accuracy) {
+  const double threshold = std::max(accuracy, discretisation);
+  if (change - change_error > threshold) return "keep";
+  if (change + change_error < threshold) return "drop";
+  return "too close to call";
+}
+
+void set_numbers(const Scene& scene, Row& row) {
+  const ScaleNumbers numbers = scale_numbers(scene);
+  row.set("gravito_bending", numbers.gravito_bending);
+  row.set("inertia_bending", numbers.inertia_bending);
+  row.set("twist_bending", numbers.twist_bending);
+}
+
+struct Work {
+  Scene scene;
+  Ingredient ingredient;  // no name: the scene as it is
+  double accuracy;
+  int repeat;
+};
+
+void measure(const Work& work, Row& row) {
+  const Scene &scene = work.scene, fine = refined(scene);
+  const TipPaths whole = tip_paths(scene, work.repeat), whole_fine = tip_paths(fine, 0);
+  const double discretisation = distance_rel(whole, whole_fine, scene);
+  row.set("wall_s", whole.wall_s).set("discretisation_rel", discretisation);
+  set_numbers(scene, row);
+  if (work.ingredient.name.empty()) return;
+
+  const auto left_out = [&](const Scene& from, int repeat) {
+    return tip_paths(work.ingredient.without(from), repeat);
+  };
+  const TipPaths without = left_out(scene, work.repeat);
+  const double change = distance_rel(whole, without, scene);
+  const double fine_change = distance_rel(whole_fine, left_out(fine, 0), scene);
+  const double change_error = std::abs(change - fine_change);
+  row.set("error_without_rel", change).set("change_error_rel", change_error);
+  row.set("change_over_discretisation", change / discretisation);
+  row.set("cost_share", 1 - without.wall_s / whole.wall_s);
+  row.set("load_over_weight", load_over_weight(scene, work.ingredient.name));
+  row.set("verdict", verdict(change, change_error, discretisation, work.accuracy));
+  if (!work.ingredient.alone) return;
+  const TipPaths none = tip_paths(bare(scene), work.repeat);
+  const TipPaths alone = tip_paths(work.ingredient.alone(scene), work.repeat);
+  row.set("error_alone_rel", distance_rel(none, alone, scene));
+  row.set("cost_alone_share", alone.wall_s / none.wall_s - 1);
+}
+
+void run(const Work& work, Row& row) {
+  try {
+    measure(work, row);
+  } catch (const InputError& refused) {
+    row.failed("refused", refused.what());
+  } catch (const std::runtime_error& failure) {
+    row.failed("diverged", failure.what());
+  }
+}
+
+std::vector<std::string> files_of(std::string_view list) {
+  std::vector<std::string> files;
+  while (!list.empty()) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    files.emplace_back(list.substr(0, comma));
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return files;
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, own_settings);
+  const double accuracy = settings.experiment().number("accuracy");
+  std::vector<Case> all;
+  for (const std::string& file : files_of(settings.experiment().word("scenes"))) {
+    const Scene scene = read_scene(file);
+    if (scene.strands.empty()) {
+      throw InputError("nothing to leave out: the model brings its own effects", file,
+                       "give a scene with [strand] or [groom]");
+    }
+    std::vector<Ingredient> parts = ingredients(scene);
+    parts.insert(parts.begin(), Ingredient{});
+    for (const Ingredient& part : parts) {
+      Row identity;
+      identity.set("scene", scene.name);
+      identity.set("effect", part.name.empty() ? "none" : part.name);
+      identity.set("accuracy_rel", accuracy);
+      const Work work{scene, part, accuracy, line.repeat};
+      all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+    }
+  }
+  return all;
+}
+
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
+  int kept = 0, dropped = 0;
+  double wrong = 0;
+  for (const Row& row : rows) {
+    if (row.text("verdict") == "keep") ++kept;
+    if (row.text("verdict") != "drop") continue;
+    ++dropped;
+    const double threshold =
+        std::max(row.number("accuracy_rel"), row.number("discretisation_rel"));
+    wrong = std::max(wrong, row.number("error_without_rel") / threshold);
+  }
+  verdicts.check("some effect has to be kept", kept > 0, kept);
+  verdicts.check("some effect may be dropped", dropped > 0, dropped);
+  verdicts.check(
+      "none that is dropped changes more than the larger of accuracy and "
+      "discretisation",
+      wrong <= 1, wrong);
+}
+
+/// A scene that does not run without one of its effects is an answer too.
+bool finding(const Row& row) { return row.text("effect") != "none"; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "effect_audit",
+      .question = "which effects of a scene change the result, and what does each cost?",
+      .example = "--set scenes=scenes/head_shaking.toml --set accuracy=0.01",
+      .columns = columns,
+      .settings = own_settings,
+      .cases = cases,
+      .checks = judge,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,177 @@
+// Scenes as `simulate` writes them (format "tress-strands-1", described in README.md):
+// reads and checks every scenes/*.json of a results directory. Every complaint names the
+// file and the key.
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { InputError } from './csv.mjs';
+
+export const scene_format = 'tress-strands-1';
+export const shapes = ['plane', 'sphere', 'ellipsoid', 'capsule'];
+
+const is_count = (value) => Number.isSafeInteger(value) && value >= 0;
+const is_text = (value) => typeof value === 'string' && value !== '';
+const is_numbers = (value, length) =>
+  Array.isArray(value) &&
+  (length === undefined || value.length === length) &&
+  value.every(Number.isFinite);
+
+// Number of bytes in base64 with padding, undefined when the text is not that.
+function base64_bytes(text) {
+  if (typeof text !== 'string' || text.length % 4 !== 0) return undefined;
+  if (!/^[A-Za-z0-9+/]*={0,2}$/.test(text)) return undefined;
+  return (text.length / 4) * 3 - (text.match(/=*$/)[0].length);
+}
+
+// {need(holds, key, wish)}: throws unless `holds`.
+const checker = (file) => ({
+  need(holds, key, wish) {
+    if (!holds) throw new InputError(`${file}: key '${key}': ${wish}`);
+  },
+  bytes(text, key, wanted, what) {
+    const found = base64_bytes(text);
+    this.need(found !== undefined, key, 'is not base64');
+    this.need(found === wanted, key, `${found} bytes where ${what} need ${wanted}`);
+  },
+});
+
+function check_bodies(bodies, frames, { need }) {
+  need(Array.isArray(bodies), 'bodies', 'must be an array');
+  bodies.forEach((body, i) => {
+    const key = `bodies[${i}]`;
+    const { shape, half_axes_m, poses } = body ?? {};
+    need(shapes.includes(shape), `${key}.shape`, `must be one of ${shapes.join(', ')}`);
+    need(
+      shape === 'plane' || (is_numbers(half_axes_m, 3) && half_axes_m.every((a) => a > 0)),
+      `${key}.half_axes_m`,
+      'must hold three positive numbers',
+    );
+    need(
+      Array.isArray(poses) && [1, frames].includes(poses.length),
+      `${key}.poses`,
+      `must hold one pose or ${frames}, one for each frame`,
+    );
+    const wrong = poses.findIndex(
+      (pose) =>
+        !is_numbers(pose, 7) || Math.abs(Math.hypot(...pose.slice(3)) - 1) > 1e-3,
+    );
+    need(
+      wrong < 0,
+      `${key}.poses[${wrong}]`,
+      'must be [x, y, z, qw, qx, qy, qz] with a quaternion of length 1',
+    );
+  });
+}
+
+function check_series(series, { need }) {
+  need(series !== null && typeof series === 'object', 'series', 'must be an object');
+  const { columns, rows } = series;
+  need(
+    Array.isArray(columns) && columns.every(is_text) && columns[0] === 't_s',
+    'series.columns',
+    "must be names, the first 't_s'",
+  );
+  need(
+    new Set(columns).size === columns.length,
+    'series.columns',
+    'a name appears twice',
+  );
+  need(Array.isArray(rows), 'series.rows', 'must be an array');
+  const wrong = rows.findIndex(
+    (row) =>
+      !Array.isArray(row) ||
+      row.length !== columns.length ||
+      !Number.isFinite(row[0]) ||
+      row.some((value) => value !== null && !Number.isFinite(value)),
+  );
+  need(
+    wrong < 0,
+    `series.rows[${wrong}]`,
+    `must hold ${columns.length} numbers, null where there is none, and a time`,
+  );
+}
+
+// Throws InputError unless `scene` is a whole scene.
+export function check_scene(scene, file) {
+  const check = checker(file);
+  const { need } = check;
+  if (scene === null || typeof scene !== 'object' || Array.isArray(scene))
+    throw new InputError(`${file}: must be a JSON object`);
+  need(scene.format === scene_format, 'format', `must be '${scene_format}'`);
+  for (const key of ['scene', 'title', 'source', 'model', 'integrator'])
+    need(is_text(scene[key]), key, 'must be a text');
+  need(
+    scene.dt_s === null || (Number.isFinite(scene.dt_s) && scene.dt_s > 0),
+    'dt_s',
+    'must be a positive number, or null of an adaptive step',
+  );
+  const times = scene.times_s;
+  need(
+    is_numbers(times) && times.length > 0 && times.every((t, i) => !(t <= times[i - 1])),
+    'times_s',
+    'must hold growing numbers',
+  );
+  const counts = scene.strand_points;
+  need(
+    Array.isArray(counts) &&
+      counts.length > 0 &&
+      counts.every((n) => Number.isSafeInteger(n) && n >= 2),
+    'strand_points',
+    'must hold whole numbers of at least 2',
+  );
+  need(
+    scene.guides === undefined || (is_count(scene.guides) && scene.guides <= counts.length),
+    'guides',
+    `must be a whole number up to ${counts.length}, the number of strands`,
+  );
+  need(is_numbers(scene.low, 3), 'low', 'must hold three numbers');
+  need(is_numbers(scene.high, 3), 'high', 'must hold three numbers');
+  need(
+    scene.low.every((low, i) => low <= scene.high[i]),
+    'high',
+    "must not be less than 'low'",
+  );
+  const points = counts.reduce((sum, n) => sum + n, 0);
+  const what = `${times.length} frames of ${points} points`;
+  check.bytes(scene.positions, 'positions', times.length * points * 6, what);
+  need(Array.isArray(scene.channels), 'channels', 'must be an array');
+  scene.channels.forEach((channel, i) => {
+    const key = `channels[${i}]`;
+    need(is_text(channel?.name), `${key}.name`, 'must be a text');
+    need(typeof channel.unit === 'string', `${key}.unit`, "must be a text, '' for none");
+    need(
+      is_numbers([channel.low, channel.high]) && channel.low <= channel.high,
+      `${key}.low`,
+      "must be a number, as 'high', which is not less",
+    );
+    check.bytes(channel.values, `${key}.values`, times.length * points, what);
+  });
+  check_bodies(scene.bodies, times.length, check);
+  check_series(scene.series, check);
+}
+
+// [{name, scene}] of every scenes/*.json in `directory`; none when there is no scenes/.
+export function load_scenes(directory) {
+  const folder = join(directory, 'scenes');
+  if (!existsSync(folder)) return [];
+  return readdirSync(folder)
+    .filter((file) => file.endsWith('.json'))
+    .sort()
+    .map((name) => {
+      const file = join(folder, name);
+      let scene;
+      try {
+        scene = JSON.parse(readFileSync(file, 'utf8'));
+      } catch (error) {
+        throw new InputError(`${file}: not valid JSON (${error.message.split('\n')[0]})`);
+      }
+      check_scene(scene, file);
+      return scene;
+    })
+    .map((scene, i, all) => {
+      if (all.findIndex((other) => other.scene === scene.scene) !== i)
+        throw new InputError(
+          `${folder}: two files hold the scene '${scene.scene}'; remove one`,
+        );
+      return scene;
+    });
+}

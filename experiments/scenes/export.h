@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/scenes/readout.h"
+
+namespace tress {
+
+/// What an animation of strands is, for other programs.
+struct Animation {
+  const Scene& scene;
+  const std::vector<Reading>& series;
+  const std::vector<Reading>& channels;
+  std::span<const int> strand_points;
+  std::span<const Frame3d> frames;
+};
+
+/// For the report page: <scene>.json, places in 16 bits of their box, colours in 8 bits
+/// (experiments/report/README.md has the format). At most `most_frames`, evenly thinned.
+std::string page_json(const Animation& animation, std::size_t most_frames = 150);
+
+/// For ParaView: one .vtp a frame (PolyData, appended raw, float32) with every channel as
+/// point data, and the .pvd that lists them with their times [VTK file formats, XML].
+std::string vtp(const Animation& animation, const Frame3d& frame);
+std::string pvd(const Animation& animation, const std::string& stem);
+std::string vtp_name(const std::string& stem, std::size_t frame);
+
+/// For Blender, Houdini: USD text with one animated BasisCurves [OpenUSD, UsdGeom].
+std::string usda(const Animation& animation);
+
+}  // namespace tress

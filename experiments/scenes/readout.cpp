@@ -1,0 +1,205 @@
+#include "experiments/scenes/readout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/effects/body.h"
+
+namespace tress {
+namespace {
+
+/// Half of each neighbouring segment, and what it weighs.
+void lump(const Strand& strand, std::vector<double>& mass, std::vector<double>& length) {
+  mass.assign(strand.segments.size() + 1, 0.0);
+  length = mass;
+  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
+    const Segment& segment = strand.segments[i];
+    const std::size_t start = static_cast<std::size_t>(segment.parent + 1);
+    for (const std::size_t end : {start, i + 1}) {
+      length[end] += segment.length / 2;
+      mass[end] += strand.material.density * segment.section.area() * segment.length / 2;
+    }
+  }
+}
+
+double length_of(const Vec& x) { return std::sqrt(dot(x, x)); }
+
+/// Of the circle that turns from one chord into the next over half of each.
+double curvature(const Vec& a, const Vec& b) {
+  const double la = length_of(a), lb = length_of(b);
+  const double angle = std::atan2(length_of(cross(a, b)), dot(a, b));
+  return la + lb > 0 ? 2 * std::tan(angle / 2) / ((la + lb) / 2) : 0;
+}
+
+}  // namespace
+
+Readout::Readout(const Scene& scene) : scene_(scene), effects_(make_effects(scene)) {
+  const auto add = [this](std::string name, std::string help) {
+    series_.push_back({std::move(name), std::move(help)});
+  };
+  add("frame", "number of the frame");
+  add("t_s", "time");
+  for (const char* axis : {"x", "y", "z"}) {
+    add(std::string("tip_") + axis + "_m", "tip, mean over the strands");
+  }
+  add("kinetic_j", "kinetic energy of all strands");
+  if (scene.strands.empty()) {
+    add("potential_j", "potential energy");
+  } else {
+    add("elastic_j", "elastic energy of all strands");
+    for (const auto& effect : effects_) {
+      add(std::string(effect->name()) + "_j", "potential energy of this effect");
+    }
+  }
+  add("stretch_rel", "largest |length/rest - 1| of a piece");
+  add("penetration_m", "largest depth of a strand in a body");
+  add("touching_pairs", "strands that come closer than the inner radius");
+  add("mean_distance_m", "from a strand to the nearest other one, mean");
+  add("dt_s", "step, mean since the last frame");
+  add("newton_per_step", "Newton iterations a step, mean since the last frame");
+  channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
+  for (const auto& effect : effects_) {
+    channels_.push_back({"load " + std::string(effect->name()), "N/m"});
+  }
+  if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
+
+  for (const Strand& strand : scene.strands) {
+    mass_.emplace_back();
+    length_.emplace_back();
+    lump(strand, mass_.back(), length_.back());
+    Twins twins;
+    twins.bare = scene.model->on_strand(strand, scene.model_options, {});
+    for (const EffectChoice& choice : scene.effects) {
+      Effects one;
+      one.push_back(choice.entry->make(choice.parameters, scene.head));
+      twins.with.push_back(
+          scene.model->on_strand(strand, scene.model_options, std::move(one)));
+    }
+    twins_.push_back(std::move(twins));
+  }
+}
+
+Frame3d Readout::read(World& world) {
+  Frame3d frame;
+  std::vector<double>& row = frame.series;
+  row.assign(2, 0.0);
+  row[1] = world.time();
+  read_points(world, frame);
+  read_energies(world, row);
+  double stretch = 0;
+  for (std::size_t k = 0; k < world.strands(); ++k) {
+    double one = 0;
+    MaterialPoints* points = world.system(k).material_points();
+    if (points != nullptr && points->stretch(world.time(), world.q(k), one)) {
+      stretch = std::max(stretch, one);
+    }
+  }
+  row.push_back(stretch);
+  double depth = 0;
+  for (const auto& effect : effects_) {
+    const auto* body = dynamic_cast<const Body*>(effect.get());
+    if (body == nullptr) continue;
+    depth = std::max(depth, body->penetration(world.time(), world.positions()));
+  }
+  row.push_back(depth);
+  const StrandInteraction* interaction = world.interaction();
+  row.push_back(
+      interaction != nullptr ? static_cast<double>(interaction->touching_pairs()) : 0);
+  row.push_back(interaction != nullptr ? interaction->mean_distance() : std::nan(""));
+  const Stats now = world.stats();
+  const auto steps = static_cast<double>(now.steps - before_.steps);
+  const auto iterations =
+      static_cast<double>(now.newton_iterations - before_.newton_iterations);
+  // Of a strand: all advance through the same time.
+  const double interval = steps > 0 ? 1 / scene_.frame_rate : std::nan("");
+  row.push_back(interval * static_cast<double>(world.strands()) / steps);
+  row.push_back(iterations / steps);
+  before_ = now;
+  return frame;
+}
+
+void Readout::read_energies(World& world, std::vector<double>& row) {
+  Energy all;
+  double elastic = 0;
+  std::vector<double> by_effect(scene_.strands.empty() ? 0 : effects_.size());
+  for (std::size_t k = 0; k < world.strands(); ++k) {
+    const In q = world.q(k), v = world.v(k);
+    const auto energy = [&](System& system) {
+      system.recall(world.system(k).memory());
+      return system.energetics() == nullptr
+                 ? Energy{}
+                 : system.energetics()->energy(world.time(), q, v);
+    };
+    const Energy of_strand = energy(world.system(k));
+    all.kinetic += of_strand.kinetic;
+    all.potential += of_strand.potential;
+    if (twins_.empty()) continue;
+    const double bare = energy(*twins_[k].bare).potential;
+    elastic += bare;
+    for (std::size_t e = 0; e < by_effect.size(); ++e) {
+      by_effect[e] += energy(*twins_[k].with[e]).potential - bare;
+    }
+  }
+  row.push_back(all.kinetic);
+  row.push_back(twins_.empty() ? all.potential : elastic);
+  row.insert(row.end(), by_effect.begin(), by_effect.end());
+}
+
+void Readout::read_points(World& world, Frame3d& frame) {
+  const std::vector<double>& x = world.positions();
+  const std::vector<double>& u = world.velocities();
+  const std::size_t count = x.size() / 3;
+  frame.positions.assign(x.begin(), x.end());
+  frame.channels.assign(channels_.size() * count, 0.0F);
+  Vec tip;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < world.strands(); ++k) {
+    const auto points = static_cast<std::size_t>(world.points()[k]);
+    if (points == 0) continue;
+    const auto at = [&](std::size_t i) { return load3(&x[3 * (first + i)]); };
+    tip = tip + (1.0 / static_cast<double>(world.strands())) * at(points - 1);
+    for (std::size_t i = 0; i < points; ++i) {
+      const std::size_t inner =
+          std::clamp<std::size_t>(i, 1, std::max<std::size_t>(points, 3) - 2);
+      const double bent =
+          points < 3 ? 0
+                     : curvature(at(inner) - at(inner - 1), at(inner + 1) - at(inner));
+      frame.channels[first + i] = static_cast<float>(bent);
+      frame.channels[count + first + i] =
+          static_cast<float>(length_of(load3(&u[3 * (first + i)])));
+    }
+    if (!scene_.strands.empty()) read_loads(world, k, first, frame);
+    first += points;
+  }
+  for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
+}
+
+/// Loads of the effects on the material points, over the length that each stands for.
+void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame) {
+  const std::size_t count = world.positions().size() / 3;
+  const auto points = static_cast<std::size_t>(world.points()[k]);
+  const In x = In(world.positions()).subspan(3 * first, 3 * points);
+  const In u = In(world.velocities()).subspan(3 * first, 3 * points);
+  tangent_.resize(3 * points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, points - 1);
+    const Vec d = load3(&x[3 * to]) - load3(&x[3 * from]);
+    store3((1 / length_of(d)) * d, &tangent_[3 * i]);
+  }
+  const Points p{static_cast<int>(points), x, u, tangent_, mass_[k], length_[k]};
+  std::vector<double> load(3 * points);
+  std::size_t channel = 2;
+  const auto read = [&](const Effect& effect) {
+    std::ranges::fill(load, 0.0);
+    effect.add_load(world.time(), p, load);
+    for (std::size_t i = 0; i < points; ++i) {
+      frame.channels[channel * count + first + i] =
+          static_cast<float>(length_of(load3(&load[3 * i])) / length_[k][i]);
+    }
+    ++channel;
+  };
+  for (const auto& effect : effects_) read(*effect);
+  if (world.interaction() != nullptr) read(*world.interaction()->effect(k));
+}
+
+}  // namespace tress

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/files.h"
+#include "experiments/scenes/readout.h"
+
+namespace tress {
+
+/// A run on disk while it goes on: every frame (<stem>.frames), the time series
+/// (<stem>.csv) and the last saved state (<stem>.state). A run that was killed has all
+/// frames but the one that it was at; the next one continues at the saved state.
+class Recording {
+ public:
+  /// Starts afresh, or with `resume` continues what is there. `key` names the run: frames
+  /// of another one are refused with an InputError. Throws InputError when a file cannot
+  /// be written.
+  Recording(std::string stem, std::string key, const Readout& readout, std::size_t points,
+            bool resume);
+  /// What to continue from; frames() then ends with the frame of that state.
+  const std::optional<Snapshot>& saved() const { return saved_; }
+  const std::vector<Frame3d>& frames() const { return frames_; }
+
+  void add(Frame3d frame);
+  void save(const Snapshot& snapshot);
+  /// The run is complete: removes what only a resumed one needs.
+  void close();
+
+ private:
+  void resume();
+  std::string header() const;
+  std::string series_line(const Frame3d& frame) const;
+  static std::string record(const Frame3d& frame);
+
+  std::string stem_, key_;
+  std::vector<Reading> columns_;
+  std::size_t points_, channels_;
+  std::optional<Snapshot> saved_;
+  std::vector<Frame3d> frames_;
+  std::optional<File> csv_, binary_;
+};
+
+}  // namespace tress

@@ -1,0 +1,150 @@
+#include "experiments/scenes/scene_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "experiments/harness/files.h"
+#include "experiments/harness/message.h"
+#include "experiments/harness/progress.h"
+#include "experiments/scenes/export.h"
+#include "experiments/scenes/recording.h"
+
+namespace tress {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Simulated time, wall time and what is left, on standard error.
+class TimeBar {
+ public:
+  TimeBar(ProgressMode mode, const Scene& scene)
+      : mode_(mode), terminal_(::isatty(STDERR_FILENO) != 0), scene_(scene) {}
+  ~TimeBar() {
+    if (mode_ == ProgressMode::automatic && terminal_) tell("\r\033[K");
+  }
+
+  void show(double t) {
+    const double wall = seconds_since(start_);
+    if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
+    last_ = wall;
+    const double left = wall * (scene_.duration - t) / t;
+    if (mode_ == ProgressMode::json) {
+      tell("{{\"event\":\"frame\",\"scene\":\"{}\",\"t_s\":{},\"wall_s\":{}}}\n",
+           scene_.name, t, wall);
+      return;
+    }
+    constexpr int width = 30;
+    const auto full = static_cast<std::size_t>(width * t / scene_.duration);
+    tell("{}{} [{}{}] {:.2f}/{:.2f} s simulated in {:.1f} s, about {} left{}",
+         terminal_ ? "\r" : "", scene_.name, std::string(full, '#'),
+         std::string(width - full, '.'), t, scene_.duration, wall,
+         readable_duration(left), terminal_ ? "\033[K" : "\n");
+  }
+
+ private:
+  ProgressMode mode_;
+  bool terminal_;
+  const Scene& scene_;
+  Clock::time_point start_ = Clock::now();
+  double last_ = 0;
+};
+
+std::size_t last_frame(const Scene& scene) {
+  return static_cast<std::size_t>(std::floor(scene.duration * scene.frame_rate + 1e-9));
+}
+
+std::size_t point_count(const World& world) {
+  std::size_t count = 0;
+  for (const int points : world.points()) count += static_cast<std::size_t>(points);
+  return count;
+}
+
+class VtkFiles {
+ public:
+  explicit VtkFiles(const std::string& stem)
+      : name_(std::filesystem::path(stem).filename()), folder_(stem + "_vtk/") {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+  }
+  void add(const Animation& animation, std::size_t frame) {
+    replace_file(folder_ + vtp_name(name_, frame),
+                 vtp(animation, animation.frames[frame]));
+  }
+  void list(const Animation& animation) {
+    replace_file(folder_ + name_ + ".pvd", pvd(animation, name_));
+  }
+
+ private:
+  std::string name_, folder_;
+};
+
+}  // namespace
+
+SceneRun run_scene(const Scene& scene, const std::string& key,
+                   const SceneRunOptions& options,
+                   const volatile std::sig_atomic_t& stop) {
+  const Clock::time_point begin = Clock::now();
+  Readout readout(scene);
+  auto world = std::make_unique<World>(scene, options.threads);
+  const std::vector<int> points = world->points();
+  Recording recording(options.stem, key, readout, point_count(*world), options.resume);
+  const auto animation = [&] {
+    return Animation{scene, readout.series(), readout.channels(), points,
+                     recording.frames()};
+  };
+  std::optional<VtkFiles> vtk;
+  if (options.vtk) vtk.emplace(options.stem);
+  const auto add_frame = [&] {
+    recording.add(readout.read(*world));
+    if (vtk) vtk->add(animation(), recording.frames().size() - 1);
+  };
+  if (recording.saved()) {
+    world->restore(*recording.saved());
+  } else {
+    add_frame();
+  }
+
+  SceneRun run{SceneRun::End::complete, {}, 0, 0, 0};
+  const auto between_saves =
+      static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
+  const std::size_t last = last_frame(scene);
+  TimeBar bar(options.progress, scene);
+  while (recording.frames().size() <= last) {
+    if (stop != 0) {
+      run.end = SceneRun::End::interrupted;
+      break;
+    }
+    const std::size_t frame = recording.frames().size();
+    if (world->advance(static_cast<double>(frame) / scene.frame_rate) != Status::ok) {
+      run.end = SceneRun::End::failed;
+      run.reason = world->failure();
+      break;
+    }
+    add_frame();
+    bar.show(world->time());
+    if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
+    const Snapshot snapshot = world->snapshot();
+    recording.save(snapshot);
+    world = std::make_unique<World>(scene, options.threads);
+    world->restore(snapshot);
+    readout.restart();
+  }
+  run.frames = recording.frames().size();
+  run.simulated_s = world->time();
+  run.wall_s = seconds_since(begin);
+  replace_file(options.stem + ".json", page_json(animation()));
+  if (vtk) vtk->list(animation());
+  if (options.usd) replace_file(options.stem + ".usda", usda(animation()));
+  if (run.end != SceneRun::End::interrupted) recording.close();
+  return run;
+}
+
+}  // namespace tress

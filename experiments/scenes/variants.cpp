@@ -1,0 +1,144 @@
+#include "experiments/scenes/variants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "experiments/harness/timing.h"
+#include "experiments/scenes/world.h"
+
+namespace tress {
+namespace {
+
+std::vector<double> frame_times(const Scene& scene) {
+  std::vector<double> times;
+  const auto last =
+      static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9));
+  for (int f = 0; f <= last; ++f) times.push_back(f / scene.frame_rate);
+  return times;
+}
+
+void advance(World& world, double t) {
+  if (world.advance(t) != Status::ok) throw std::runtime_error(world.failure());
+}
+
+void add_tips(World& world, std::vector<double>& tips) {
+  const std::vector<double>& x = world.positions();
+  std::size_t end = 0;
+  for (const int points : world.points()) {
+    end += 3 * static_cast<std::size_t>(points);
+    tips.insert(tips.end(), &x[end - 3], &x[end - 3] + 3);
+  }
+}
+
+/// Each half hangs on the other half of the same segment, or of the one it hung on.
+Strand halved(const Strand& strand) {
+  Strand fine = strand;
+  fine.segments.clear();
+  for (const Segment& whole : strand.segments) {
+    Segment first = whole;
+    first.length /= 2;
+    first.parent = whole.parent < 0 ? -1 : 2 * whole.parent + 1;
+    Segment second = first;
+    second.parent = static_cast<int>(fine.segments.size());
+    second.mount = {};
+    fine.segments.push_back(first);
+    fine.segments.push_back(second);
+  }
+  return fine;
+}
+
+/// A word of the model's option `modes` instead of the present one.
+Ingredient mode(const std::string& name, const std::string& word) {
+  return {name,
+          [word](const Scene& scene) {
+            Scene changed = scene;
+            changed.model_options.set("modes", word);
+            return changed;
+          },
+          {}};
+}
+
+}  // namespace
+
+std::vector<Ingredient> ingredients(const Scene& scene) {
+  std::vector<Ingredient> all;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string_view id = scene.effects[i].entry->id;
+    const auto same = std::ranges::count_if(
+        scene.effects, [id](const EffectChoice& other) { return other.entry->id == id; });
+    std::string name(id);
+    if (same > 1) name.append(" ").append(std::to_string(i + 1));
+    all.push_back({std::move(name),
+                   [i](const Scene& from) {
+                     Scene changed = from;
+                     changed.effects.erase(changed.effects.begin() +
+                                           static_cast<std::ptrdiff_t>(i));
+                     return changed;
+                   },
+                   [i](const Scene& from) {
+                     Scene changed = bare(from);
+                     changed.effects.push_back(from.effects[i]);
+                     return changed;
+                   }});
+  }
+  if (scene.interaction) {
+    all.push_back({"strand_interaction",
+                   [](const Scene& from) {
+                     Scene changed = from;
+                     changed.interaction.reset();
+                     return changed;
+                   },
+                   [](const Scene& from) {
+                     Scene changed = bare(from);
+                     changed.interaction = from.interaction;
+                     return changed;
+                   }});
+  }
+  if (scene.model_options.knows("modes")) {
+    const std::string_view modes = scene.model_options.word("modes");
+    if (modes == "bend_twist") all.push_back(mode("mode twist", "bend"));
+    if (modes != "bend_planar")
+      all.push_back(mode("mode second bending plane", "bend_planar"));
+  }
+  return all;
+}
+
+Scene bare(Scene scene) {
+  scene.effects.clear();
+  scene.interaction.reset();
+  return scene;
+}
+
+Scene refined(Scene scene) {
+  for (Strand& strand : scene.strands) strand = halved(strand);
+  scene.options.step /= 2;
+  return scene;
+}
+
+TipPaths tip_paths(const Scene& scene, int repeat) {
+  const std::vector<double> times = frame_times(scene);
+  TipPaths paths;
+  World world(scene);
+  for (const double t : times) {
+    if (t > 0) advance(world, t);
+    add_tips(world, paths.x);
+  }
+  if (repeat == 0) return paths;
+  const Snapshot start = World(scene).snapshot();
+  paths.wall_s = time_run(repeat, [&] {
+    world.restore(start);
+    advance(world, scene.duration);
+  });
+  return paths;
+}
+
+double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene) {
+  double squares = 0, length = 0;
+  for (std::size_t i = 0; i < a.x.size(); ++i) squares += std::pow(a.x[i] - b.x[i], 2);
+  for (const Strand& strand : scene.strands) length += strand.length();
+  length /= static_cast<double>(scene.strands.size());
+  return std::sqrt(squares / (static_cast<double>(a.x.size()) / 3)) / length;
+}
+
+}  // namespace tress

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/scenes/scene.h"
+
+namespace tress {
+
+/// One thing that a scene could do without: an effect it names, its strand-strand
+/// interaction, or a mode of its model.
+struct Ingredient {
+  std::string name;
+  std::function<Scene(const Scene&)> without;
+  /// The scene with none of its effects but this one. Empty for modes.
+  std::function<Scene(const Scene&)> alone;
+};
+
+std::vector<Ingredient> ingredients(const Scene& scene);
+
+/// The scene without any effect and interaction.
+Scene bare(Scene scene);
+
+/// Segments cut in halves of the same shape, steps halved: what the difference from the
+/// scene itself says about its discretisation.
+Scene refined(Scene scene);
+
+/// Tips of all strands at every frame, and how long the run took.
+struct TipPaths {
+  std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
+  double wall_s = 0;      // median over the repeats, without reading the tips
+};
+
+/// Throws InputError where the scene cannot be built and std::runtime_error, with what
+/// happened and when, where it does not run to its end.
+TipPaths tip_paths(const Scene& scene, int repeat);
+
+/// Root mean square distance over frames and strands, over the strands' mean length.
+double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);
+
+}  // namespace tress

@@ -1,0 +1,174 @@
+// Runs scenes and writes what they do, for people and for other programs.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "experiments/harness/files.h"
+#include "experiments/harness/manifest.h"
+#include "experiments/harness/message.h"
+#include "experiments/harness/parse.h"
+#include "experiments/scenes/scene_run.h"
+#include "experiments/scenes/schema.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+volatile std::sig_atomic_t asked_to_stop = 0;
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  std::string out = "results/scenes";
+  int threads = 1;
+  bool resume = false, vtk = false, usd = false, print_defaults = false,
+       print_schema = false, quick = false, full = false;
+  std::string progress = "auto";
+};
+
+constexpr const char* help_end =
+    "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
+    "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
+    "the\nreport page). Exit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
+    "a "
+    "scene\ndid not run to its end, 130 interrupted (--resume continues)\n";
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
+  app.add_option("--out", a.out, "folder for the results (default results/scenes)");
+  app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
+      ->check(CLI::Range(1, 1024));
+  app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
+  app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
+  app.add_flag("--resume", a.resume, "continue an interrupted run");
+  app.add_option("--progress", a.progress, "auto, none or json (default auto)")
+      ->check(CLI::IsMember({"auto", "none", "json"}));
+  app.add_flag("--print-defaults", a.print_defaults,
+               "print a complete scene with comments");
+  app.add_flag("--print-schema", a.print_schema, "print the page scenes/README.md");
+  app.add_flag("--quick", a.quick, "no difference here: scenes say how long they are");
+  app.add_flag("--full", a.full, "the same");
+}
+
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes", error)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);
+  if (files.empty()) {
+    throw InputError("no scene to run", "command line",
+                     "name scene files, or run where a folder scenes/ is");
+  }
+  return files;
+}
+
+void ready_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError("the output is not a folder", "--out " + folder,
+                     "give a folder that exists or can be made");
+  }
+}
+
+constexpr Column columns[] = {
+    {"scene", "name of the scene"},
+    {"frames", "frames written"},
+    {"simulated_s", "simulated time"},
+    {"wall_s", "time it took, output included", true},
+};
+
+const Experiment experiment{.name = "simulate",
+                            .question = "What does a scene do?",
+                            .example = "scenes/hair_under_wind.toml --vtk",
+                            .columns = columns,
+                            .cases = {}};
+
+/// False: the scene did not run to its end.
+bool run_file(const std::string& file, const Arguments& a, const CommandLine& line) {
+  const Scene scene = read_scene(file);
+  SceneRunOptions options;
+  options.stem = a.out + "/" + scene.name;
+  options.threads = a.threads;
+  options.resume = a.resume;
+  options.vtk = a.vtk;
+  options.usd = a.usd;
+  options.progress = line.progress;
+  Row identity;
+  identity.set("text", read_file(file));
+  const Manifest manifest(experiment, line);
+  const SceneRun run =
+      run_scene(scene, run_id("simulate", identity), options, asked_to_stop);
+  Row row;
+  row.set("scene", scene.name).set("frames", run.frames);
+  row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
+  if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
+  replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
+  tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{} -> {}.csv\n",
+       scene.name, run.frames, run.simulated_s, run.wall_s,
+       run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
+  return run.end != SceneRun::End::failed;
+}
+
+int run(const Arguments& a, CommandLine line) {
+  if (a.print_defaults || a.print_schema) {
+    write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
+    return 0;
+  }
+  line.progress = a.progress == "none"   ? ProgressMode::none
+                  : a.progress == "json" ? ProgressMode::json
+                                         : ProgressMode::automatic;
+  const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
+  for (const std::string& file : files) static_cast<void>(read_scene(file));
+  ready_folder(a.out);
+  bool complete = true;
+  for (const std::string& file : files) {
+    complete = run_file(file, a, line) && complete;
+    if (asked_to_stop != 0) {
+      tell("simulate: interrupted: the same command with --resume continues\n");
+      return 130;
+    }
+  }
+  return complete ? 0 : 3;
+}
+
+int answer(int argc, char** argv) {
+  CLI::App app{"simulate: What does a scene do?"};
+  Arguments a;
+  declare(app, a);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    write_all(1, app.help() + help_end, "standard output");
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what(), "command line", "simulate --help shows the options");
+  }
+  CommandLine line;
+  line.argv.assign(argv, argv + argc);
+  return run(a, std::move(line));
+}
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ::signal(signal, [](int) { asked_to_stop = 1; });
+  }
+  ::signal(SIGXFSZ, SIG_IGN);  // then an error of write, with a message
+  try {
+    return answer(argc, argv);
+  } catch (const InputError& error) {
+    tell("simulate: error: {}\n", one_line(error.what()));
+    return 2;
+  } catch (const std::exception& error) {
+    tell("simulate: internal error: {}\n", one_line(error.what()));
+    return 1;
+  }
+}

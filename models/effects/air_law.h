@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cmath>
+
+#include "models/effects/effect.h"
+#include "models/math/mat3.h"
+
+/// Laws of the force that air exerts on point i of a strand moving at u (m/s) relative to
+/// it. `slope` is dforce/du at a fixed tangent. A law says whether it looks at the
+/// tangent and whether u counts the velocity of the point or only that of the air.
+namespace tress {
+
+/// -nu l u, nu in kg/(m s).
+struct LinearAirLaw {
+  static constexpr bool tangent = false, relative = true;
+  double nu = 0;
+
+  Vec force(const Points& p, std::size_t i, const Vec& u) const {
+    return -(nu * p.length[i]) * u;
+  }
+  Mat3 slope(const Points& p, std::size_t i, const Vec&) const {
+    return -(nu * p.length[i]) * identity();
+  }
+};
+
+/// The same on a strand taken to stand still: a force that the wind alone decides.
+struct StandingAirLaw : LinearAirLaw {
+  static constexpr bool relative = false;
+};
+
+/// b(u) = c u: drag in the square of the speed, c in kg/m^2.
+struct SquareDrag {
+  double c = 0;
+  double value(double u) const { return c * u; }
+  double slope(double) const { return c; }
+};
+
+/// b(u) = rho C(Re) r u of a cylinder of radius r across the flow, Re = 2 r rho u/mu,
+/// with C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White, Viscous Fluid Flow, curve
+/// fit for the circular cylinder]. The fit has no linear law at Re -> 0, where C Re of a
+/// cylinder falls slower than any power of Re; here
+///
+///     C Re = Re + 10 (Re^2 + Re_0^2)^(1/6),   Re_0 = 0.1,    b = mu C Re/2,
+///
+/// smooth in u, with C Re -> 4.6 at Re = 0. Within 0.2 % of the fit for Re > 1, and for
+/// 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's C Re = 8 pi/(2.002 - ln Re).
+struct CylinderDrag {
+  static constexpr double reynolds_0 = 0.1;
+  double half_viscosity = 0;      // mu/2, Pa s
+  double reynolds_per_speed = 0;  // 2 r rho/mu, s/m
+
+  double value(double u) const {
+    const double re = reynolds_per_speed * u;
+    return half_viscosity *
+           (re + 10 * std::pow(re * re + reynolds_0 * reynolds_0, 1.0 / 6));
+  }
+  double slope(double u) const {
+    const double re = reynolds_per_speed * u;
+    const double power = std::pow(re * re + reynolds_0 * reynolds_0, -5.0 / 6);
+    return half_viscosity * reynolds_per_speed * (1 + 10.0 / 3 * re * power);
+  }
+};
+
+/// Independent normal and tangential drag of a thin cylinder [Ablow & Schechter 1983,
+/// Ocean Engineering 10(6) 443-457]: per length, with u_t = (u.t) t and u_n = u - u_t,
+///
+///     f = -b(|u_n|) u_n - 1/2 rho C_t 2 pi r |u_t| u_t.
+///
+/// Once differentiable in u, with slope 0 (or b(0)) at rest.
+template <class NormalDrag>
+struct AnisotropicAirLaw {
+  static constexpr bool tangent = true, relative = true;
+  NormalDrag normal;
+  double tangential = 0;  // rho C_t pi r, kg/m^2
+
+  Vec force(const Points& p, std::size_t i, const Vec& u) const {
+    const Vec t = load3(&p.tangent[3 * i]);
+    const double along = dot(u, t);
+    const Vec across = u - along * t;
+    const double speed = std::sqrt(dot(across, across));
+    return -p.length[i] *
+           (normal.value(speed) * across + (tangential * std::abs(along) * along) * t);
+  }
+  Mat3 slope(const Points& p, std::size_t i, const Vec& u) const {
+    const Vec t = load3(&p.tangent[3 * i]);
+    const double along = dot(u, t);
+    const Vec across = u - along * t;
+    const double speed = std::sqrt(dot(across, across));
+    const Mat3 tt = outer(t, t);
+    Mat3 slope =
+        normal.value(speed) * (identity() - tt) + (2 * tangential * std::abs(along)) * tt;
+    if (speed > 0) {
+      slope = slope + (normal.slope(speed) / speed) * outer(across, across);
+    }
+    return -p.length[i] * slope;
+  }
+};
+
+}  // namespace tress

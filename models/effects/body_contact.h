@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/effects/body_shapes.h"
+#include "models/math/mat3.h"
+
+namespace tress {
+
+/// Penalty contact with friction, per length of strand. With the signed distance phi of
+/// the centre line, g = grad phi, n = g/|g|, the depth d = offset - phi > 0 and the
+/// velocity u relative to the surface, u_n = n.u, u_t = u - u_n n:
+///
+///     f = N (n - mu e(|u_t|) u_t),   N = k d |g| h(1 - c u_n),   E = k d^2/2
+///
+/// c damps in proportion to the depth, so that no force jumps when contact begins or ends
+/// [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]; h(s) = s for s >= 1/2 and (s +
+/// 1/2)^2/2 from there down to 0 at s = -1/2, so that the contact never pulls and h(1) =
+/// 1: a strand at rest feels the spring only. Coulomb friction is full at |u_t| >= v and
+/// falls smoothly below, e(y) = 1/y and (2 - y/v)/v [Li et al. 2020, Incremental
+/// Potential Contact, eq. 15]: what should stick creeps at less than v. Both dissipate.
+/// The load is continuous; its derivatives jump where contact begins.
+struct BodyContact {
+  double stiffness = 0;  // k, N/m^2
+  double damping = 0;    // c, s/m
+  double friction = 0;   // mu
+  double slip = 1e-3;    // v, m/s, > 0
+  double offset = 0;     // radius of the strand, m
+
+  double depth(const Distance& to) const { return offset - to.value; }
+
+  /// Of a point in contact, d > 0; N/m.
+  Vec elastic_load(const Distance& to) const {
+    return (stiffness * depth(to)) * to.gradient;
+  }
+  Vec load(const Distance& to, const Vec& u) const {
+    const State at(*this, to, u);
+    return at.normal_load * at.direction();
+  }
+  double energy(const Distance& to) const {
+    return stiffness / 2 * depth(to) * depth(to);
+  }
+
+  /// dload/dx at fixed u and dload/du, with the second derivatives of phi.
+  struct Slopes {
+    Mat3 by_x, by_u;
+  };
+  Slopes slopes(const Distance& to, const Mat3& curvature, const Vec& u) const {
+    const State at(*this, to, u);
+    if (at.steepness == 0) return {};
+    const Vec w = at.direction();
+    const Mat3 across = identity() - outer(at.n, at.n);
+    const Mat3 n_by_x = (1 / at.steepness) * (across * curvature);
+    const double spring = stiffness * at.depth * at.steepness;
+    const double by_speed = -damping * spring * at.cushion_slope;  // dN/du_n
+    const Vec load_by_x = (-stiffness * at.steepness * at.cushion) * to.gradient +
+                          (stiffness * at.depth * at.cushion) * (at.n * curvature) +
+                          by_speed * (u * n_by_x);
+    const Mat3 slide_by_x =
+        (-1.0) * (outer(at.n, u * n_by_x) + at.speed_away * n_by_x);  // du_t/dx
+    const Mat3 drag = (friction * at.normal_load) *
+                      (at.grip * identity() + at.grip_slope * outer(at.slide, at.slide));
+    return {outer(w, load_by_x) + at.normal_load * n_by_x - drag * slide_by_x,
+            outer(w, by_speed * at.n) - drag * across};
+  }
+
+ private:
+  struct State {
+    double depth, steepness;
+    Vec n;
+    double speed_away;  // u_n
+    double cushion, cushion_slope;
+    double normal_load;
+    Vec slide;          // u_t
+    double grip;        // e
+    double grip_slope;  // e'/|u_t|
+    double friction;
+
+    State(const BodyContact& law, const Distance& to, const Vec& u)
+        : depth(law.depth(to)),
+          steepness(std::sqrt(dot(to.gradient, to.gradient))),
+          n(steepness > 0 ? (1 / steepness) * to.gradient : Vec{}),
+          speed_away(dot(n, u)),
+          friction(law.friction) {
+      const double s = 1 - law.damping * speed_away;
+      const double start = std::clamp(s + 0.5, 0.0, 1.0);  // h up to s = 1/2
+      cushion = start * start / 2 + std::max(s - 0.5, 0.0);
+      cushion_slope = start;
+      normal_load = law.stiffness * depth * steepness * cushion;
+      slide = u - speed_away * n;
+      const double y = std::sqrt(dot(slide, slide));
+      if (y >= law.slip) {
+        grip = 1 / y;
+        grip_slope = -1 / (y * y * y);
+      } else {
+        grip = (2 - y / law.slip) / law.slip;
+        grip_slope = y > 0 ? -1 / (law.slip * law.slip * y) : 0;
+      }
+    }
+    Vec direction() const { return n - (friction * grip) * slide; }
+  };
+};
+
+}  // namespace tress

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "models/effects/body_shapes.h"
+
+namespace tress {
+
+/// A signed distance sampled at the points of a regular grid, interpolated by cubic
+/// convolution in each direction [Keys 1981, IEEE Trans. ASSP 29(6), eq. 15]: once
+/// continuously differentiable, exact for polynomials of degree 2, error O(spacing^3).
+/// The gradient is that of the interpolant, so that its length is 1 only up to
+/// O(spacing^2). Outside the grid and in its outermost layer the distance is infinite.
+class DistanceGrid {
+ public:
+  struct Samples {
+    std::size_t nx = 0, ny = 0, nz = 0;
+    Vec origin;                 // of the first point, m
+    double spacing = 0;         // m
+    std::vector<double> value;  // (nx ny nz) m, x fastest; < 0 inside
+  };
+  /// Throws InputError naming `where` unless there are 4 points and more each way, as
+  /// many values, all finite, and spacing > 0.
+  DistanceGrid(Samples samples, const std::string& where);
+
+  Distance distance(const Vec& x) const;
+  Mat3 curvature(const Vec& x) const;
+  const Samples& samples() const { return s_; }
+  /// The least value in the two outermost layers (m).
+  double clearance() const;
+
+ private:
+  struct Cell;
+  Cell cell(const Vec& x) const;
+
+  Samples s_;
+};
+
+/// Reads a text file of numbers, separated by blanks or line ends, `#` to the end of the
+/// line being a comment:
+///
+///     nx ny nz        points each way
+///     x y z           place of the first point, m
+///     spacing         m
+///     value ...       nx ny nz signed distances, m, < 0 inside; x fastest, z slowest
+///
+/// which is what SDFGen [Batty, github.com/christopherbatty/SDFGen] writes from a mesh.
+/// Throws InputError with the file and line.
+DistanceGrid read_distance_grid(const std::string& file);
+
+}  // namespace tress

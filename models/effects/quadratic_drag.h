@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "models/effects/effect.h"
+#include "models/parameters.h"
+#include "models/strand/root_motion.h"
+
+namespace tress {
+
+std::span<const Parameter> quadratic_drag_parameters();
+
+/// Drag of still air in the square of the speed, unlike across and along the strand
+/// (AnisotropicAirLaw, effects/air_law.h). In moving air use the effect `wind` instead.
+std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
+                                                  const RootMotion& head);
+
+}  // namespace tress

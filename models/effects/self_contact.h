@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "models/effects/contact_law.h"
+#include "models/effects/effect.h"
+#include "models/effects/piece_contact.h"
+#include "models/parameters.h"
+#include "models/strand/root_motion.h"
+
+namespace tress {
+
+std::span<const Parameter> self_contact_parameters();
+
+/// A strand that touches itself, as in plectonemes: the polyline through the points that
+/// carry length, in their order along an unbranched strand, repels and drags itself
+/// (ContactLaw). Samples stand on it, no farther apart at rest than half the inner
+/// radius; each meets the nearest point of the part of the strand that begins
+/// `separation` (m, along the arc at rest) before it, and that of the part after it, with
+/// half of its length, since what it meets has samples too. Forces are distributed to the
+/// four points about a contact and sum to zero (PieceContact). Derivative blocks are
+/// diagonal, of each point by itself. The repulsion is in potential(). Samples march
+/// along the strand in strides that cannot reach a contact: O(n) for n points of a strand
+/// in the open, O(n^2) at worst.
+class SelfContact final : public Effect {
+ public:
+  /// Throws InputError unless `separation` is finite and exceeds the law's reach: a
+  /// straight strand would touch itself.
+  SelfContact(const ContactLaw& law, double separation);
+
+  std::string_view name() const override { return "self_contact"; }
+  Needs needs() const override {
+    return {.position = true, .velocity = true, .derivatives = true};
+  }
+  void add_load(double t, const Points& p, InOut f) const noexcept override;
+  void add_derivatives(double t, const Points& p, double pos, double vel,
+                       InOut blocks) const noexcept override;
+  double potential(double t, const Points& p) const noexcept override;
+  double power(double t, const Points& p) const noexcept override;
+
+ private:
+  /// Of a strand's polyline: from point i to point j, and the arc at rest.
+  struct Edge {
+    std::size_t i, j;
+    double from, length;  // m
+    bool last;
+  };
+  struct Place {
+    std::size_t i, j;  // points of the edge
+    double at;         // on it
+  };
+  static Edge first_edge(const Points& p);
+  static Edge edge_after(const Points& p, const Edge& edge);
+  template <class F>
+  void each_contact(const Points& p, F of_contact) const noexcept;
+  bool nearest(const Points& p, const Vec& x, double from, double to, double stride,
+               Place& place) const noexcept;
+
+  ContactLaw law_;
+  double separation_;
+};
+
+std::unique_ptr<const Effect> make_self_contact(const Parameters& parameters,
+                                                const RootMotion& head);
+
+}  // namespace tress

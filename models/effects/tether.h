@@ -1,0 +1,68 @@
+#pragma once
+
+#include "models/effects/effect.h"
+#include "models/math/vec3.h"
+#include "models/parameters.h"
+#include "models/strand/root_motion.h"
+
+namespace tress {
+
+std::span<const Parameter> tether_parameters();
+
+/// Pulls one point of the strand towards a moving place X(t) = target + amplitude
+/// sin(2 pi frequency t), with d = X - x and the strength s(t) in [0, 1]:
+///
+///     f = s (k d + P d/sqrt(|d|^2 + soft^2) + c (X' - v))
+///     E = s (k |d|^2/2 + P sqrt(|d|^2 + soft^2)),  power = s c (X' - v).v + dE/dt at
+///     fixed x
+///
+/// a spring k (N/m) and a damper c (N s/m), and a pull of P (N) that fades within `soft`
+/// of its target. s rises from 0 to 1 in `ramp` seconds from t_on and falls back from
+/// t_off, 3 y^2 - 2 y^3, C^1. The point is the one that carries the place `at` (0 root, 1
+/// tip) along the accumulated lengths of the points. O(points) to find it.
+class Tether final : public Effect {
+ public:
+  struct Settings {
+    double at = 1;
+    double stiffness = 0;       // N/m
+    double damping = 0;         // N s/m
+    double pull = 0;            // N
+    double soft = 1e-3;         // m, > 0
+    Vec target{}, amplitude{};  // m
+    double frequency = 0;       // 1/s
+    double on = 0, off = 0;     // s, off >= on
+    double ramp = 1e-2;         // s, > 0
+  };
+  /// Throws InputError on numbers outside these ranges, negative or not finite.
+  explicit Tether(const Settings& settings);
+
+  std::string_view name() const override { return "tether"; }
+  Needs needs() const override {
+    return {.position = true, .velocity = true, .derivatives = true};
+  }
+  void add_load(double t, const Points& p, InOut f) const noexcept override;
+  void add_derivatives(double t, const Points& p, double pos, double vel,
+                       InOut blocks) const noexcept override;
+  double potential(double t, const Points& p) const noexcept override;
+  double power(double t, const Points& p) const noexcept override;
+
+  /// Where it pulls to, for pictures.
+  Vec target(double t) const;
+  /// The point it pulls at, an index.
+  std::size_t held(const Points& p) const;
+
+ private:
+  Vec target_rate(double t) const;
+  double strength(double t) const;
+  double strength_rate(double t) const;
+  double soft_length(const Vec& d) const;
+  Vec attraction(const Vec& d) const;  // the load of springs and pull at s = 1
+  double energy(const Vec& d) const;   // at s = 1
+
+  Settings s_;
+};
+
+std::unique_ptr<const Effect> make_tether(const Parameters& parameters,
+                                          const RootMotion& head);
+
+}  // namespace tress

@@ -1,0 +1,97 @@
+// What strands that are one system tell of themselves: energy, momentum, places.
+#include <algorithm>
+
+#include "models/groom/coupled_strands.h"
+
+namespace tress {
+
+Energetics* CoupledStrands::energetics() {
+  const bool all = std::ranges::all_of(
+      strands_, [](const auto& strand) { return strand->energetics() != nullptr; });
+  return all ? this : nullptr;
+}
+
+Energy CoupledStrands::energy(double t, In q, In v) {
+  Energy sum;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const Energy own = strands_[k]->energetics()->energy(t, part(q, k), part(v, k));
+    sum.kinetic += own.kinetic;
+    sum.potential += own.potential;
+  }
+  place(t, q, v);
+  contacts_->each_contact(x_, u_, [&](const auto&, const PieceContact& contact) {
+    sum.potential += contact.potential(contacts_->law());
+  });
+  return sum;
+}
+
+bool CoupledStrands::momentum(double t, In q, In v, Momentum& total) {
+  total = {};
+  for (std::size_t k = 0; k < strands(); ++k) {
+    Momentum own;
+    if (!strands_[k]->energetics()->momentum(t, part(q, k), part(v, k), own))
+      return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      total.linear[i] += own.linear[i];
+      total.angular[i] += own.angular[i];
+    }
+  }
+  return true;
+}
+
+/// A clamp also holds its point against the contacts.
+double CoupledStrands::power(double t, In q, In v) {
+  double sum = 0;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    sum += strands_[k]->energetics()->power(t, part(q, k), part(v, k));
+  }
+  place(t, q, v);
+  contacts_->each_contact(x_, u_, [&](const auto& points, const PieceContact& contact) {
+    sum += contact.power(contacts_->law());
+    const Vec force = contact.force(contacts_->law());
+    for (std::size_t i = 0; i < 4; ++i) {
+      Vec prescribed = load3(&u_[3 * points[i]]);
+      const Mean& mean = means_[points[i]];
+      for (std::size_t n = 0; n < static_cast<std::size_t>(mean.count); ++n) {
+        const auto c = static_cast<std::size_t>(mean.coordinate[n]);
+        prescribed = prescribed - mean.weight[n] * load3(&v[c]);
+      }
+      sum -= contact.weight(i) * dot(force, prescribed);
+    }
+  });
+  return sum;
+}
+
+void CoupledStrands::positions(double t, In q, Out x) {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const auto from = 3 * static_cast<std::size_t>(first_point_[k]);
+    const auto to = 3 * static_cast<std::size_t>(first_point_[k + 1]);
+    strands_[k]->material_points()->positions(t, part(q, k), x.subspan(from, to - from));
+  }
+}
+
+void CoupledStrands::velocities(double t, In q, In v, Out u) {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const auto from = 3 * static_cast<std::size_t>(first_point_[k]);
+    const auto to = 3 * static_cast<std::size_t>(first_point_[k + 1]);
+    strands_[k]->material_points()->velocities(t, part(q, k), part(v, k),
+                                               u.subspan(from, to - from));
+  }
+}
+
+bool CoupledStrands::stretch(double t, In q, double& relative) {
+  relative = 0;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    double own = 0;
+    if (!strands_[k]->material_points()->stretch(t, part(q, k), own)) return false;
+    relative = std::max(relative, own);
+  }
+  return true;
+}
+
+bool CoupledStrands::mean(int point, Mean& mean) {
+  mean = means_[static_cast<std::size_t>(point)];
+  return true;
+}
+
+}  // namespace tress

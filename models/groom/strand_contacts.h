@@ -1,0 +1,102 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "models/effects/contact_law.h"
+#include "models/effects/piece_contact.h"
+#include "models/effects/segment_grid.h"
+
+namespace tress {
+
+/// Contacts between the polylines of many strands, both ways: samples stand on every
+/// segment, at first no farther apart than half the inner radius, and each meets the
+/// nearest point of every other strand within reach with half of its length, since what
+/// it meets has samples too. Only pairs of segments in a list meet; it holds all that may
+/// come within reach while no point has moved more than a quarter of the reach since it
+/// was made.
+class StrandContacts {
+ public:
+  /// points[k] >= 2: material points of strand k. x: where they all are at first (3
+  /// each), which says how long segments are.
+  StrandContacts(const ContactLaw& law, std::vector<int> points, In x);
+
+  /// Makes the list anew if a point has moved half as far as it may. True: other pairs.
+  bool update(In x);
+  /// Makes it at x whatever has moved.
+  bool renew(In x);
+  /// Where the list was made.
+  const std::vector<double>& made_at() const { return made_at_; }
+
+  const ContactLaw& law() const { return law_; }
+  std::size_t segments() const { return samples_.size(); }
+  /// Segments of other strands that may touch this one, ascending.
+  std::span<const int> partners(std::size_t segment) const {
+    const auto first = static_cast<std::size_t>(start_[segment]);
+    return std::span(partner_).subspan(
+        first, static_cast<std::size_t>(start_[segment + 1]) - first);
+  }
+  /// First of a segment's two points, among all.
+  std::size_t point(int segment) const {
+    return static_cast<std::size_t>(grid_.point(segment));
+  }
+
+  /// of_contact(points, contact) for every contact of points at x with velocities v, in a
+  /// fixed order.
+  template <class F>
+  void each_contact(In x, In v, F of_contact) const;
+
+ private:
+  struct Samples {
+    int count;
+    double length;  // of each, m
+  };
+
+  ContactLaw law_;
+  SegmentGrid grid_;
+  std::vector<Samples> samples_;  // per segment
+  std::vector<double> made_at_;
+  std::vector<int> start_, partner_;
+};
+
+template <class F>
+void StrandContacts::each_contact(In x, In v, F of_contact) const {
+  const double far = law_.reach() * law_.reach();
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const std::span<const int> all = partners(i);
+    if (all.empty()) continue;
+    const std::size_t own = point(static_cast<int>(i));
+    const StraightPiece piece(load3(&x[3 * own]), load3(&x[3 * own + 3]));
+    for (int k = 0; k < samples_[i].count; ++k) {
+      const double sigma = (k + 0.5) / samples_[i].count;
+      const Vec sample = piece.at(sigma);
+      for (std::size_t j = 0; j < all.size();) {
+        const int other = grid_.polyline(all[j]);
+        double least = far, at = 0;
+        std::size_t nearest = 0;
+        for (; j < all.size() && grid_.polyline(all[j]) == other; ++j) {
+          const std::size_t from = point(all[j]);
+          const StraightPiece partner(load3(&x[3 * from]), load3(&x[3 * from + 3]));
+          const double s = partner.nearest(sample);
+          const Vec gap = sample - partner.at(s);
+          if (!(dot(gap, gap) < least)) continue;
+          least = dot(gap, gap);
+          at = s;
+          nearest = from;
+        }
+        if (!(least < far)) continue;
+        const std::array<std::size_t, 4> points{own, own + 1, nearest, nearest + 1};
+        PieceContact::Points place, velocity;
+        for (std::size_t a = 0; a < 4; ++a) {
+          place[a] = load3(&x[3 * points[a]]);
+          velocity[a] = load3(&v[3 * points[a]]);
+        }
+        of_contact(points,
+                   PieceContact(place, velocity, sigma, at, samples_[i].length / 2));
+      }
+    }
+  }
+}
+
+}  // namespace tress
