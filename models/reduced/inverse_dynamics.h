@@ -46,7 +46,8 @@ class InverseDynamics {
         }
       }
       set_lane(uniform, static_cast<int>(strand), sum);
-      needs_ = needs_ | needs(effects[strand]);
+      needs_of_.push_back(needs(effects[strand]));
+      needs_ = needs_ | needs_of_.back();
     }
     kinematics.fall(uniform);
     const std::size_t blocks = kinematics.blocks().size(), all = Pack::lanes * blocks;
@@ -74,7 +75,7 @@ class InverseDynamics {
       place(needs_);
       std::fill(load_.begin(), load_.end(), 0.0);
       for (std::size_t strand = 0; strand < loading_.size(); ++strand) {
-        const Points p = points(strand, needs_);
+        const Points p = points(strand, needs_of_[strand]);
         const InOut load = InOut(load_).subspan(3 * strand * count_, 3 * count_);
         for (const Effect* effect : loading_[strand]) effect->add_load(t, p, load);
       }
@@ -123,7 +124,7 @@ class InverseDynamics {
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     std::ranges::fill(blocks, 0.0);
     for (std::size_t strand = 0; strand < effects_.size(); ++strand) {
-      const Points p = points(strand, needs_);
+      const Points p = points(strand, needs_of_[strand]);
       const InOut own = blocks.subspan(9 * strand * count_, 9 * count_);
       for (const auto& effect : effects_[strand]) {
         effect->add_derivatives(t, p, pos, vel, own);
@@ -231,6 +232,7 @@ class InverseDynamics {
   std::vector<std::vector<const Effect*>> loading_;  // those of them that are not uniform
   bool loaded_ = false;
   Needs needs_;
+  std::vector<Needs> needs_of_;  // each strand
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;

@@ -3,13 +3,15 @@
 #include "models/reduced/arc.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/ball_link.h"
+#include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
 
 namespace tress {
 namespace {
 
 /// `alone` makes one strand; `PlanarKernel` is that of one unknown a segment.
-template <template <class> class Kernel, template <class> class PlanarKernel>
+template <template <class, int> class Mechanics, template <class> class Kernel,
+          template <class> class PlanarKernel = Kernel>
 std::unique_ptr<System> make_batch(std::span<const Strand> strands, Unknown unknown,
                                    const ReducedOptions& given,
                                    std::vector<Effects> effects,
@@ -21,7 +23,8 @@ std::unique_ptr<System> make_batch(std::span<const Strand> strands, Unknown unkn
     systems.push_back(alone(strands[s], options, std::move(effects[s])));
   }
   const auto make = [&]<class K, int dofs>() {
-    return std::make_unique<ReducedBatch<K, dofs>>(std::move(all), std::move(systems));
+    return std::make_unique<ReducedBatch<Mechanics, K, dofs>>(std::move(all),
+                                                              std::move(systems));
   };
   switch (options.dofs) {
     case 1:
@@ -38,15 +41,22 @@ std::unique_ptr<System> make_batch(std::span<const Strand> strands, Unknown unkn
 std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
                                           const ReducedOptions& options,
                                           std::vector<Effects> effects) {
-  return make_batch<HelixOf, ArcOf>(strands, Unknown::curvature, options,
-                                    std::move(effects), super_helix);
+  return make_batch<RecursiveMechanics, HelixOf, ArcOf>(
+      strands, Unknown::curvature, options, std::move(effects), super_helix);
 }
 
 std::unique_ptr<System> articulated_chain_batch(std::span<const Strand> strands,
                                                 const ReducedOptions& options,
                                                 std::vector<Effects> effects) {
-  return make_batch<BallLinkOf, BallLinkOf>(strands, Unknown::joint_angle, options,
-                                            std::move(effects), articulated_chain);
+  return make_batch<RecursiveMechanics, BallLinkOf>(
+      strands, Unknown::joint_angle, options, std::move(effects), articulated_chain);
+}
+
+std::unique_ptr<System> force_transport_batch(std::span<const Strand> strands,
+                                              const ReducedOptions& options,
+                                              std::vector<Effects> effects) {
+  return make_batch<TransportMechanics, BallLinkOf>(
+      strands, Unknown::joint_angle, options, std::move(effects), force_transport);
 }
 
 }  // namespace tress

@@ -7,6 +7,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/input_error.h"
 #include "models/reduced/articulated_chain.h"
+#include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
 #include "tests/models/reduced/strand_cases.h"
 
@@ -296,6 +297,8 @@ std::vector<BatchCase> batch_cases() {
           {"super_helix" + size, super_helix_batch, super_helix, dofs, strands});
       cases.push_back({"articulated_chain" + size, articulated_chain_batch,
                        articulated_chain, dofs, strands});
+      cases.push_back({"force_transport" + size, force_transport_batch, force_transport,
+                       dofs, strands});
     }
   }
   return cases;
