@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "models/math/pack.h"
+#include "models/math/lanes.h"
 
 namespace tress {
 
@@ -49,8 +49,8 @@ T taylor_sum(const T& x) {
 /// b = B/s^3 and its derivatives, and A3/s^8, by Taylor series; the rest from them
 /// without cancellation by the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
 ///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
-template <int terms, class T>
-HelixFunctions<T> series(const T& s, double x2) {
+template <int terms, class T, class X>
+HelixFunctions<T> series(const T& s, const X& x2) {
   const T ss = s * s;
   const T x = x2 * ss;
   const T b = taylor_sum<3, 0, terms>(x);
@@ -85,10 +85,11 @@ inline HelixFunctions<double> one_by_one(double s, double x2) noexcept {
   return x2 * (s * s) <= long_end ? series<16>(s, x2) : closed_forms(s, x2);
 }
 
-inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
+template <class X>
+HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
   HelixFunctions<Pack> all;
   for (int lane = 0; lane < Pack::lanes; ++lane) {
-    const HelixFunctions<double> one = one_by_one(s[lane], x2);
+    const HelixFunctions<double> one = one_by_one(s[lane], lane_of(x2, lane));
     all.S.set(lane, one.S);
     all.A.set(lane, one.A);
     all.B.set(lane, one.B);
@@ -104,8 +105,9 @@ inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
 
 }  // namespace helix
 
-/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa; longest
-/// is the largest |s| of the element, so that all its points take the same way.
+/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa, or one
+/// a lane; longest is the largest |s| of the element, so that all its points take the
+/// same way, and so do the elements of a pack.
 ///
 /// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
 /// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
@@ -113,9 +115,9 @@ inline HelixFunctions<Pack> one_by_one(const Pack& s, double x2) noexcept {
 /// ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50.
 /// Cost: one of four ways, chosen by w longest: below 0.17, 1.5 and 4.5 (a turn is 6.3)
 /// power series without branches, beyond every lane by itself.
-template <class T>
-HelixFunctions<T> helix_functions(const T& s, double x2, double longest) noexcept {
-  const double x = x2 * (longest * longest);
+template <class T, class X>
+HelixFunctions<T> helix_functions(const T& s, const X& x2, const X& longest) noexcept {
+  const double x = largest(x2 * (longest * longest));
   if (x <= helix::nearly_straight) return helix::series<5>(s, x2);
   if (x <= helix::short_end) return helix::series<9>(s, x2);
   if (x <= helix::long_end) return helix::series<16>(s, x2);

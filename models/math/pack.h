@@ -29,6 +29,9 @@ struct Pack {
   friend Pack operator-(const Pack& x) { return Pack(-x.v); }
 
   friend double sum(const Pack& x) { return (x.v[0] + x.v[1]) + (x.v[2] + x.v[3]); }
+  friend bool operator==(const Pack& x, const Pack& y) {
+    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2] && x[3] == y[3];
+  }
 };
 
 inline double sum(double x) { return x; }

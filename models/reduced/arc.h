@@ -12,8 +12,14 @@ namespace tress {
 ///
 /// Directions x and y have an e1 component alone. Derivatives with respect to k follow
 /// from d/dk of f(k^2) = k f1 and from S = s - k^2 B, so that none cancels at k = 0.
-class Arc {
+/// R = double, or Pack: four elements.
+template <class R>
+class ArcOf {
  public:
+  using Real = R;
+  using Vec = Vec3<R>;
+  using Frame = FrameOf<R>;
+
   /// The functions at one arc length, or at a pack of them.
   template <class T>
   struct At {
@@ -23,14 +29,14 @@ class Arc {
 
   // d^m P/dk^m times `factor`, m = 0 to 3.
   struct Zeroth {
-    double k;
+    R k;
     template <class T>
     Vec3<T> at(const At<T>& p) const {
       return {p.f.S, T(0), T(-k) * p.f.A};
     }
   };
   struct First {
-    double k, factor;
+    R k, factor;
     template <class T>
     Vec3<T> at(const At<T>& p) const {
       const auto [x, z] = slope(p, k);
@@ -38,7 +44,7 @@ class Arc {
     }
   };
   struct Second {
-    double k, factor;
+    R k, factor;
     template <class T>
     Vec3<T> at(const At<T>& p) const {
       const auto [x, z] = curvature(p, k);
@@ -46,7 +52,7 @@ class Arc {
     }
   };
   struct Third {
-    double k, factor;
+    R k, factor;
     template <class T>
     Vec3<T> at(const At<T>& p) const {
       const T kk(k * k);
@@ -57,7 +63,7 @@ class Arc {
   };
   /// P'' for k' = rate and k'' = second.
   struct Acceleration {
-    double k, rate, second;
+    R k, rate, second;
     template <class T>
     Vec3<T> at(const At<T>& p) const {
       const auto [x1, z1] = slope(p, k);
@@ -76,22 +82,22 @@ class Arc {
   };
   /// Turns about e1.
   struct Turn {
-    double factor;
-    Vec at(const At<double>& p) const { return {0, factor * p.s, 0}; }
+    R factor;
+    Vec at(const At<R>& p) const { return {R(0), factor * p.s, R(0)}; }
   };
   /// W does not depend on k.
   struct Nothing {
-    Vec at(const At<double>&) const { return {}; }
+    Vec at(const At<R>&) const { return {}; }
   };
 
-  Arc() = default;
-  Arc(const Vec& kappa, double length) : k_(kappa.y), length_(length) {}
+  ArcOf() = default;
+  ArcOf(const Vec& kappa, const R& length) : k_(kappa.y), length_(length) {}
 
   template <class T>
   At<T> point(const T& s) const {
     return {s, helix_functions(s, k_ * k_, length_)};
   }
-  At<double> tip() const { return point(length_); }
+  At<R> tip() const { return point(length_); }
 
   Turn W(const Vec& y) const { return {y.y}; }
   Nothing dW(const Vec&, const Vec&) const { return {}; }
@@ -118,11 +124,11 @@ class Arc {
     const T sine = T(k_) * p.f.S, cosine = T(1) - T(k_ * k_) * p.f.A;
     return {cosine * T(y.x) + sine * T(y.z), T(y.y), cosine * T(y.z) - sine * T(y.x)};
   }
-  Frame rotation(const At<double>& p) const {
-    const double sine = k_ * p.f.S, cosine = 1 - k_ * k_ * p.f.A;
-    return {{cosine, 0, -sine}, {0, 1, 0}, {sine, 0, cosine}};
+  Frame rotation(const At<R>& p) const {
+    const R sine = k_ * p.f.S, cosine = 1 - k_ * k_ * p.f.A;
+    return {{cosine, R(0), -sine}, {R(0), R(1), R(0)}, {sine, R(0), cosine}};
   }
-  Vec dW_transposed(const At<double>&, const Vec&, const Vec&) const { return {}; }
+  Vec dW_transposed(const At<R>&, const Vec&, const Vec&) const { return {}; }
 
  private:
   template <class T>
@@ -130,19 +136,21 @@ class Arc {
     T x, z;
   };
   template <class T>
-  static InPlane<T> slope(const At<T>& p, double k) {
+  static InPlane<T> slope(const At<T>& p, const R& k) {
     const T kk(k * k);
     return {T(-k) * (T(2) * p.f.B + kk * p.f.B1), -p.f.A - kk * p.f.A1};
   }
   template <class T>
-  static InPlane<T> curvature(const At<T>& p, double k) {
+  static InPlane<T> curvature(const At<T>& p, const R& k) {
     const T kk(k * k);
     return {T(-2) * p.f.B - kk * (T(5) * p.f.B1 + kk * p.f.B2),
             T(-k) * (T(3) * p.f.A1 + kk * p.f.A2)};
   }
 
-  double k_ = 0;
-  double length_ = 0;
+  R k_{};
+  R length_{};
 };
+
+using Arc = ArcOf<double>;
 
 }  // namespace tress

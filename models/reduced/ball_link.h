@@ -9,8 +9,14 @@ namespace tress {
 /// theta'. A joint is a helix of length 1 that goes nowhere, so its rotation and its
 /// angular velocity are those of Helix; positions are s E e0. The rotation vector is
 /// regular for |theta| < 2 pi, which a joint between links never needs to leave.
-class BallLink {
+/// R = double, or Pack: four links.
+template <class R>
+class BallLinkOf {
  public:
+  using Real = R;
+  using Vec = Vec3<R>;
+  using Frame = FrameOf<R>;
+
   template <class T>
   struct At {
     T s;
@@ -24,23 +30,23 @@ class BallLink {
     }
   };
 
-  BallLink() = default;
-  BallLink(const Vec& theta, double length)
-      : joint_(theta, 1),
+  BallLinkOf() = default;
+  BallLinkOf(const Vec& theta, const R& length)
+      : joint_(theta, R(1)),
         at_(joint_.tip()),
         length_(length),
-        along_(joint_.rotated(at_, Helix::tangent)) {}
+        along_(joint_.rotated(at_, Joint::tangent)) {}
 
   template <class T>
   At<T> point(const T& s) const {
     return {s};
   }
-  At<double> tip() const { return {length_}; }
+  At<R> tip() const { return {length_}; }
 
   // Rotation of the joint; it does not depend on where on the link.
   struct Turn {
     Vec value;
-    Vec at(const At<double>&) const { return value; }
+    Vec at(const At<R>&) const { return value; }
   };
   Turn W(const Vec& y) const { return {joint_.W(y).at(at_)}; }
   Turn dW(const Vec& x, const Vec& y) const { return {joint_.dW(x, y).at(at_)}; }
@@ -73,22 +79,26 @@ class BallLink {
   Vec3<T> rotated(const At<T>&, const Vec& y) const {
     return joint_.rotated(at_, y);
   }
-  Frame rotation(const At<double>&) const { return joint_.rotation(at_); }
-  Vec W_transposed(const At<double>&, const Vec& y) const {
+  Frame rotation(const At<R>&) const { return joint_.rotation(at_); }
+  Vec W_transposed(const At<R>&, const Vec& y) const {
     return joint_.W_transposed(at_, y);
   }
-  Vec dW_transposed(const At<double>&, const Vec& x, const Vec& y) const {
+  Vec dW_transposed(const At<R>&, const Vec& x, const Vec& y) const {
     return joint_.dW_transposed(at_, x, y);
   }
 
  private:
+  using Joint = HelixOf<R>;
+
   Vec w(const Vec& x) const { return W(x).value; }
   Vec dw(const Vec& x, const Vec& y) const { return dW(x, y).value; }
 
-  Helix joint_;
-  Helix::At<double> at_{};
-  double length_ = 0;
+  Joint joint_;
+  typename Joint::template At<R> at_{};
+  R length_{};
   Vec along_;
 };
+
+using BallLink = BallLinkOf<double>;
 
 }  // namespace tress

@@ -2,26 +2,42 @@
 
 #include <Eigen/Core>
 
+#include "models/math/lanes.h"
+
 namespace tress {
+
+/// sum += weight a for a column of a product (below).
+template <int rows>
+[[gnu::always_inline]] inline void add_scaled(double weight, const double* a,
+                                              double* sum) {
+#pragma GCC unroll 1
+  for (int i = 0; i < rows; ++i) sum[i] += weight * a[i];
+}
+template <int rows>
+[[gnu::always_inline]] inline void add_scaled(const Pack& weight, const Pack* a,
+                                              Pack* sum) {
+#pragma GCC unroll 27
+  for (int i = 0; i < rows; ++i) sum[i] += weight * a[i];
+}
 
 /// c (+)= sign a b for small column-major blocks of fixed size inside larger ones, given
 /// by their first entries and column strides; b, with a row stride too, may be
 /// transposed. Loops rather than Eigen's products: those unroll completely, and a 9 x 6 x
 /// 21 product then takes the compiler minutes. A column of c stays in vector registers;
-/// without the last pragma the compiler unrolls its loop before it comes to vectorise it,
-/// and the product takes more than twice as long. Inlined, so that strides are constants.
-template <int sign, bool onto, int rows, int inner, int columns>
-[[gnu::always_inline]] inline void multiply(const double* a, int a_stride,
-                                            const double* b, int b_step, int b_stride,
-                                            double* c, int c_stride) {
+/// without `unroll 1` the compiler unrolls its loop before it comes to vectorise it, and
+/// the product takes more than twice as long; packs are vectors already. Inlined, so that
+/// strides are constants.
+template <int sign, bool onto, int rows, int inner, int columns, class T>
+[[gnu::always_inline]] inline void multiply(const T* a, int a_stride, const T* b,
+                                            int b_step, int b_stride, T* c,
+                                            int c_stride) {
   for (int j = 0; j < columns; ++j) {
-    double sum[rows];
-    for (int i = 0; i < rows; ++i) sum[i] = onto ? c[i + c_stride * j] : 0.0;
+    T sum[rows];
+    for (int i = 0; i < rows; ++i) sum[i] = onto ? c[i + c_stride * j] : T(0.0);
 #pragma GCC unroll 9
     for (int k = 0; k < inner; ++k) {
-      const double weight = b[b_step * k + b_stride * j];
-#pragma GCC unroll 1
-      for (int i = 0; i < rows; ++i) sum[i] += sign * weight * a[i + a_stride * k];
+      const T weight = sign * b[b_step * k + b_stride * j];
+      add_scaled<rows>(weight, a + a_stride * k, sum);
     }
     for (int i = 0; i < rows; ++i) c[i + c_stride * j] = sum[i];
   }
@@ -36,9 +52,13 @@ inline void multiply(const A& a, const B& b, C&& c) {
   static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
   if constexpr (rows * inner * columns <= 27) {
     if constexpr (onto) {
-      c.noalias() += sign * a.lazyProduct(b);
+      if constexpr (sign > 0) {
+        c.noalias() += a.lazyProduct(b);
+      } else {
+        c.noalias() -= a.lazyProduct(b);
+      }
     } else {
-      c.noalias() = sign * a.lazyProduct(b);
+      c.noalias() = a.lazyProduct(b);
     }
   } else {
     multiply<sign, onto, rows, inner, columns>(a.data(), static_cast<int>(a.colStride()),
@@ -63,7 +83,7 @@ inline void subtract_product(const A& a, const B& b, C&& c) {
 /// a b
 template <class A, class B>
 inline auto product(const A& a, const B& b) {
-  Eigen::Matrix<double, A::RowsAtCompileTime, B::ColsAtCompileTime> c;
+  Eigen::Matrix<typename A::Scalar, A::RowsAtCompileTime, B::ColsAtCompileTime> c;
   multiply<1, false>(a, b, c);
   return c;
 }

@@ -153,8 +153,8 @@ class ExactTangent {
       PointMatrix by_x, by_v;
       Vec3<Pack> u;  // velocity of the point
       if (blocks) {
-        by_x = PointMatrix(effects.position, b, from.frame);
-        by_v = PointMatrix(effects.velocity, b, from.frame);
+        by_x = PointMatrix(&effects.position[9 * K::first_point(b)], 1, from.frame);
+        by_v = PointMatrix(&effects.velocity[9 * K::first_point(b)], 1, from.frame);
         u = Vec3<Pack>(from.v) + turning + velocity;
       }
       const auto add = [&](int column, const Vec3<Pack>& dF) {

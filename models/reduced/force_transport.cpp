@@ -3,7 +3,7 @@
 #include "models/reduced/ball_chain.h"
 #include "models/reduced/composite_matrix.h"
 #include "models/reduced/dense_factor.h"
-#include "models/reduced/transport_matrix.h"
+#include "models/reduced/transport_sweeps.h"
 #include "models/strand/geometry.h"
 #include "models/strand/strand_parameters.h"
 
@@ -13,40 +13,37 @@ namespace {
 template <int dofs>
 class ForceTransport final : public ReducedSystem<BallLink, dofs> {
   using Base = ReducedSystem<BallLink, dofs>;
-  using Base::dynamics_, Base::kinematics_, Base::scratch_, Base::zero_, Base::mass_;
+  using Base::dynamics_, Base::kinematics_, Base::scratch_, Base::zero_;
 
  public:
-  ForceTransport(ReducedStrand strand, bool sweeps)
+  ForceTransport(ReducedStrand strand, bool dense)
       : Base(std::move(strand)),
-        sweeps_(sweeps),
-        transport_(mass_.segments.size()),
-        dense_(Base::exact_ || !sweeps ? kinematics_.unknowns() : 0, false),
-        gyroscopic_(Base::full_, dense_.matrix),
-        restoring_(zero_) {}
+        always_dense_(dense),
+        sweeps_(kinematics_, dynamics_, Base::mass_),
+        dense_(Base::exact_ || dense ? kinematics_.unknowns() : 0, false),
+        gyroscopic_(Base::full_, dense_.matrix) {}
 
   Status residual(double t, In q, In v, In a, Out r) noexcept override {
-    dynamics_.residual(t, q, v, zero_, r);
-    compose(q);
-    transport_.add_product(a, r);
+    sweeps_.residual(t, q, v, a, r);
     return Base::finite(r);
   }
 
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
     const bool exact = Base::exact_ && (w.vel != 0 || w.pos != 0);
-    dense_in_use_ = exact || !sweeps_;
+    dense_in_use_ = exact || always_dense_;
+    if (!dense_in_use_) return factored_ = sweeps_.factor(q, w);
     kinematics_.shape(q);
-    compose(q);
-    if (!dense_in_use_) return factored_ = transport_.factor(w.acc, restoring(w));
+    sweeps_.compose(q);
     if (exact) {
       Base::take_exact_tangent(t, q, v, zero_, {0, w.vel, w.pos});
       gyroscopic_.assemble(Base::full_);
-      transport_.add_slope(kinematics_, w.pos, a, dense_.matrix);
+      sweeps_.matrix().add_slope(kinematics_, w.pos, a, dense_.matrix);
     } else {
-      dense_.matrix =
-          Eigen::Map<const Eigen::VectorXd>(restoring(w).data(), dense_.matrix.rows())
-              .asDiagonal();
+      dense_.matrix = Eigen::Map<const Eigen::VectorXd>(sweeps_.restoring(w).data(),
+                                                        dense_.matrix.rows())
+                          .asDiagonal();
     }
-    transport_.add_dense(w.acc, dense_.matrix);
+    sweeps_.matrix().add_dense(w.acc, dense_.matrix);
     return factored_ = dense_.factor();
   }
 
@@ -56,39 +53,18 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
       const Status s = dense_.solve(b, x);
       return s == Status::ok ? Base::finite(x) : s;
     }
-    transport_.solve(b, x);
+    sweeps_.solve(b, x);
     return Base::finite(x);
   }
 
  private:
-  /// Composite bodies at q, kept for the next call.
-  void compose(In q) {
-    if (std::ranges::equal(q, composed_)) return;
-    for (std::size_t i = 0; i < mass_.segments.size(); ++i) {
-      mass_tangent(kinematics_, i, {1, 0, 0}, mass_.segments[i]);
-    }
-    transport_.compose(mass_);
-    composed_.assign(q.begin(), q.end());
-  }
-
-  In restoring(Weights w) {
-    for (std::size_t i = 0; i < mass_.segments.size(); ++i) {
-      const Vec of_segment = tress::restoring(kinematics_.segments()[i], w);
-      for (int k = 0; k < dofs; ++k) {
-        restoring_[dofs * i + static_cast<std::size_t>(k)] =
-            dot(Base::K::unit(k), of_segment);
-      }
-    }
-    return restoring_;
-  }
-
   Status acceleration(double t, In q, In v, Out a) noexcept override {
     dynamics_.residual(t, q, v, zero_, scratch_);
-    compose(q);
-    const Status s = transport_.factor(1, zero_);
+    sweeps_.compose(q);
+    const Status s = sweeps_.matrix().factor(1, zero_);
     if (s != Status::ok) return s;
     for (double& entry : scratch_) entry = -entry;
-    transport_.solve(scratch_, a);
+    sweeps_.solve(scratch_, a);
     return Base::finite(a);
   }
 
@@ -104,11 +80,10 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
     return sum;
   }
 
-  bool sweeps_;
-  TransportMatrix<BallLink, dofs> transport_;
+  bool always_dense_;
+  TransportSweeps<BallLink, dofs> sweeps_;
   DenseFactor dense_;
   CompositeMatrix<ExactShape<dofs>> gyroscopic_;
-  std::vector<double> restoring_, composed_;
   bool dense_in_use_ = false;
   Status factored_ = Status::retry;
 };
@@ -120,14 +95,14 @@ std::unique_ptr<System> force_transport(const Strand& strand,
   check_unbranched(strand, "force_transport");
   ReducedStrand reduced =
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects));
-  const bool sweeps = options.method != TreeMethod::composite;
+  const bool dense = options.method == TreeMethod::composite;
   switch (options.dofs) {
     case 1:
-      return std::make_unique<ForceTransport<1>>(std::move(reduced), sweeps);
+      return std::make_unique<ForceTransport<1>>(std::move(reduced), dense);
     case 2:
-      return std::make_unique<ForceTransport<2>>(std::move(reduced), sweeps);
+      return std::make_unique<ForceTransport<2>>(std::move(reduced), dense);
     default:
-      return std::make_unique<ForceTransport<3>>(std::move(reduced), sweeps);
+      return std::make_unique<ForceTransport<3>>(std::move(reduced), dense);
   }
 }
 

@@ -7,11 +7,13 @@
 namespace tress {
 
 /// Motion of a frame: in its own components, relative to the world.
-struct FrameMotion {
-  Frame frame;  // seen from the world
-  Vec x;        // world components, m
-  Vec v, omega, a, alpha;
+template <class T>
+struct FrameMotionOf {
+  FrameOf<T> frame;  // seen from the world
+  Vec3<T> x;         // world components, m
+  Vec3<T> v, omega, a, alpha;
 };
+using FrameMotion = FrameMotionOf<double>;
 
 /// A root that moves freely, by 6 unknowns: its position (world components) and a
 /// rotation vector theta relative to a reference frame, frame = reference exp([theta]x).

@@ -17,43 +17,48 @@ namespace tress {
 /// derivative of W y along x, d2W[x1, x2] y the second one; those of P follow with y =
 /// e0. Each is a few constant vectors weighted by the functions, so it is prepared once
 /// for an element and evaluated at any s (a number or a pack of them). Straight elements
-/// are no special case.
-class Helix {
+/// are no special case. T = double, or Pack: four elements, and s is a pack then.
+template <class T>
+class HelixOf {
  public:
+  using Real = T;
+  using Vec = Vec3<T>;
+  using Frame = FrameOf<T>;
+
   /// The functions at one arc length, or at a pack of them.
-  template <class T>
+  template <class P>
   struct At {
-    T s;
-    HelixFunctions<T> f;
+    P s;
+    HelixFunctions<P> f;
   };
 
   struct Zeroth {
     Vec s, A, B;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.s, s) + weighted(p.f.A, A) + weighted(p.f.B, B);
     }
   };
   struct First {
     Vec A, A1, B, B1;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.B, B) +
              weighted(p.f.B1, B1);
     }
   };
   struct Second {
     Vec A1, A2, B, B1, B2;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.B, B) +
              weighted(p.f.B1, B1) + weighted(p.f.B2, B2);
     }
   };
   struct Third {
     Vec A1, A2, A3, B1, B2, B3;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
              weighted(p.f.B1, B1) + weighted(p.f.B2, B2) + weighted(p.f.B3, B3);
     }
@@ -61,8 +66,8 @@ class Helix {
 
   struct Acceleration {
     Vec A, A1, A2, B, B1, B2;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.A2, A2) +
              weighted(p.f.B, B) + weighted(p.f.B1, B1) + weighted(p.f.B2, B2);
     }
@@ -71,23 +76,23 @@ class Helix {
   /// The derivative of Acceleration with respect to kappa.
   struct AccelerationSlope {
     Vec A1, A2, A3, B, B1, B2, B3;
-    template <class T>
-    Vec3<T> at(const At<T>& p) const {
+    template <class P>
+    Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
              weighted(p.f.B, B) + weighted(p.f.B1, B1) + weighted(p.f.B2, B2) +
              weighted(p.f.B3, B3);
     }
   };
 
-  Helix() = default;
-  Helix(const Vec& kappa, double length)
+  HelixOf() = default;
+  HelixOf(const Vec& kappa, const T& length)
       : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)), along_(kappa, tangent) {}
 
-  template <class T>
-  At<T> point(const T& s) const {
+  template <class P>
+  At<P> point(const P& s) const {
     return {s, helix_functions(s, x2_, length_)};
   }
-  At<double> tip() const { return point(length_); }
+  At<T> tip() const { return point(length_); }
 
   Zeroth W(const Vec& y) const {
     const Vec u = cross(kappa_, y);
@@ -120,30 +125,30 @@ class Helix {
   }
 
   /// E(s) y.
-  template <class T>
-  Vec3<T> rotated(const At<T>& p, const Vec& y) const {
+  template <class P>
+  Vec3<P> rotated(const At<P>& p, const Vec& y) const {
     const Vec u = cross(kappa_, y);
-    return weighted(T(1), y) + weighted(p.f.S, u) + weighted(p.f.A, cross(kappa_, u));
+    return weighted(P(1), y) + weighted(p.f.S, u) + weighted(p.f.A, cross(kappa_, u));
   }
-  Frame rotation(const At<double>& p) const {
+  Frame rotation(const At<T>& p) const {
     return {rotated(p, {1, 0, 0}), rotated(p, {0, 1, 0}), rotated(p, {0, 0, 1})};
   }
   /// The transposes W^T y and (dW[x])^T y: kappa changes sign in K.
-  Vec W_transposed(const At<double>& p, const Vec& y) const {
+  Vec W_transposed(const At<T>& p, const Vec& y) const {
     const Vec u = cross(kappa_, y);
     return p.s * y - p.f.A * u + p.f.B * cross(kappa_, u);
   }
-  Vec dW_transposed(const At<double>& p, const Vec& x, const Vec& y) const {
+  Vec dW_transposed(const At<T>& p, const Vec& x, const Vec& y) const {
     const First d = dW(x, y);
     return p.f.B * d.B + p.f.B1 * d.B1 - p.f.A * d.A - p.f.A1 * d.A1;
   }
 
-  static constexpr Vec tangent{1, 0, 0};
+  static constexpr Vec3<double> tangent{1, 0, 0};
 
  private:
-  template <class T>
-  static Vec3<T> weighted(const T& weight, const Vec& x) {
-    return {weight * T(x.x), weight * T(x.y), weight * T(x.z)};
+  template <class P>
+  static Vec3<P> weighted(const P& weight, const Vec& x) {
+    return {weight * P(x.x), weight * P(x.y), weight * P(x.z)};
   }
 
   /// u = K y, z = K^2 y and the derivatives of z along x, and along x1 and x2.
@@ -159,18 +164,18 @@ class Helix {
   };
 
   static First first_of(const Terms& t, const Vec& x) {
-    const double k = dot(t.kappa, x);
+    const T k = dot(t.kappa, x);
     return {cross(x, t.y), k * t.u, t.z_of(x), k * t.z};
   }
   static Second second_of(const Terms& t, const Vec& x1, const Vec& x2) {
-    const double k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), c = dot(x1, x2);
+    const T k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), c = dot(x1, x2);
     return {c * t.u + k1 * cross(x2, t.y) + k2 * cross(x1, t.y), (k1 * k2) * t.u,
             t.z_of(x1, x2), c * t.z + k1 * t.z_of(x2) + k2 * t.z_of(x1), (k1 * k2) * t.z};
   }
   static Third third_of(const Terms& t, const Vec& x1, const Vec& x2, const Vec& x3) {
-    const double k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), k3 = dot(t.kappa, x3);
-    const double c12 = dot(x1, x2), c13 = dot(x1, x3), c23 = dot(x2, x3);
-    const double mixed = c12 * k3 + c13 * k2 + c23 * k1;
+    const T k1 = dot(t.kappa, x1), k2 = dot(t.kappa, x2), k3 = dot(t.kappa, x3);
+    const T c12 = dot(x1, x2), c13 = dot(x1, x3), c23 = dot(x2, x3);
+    const T mixed = c12 * k3 + c13 * k2 + c23 * k1;
     const Vec u1 = cross(x1, t.y), u2 = cross(x2, t.y), u3 = cross(x3, t.y);
     const Vec z1 = t.z_of(x1), z2 = t.z_of(x2), z3 = t.z_of(x3);
     return {c12 * u3 + c13 * u2 + c23 * u1,
@@ -183,9 +188,11 @@ class Helix {
   }
 
   Vec kappa_;
-  double length_ = 0;
-  double x2_ = 0;
+  T length_{};
+  T x2_{};
   Terms along_;  // of positions: y = e0
 };
+
+using Helix = HelixOf<double>;
 
 }  // namespace tress

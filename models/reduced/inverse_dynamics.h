@@ -8,68 +8,94 @@
 namespace tress {
 
 /// Force and moment about a frame's origin, in its components.
-struct Wrench {
-  Vec force, moment;
+template <class T>
+struct WrenchOf {
+  Vec3<T> force, moment;
 };
+using Wrench = WrenchOf<double>;
 
 /// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme: motion
 /// from the root to the tips (Kinematics), d'Alembert forces m p'' - f at the quadrature
 /// points (gravity as an acceleration of the root [Luh, Walker, Paul 1980]), wrenches
-/// from the tips to the root. O(N).
+/// from the tips to the root. O(N). Of as many strands as Kinematics.
 template <class Kernel, int dofs>
 class InverseDynamics {
  public:
-  InverseDynamics(Kinematics<Kernel, dofs>& kinematics, const Effects& effects)
-      : kinematics_(kinematics), needs_(needs(effects)) {
-    Vec uniform;
-    for (const auto& effect : effects) {
-      if (const auto acceleration = effect->uniform_acceleration()) {
-        uniform = uniform + *acceleration;
-      } else {
-        loading_.push_back(effect.get());
-      }
-    }
-    kinematics.fall(uniform);
-    const std::size_t blocks = kinematics.blocks().size();
-    count_ = Pack::lanes * blocks;
-    load_.resize(3 * count_);
-    if (!effects.empty()) {
-      for (const PointBlock& block : kinematics.blocks()) {
-        for (int lane = 0; lane < Pack::lanes; ++lane) {
-          mass_.push_back(block.mass[lane]);
-          length_.push_back(block.length[lane]);
+  using K = Kinematics<Kernel, dofs>;
+  using Real = typename K::Real;
+  using In = std::span<const Real>;
+  using Out = std::span<Real>;
+  using Wrench = WrenchOf<Real>;
+
+  /// Effects of each strand; lanes beyond them feel none.
+  InverseDynamics(K& kinematics, std::vector<Effects> effects_of_strands)
+      : kinematics_(kinematics),
+        count_(kinematics.points()),
+        effects_(std::move(effects_of_strands)),
+        loading_(effects_.size()) {
+    const std::vector<Effects>& effects = effects_;
+    Vec3<Real> uniform;
+    for (std::size_t strand = 0; strand < effects.size(); ++strand) {
+      Vec3<double> sum;
+      for (const auto& effect : effects[strand]) {
+        if (const auto acceleration = effect->uniform_acceleration()) {
+          sum = sum + *acceleration;
+        } else {
+          loading_[strand].push_back(effect.get());
+          loaded_ = true;
         }
       }
+      set_lane(uniform, static_cast<int>(strand), sum);
+      needs_of_.push_back(needs(effects[strand]));
+      needs_ = needs_ | needs_of_.back();
     }
-    if (needs_.position) x_.resize(3 * count_);
-    if (needs_.velocity) v_.resize(3 * count_);
-    if (needs_.tangent) tangent_.resize(3 * count_);
+    kinematics.fall(uniform);
+    const std::size_t blocks = kinematics.blocks().size(), all = Pack::lanes * blocks;
+    load_.resize(3 * all);
+    mass_.resize(all);
+    length_.resize(all);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      for (int lane = 0; lane < Pack::lanes; ++lane) {
+        const std::size_t at =
+            K::first_point(b) + static_cast<std::size_t>(lane) * kinematics.point_step();
+        mass_[at] = kinematics.blocks()[b].mass[lane];
+        length_[at] = kinematics.blocks()[b].length[lane];
+      }
+    }
+    if (needs_.position) x_.resize(3 * all);
+    if (needs_.velocity) v_.resize(3 * all);
+    if (needs_.tangent) tangent_.resize(3 * all);
     force_.resize(blocks);
     at_tip_.resize(kinematics.segments().size());
   }
 
   void residual(double t, In q, In v, In a, Out r) {
     kinematics_.move(t, q, v, a);
-    if (!loading_.empty()) {
-      const Points p = points(needs_);
+    if (loaded_) {
+      place(needs_);
       std::fill(load_.begin(), load_.end(), 0.0);
-      for (const Effect* effect : loading_) effect->add_load(t, p, load_);
+      for (std::size_t strand = 0; strand < loading_.size(); ++strand) {
+        const Points p = points(strand, needs_of_[strand]);
+        const InOut load = InOut(load_).subspan(3 * strand * count_, 3 * count_);
+        for (const Effect* effect : loading_[strand]) effect->add_load(t, p, load);
+      }
     }
     for (Wrench& wrench : at_tip_) wrench = {};
     at_root_ = {};
     for (std::size_t i = at_tip_.size(); i-- > 0;) segment(i, q, v, r);
-    if (kinematics_.free()) {
+    if constexpr (lanes<Real> == 1) {
+      if (!kinematics_.free()) return;
       at_root_.moment =
           at_root_.moment + rotor_moment(kinematics_.root_rotor(), kinematics_.root());
       kinematics_.free_root().residual(at_root_.force, at_root_.moment, r.last(6));
     }
   }
 
-  /// The points that effects act on, at the motion that Kinematics holds; only what is
-  /// asked for is computed.
-  Points points(Needs wanted) {
-    if (wanted.position) x_.resize(3 * count_);
-    if (wanted.velocity) v_.resize(3 * count_);
+  /// Computes of the points that effects act on what is asked for, at the motion that
+  /// Kinematics holds.
+  void place(Needs wanted) {
+    if (wanted.position) x_.resize(mass_.size() * 3);
+    if (wanted.velocity) v_.resize(mass_.size() * 3);
     if (wanted.position || wanted.velocity || wanted.tangent) {
       const auto& segments = kinematics_.segments();
       for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -78,12 +104,32 @@ class InverseDynamics {
         }
       }
     }
+  }
+  /// Those of one strand, as placed.
+  Points points(std::size_t strand, Needs wanted) const {
+    const auto part = [&](const std::vector<double>& of_all, std::size_t size,
+                          bool filled) {
+      return filled ? tress::In(of_all).subspan(size * strand * count_, size * count_)
+                    : tress::In{};
+    };
     return {.count = static_cast<int>(count_),
-            .x = wanted.position ? In(x_) : In{},
-            .v = v_,
-            .tangent = tangent_,
-            .mass = mass_,
-            .length = length_};
+            .x = part(x_, 3, wanted.position),
+            .v = part(v_, 3, wanted.velocity),
+            .tangent = part(tangent_, 3, wanted.tangent),
+            .mass = part(mass_, 1, true),
+            .length = part(length_, 1, true)};
+  }
+
+  /// blocks (9 a point) = pos df/dx + vel df/dv, of the points as placed.
+  void derivatives(double t, double pos, double vel, InOut blocks) const {
+    std::ranges::fill(blocks, 0.0);
+    for (std::size_t strand = 0; strand < effects_.size(); ++strand) {
+      const Points p = points(strand, needs_of_[strand]);
+      const InOut own = blocks.subspan(9 * strand * count_, 9 * count_);
+      for (const auto& effect : effects_[strand]) {
+        effect->add_derivatives(t, p, pos, vel, own);
+      }
+    }
   }
 
   // Of the last residual(): the force on each point's inertia in the components of the
@@ -93,25 +139,27 @@ class InverseDynamics {
   const Wrench& at_tip(std::size_t i) const { return at_tip_[i]; }
   const Wrench& at_root() const { return at_root_; }
   const Needs& effect_needs() const { return needs_; }
+  const Effects& effects(std::size_t strand) const { return effects_[strand]; }
 
  private:
+  using Vec = Vec3<Real>;
+  using Frame = FrameOf<Real>;
+  using FrameMotion = FrameMotionOf<Real>;
+
   struct Force {
     Vec3<Pack> total, load;
   };
 
   /// I d/dt((omega . t) t), t = e0 of the frame.
-  static Vec rotor_moment(double inertia, const FrameMotion& m) {
+  static Vec rotor_moment(const Real& inertia, const FrameMotion& m) {
     const Vec& w = m.omega;
     return inertia * Vec{m.alpha.x, w.x * w.z, -1.0 * (w.x * w.y)};
   }
 
   void place(std::size_t i, std::size_t b, Needs wanted) {
     const auto& block = kinematics_.block_geometry(b);
-    const auto scatter = [b](const Vec3<Pack>& x, std::vector<double>& to) {
-      for (int lane = 0; lane < Pack::lanes; ++lane) {
-        store3(Vec{x.x[lane], x.y[lane], x.z[lane]},
-               &to[3 * (Pack::lanes * b + static_cast<std::size_t>(lane))]);
-      }
+    const auto scatter = [&](const Vec3<Pack>& x, std::vector<double>& to) {
+      scatter3(x, &to[3 * K::first_point(b)], 3 * kinematics_.point_step());
     };
     if (wanted.position) {
       scatter(Vec3<Pack>(kinematics_.start(i).x) + kinematics_.world(i, block.position),
@@ -127,15 +175,8 @@ class InverseDynamics {
     }
   }
 
-  Vec3<Pack> gathered(std::size_t b) const {
-    const double* p = &load_[3 * Pack::lanes * b];
-    return {Pack(Pack::Vector{p[0], p[3], p[6], p[9]}),
-            Pack(Pack::Vector{p[1], p[4], p[7], p[10]}),
-            Pack(Pack::Vector{p[2], p[5], p[8], p[11]})};
-  }
-
   void segment(std::size_t i, In q, In v, Out r) {
-    const ReducedSegment& segment = kinematics_.segments()[i];
+    const typename K::Segment& segment = kinematics_.segments()[i];
     const auto& g = kinematics_.geometry(i);
     const auto& m = kinematics_.motion(i);
     const FrameMotion& from = kinematics_.start(i);
@@ -156,8 +197,9 @@ class InverseDynamics {
       at.total = kinematics_.blocks()[b].mass *
                  (a + cross(alpha, p) + m.accelerating.at(block.at) +
                   cross(omega, cross(omega, p) + Pack(2) * m.moving.at(block.at)));
-      if (!loading_.empty()) {
-        const Vec3<Pack> world = gathered(b);
+      if (loaded_) {
+        const Vec3<Pack> world =
+            gather3(&load_[3 * K::first_point(b)], 3 * kinematics_.point_step());
         at.load = {dot(e0, world), dot(e1, world), dot(e2, world)};
         at.total = at.total - at.load;
       }
@@ -165,18 +207,17 @@ class InverseDynamics {
       sum_moment = sum_moment + cross(p, at.total);
       for (int k = 0; k < dofs; ++k) sum_r[k] += dot(block.slope[k], at.total);
     }
-    const Vec kappa = Kinematics<Kernel, dofs>::components(q, i);
-    const Vec rate = Kinematics<Kernel, dofs>::components(v, i);
+    const Vec kappa = K::components(q, i);
+    const Vec rate = K::components(v, i);
     for (int k = 0; k < dofs; ++k) {
-      const Vec e = Kinematics<Kernel, dofs>::unit(k);
+      const Vec e = K::unit(k);
       r[dofs * i + static_cast<std::size_t>(k)] =
-          sum(sum_r[k]) + dot(g.slope[k], force) + dot(g.turn[k], moment) +
+          sum_over<Real>(sum_r[k]) + dot(g.slope[k], force) + dot(g.turn[k], moment) +
           dot(e, segment.stiffness) * dot(e, kappa - segment.rest) +
           dot(e, segment.friction) * dot(e, rate);
     }
-    Wrench start{Vec{sum(sum_force.x), sum(sum_force.y), sum(sum_force.z)} + force,
-                 Vec{sum(sum_moment.x), sum(sum_moment.y), sum(sum_moment.z)} + moment +
-                     cross(g.position, force)};
+    Wrench start{sum_over<Real>(sum_force) + force,
+                 sum_over<Real>(sum_moment) + moment + cross(g.position, force)};
     if (segment.mounted) {
       start = {segment.mount * start.force, segment.mount * start.moment};
     }
@@ -185,10 +226,13 @@ class InverseDynamics {
     parent = {parent.force + start.force, parent.moment + start.moment};
   }
 
-  Kinematics<Kernel, dofs>& kinematics_;
-  std::vector<const Effect*> loading_;  // those that are not uniform
+  K& kinematics_;
+  std::size_t count_;                                // points of one strand
+  std::vector<Effects> effects_;                     // of each
+  std::vector<std::vector<const Effect*>> loading_;  // those of them that are not uniform
+  bool loaded_ = false;
   Needs needs_;
-  std::size_t count_ = 0;
+  std::vector<Needs> needs_of_;  // each strand
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;

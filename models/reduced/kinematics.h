@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "models/math/pack.h"
+#include "models/math/lanes.h"
 #include "models/reduced/free_root.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/shapes.h"
@@ -14,10 +14,18 @@
 namespace tress {
 
 /// Where everything is and how it moves, for unknowns q, v, a: one sweep from the root to
-/// the free ends. What depends on q alone is kept and used again at the same q.
+/// the free ends. What depends on q alone is kept and used again at the same q. Of one
+/// strand, or of four where the kernel's numbers are packs: unknowns, geometry and motion
+/// are packs then.
 template <class Kernel, int dofs>
 class Kinematics {
  public:
+  using Real = typename Kernel::Real;
+  using Vec = Vec3<Real>;
+  using Frame = FrameOf<Real>;
+  using FrameMotion = FrameMotionOf<Real>;
+  using Segment = ReducedSegmentOf<Real>;
+  using In = std::span<const Real>;
   template <class T>
   using Point = typename Kernel::template At<T>;
 
@@ -28,7 +36,7 @@ class Kinematics {
   };
   struct SegmentGeometry {
     Kernel kernel;
-    Point<double> tip{};
+    Point<Real> tip{};
     Vec position;  // of the tip
     Frame rotation;
     std::array<Vec, dofs> slope, turn;  // dP/dq_k and W e_k at the tip
@@ -43,30 +51,32 @@ class Kinematics {
     Vec tip_v, tip_a, tip_alpha;  // of the tip, in the components of the start
   };
 
-  Kinematics(std::vector<ReducedSegment> segments, std::vector<PointBlock> blocks,
-             RootMotion root, std::optional<FreeRootFrame> free_root, double root_rotor)
+  /// One root motion per strand: lanes<Real> of them.
+  Kinematics(std::vector<Segment> segments, std::vector<PointBlock> blocks,
+             std::vector<RootMotion> roots, std::optional<FreeRootFrame> free_root,
+             double root_rotor)
       : segments_(std::move(segments)),
         blocks_(std::move(blocks)),
-        root_motion_(std::move(root)),
+        root_motions_(std::move(roots)),
         free_root_(std::move(free_root)),
         root_rotor_(root_rotor),
         geometry_(segments_.size()),
         block_geometry_(blocks_.size()),
         motion_(segments_.size()) {
-    if (std::ranges::any_of(segments_, &ReducedSegment::mounted)) {
+    if (std::ranges::any_of(segments_, &Segment::mounted)) {
       mounted_.resize(segments_.size());
     }
   }
 
   int count() const { return static_cast<int>(segments_.size()); }
   int unknowns() const { return count() * dofs + (free_root_ ? 6 : 0); }
-  const std::vector<ReducedSegment>& segments() const { return segments_; }
+  const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<PointBlock>& blocks() const { return blocks_; }
   const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
   const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
   const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }
   const FrameMotion& start(std::size_t i) const {
-    const ReducedSegment& segment = segments_[i];
+    const Segment& segment = segments_[i];
     return segment.mounted ? mounted_[i] : parent_tip(segment);
   }
   const FrameMotion& root() const { return root_; }
@@ -74,24 +84,33 @@ class Kinematics {
   FreeRootFrame& free_root() { return *free_root_; }
   const FreeRootFrame& free_root() const { return *free_root_; }
   double root_rotor() const { return root_rotor_; }  // of a free root, kg m^2
-  bool moving_root() const { return !free_root_ && !root_motion_.fixed(); }
+  bool moving_root() const {
+    return !free_root_ && !std::ranges::all_of(root_motions_, &RootMotion::fixed);
+  }
+
+  // Arrays over points hold strand after strand: how many points a strand has, and where
+  // those of a block are.
+  std::size_t points() const { return Pack::lanes / lanes<Real> * blocks_.size(); }
+  static std::size_t first_point(std::size_t block) {
+    return Pack::lanes / lanes<Real> * block;
+  }
+  std::size_t point_step() const { return lanes<Real> == 1 ? 1 : blocks_.size(); }
 
   /// The unknowns of a segment as a vector (twist, curvature 1, curvature 2); components
   /// that are not unknowns are 0.
   static Vec components(In x, std::size_t i) {
-    const double* p = &x[dofs * i];
+    const Real* p = &x[dofs * i];
     if constexpr (dofs == 3) return {p[0], p[1], p[2]};
-    if constexpr (dofs == 2) return {0, p[0], p[1]};
-    return {0, p[0], 0};
+    if constexpr (dofs == 2) return {Real(0), p[0], p[1]};
+    return {Real(0), p[0], Real(0)};
   }
-  static Vec unit(int k) {
-    const int component = Space<dofs>::component(k);
-    return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
-  }
+  static Vec unit(int k) { return Space<dofs>::axis(Space<dofs>::component(k)); }
 
   /// Shapes of all segments at q, and the place of a free root.
   void shape(In q) {
-    if (free_root_) free_root_->place(q.last(6));
+    if constexpr (may_be_free) {
+      if (free_root_) free_root_->place(q.last(6));
+    }
     if (std::ranges::equal(q, shaped_)) return;
     for (std::size_t i = 0; i < segments_.size(); ++i) shape_segment(i, q);
     shaped_.assign(q.begin(), q.end());
@@ -104,8 +123,7 @@ class Kinematics {
   /// Frames and their motion; calls shape().
   void move(double t, In q, In v, In a) {
     shape(q);
-    root_ = free_root_ ? free_root_->motion(q.last(6), v.last(6), a.last(6))
-                       : clamped(root_motion_.at(t));
+    root_ = root_motion(t, q, v, a);
     root_.a = root_.a - root_.frame.back(falling_);
     for (std::size_t i = 0; i < segments_.size(); ++i) move_segment(i, v, a);
   }
@@ -124,18 +142,28 @@ class Kinematics {
   }
 
  private:
-  static FrameMotion clamped(const RootPose& pose) {
-    const Frame& f = pose.frame;
-    return {f,
-            pose.x,
-            f.back(pose.v),
-            f.back(pose.omega),
-            f.back(pose.a),
-            f.back(pose.alpha)};
+  static constexpr bool may_be_free = lanes<Real> == 1;
+
+  FrameMotion root_motion(double t, In q, In v, In a) const {
+    if constexpr (may_be_free) {
+      if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));
+    }
+    FrameMotion root;
+    for (int lane = 0; lane < lanes<Real>; ++lane) {
+      const RootPose pose = root_motions_[static_cast<std::size_t>(lane)].at(t);
+      const FrameOf<double>& f = pose.frame;
+      set_lane(root.frame, lane, f);
+      set_lane(root.x, lane, pose.x);
+      set_lane(root.v, lane, f.back(pose.v));
+      set_lane(root.omega, lane, f.back(pose.omega));
+      set_lane(root.a, lane, f.back(pose.a));
+      set_lane(root.alpha, lane, f.back(pose.alpha));
+    }
+    return root;
   }
 
   void shape_segment(std::size_t i, In q) {
-    const ReducedSegment& segment = segments_[i];
+    const Segment& segment = segments_[i];
     SegmentGeometry& g = geometry_[i];
     g.kernel = Kernel(segment.held + components(q, i), segment.length);
     const auto position = g.kernel.position();
@@ -157,7 +185,7 @@ class Kinematics {
   }
 
   void move_segment(std::size_t i, In v, In a) {
-    const ReducedSegment& segment = segments_[i];
+    const Segment& segment = segments_[i];
     const SegmentGeometry& g = geometry_[i];
     SegmentMotion& m = motion_[i];
     if (segment.mounted) mount(i);
@@ -171,8 +199,8 @@ class Kinematics {
     m.accelerating = g.kernel.acceleration(m.rate, m.acceleration);
     Vec turning_bias = g.kernel.dW(m.rate, m.rate).at(g.tip);
     m.turning = Vec{};
-    for (int k = 0; k < dofs; ++k) {
-      const double rate = dot(unit(k), m.rate), second = dot(unit(k), m.acceleration);
+    for (std::size_t k = 0; k < dofs; ++k) {
+      const Real rate = v[dofs * i + k], second = a[dofs * i + k];
       m.velocity = m.velocity + rate * g.slope[k];
       m.turning = m.turning + rate * g.turn[k];
       turning_bias = turning_bias + second * g.turn[k];
@@ -190,21 +218,21 @@ class Kinematics {
     m.tip.alpha = g.rotation.back(m.tip_alpha);
   }
 
-  const FrameMotion& parent_tip(const ReducedSegment& segment) const {
+  const FrameMotion& parent_tip(const Segment& segment) const {
     return segment.parent < 0 ? root_
                               : motion_[static_cast<std::size_t>(segment.parent)].tip;
   }
   void mount(std::size_t i) {
-    const ReducedSegment& segment = segments_[i];
+    const Segment& segment = segments_[i];
     FrameMotion& m = mounted_[i];
     m = parent_tip(segment);
     m.frame = m.frame * segment.mount;
     for (Vec* x : {&m.v, &m.omega, &m.a, &m.alpha}) *x = segment.mount.back(*x);
   }
 
-  std::vector<ReducedSegment> segments_;
+  std::vector<Segment> segments_;
   std::vector<PointBlock> blocks_;
-  RootMotion root_motion_;
+  std::vector<RootMotion> root_motions_;
   std::optional<FreeRootFrame> free_root_;
   double root_rotor_;
   std::vector<SegmentGeometry> geometry_;
@@ -213,7 +241,7 @@ class Kinematics {
   std::vector<FrameMotion> mounted_;  // starts of mounted segments
   FrameMotion root_;
   Vec falling_;
-  std::vector<double> shaped_;  // the q of geometry_
+  std::vector<Real> shaped_;  // the q of geometry_
 };
 
 }  // namespace tress

@@ -11,15 +11,18 @@ template <class Shape>
 class SegmentFrames {
  public:
   using S = Space<Shape::dofs>;
+  using Real = typename Shape::Real;
+  using Vec = Vec3<Real>;
+  using Frame = FrameOf<Real>;
 
   /// State of `states` 3-vectors seen from the mount instead: columns of transfer and
   /// local, rows of local and lift.
   static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
     static_assert(S::size == 6);
-    Eigen::Matrix3d m;
+    Eigen::Matrix<Real, 3, 3> m;
     for (int j = 0; j < 3; ++j) {
       const Vec axis = j == 0 ? mount.e0 : j == 1 ? mount.e1 : mount.e2;
-      m.col(j) = Eigen::Vector3d(axis.x, axis.y, axis.z);
+      m.col(j) << axis.x, axis.y, axis.z;
     }
     for (int k = 0; k < Shape::states; k += 3) {
       tangent.transfer.template middleCols<3>(k) *= m.transpose();
@@ -34,8 +37,8 @@ class SegmentFrames {
   /// Column of a frame's (translation, rotation), in the space's directions.
   template <class Column>
   static void put(const Vec& translation, const Vec& rotation, Column&& column) {
-    const double from[2][3] = {{translation.x, translation.y, translation.z},
-                               {rotation.x, rotation.y, rotation.z}};
+    const Real from[2][3] = {{translation.x, translation.y, translation.z},
+                             {rotation.x, rotation.y, rotation.z}};
     for (int i = 0; i < S::translations; ++i) column[i] = from[0][S::translation[i]];
     for (int i = 0; i < S::rotations; ++i) {
       column[S::translations + i] = from[1][S::rotation[i]];
@@ -47,13 +50,12 @@ class SegmentFrames {
     if (component == 1) return {f.e0.y, f.e1.y, f.e2.y};
     return {f.e0.z, f.e1.z, f.e2.z};
   }
-  static Vec axis(int component) {
-    return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
-  }
+  static Vec axis(int component) { return S::axis(component); }
 };
 
 /// Elastic stiffness and friction of the unknowns, by component.
-inline Vec restoring(const ReducedSegment& segment, Weights w) {
+template <class Real>
+Vec3<Real> restoring(const ReducedSegmentOf<Real>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
@@ -61,14 +63,18 @@ inline Vec restoring(const ReducedSegment& segment, Weights w) {
 /// effects have there: their part of a tangent that is to stay symmetric.
 template <class Kernel, int dofs>
 void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i,
-                        In matrices, SegmentTangent<MassShape<dofs>>& tangent) {
-  using Frames = SegmentFrames<MassShape<dofs>>;
+                        In matrices,
+                        SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent) {
+  using Real = typename Kernel::Real;
+  using K = Kinematics<Kernel, dofs>;
+  using Frames = SegmentFrames<MassShape<dofs, Real>>;
   using S = Space<dofs>;
   constexpr int t = S::translations, size = S::size, columns = size + dofs;
-  const ReducedSegment& segment = kinematics.segments()[i];
+  const auto& segment = kinematics.segments()[i];
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     const auto& block = kinematics.block_geometry(b);
-    const PointMatrix matrix(matrices, b, kinematics.start(i).frame);
+    const PointMatrix matrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
+                             kinematics.start(i).frame);
     Vec3<Pack> j[columns];
     for (int c = 0; c < t; ++c) j[c] = Vec3<Pack>(Frames::axis(S::translation[c]));
     for (int c = 0; c < S::rotations; ++c) {
@@ -79,7 +85,7 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
     for (int c = 0; c < columns; ++c) {
       const Vec3<Pack> pushed = matrix * j[c];
       for (int r = 0; r < columns; ++r) {
-        const double half = sum(dot(j[r], pushed)) / 2;
+        const Real half = sum_over<Real>(dot(j[r], pushed)) / 2;
         tangent.local(r, c) += half;
         tangent.local(c, r) += half;
       }
@@ -95,11 +101,13 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
 /// local, or what an earlier call left there.
 template <class Kernel, int dofs>
 void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
-                  SegmentTangent<MassShape<dofs>>& tangent, In of_effects = {}) {
-  using Frames = SegmentFrames<MassShape<dofs>>;
+                  SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent,
+                  In of_effects = {}) {
+  using Real = typename Kernel::Real;
+  using Frames = SegmentFrames<MassShape<dofs, Real>>;
   using S = Space<dofs>;
   constexpr int t = S::translations, size = S::size;
-  const ReducedSegment& segment = kinematics.segments()[i];
+  const auto& segment = kinematics.segments()[i];
   const auto& g = kinematics.geometry(i);
 
   Pack mass(0);
@@ -135,34 +143,33 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   auto& local = tangent.local;
   // What is not assigned below: turned by the mount, or added to.
   if (segment.mounted || !of_effects.empty()) local.setZero();
-  const double total = w.acc * sum(mass);
-  const Vec p{w.acc * sum(first.x), w.acc * sum(first.y), w.acc * sum(first.z)};
-  double pp[3][3];
+  const Real acc(w.acc), total = acc * sum_over<Real>(mass);
+  const Vec3<Real> p = acc * sum_over<Real>(first);
+  Real pp[3][3];
   for (int r = 0; r < 3; ++r) {
-    for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = w.acc * sum(second[r][c]);
+    for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = acc * sum_over<Real>(second[r][c]);
   }
-  const double trace = pp[0][0] + pp[1][1] + pp[2][2];
+  const Real trace = pp[0][0] + pp[1][1] + pp[2][2];
   for (int r = 0; r < t; ++r) local(r, r) = total;
   for (int c = 0; c < S::rotations; ++c) {
     const int axis = S::rotation[c];
-    const Vec turned = cross(Frames::axis(axis), p);  // sum m e x P
-    const double column[3] = {turned.x, turned.y, turned.z};
+    const Vec3<Real> turned = cross(Frames::axis(axis), p);  // sum m e x P
+    const Real column[3] = {turned.x, turned.y, turned.z};
     for (int r = 0; r < t; ++r) {
       local(r, t + c) = local(t + c, r) = column[S::translation[r]];
     }
     for (int r = 0; r < S::rotations; ++r) {
-      local(t + r, t + c) = (r == c ? trace : 0) - pp[S::rotation[r]][axis];
+      local(t + r, t + c) = (r == c ? trace : Real(0)) - pp[S::rotation[r]][axis];
     }
   }
   for (std::size_t k = 0; k < dofs; ++k) {
     const auto column = size + static_cast<int>(k);
-    Frames::put(w.acc * Vec{sum(momentum[k].x), sum(momentum[k].y), sum(momentum[k].z)},
-                w.acc * Vec{sum(spin[k].x), sum(spin[k].y), sum(spin[k].z)},
+    Frames::put(acc * sum_over<Real>(momentum[k]), acc * sum_over<Real>(spin[k]),
                 local.col(column));
     local.row(column).template head<size>() = local.col(column).template head<size>();
     for (std::size_t l = k; l < dofs; ++l) {
       local(column, size + static_cast<int>(l)) =
-          local(size + static_cast<int>(l), column) = w.acc * sum(inner[k][l]);
+          local(size + static_cast<int>(l), column) = acc * sum_over<Real>(inner[k][l]);
     }
     tangent.stiffness[static_cast<int>(k)] =
         dot(Kinematics<Kernel, dofs>::unit(static_cast<int>(k)), restoring(segment, w));
@@ -172,12 +179,12 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   if (!of_effects.empty()) add_effect_tangent(kinematics, i, of_effects, tangent);
 
   auto& transfer = tangent.transfer;
-  const Frame& f = g.rotation;
+  const auto& f = g.rotation;
   for (int c = 0; c < t; ++c) {
-    Frames::put(Frames::seen(f, S::translation[c]), Vec{}, transfer.col(c));
+    Frames::put(Frames::seen(f, S::translation[c]), {}, transfer.col(c));
   }
   for (int c = 0; c < S::rotations; ++c) {
-    const Vec e = Frames::axis(S::rotation[c]);
+    const Vec3<Real> e = Frames::axis(S::rotation[c]);
     Frames::put(f.back(cross(e, g.position)), Frames::seen(f, S::rotation[c]),
                 transfer.col(t + c));
   }
@@ -186,13 +193,13 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
                 transfer.col(size + static_cast<int>(k)));
   }
   if constexpr (dofs > 1) {
-    tangent.tip(t, t) = w.acc * segment.rotor;
+    tangent.tip(t, t) = acc * segment.rotor;
     if (segment.mounted) Frames::mount(segment.mount, tangent);
   }
   tangent.lift = transfer.transpose();
 }
 
-/// The same of a free root.
+/// The same of the free root of one strand.
 template <class Kernel, int dofs>
 void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
                        RootTangent<MassShape<dofs>>& root) {

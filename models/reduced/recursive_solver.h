@@ -23,6 +23,8 @@ namespace tress {
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
+  using typename TreeSolver<Shape>::In, typename TreeSolver<Shape>::Out;
+
   explicit RecursiveSolver(const TreeTangent<Shape>& structure)
       : eliminated_(structure.parent.size()), hanging_(structure.parent.size()) {}
 
@@ -40,12 +42,15 @@ class RecursiveSolver final : public TreeSolver<Shape> {
         return Status::retry;
       }
     }
-    if (!tangent.free_root) return Status::ok;
-    Eigen::Matrix<double, 6, 6> root = tangent.root.local;
-    add_product(tangent.root.lift, product(at_root, tangent.root.transfer), root);
-    root_.compute(root);
-    const double least = root_.matrixLU().diagonal().cwiseAbs().minCoeff();
-    return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
+    if constexpr (may_be_free) {
+      if (!tangent.free_root) return Status::ok;
+      Eigen::Matrix<double, 6, 6> root = tangent.root.local;
+      add_product(tangent.root.lift, product(at_root, tangent.root.transfer), root);
+      root_.compute(root);
+      const double least = root_.matrixLU().diagonal().cwiseAbs().minCoeff();
+      return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
+    }
+    return Status::ok;
   }
 
   Status solve(In b, Out x) noexcept override {
@@ -54,7 +59,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     Wrench at_root = Wrench::Zero();
     for (std::size_t i = hanging_.size(); i-- > 0;) {
       Eliminated& e = eliminated_[i];
-      const Eigen::Matrix<double, Shape::rows, 1> lifted =
+      const Eigen::Matrix<Real, Shape::rows, 1> lifted =
           product(tangent.segments[i].lift, hanging_[i].load);
       const Dofs rest = dofs(b, i) - lifted.template tail<Shape::dofs>();
       e.u.noalias() = e.inverse * rest;
@@ -65,19 +70,21 @@ class RecursiveSolver final : public TreeSolver<Shape> {
           handed_on;
     }
     State at_start = State::Zero();
-    if (tangent.free_root) {
-      const std::size_t first = Shape::dofs * hanging_.size();
-      Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
-      y = root_.solve(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) -
-                      tangent.root.lift * at_root);
-      at_start = product(tangent.root.transfer, y);
+    if constexpr (may_be_free) {
+      if (tangent.free_root) {
+        const std::size_t first = Shape::dofs * hanging_.size();
+        Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
+        y = root_.solve(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) -
+                        tangent.root.lift * at_root);
+        at_start = product(tangent.root.transfer, y);
+      }
     }
     for (std::size_t i = 0; i < hanging_.size(); ++i) {
       const int parent = tangent.parent[i];
       const State& s =
           parent < 0 ? at_start : hanging_[static_cast<std::size_t>(parent)].state;
       const Eliminated& e = eliminated_[i];
-      Eigen::Matrix<double, Shape::columns, 1> moved;
+      Eigen::Matrix<Real, Shape::columns, 1> moved;
       moved.template head<Shape::states>() = s;
       moved.template tail<Shape::dofs>() = e.u - product(e.z, s);
       Eigen::Map<Dofs>(x.data() + Shape::dofs * i) = moved.template tail<Shape::dofs>();
@@ -88,17 +95,19 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   }
 
  private:
+  using Real = typename Shape::Real;
+  static constexpr bool may_be_free = lanes<Real> == 1;
   static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
-  using Articulated = Eigen::Matrix<double, wrench, states>;
-  using Wrench = Eigen::Matrix<double, wrench, 1>;
-  using State = Eigen::Matrix<double, states, 1>;
-  using Dofs = Eigen::Matrix<double, n, 1>;
-  using Square = Eigen::Matrix<double, n, n>;
+  using Articulated = Eigen::Matrix<Real, wrench, states>;
+  using Wrench = Eigen::Matrix<Real, wrench, 1>;
+  using State = Eigen::Matrix<Real, states, 1>;
+  using Dofs = Eigen::Matrix<Real, n, 1>;
+  using Square = Eigen::Matrix<Real, n, n>;
 
   struct Eliminated {
-    Square inverse;                             // of the pivot H
-    Eigen::Matrix<double, n, states> z;         // x = u - z s
-    Eigen::Matrix<double, wrench, n> response;  // of the wrench handed on to rest
+    Square inverse;                           // of the pivot H
+    Eigen::Matrix<Real, n, states> z;         // x = u - z s
+    Eigen::Matrix<Real, wrench, n> response;  // of the wrench handed on to rest
     Dofs u;
   };
   struct Hanging {
@@ -111,7 +120,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   static bool invert(const Square& h, Square& inverse) {
     inverse = h.inverse();
-    return std::isfinite(inverse.sum());
+    return is_finite(inverse.sum());
   }
 
   /// Adds to `onto` what the segment hands on.
@@ -133,15 +142,15 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const auto local_of_x = segment.local.template rightCols<n>();
     // The pivot and what couples it to s: columns x of local + transfer^T hanging
     // transfer.
-    Eigen::Matrix<double, Shape::rows, n> of_x = local_of_x;
+    Eigen::Matrix<Real, Shape::rows, n> of_x = local_of_x;
     add_product(segment.lift, product(hanging, tip_of_x.transpose()), of_x);
     if (!invert(of_x.template bottomRows<n>(), e.inverse)) return false;
     e.response = product(of_x.template topRows<states>(), e.inverse);
     e.z = e.response.transpose();
     // V = [I; -Z]: M V = M_s - M_x Z.
-    Eigen::Matrix<double, states, states> tip_motion = tip_of_s;
+    Eigen::Matrix<Real, states, states> tip_motion = tip_of_s;
     subtract_product(e.response, tip_of_x, tip_motion);
-    Eigen::Matrix<double, states, n> own = local_of_x.template topRows<states>();
+    Eigen::Matrix<Real, states, n> own = local_of_x.template topRows<states>();
     subtract_product(e.response, local_of_x.template bottomRows<n>(), own);
     onto += segment.local.template topLeftCorner<states, states>();
     subtract_product(local_of_x.template topRows<states>(), e.response.transpose(), onto);
@@ -163,8 +172,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     if (!invert(pivot, e.inverse)) return false;
     e.z = product(e.inverse, r_of_s);
     if constexpr (method == TreeMethod::recursive_plain) {
-      const Eigen::Matrix<double, wrench, n> y = w_of_x;
-      const Eigen::Matrix<double, n, wrench> mirrored = y.transpose();
+      const Eigen::Matrix<Real, wrench, n> y = w_of_x;
+      const Eigen::Matrix<Real, n, wrench> mirrored = y.transpose();
       e.z = product(e.inverse, mirrored);
       e.response = e.z.transpose();
       onto += full.template topLeftCorner<wrench, states>();

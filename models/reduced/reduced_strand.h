@@ -12,24 +12,30 @@
 
 namespace tress {
 
-/// Quadrature points that carry the mass of a segment, four at a time.
+/// Quadrature points that carry the mass of a segment: four at a time, or, in a batch,
+/// the same one of four strands.
 struct PointBlock {
   Pack s, mass, length;
 };
 
 /// One segment of a reduced-coordinate strand. Vectors are over (twist, curvature 1,
 /// curvature 2); what belongs to components that are not unknowns is 0 but for `held`.
-struct ReducedSegment {
+/// T = Pack: the same segment of four strands.
+template <class T>
+struct ReducedSegmentOf {
   int parent = -1;
-  double length = 0;
+  T length{};
   bool mounted = false;  // mount is not the identity
-  Frame mount;
-  double rotor = 0;         // rotational inertia about the tangent at the tip, kg m^2
-  Vec held;                 // components that are not unknowns keep this value
-  Vec rest, initial;        // unknowns at rest and at t = 0
-  Vec stiffness, friction;  // moment per unknown, and per its rate
+  FrameOf<T> mount;
+  T rotor{};          // rotational inertia about the tangent at the tip, kg m^2
+  Vec3<T> held;       // components that are not unknowns keep this value
+  Vec3<T> rest;       // unknowns at rest
+  Vec3<T> initial;    // and at t = 0
+  Vec3<T> stiffness;  // moment per unknown
+  Vec3<T> friction;   // and per its rate
   std::size_t first_block = 0, last_block = 0;
 };
+using ReducedSegment = ReducedSegmentOf<double>;
 
 /// Which terms the tangent holds. less_implicit: the stiff tangent, solved as by our
 /// reconstruction of a recursion that is "less implicit" than the composite matrix.

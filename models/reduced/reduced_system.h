@@ -6,6 +6,7 @@
 
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
+#include "models/reduced/stiff_tangent.h"
 #include "models/reduced/tree_solver.h"
 
 namespace tress {
@@ -21,33 +22,33 @@ class ReducedSystem : public System,
                       protected MaterialPoints {
  public:
   explicit ReducedSystem(ReducedStrand strand)
-      : effects_(std::move(strand.effects)),
-        exact_(strand.tangent == ReducedTangent::exact),
+      : exact_(strand.tangent == ReducedTangent::exact),
         regular_mass_(strand.regular_mass),
         unknown_scale_(strand.unknown_scale),
         length_(strand.length),
         rate_(strand.rate),
         kinematics_(std::move(strand.segments), std::move(strand.blocks),
-                    std::move(strand.root),
+                    {std::move(strand.root)},
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
                                      : std::nullopt,
                     strand.root_rotor),
-        dynamics_(kinematics_, effects_),
-        exact_tangent_(kinematics_, dynamics_) {
-    ready(mass_);
-    mass_solver_ = make_tree_solver<Mass>(strand.method, mass_);
-    ready(acceleration_);
-    acceleration_solver_ = make_tree_solver<Mass>(TreeMethod::recursive, acceleration_);
+        dynamics_(kinematics_, {std::move(strand.effects)}),
+        exact_tangent_(kinematics_, dynamics_),
+        mass_(kinematics_, dynamics_),
+        acceleration_(kinematics_, dynamics_),
+        mass_solver_(make_tree_solver<Mass>(strand.method, mass_.last())),
+        acceleration_solver_(
+            make_tree_solver<Mass>(TreeMethod::recursive, acceleration_.last())) {
     const auto n = static_cast<std::size_t>(kinematics_.unknowns());
     zero_.assign(n, 0.0);
     scratch_.assign(n, 0.0);
+    if (!exact_) return;
     if (dynamics_.effect_needs().derivatives) {
       for (auto* x : {&by_position_, &by_velocity_}) {
         x->resize(9 * Pack::lanes * kinematics_.blocks().size());
       }
     }
-    if (!exact_) return;
-    ready(full_);
+    full_ = empty_tangent<Exact>(kinematics_);
     full_solver_ = make_tree_solver<Exact>(strand.method, full_);
   }
 
@@ -84,10 +85,7 @@ class ReducedSystem : public System,
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
     // With neither velocity nor position weight there is nothing but mass.
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
-    if (!full_in_use_) {
-      const In of_effects = effect_tangent(t, q, v, w);
-      return factored_ = factor(w, mass_, *mass_solver_, of_effects);
-    }
+    if (!full_in_use_) return factored_ = mass_solver_->factor(mass_.at(t, q, v, w));
     take_exact_tangent(t, q, v, a, w);
     return factored_ = full_solver_->factor(full_);
   }
@@ -125,33 +123,10 @@ class ReducedSystem : public System,
   using Mass = MassShape<dofs>;
   using Exact = ExactShape<dofs>;
 
-  template <class Shape>
-  void ready(TreeTangent<Shape>& tangent) const {
-    for (const ReducedSegment& segment : kinematics_.segments()) {
-      tangent.parent.push_back(segment.parent);
-    }
-    tangent.segments.resize(tangent.parent.size());
-    for (auto& segment : tangent.segments) {  // the zero blocks stay
-      segment.transfer.setZero();
-      segment.local.setZero();
-      segment.tip.setZero();
-    }
-    tangent.free_root = kinematics_.free();
-  }
-
   static Status finite(In x) {
     return std::ranges::all_of(x, [](double y) { return std::isfinite(y); })
                ? Status::ok
                : Status::retry;
-  }
-
-  Status factor(Weights w, TreeTangent<Mass>& tangent, TreeSolver<Mass>& solver,
-                In of_effects = {}) {
-    for (std::size_t i = 0; i < tangent.segments.size(); ++i) {
-      mass_tangent(kinematics_, i, w, tangent.segments[i], of_effects);
-    }
-    if (tangent.free_root) mass_root_tangent(kinematics_, w, tangent.root);
-    return solver.factor(tangent);
   }
 
   void take_exact_tangent(double t, In q, In v, In a, Weights w) {
@@ -163,36 +138,17 @@ class ReducedSystem : public System,
     if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
   }
 
-  /// What the effects add to the stiff tangent at the points; places the segments at q.
-  In effect_tangent(double t, In q, In v, Weights w) {
-    if (by_position_.empty() || (w.vel == 0 && w.pos == 0)) {
-      kinematics_.shape(q);
-      return {};
-    }
-    kinematics_.move(t, q, v, zero_);
-    const Points points = dynamics_.points(dynamics_.effect_needs());
-    std::ranges::fill(by_position_, 0.0);
-    for (const auto& effect : effects_) {
-      effect->add_derivatives(t, points, -w.pos, -w.vel, by_position_);
-    }
-    return by_position_;
-  }
-
   typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
     if (by_position_.empty()) return {};
-    const Points points = dynamics_.points(dynamics_.effect_needs());
-    std::ranges::fill(by_position_, 0.0);
-    std::ranges::fill(by_velocity_, 0.0);
-    for (const auto& effect : effects_) {
-      effect->add_derivatives(t, points, 1, 0, by_position_);
-      effect->add_derivatives(t, points, 0, 1, by_velocity_);
-    }
+    dynamics_.place(dynamics_.effect_needs());
+    dynamics_.derivatives(t, 1, 0, by_position_);
+    dynamics_.derivatives(t, 0, 1, by_velocity_);
     return {by_position_, by_velocity_};
   }
 
   Status acceleration(double t, In q, In v, Out a) noexcept override {
     dynamics_.residual(t, q, v, zero_, scratch_);
-    const Status s = factor({1, 0, 0}, acceleration_, *acceleration_solver_);
+    const Status s = acceleration_solver_->factor(acceleration_.here({1, 0, 0}));
     if (s != Status::ok) return s;
     for (double& entry : scratch_) entry = -entry;
     const Status solved = acceleration_solver_->solve(scratch_, a);
@@ -204,6 +160,14 @@ class ReducedSystem : public System,
   }
   static Vec rotor_momentum(double inertia, const FrameMotion& m) {
     return (inertia * m.omega.x) * m.frame.e0;
+  }
+
+  /// The points of effects, with all that potential() and power() read.
+  Points placed() {
+    const Needs wanted =
+        dynamics_.effect_needs() | Needs{.position = true, .velocity = true};
+    dynamics_.place(wanted);
+    return dynamics_.points(0, wanted);
   }
 
   Energy energy(double t, In q, In v) override {
@@ -222,18 +186,18 @@ class ReducedSystem : public System,
                             segment.stiffness.y * bent.y * bent.y +
                             segment.stiffness.z * bent.z * bent.z);
     }
-    const Points points = dynamics_.points({.position = true, .velocity = true});
-    for (const auto& effect : effects_) e.potential += effect->potential(t, points);
+    const Points points = placed();
+    for (const auto& effect : dynamics_.effects(0)) {
+      e.potential += effect->potential(t, points);
+    }
     return e;
   }
 
   double power(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
-    const Points points = dynamics_.points({.position = true,
-                                            .velocity = true,
-                                            .tangent = dynamics_.effect_needs().tangent});
+    const Points points = placed();
     double sum = 0;
-    for (const auto& effect : effects_) sum += effect->power(t, points);
+    for (const auto& effect : dynamics_.effects(0)) sum += effect->power(t, points);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       const Vec& friction = kinematics_.segments()[i].friction;
       const Vec rate = K::components(v, i);
@@ -301,13 +265,12 @@ class ReducedSystem : public System,
     return true;
   }
 
-  Effects effects_;
   bool exact_, regular_mass_;
   double unknown_scale_, length_, rate_;
   K kinematics_;
   InverseDynamics<Kernel, dofs> dynamics_;
   ExactTangent<Kernel, dofs> exact_tangent_;
-  TreeTangent<Mass> mass_, acceleration_;
+  StiffTangent<Kernel, dofs> mass_, acceleration_;
   TreeTangent<Exact> full_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_;

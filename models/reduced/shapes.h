@@ -1,5 +1,6 @@
 #pragma once
 
+#include "models/math/vec3.h"
 #include "models/reduced/tree_tangent.h"
 
 namespace tress {
@@ -16,10 +17,13 @@ struct Space {
   static constexpr int rotation[3] = {dofs == 1 ? 1 : 0, 1, 2};
   /// Component of (twist, curvature 1, curvature 2) that unknown k of a segment is.
   static constexpr int component(int k) { return dofs == 3 ? k : k + 1; }
+  static constexpr Vec axis(int component) {
+    return {component == 0 ? 1.0 : 0, component == 1 ? 1.0 : 0, component == 2 ? 1.0 : 0};
+  }
 };
 
-template <int dofs>
-using MassShape = TreeShape<Space<dofs>::size, Space<dofs>::size, dofs>;
+template <int dofs, class Real = double>
+using MassShape = TreeShape<Space<dofs>::size, Space<dofs>::size, dofs, Real>;
 
 template <int dofs>
 using ExactShape = TreeShape<3 * Space<dofs>::size, Space<dofs>::size, dofs>;

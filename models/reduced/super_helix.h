@@ -21,6 +21,15 @@ namespace tress {
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects);
 
+/// One to four strands as one system, one in each lane of the processor's vectors: what
+/// super_helix says of each, coordinates and points one strand after the other, to
+/// rounding and at the cost of one or little more. Effects of each strand see its own
+/// points alone. Quadrature is that of the strand that needs most. Throws InputError
+/// unless all are clamped and cut alike, and options say stiff tangent and recursive.
+std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
+                                          const ReducedOptions& options,
+                                          std::vector<Effects> effects);
+
 std::span<const Parameter> super_helix_parameters();
 std::unique_ptr<System> make_super_helix(const Strand& strand,
                                          const Parameters& parameters, Effects effects);

@@ -21,8 +21,11 @@ namespace tress {
 template <class Kernel, int dofs>
 class TransportMatrix {
  public:
-  using Shape = MassShape<dofs>;
-  using Dofs = Eigen::Matrix<double, dofs, 1>;
+  using Real = typename Kernel::Real;
+  using In = std::span<const Real>;
+  using Out = std::span<Real>;
+  using Shape = MassShape<dofs, Real>;
+  using Dofs = Eigen::Matrix<Real, dofs, 1>;
 
   explicit TransportMatrix(std::size_t segments)
       : full_(segments), inverse_(segments), start_(segments + 1) {}
@@ -54,7 +57,7 @@ class TransportMatrix {
       Square pivot = acc * own(i);
       pivot.diagonal() += at(diagonal, i);
       inverse_[i] = pivot.inverse();
-      if (!std::isfinite(inverse_[i].sum())) return Status::retry;
+      if (!is_finite(inverse_[i].sum())) return Status::retry;
     }
     return Status::ok;
   }
@@ -117,16 +120,17 @@ class TransportMatrix {
   }
 
  private:
+  using Vec = Vec3<Real>;
   using S = Space<dofs>;
   using Frames = SegmentFrames<Shape>;
   static constexpr int size = S::size;
-  using Inertia = Eigen::Matrix<double, size, size>;
-  using State = Eigen::Matrix<double, size, 1>;
-  using Axes = Eigen::Matrix<double, size, dofs>;
-  using Square = Eigen::Matrix<double, dofs, dofs>;
+  using Inertia = Eigen::Matrix<Real, size, size>;
+  using State = Eigen::Matrix<Real, size, 1>;
+  using Axes = Eigen::Matrix<Real, size, dofs>;
+  using Square = Eigen::Matrix<Real, dofs, dofs>;
 
   static Dofs at(In x, std::size_t i) { return Eigen::Map<const Dofs>(&x[dofs * i]); }
-  static double component(const Vec& x, int k) {
+  static Real component(const Vec& x, int k) {
     return dot(Kinematics<Kernel, dofs>::unit(k), x);
   }
 
@@ -170,7 +174,7 @@ class TransportMatrix {
     return spread(s, S::rotation, S::translations, S::rotations);
   }
   static Vec spread(const State& s, const int* axes, int first, int count) {
-    double x[3] = {};
+    Real x[3] = {};
     for (int i = 0; i < count; ++i) x[axes[i]] = s[first + i];
     return {x[0], x[1], x[2]};
   }
@@ -208,10 +212,10 @@ class TransportMatrix {
   }
 
   const TreeTangent<Shape>* mass_ = nullptr;
-  std::vector<Eigen::Matrix<double, Shape::rows, Shape::columns>> full_;
+  std::vector<Eigen::Matrix<Real, Shape::rows, Shape::columns>> full_;
   std::vector<Square> inverse_;
   std::vector<State> start_;  // motion of each link's start, and of the last tip
-  double acc_ = 0;
+  Real acc_{};
 };
 
 }  // namespace tress

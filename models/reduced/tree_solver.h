@@ -22,6 +22,9 @@ enum class TreeMethod {
 template <class Shape>
 class TreeSolver {
  public:
+  using In = std::span<const typename Shape::Real>;
+  using Out = std::span<typename Shape::Real>;
+
   virtual ~TreeSolver() = default;
   /// `retry` when a pivot is not usable. The tangent must outlive the solves.
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;

@@ -11,9 +11,11 @@ namespace tress {
 /// from its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs`
 /// unknowns of its own. Symmetric problems (mass, friction and stiffness only) have
 /// states == wrench: the acceleration of the frame. The exact tangent carries
-/// displacement, velocity and acceleration: states == 3 wrench.
-template <int states_, int wrench_, int dofs_>
+/// displacement, velocity and acceleration: states == 3 wrench. Real = Pack: four
+/// problems side by side.
+template <int states_, int wrench_, int dofs_, class Real_ = double>
 struct TreeShape {
+  using Real = Real_;
   static constexpr int states = states_;
   static constexpr int wrench = wrench_;
   static constexpr int dofs = dofs_;
@@ -22,7 +24,7 @@ struct TreeShape {
   static constexpr bool symmetric = states == wrench;
 
   template <int r, int c>
-  using Matrix = Eigen::Matrix<double, r, c>;
+  using Matrix = Eigen::Matrix<Real, r, c>;
 };
 
 /// Linearised equations of one segment: with s the state at its start, x its unknowns and

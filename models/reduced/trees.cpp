@@ -25,7 +25,7 @@ double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
 
 /// exp([turn]x): turns by |turn| (rad) about its direction.
 Frame turned_by(const Vec& turn) {
-  const auto f = helix_functions(1.0, dot(turn, turn), 1);
+  const auto f = helix_functions(1.0, dot(turn, turn), 1.0);
   const auto turned = [&](const Vec& e) {
     const Vec across = cross(turn, e);
     return e + f.S * across + f.A * cross(turn, across);

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "models/reduced/inverse_dynamics.h"
+#include "models/reduced/mass_tangent.h"
+
+namespace tress {
+
+/// A tangent of the right size for the segments of Kinematics; its zero blocks stay.
+template <class Shape, class K>
+TreeTangent<Shape> empty_tangent(const K& kinematics) {
+  TreeTangent<Shape> tangent;
+  for (const auto& segment : kinematics.segments()) {
+    tangent.parent.push_back(segment.parent);
+  }
+  tangent.segments.resize(tangent.parent.size());
+  for (auto& segment : tangent.segments) {
+    segment.transfer.setZero();
+    segment.local.setZero();
+    segment.tip.setZero();
+  }
+  tangent.free_root = kinematics.free();
+  return tangent;
+}
+
+/// Mass, friction and elastic stiffness of all segments, w.acc M + w.vel C + w.pos K,
+/// with the derivatives of effects made symmetric.
+template <class Kernel, int dofs>
+class StiffTangent {
+ public:
+  using K = Kinematics<Kernel, dofs>;
+  using In = typename K::In;
+  using Shape = MassShape<dofs, typename K::Real>;
+
+  StiffTangent(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+      : kinematics_(kinematics),
+        dynamics_(dynamics),
+        tangent_(empty_tangent<Shape>(kinematics)) {
+    if (!dynamics.effect_needs().derivatives) return;
+    zero_.resize(static_cast<std::size_t>(kinematics.unknowns()));
+    of_effects_.resize(9 * Pack::lanes * kinematics.blocks().size());
+  }
+
+  const TreeTangent<Shape>& at(double t, In q, In v, Weights w) {
+    if (of_effects_.empty() || (w.vel == 0 && w.pos == 0)) {
+      kinematics_.shape(q);
+      return here(w, {});
+    }
+    kinematics_.move(t, q, v, zero_);
+    dynamics_.place(dynamics_.effect_needs());
+    dynamics_.derivatives(t, -w.pos, -w.vel, of_effects_);
+    return here(w, of_effects_);
+  }
+  /// Without effects, where Kinematics is.
+  const TreeTangent<Shape>& here(Weights w) { return here(w, {}); }
+
+  const TreeTangent<Shape>& last() const { return tangent_; }
+
+ private:
+  const TreeTangent<Shape>& here(Weights w, tress::In of_effects) {
+    for (std::size_t i = 0; i < tangent_.segments.size(); ++i) {
+      mass_tangent(kinematics_, i, w, tangent_.segments[i], of_effects);
+    }
+    if constexpr (lanes<typename K::Real> == 1) {
+      if (tangent_.free_root) mass_root_tangent(kinematics_, w, tangent_.root);
+    }
+    return tangent_;
+  }
+
+  K& kinematics_;
+  InverseDynamics<Kernel, dofs>& dynamics_;
+  TreeTangent<Shape> tangent_;
+  std::vector<typename K::Real> zero_;
+  std::vector<double> of_effects_;  // 9 a point
+};
+
+}  // namespace tress
