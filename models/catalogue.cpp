@@ -34,6 +34,20 @@ std::unique_ptr<System> with_parameters(const Parameters& parameters) {
   return make(strand(parameters), parameters, strand_effects(parameters));
 }
 
+using Batch = std::unique_ptr<System>(std::span<const Strand>, const ReducedOptions&,
+                                      std::vector<Effects>);
+
+/// Null for the options that batches do not have.
+template <Batch* make>
+std::unique_ptr<System> together(std::span<const Strand> strands,
+                                 const Parameters& parameters,
+                                 std::vector<Effects> effects) {
+  const ReducedOptions options = reduced_options(parameters);
+  const bool can = options.tangent == ReducedTangent::stiff &&
+                   options.method == TreeMethod::recursive && !strands.front().free_root;
+  return can ? make(strands, options, std::move(effects)) : nullptr;
+}
+
 }  // namespace
 
 // clang-format off
@@ -46,10 +60,10 @@ std::span<const ModelEntry> models() {
       ModelEntry{"andrews_squeezer", "7 angles, 6 loop closures; planar mechanism with one spring", "Test Set for IVP Solvers 2.4, andrews", andrews_squeezer_parameters(), make_andrews_squeezer},
       ModelEntry{"slider_crank", "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)", "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_parameters(), make_slider_crank},
       ModelEntry{"beam", "n angles of inextensible segments, clamped, pushed at the tip", "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_parameters(), make_beam},
-      ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), with_parameters<make_super_helix>, make_super_helix},
+      ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), with_parameters<make_super_helix>, make_super_helix, together<super_helix_batch>},
       ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
-      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), with_parameters<make_articulated_chain>, make_articulated_chain},
-      ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), with_parameters<make_force_transport>, make_force_transport},
+      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), with_parameters<make_articulated_chain>, make_articulated_chain, together<articulated_chain_batch>},
+      ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), with_parameters<make_force_transport>, make_force_transport, together<force_transport_batch>},
       ModelEntry{"der", "discrete elastic rod of n edges; 3n positions and n angles, extensible or with n multipliers", "Bergou 2008, 2010", der_parameters(), with_parameters<make_der>, make_der},
       ModelEntry{"corde", "Cosserat rod of n edges; 3n positions and n quaternions held together by penalties", "Spillmann & Teschner 2007", corde_parameters(), with_parameters<make_corde>, make_corde},
       ModelEntry{"xpbd_cosserat", "Cosserat rod of n edges as compliant constraints; 3n positions and n quaternions", "Kugelstadt & Schoemer 2016; Deul 2018", xpbd_cosserat_parameters(), with_parameters<make_xpbd_cosserat>, make_xpbd_cosserat},

@@ -25,6 +25,11 @@ struct ModelEntry {
   /// the model brings its own geometry.
   std::unique_ptr<System> (*on_strand)(const Strand&, const Parameters&,
                                        Effects) = nullptr;
+  /// The same of two to four strands that are cut alike, as one system at the cost of
+  /// little more than one strand; returns null where these options cannot. Null: the
+  /// model has no such thing.
+  std::unique_ptr<System> (*on_strands)(std::span<const Strand>, const Parameters&,
+                                        std::vector<Effects>) = nullptr;
 };
 
 std::span<const ModelEntry> models();

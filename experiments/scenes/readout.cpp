@@ -83,15 +83,7 @@ Frame3d Readout::read(World& world) {
   row[1] = world.time();
   read_points(world, frame);
   read_energies(world, row);
-  double stretch = 0;
-  for (std::size_t k = 0; k < world.strands(); ++k) {
-    double one = 0;
-    MaterialPoints* points = world.system(k).material_points();
-    if (points != nullptr && points->stretch(world.time(), world.q(k), one)) {
-      stretch = std::max(stretch, one);
-    }
-  }
-  row.push_back(stretch);
+  row.push_back(world.stretch());
   double depth = 0;
   for (const auto& effect : effects_) {
     const auto* body = dynamic_cast<const Body*>(effect.get());
@@ -107,38 +99,40 @@ Frame3d Readout::read(World& world) {
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
       static_cast<double>(now.newton_iterations - before_.newton_iterations);
-  // Of a strand: all advance through the same time.
+  // Of a system: all advance through the same time.
   const double interval = steps > 0 ? 1 / scene_.frame_rate : std::nan("");
-  row.push_back(interval * static_cast<double>(world.strands()) / steps);
+  row.push_back(interval * static_cast<double>(world.systems()) / steps);
   row.push_back(iterations / steps);
   before_ = now;
   return frame;
 }
 
 void Readout::read_energies(World& world, std::vector<double>& row) {
-  Energy all;
+  const Energy all = world.energy();
+  row.push_back(all.kinetic);
+  if (twins_.empty()) {
+    row.push_back(all.potential);
+    return;
+  }
+  const Snapshot now = world.snapshot();
   double elastic = 0;
-  std::vector<double> by_effect(scene_.strands.empty() ? 0 : effects_.size());
-  for (std::size_t k = 0; k < world.strands(); ++k) {
-    const In q = world.q(k), v = world.v(k);
-    const auto energy = [&](System& system) {
-      system.recall(world.system(k).memory());
-      return system.energetics() == nullptr
-                 ? Energy{}
-                 : system.energetics()->energy(world.time(), q, v);
+  std::vector<double> by_effect(effects_.size());
+  for (std::size_t k = 0; k < twins_.size(); ++k) {
+    const Snapshot::OfStrand& strand = now.strands[k];
+    const auto potential = [&](System& system) {
+      system.recall(strand.memory);
+      Energetics* energetics = system.energetics();
+      return energetics == nullptr
+                 ? 0
+                 : energetics->energy(now.t, strand.q, strand.v).potential;
     };
-    const Energy of_strand = energy(world.system(k));
-    all.kinetic += of_strand.kinetic;
-    all.potential += of_strand.potential;
-    if (twins_.empty()) continue;
-    const double bare = energy(*twins_[k].bare).potential;
+    const double bare = potential(*twins_[k].bare);
     elastic += bare;
     for (std::size_t e = 0; e < by_effect.size(); ++e) {
-      by_effect[e] += energy(*twins_[k].with[e]).potential - bare;
+      by_effect[e] += potential(*twins_[k].with[e]) - bare;
     }
   }
-  row.push_back(all.kinetic);
-  row.push_back(twins_.empty() ? all.potential : elastic);
+  row.push_back(elastic);
   row.insert(row.end(), by_effect.begin(), by_effect.end());
 }
 

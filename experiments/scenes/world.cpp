@@ -7,7 +7,8 @@
 #include <numeric>
 
 #include "integrators/catalogue.h"
-#include "models/input_error.h"
+#include "models/groom/coupled_strands.h"
+#include "models/math/pack.h"
 
 namespace tress {
 namespace {
@@ -29,6 +30,20 @@ Snapshot::OfStrand initial_state_of(const System& system) {
   return state;
 }
 
+void append_strands(In q, In v, In memory, const std::vector<std::size_t>& coordinates,
+                    const std::vector<std::size_t>& memories, Snapshot& snapshot) {
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    const In one_q = q.first(coordinates[k]), one_v = v.first(coordinates[k]),
+             one_memory = memory.first(memories[k]);
+    snapshot.strands.push_back({{one_q.begin(), one_q.end()},
+                                {one_v.begin(), one_v.end()},
+                                {one_memory.begin(), one_memory.end()}});
+    q = q.subspan(coordinates[k]);
+    v = v.subspan(coordinates[k]);
+    memory = memory.subspan(memories[k]);
+  }
+}
+
 }  // namespace
 
 Effects make_effects(const Scene& scene) {
@@ -41,41 +56,117 @@ Effects make_effects(const Scene& scene) {
 
 World::World(const Scene& scene, int threads)
     : step_(scene.options.step), crew_(threads) {
+  if (scene.strands.empty()) {
+    add(scene.model->make(scene.model_options), 1);
+  } else if (scene.interaction && scene.interaction->word("coupling") == "monolithic") {
+    build_coupled(scene);
+  } else {
+    build_strands(scene);
+  }
+  ready(scene);
+}
+
+void World::add(std::unique_ptr<System> system, std::size_t strands) {
+  Body& body = bodies_.emplace_back();
+  if (bodies_.size() > 1) {
+    const Body& last = bodies_[bodies_.size() - 2];
+    body.first = last.first + last.coordinates.size();
+    body.first_point = last.first_point + last.points;
+  }
+  // Strands of one system are alike, unless the caller says otherwise.
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  body.coordinates.assign(strands, n / strands);
+  body.memory.assign(strands, system->memory().size() / strands);
+  MaterialPoints* points = system->material_points();
+  body.points = points == nullptr ? 0 : static_cast<std::size_t>(points->count());
+  for (std::size_t i = 0; i < body.points; ++i) {
+    const int before = points->before(static_cast<int>(i));
+    before_.push_back(before < 0 ? -1 : before + static_cast<int>(body.first_point));
+  }
+  points_.insert(points_.end(), strands, static_cast<int>(body.points / strands));
+  body.system = std::move(system);
+}
+
+/// Each strand on its own, or up to four that are cut alike together.
+void World::build_strands(const Scene& scene) {
+  const std::vector<Strand>& strands = scene.strands;
   if (scene.interaction) {
     interaction_ =
         std::make_unique<StrandInteraction>(*scene.interaction, material_points(scene));
   }
-  if (scene.strands.empty()) {
-    bodies_.emplace_back().system = scene.model->make(scene.model_options);
-  }
   const Effects shared = make_effects(scene);
-  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+  const auto effects_of = [&](std::size_t k) {
     Effects effects = shared;
     if (interaction_) effects.push_back(interaction_->effect(k));
-    bodies_.emplace_back().system =
-        scene.model->on_strand(scene.strands[k], scene.model_options, std::move(effects));
+    return effects;
+  };
+  for (std::size_t k = 0; k < strands.size();) {
+    std::size_t end = k + 1;
+    while (end < strands.size() && end < k + Pack::lanes &&
+           strands[end].segments.size() == strands[k].segments.size()) {
+      ++end;
+    }
+    if (scene.model->on_strands != nullptr && end > k + 1) {
+      std::vector<Effects> effects;
+      for (std::size_t i = k; i < end; ++i) effects.push_back(effects_of(i));
+      auto system = scene.model->on_strands(std::span(strands).subspan(k, end - k),
+                                            scene.model_options, std::move(effects));
+      if (system != nullptr) {
+        add(std::move(system), end - k);
+        k = end;
+        continue;
+      }
+    }
+    add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
+    ++k;
   }
-  std::size_t point = 0;
+}
+
+/// All strands as one system.
+void World::build_coupled(const Scene& scene) {
+  const Effects shared = make_effects(scene);
+  std::vector<std::unique_ptr<System>> systems;
+  std::vector<std::size_t> coordinates, memory;
+  for (const Strand& strand : scene.strands) {
+    systems.push_back(scene.model->on_strand(strand, scene.model_options, shared));
+    coordinates.push_back(static_cast<std::size_t>(systems.back()->layout().coordinates));
+    memory.push_back(systems.back()->memory().size());
+  }
+  add(std::make_unique<CoupledStrands>(std::move(systems), *scene.interaction),
+      scene.strands.size());
+  bodies_.front().coordinates = std::move(coordinates);
+  bodies_.front().memory = std::move(memory);
+  points_ = material_points(scene);
+}
+
+/// Integrators at the initial state.
+void World::ready(const Scene& scene) {
   Snapshot begin;
   for (Body& body : bodies_) {
     body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
-    MaterialPoints* points = body.system->material_points();
-    points_.push_back(points == nullptr ? 0 : points->count());
-    body.first_point = point;
-    point += static_cast<std::size_t>(points_.back());
-    begin.strands.push_back(initial_state_of(*body.system));
+    const Snapshot::OfStrand all = initial_state_of(*body.system);
+    append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
   }
-  x_.values.resize(3 * point);
-  u_.values.resize(3 * point);
+  const std::size_t points = bodies_.back().first_point + bodies_.back().points;
+  x_.values.resize(3 * points);
+  u_.values.resize(3 * points);
   restore(begin);
 }
 
 void World::restore(const Snapshot& snapshot) {
   t_ = snapshot.t;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    const Snapshot::OfStrand& state = snapshot.strands[k];
-    bodies_[k].system->recall(state.memory);
-    bodies_[k].status = bodies_[k].integrator->start(t_, state.q, state.v);
+  for (Body& body : bodies_) {
+    Snapshot::OfStrand all;
+    for (std::size_t k = 0; k < body.coordinates.size(); ++k) {
+      const Snapshot::OfStrand& one = snapshot.strands[body.first + k];
+      all.q.insert(all.q.end(), one.q.begin(), one.q.end());
+      all.v.insert(all.v.end(), one.v.begin(), one.v.end());
+      all.memory.insert(all.memory.end(), one.memory.begin(), one.memory.end());
+    }
+    body.system->recall(all.memory);
+    // Contact sets follow the state; where it was accepted before, nothing changes.
+    body.system->accept(t_, all.q, all.v);
+    body.status = body.integrator->start(t_, all.q, all.v);
   }
   failure_.clear();
   x_.done = u_.done = false;
@@ -85,9 +176,8 @@ void World::restore(const Snapshot& snapshot) {
 Snapshot World::snapshot() const {
   Snapshot snapshot{.t = t_, .strands = {}};
   for (const Body& body : bodies_) {
-    const In q = body.integrator->q(), v = body.integrator->v();
-    snapshot.strands.push_back(
-        {{q.begin(), q.end()}, {v.begin(), v.end()}, body.system->memory()});
+    append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),
+                   body.coordinates, body.memory, snapshot);
   }
   return snapshot;
 }
@@ -107,10 +197,13 @@ Status World::advance(double t_end) {
     });
     t_ = t;
     x_.done = u_.done = false;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      if (bodies_[k].status == Status::ok) continue;
-      failure_ = fmt::format("strand {}: {}", k, bodies_[k].integrator->failure());
-      return bodies_[k].status;
+    for (const Body& body : bodies_) {
+      if (body.status == Status::ok) continue;
+      const std::size_t last = body.first + body.coordinates.size() - 1;
+      failure_ = fmt::format("strand {}{}: {}", body.first,
+                             last > body.first ? fmt::format(" to {}", last) : "",
+                             body.integrator->failure());
+      return body.status;
     }
     exchange();
   }
@@ -126,6 +219,29 @@ Stats World::stats() const {
     sum.solver = one.solver;
   }
   return sum;
+}
+
+Energy World::energy() {
+  Energy sum;
+  for (const Body& body : bodies_) {
+    Energetics* energetics = body.system->energetics();
+    if (energetics == nullptr) continue;
+    const Energy one = energetics->energy(t_, body.integrator->q(), body.integrator->v());
+    sum.kinetic += one.kinetic;
+    sum.potential += one.potential;
+  }
+  return sum;
+}
+
+double World::stretch() {
+  double most = 0, one = 0;
+  for (const Body& body : bodies_) {
+    MaterialPoints* points = body.system->material_points();
+    if (points != nullptr && points->stretch(t_, body.integrator->q(), one)) {
+      most = std::max(most, one);
+    }
+  }
+  return most;
 }
 
 const std::vector<double>& World::positions() {
@@ -154,7 +270,7 @@ void World::exchange() {
 void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
   if (to.done) return;
   crew_.run(bodies_.size(), [&](std::size_t k) {
-    const auto count = 3 * static_cast<std::size_t>(points_[k]);
+    const std::size_t count = 3 * bodies_[k].points;
     if (count > 0) {
       read(bodies_[k], Out(to.values).subspan(3 * bodies_[k].first_point, count));
     }

@@ -21,10 +21,13 @@ struct Snapshot {
   std::vector<OfStrand> strands;
 };
 
-/// A scene built: a system and an integrator for every strand, its effects, and what
-/// couples strands. Effects that the scene does not name are not built. Between steps
-/// strands exchange their places; during a step each sees the others where they were at
-/// its start, so strands run on several threads with the same result.
+/// A scene built: systems and integrators of its strands, its effects, and what couples
+/// strands. Effects that the scene does not name are not built.
+///
+/// Strands that touch exchange their places between steps (coupling = lagged): during a
+/// step each sees the others where they were at its start, so strands run on several
+/// threads with the same result. With coupling = monolithic they are one system. Strands
+/// that are cut alike run four at a time where the model can (ModelEntry::on_strands).
 class World {
  public:
   /// Throws InputError where model, strand and effects do not fit together.
@@ -39,12 +42,15 @@ class World {
   const std::string& failure() const { return failure_; }
   Stats stats() const;  // summed over strands
 
-  std::size_t strands() const { return bodies_.size(); }
-  System& system(std::size_t k) { return *bodies_[k].system; }
-  In q(std::size_t k) const { return bodies_[k].integrator->q(); }
-  In v(std::size_t k) const { return bodies_[k].integrator->v(); }
+  std::size_t strands() const { return points_.size(); }
+  std::size_t systems() const { return bodies_.size(); }
+  /// Of all strands, as their systems count it.
+  Energy energy();
+  double stretch();  // largest |length/rest - 1|, 0 where models do not say
   /// Null where strands do not touch.
   const StrandInteraction* interaction() const { return interaction_.get(); }
+  /// The point that point i hangs on, -1: none.
+  const std::vector<int>& before() const { return before_; }
 
   /// Material points of all strands, strand after strand; read once after each advance.
   const std::vector<int>& points() const { return points_; }
@@ -52,13 +58,21 @@ class World {
   const std::vector<double>& velocities();  // (3 points)
 
  private:
+  /// One strand, or several that are advanced as one system.
   struct Body {
     std::unique_ptr<System> system;
     std::unique_ptr<Integrator> integrator;
-    std::size_t first_point = 0;
+    std::size_t first = 0;  // strand
+    /// Sizes of each strand's coordinates and memory.
+    std::vector<std::size_t> coordinates, memory;
+    std::size_t first_point = 0, points = 0;
     Status status = Status::ok;
   };
 
+  void add(std::unique_ptr<System> system, std::size_t strands);
+  void build_strands(const Scene& scene);
+  void build_coupled(const Scene& scene);
+  void ready(const Scene& scene);
   /// Coordinates of all points at the present state.
   struct Read {
     std::vector<double> values;  // (3 points)
@@ -70,7 +84,7 @@ class World {
   double step_;  // s, between two exchanges
   std::unique_ptr<StrandInteraction> interaction_;
   std::vector<Body> bodies_;
-  std::vector<int> points_;
+  std::vector<int> points_, before_;
   Read x_, u_;
   double t_ = 0;
   std::string failure_;
