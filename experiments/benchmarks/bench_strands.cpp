@@ -9,9 +9,12 @@
 #include "experiments/harness/strand_scenes.h"
 #include "models/catalogue.h"
 #include "models/reduced/arc.h"
+#include "models/reduced/articulated_chain.h"
+#include "models/reduced/force_transport.h"
 #include "models/reduced/helix.h"
 #include "models/reduced/kinematics.h"
 #include "models/reduced/mass_tangent.h"
+#include "models/reduced/super_helix.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {
@@ -90,9 +93,14 @@ void register_functions() {
 
 // ---- elements and sweeps ------------------------------------------------------------
 
-ReducedStrand reduced(const Choice& choice, int elements) {
+Parameters parameters_of(const Choice& choice, int elements) {
   Parameters p(find_model("super_helix").parameters, "benchmark");
   for (const auto& [key, value] : released(choice, elements)) p.set(key, value);
+  return p;
+}
+
+ReducedStrand reduced(const Choice& choice, int elements) {
+  const Parameters p = parameters_of(choice, elements);
   return reduced_strand(strand(p), Unknown::curvature, reduced_options(p), {});
 }
 
@@ -104,7 +112,7 @@ class Parts {
       : x_(moving),
         nearby_(moving.state.q),
         kinematics_(std::move(strand.segments), std::move(strand.blocks),
-                    std::move(strand.root), std::nullopt, 0) {
+                    {std::move(strand.root)}, std::nullopt, 0) {
     for (double& entry : nearby_) entry += 1e-9;
     for (const ReducedSegment& segment : kinematics_.segments()) {
       tangent_.parent.push_back(segment.parent);
@@ -258,6 +266,39 @@ void register_steps() {
   }
 }
 
+// ---- strands by four ----------------------------------------------------------------
+
+using MakeBatch = decltype(super_helix_batch);
+
+/// Four strands at rest.
+Moving batch_of(MakeBatch* make, int elements) {
+  const Parameters p = parameters_of({"recursive", "stiff", "bend_twist"}, elements);
+  const std::vector<Strand> strands(4, strand(p));
+  Moving batch;
+  batch.system = make(strands, reduced_options(p),
+                      std::vector<Effects>(strands.size(), strand_effects(p)));
+  batch.state = initial_state(*batch.system);
+  return batch;
+}
+
+void register_batches() {
+  constexpr std::array sizes = {5, 10, 20};
+  const auto add = [&](const std::string& name, MakeBatch* make) {
+    auto* registered = benchmark::RegisterBenchmark(
+        ("step/semi_implicit_euler/four/" + name).c_str(),
+        [make](benchmark::State& state) {
+          const auto elements = static_cast<int>(state.range(0));
+          step_benchmark(state, batch_of(make, elements), "semi_implicit_euler");
+          state.SetComplexityN(elements);
+          count_per_element(state, 4 * elements);
+        });
+    with_sizes(registered, sizes);
+  };
+  add("super_helix", super_helix_batch);
+  add("articulated_chain", articulated_chain_batch);
+  add("force_transport", force_transport_batch);
+}
+
 }  // namespace
 }  // namespace tress
 
@@ -267,5 +308,6 @@ int main(int argc, char** argv) {
   tress::register_parts<tress::Arc, 1>("bend_planar");
   tress::register_systems();
   tress::register_steps();
+  tress::register_batches();
   return tress::run_benchmarks(argc, argv).exit_code;
 }

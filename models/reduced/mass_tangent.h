@@ -67,28 +67,38 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
                         SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent) {
   using Real = typename Kernel::Real;
   using K = Kinematics<Kernel, dofs>;
-  using Frames = SegmentFrames<MassShape<dofs, Real>>;
+  using AtPoints = SegmentFrames<MassShape<dofs, Pack>>;
   using S = Space<dofs>;
   constexpr int t = S::translations, size = S::size, columns = size + dofs;
   const auto& segment = kinematics.segments()[i];
+  std::array<std::array<Pack, columns>, columns> total{};  // upper triangle
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     const auto& block = kinematics.block_geometry(b);
-    const PointMatrix matrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
-                             kinematics.start(i).frame);
-    Vec3<Pack> j[columns];
-    for (int c = 0; c < t; ++c) j[c] = Vec3<Pack>(Frames::axis(S::translation[c]));
-    for (int c = 0; c < S::rotations; ++c) {
-      j[t + c] = cross(Vec3<Pack>(Frames::axis(S::rotation[c])), block.position);
-    }
-    for (std::size_t k = 0; k < dofs; ++k)
-      j[static_cast<std::size_t>(size) + k] = block.slope[k];
+    const Vec3<Pack>& p = block.position;
+    const PointMatrix matrix =
+        PointMatrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
+                    kinematics.start(i).frame)
+            .symmetric();
     for (int c = 0; c < columns; ++c) {
-      const Vec3<Pack> pushed = matrix * j[c];
-      for (int r = 0; r < columns; ++r) {
-        const Real half = sum_over<Real>(dot(j[r], pushed)) / 2;
-        tangent.local(r, c) += half;
-        tangent.local(c, r) += half;
+      const Vec3<Pack> force =
+          c < t      ? matrix.column[S::translation[c]]
+          : c < size ? matrix * cross(AtPoints::axis(S::rotation[c - t]), p)
+                     : matrix * block.slope[static_cast<std::size_t>(c - size)];
+      Pack answer[columns];
+      AtPoints::put(force, cross(p, force), answer);
+      for (std::size_t k = 0; k < dofs; ++k)
+        answer[size + k] = dot(block.slope[k], force);
+      for (std::size_t r = 0; r <= static_cast<std::size_t>(c); ++r) {
+        total[r][static_cast<std::size_t>(c)] += answer[r];
       }
+    }
+  }
+  for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t r = 0; r <= c; ++r) {
+      const Real entry = sum_over<Real>(total[r][c]);
+      const auto row = static_cast<int>(r), column = static_cast<int>(c);
+      tangent.local(row, column) += entry;
+      if (r != c) tangent.local(column, row) += entry;
     }
   }
 }

@@ -2,7 +2,11 @@
 
 #include <cstdlib>
 
+#include "integrators/catalogue.h"
 #include "integrators/formulation/dynamics.h"
+#include "models/effects/linear_drag.h"
+#include "models/reduced/force_transport.h"
+#include "models/reduced/super_helix.h"
 #include "models/strand/root_motion.h"
 #include "tests/support/catalogue_cases.h"
 
@@ -57,6 +61,30 @@ TEST(RootMotionAllocation, PosesAllocateNothing) {
   motion.rotations = {{{0, 0, 1}, sine(0.5, 3)}, {{1, 0, 0}, one_minus_cosine(0.2, 1)}};
   motion.translations = {{{0, 1, 0}, sum(smooth_step(1, 0, 1), stop(2, 0, 1))}};
   EXPECT_EQ(count([&motion] { EXPECT_NE(motion.at(0.3).v.y, 0); }), 0);
+}
+
+TEST(BatchAllocation, StepsAllocateNothingAfterTheFirst) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  Material material;
+  material.internal_friction = 1e-8;
+  const Strand strand =
+      make_strand(material, {}, {.elements = 5, .length = 0.1}, uniform_shape({0, 5, 0}));
+  const std::vector<Strand> strands(3, strand);
+  const std::vector<Effects> drag(3, {std::make_shared<LinearDrag>(1e-5)});
+  ReducedOptions reduced;
+  reduced.tangent = ReducedTangent::stiff;
+  for (const auto make : {super_helix_batch, force_transport_batch}) {
+    const auto batch = make(strands, reduced, drag);
+    States s(*batch);
+    Options options;
+    options.step = 1e-4;
+    const auto integrator = make_integrator("semi_implicit_euler", *batch, options);
+    ASSERT_EQ(integrator->start(0, s.q, s.v), Status::ok);
+    ASSERT_EQ(integrator->advance(1e-4), Status::ok);
+    EXPECT_EQ(count([&] { EXPECT_EQ(integrator->advance(1e-3), Status::ok); }), 0);
+  }
 }
 
 TEST_P(Allocation, TheGuardSeesAnAllocation) {
