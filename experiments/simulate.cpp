@@ -23,6 +23,7 @@ struct Arguments {
   std::vector<std::string> scenes;
   std::string out = "results/scenes";
   int threads = 1;
+  std::size_t hairs = 0;
   bool resume = false, vtk = false, usd = false, print_defaults = false,
        print_schema = false, quick = false, full = false;
   std::string progress = "auto";
@@ -40,6 +41,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--out", a.out, "folder for the results (default results/scenes)");
   app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
       ->check(CLI::Range(1, 1024));
+  app.add_option("--hairs", a.hairs,
+                 "hairs drawn between the strands of a groom (default 0)")
+      ->check(CLI::Range(0, 100'000));
   app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
   app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
   app.add_flag("--resume", a.resume, "continue an interrupted run");
@@ -95,6 +99,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   options.stem = a.out + "/" + scene.name;
   options.threads = a.threads;
   options.resume = a.resume;
+  options.hairs = a.hairs;
   options.vtk = a.vtk;
   options.usd = a.usd;
   options.progress = line.progress;

@@ -110,10 +110,13 @@ std::size_t point_count(const Animation& animation) {
 
 }  // namespace
 
-std::string page_json(const Animation& animation, std::size_t most_frames) {
+std::string page_json(const Animation& animation, std::size_t most_bytes) {
   using nlohmann::ordered_json;
-  const auto chosen = chosen_frames(animation.frames.size(), most_frames);
   const std::size_t points = point_count(animation);
+  // Base64 of 6 bytes of place and one of each channel.
+  const std::size_t frame_bytes = points * (6 + animation.channels.size()) * 4 / 3 + 1;
+  const std::size_t most = std::max<std::size_t>(most_bytes / frame_bytes, 24);
+  const auto chosen = chosen_frames(animation.frames.size(), most);
   const Scene& scene = animation.scene;
 
   Range box[3];
@@ -160,21 +163,22 @@ std::string page_json(const Animation& animation, std::size_t most_frames) {
   }
   ordered_json columns = ordered_json::array();
   for (const Reading& column : animation.series) columns.push_back(column.name);
-  const ordered_json page{{"format", "tress-strands-1"},
-                          {"scene", scene.name},
-                          {"title", scene.title},
-                          {"source", scene.source},
-                          {"model", scene.model->id},
-                          {"integrator", scene.integrator},
-                          {"dt_s", scene.options.step},
-                          {"times_s", times},
-                          {"strand_points", animation.strand_points},
-                          {"low", {box[0].low, box[1].low, box[2].low}},
-                          {"high", {box[0].high, box[1].high, box[2].high}},
-                          {"positions", base64(places)},
-                          {"channels", channels},
-                          {"bodies", bodies(scene, times)},
-                          {"series", {{"columns", columns}, {"rows", rows}}}};
+  ordered_json page{{"format", "tress-strands-1"},
+                    {"scene", scene.name},
+                    {"title", scene.title},
+                    {"source", scene.source},
+                    {"model", scene.model->id},
+                    {"integrator", scene.integrator},
+                    {"dt_s", scene.options.step},
+                    {"times_s", times},
+                    {"strand_points", animation.strand_points},
+                    {"low", {box[0].low, box[1].low, box[2].low}},
+                    {"high", {box[0].high, box[1].high, box[2].high}},
+                    {"positions", base64(places)},
+                    {"channels", channels},
+                    {"bodies", bodies(scene, times)},
+                    {"series", {{"columns", columns}, {"rows", rows}}}};
+  if (animation.guides > 0) page["guides"] = animation.guides;
   return page.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 

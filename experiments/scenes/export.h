@@ -15,11 +15,13 @@ struct Animation {
   const std::vector<Reading>& channels;
   std::span<const int> strand_points;
   std::span<const Frame3d> frames;
+  std::size_t guides = 0;  // lines that were simulated; 0: all
 };
 
 /// For the report page: <scene>.json, places in 16 bits of their box, colours in 8 bits
-/// (experiments/report/README.md has the format). At most `most_frames`, evenly thinned.
-std::string page_json(const Animation& animation, std::size_t most_frames = 150);
+/// (experiments/report/README.md has the format). Frames are thinned evenly to about
+/// `most_bytes`, though not below 24.
+std::string page_json(const Animation& animation, std::size_t most_bytes = 1'500'000);
 
 /// For ParaView: one .vtp a frame (PolyData, appended raw, float32) with every channel as
 /// point data, and the .pvd that lists them with their times [VTK file formats, XML].

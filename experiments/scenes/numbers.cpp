@@ -44,8 +44,8 @@ ScaleNumbers scale_numbers(const Scene& scene) {
 }
 
 double load_over_weight(const Scene& scene, std::string_view effect) {
-  Readout readout(scene);
   World world(scene);
+  Readout readout(scene, world);
   std::size_t channel = 0;
   const auto& channels = readout.channels();
   const std::string name = "load " + std::string(effect);

@@ -33,7 +33,9 @@ double curvature(const Vec& a, const Vec& b) {
 
 }  // namespace
 
-Readout::Readout(const Scene& scene) : scene_(scene), effects_(make_effects(scene)) {
+Readout::Readout(const Scene& scene, const World& world)
+    : scene_(scene), effects_(make_effects(scene)) {
+  find_lines(world);
   const auto add = [this](std::string name, std::string help) {
     series_.push_back({std::move(name), std::move(help)});
   };
@@ -136,38 +138,64 @@ void Readout::read_energies(World& world, std::vector<double>& row) {
   row.insert(row.end(), by_effect.begin(), by_effect.end());
 }
 
+void Readout::find_lines(const World& world) {
+  const std::vector<int>& before = world.before();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const int from = before[i];
+    if (from < 0 || drawn_.empty() || static_cast<std::size_t>(from) != drawn_.back()) {
+      lines_.push_back(0);
+      if (from >= 0) {
+        drawn_.push_back(static_cast<std::size_t>(from));
+        ++lines_.back();
+      }
+    }
+    drawn_.push_back(i);
+    ++lines_.back();
+  }
+}
+
 void Readout::read_points(World& world, Frame3d& frame) {
   const std::vector<double>& x = world.positions();
   const std::vector<double>& u = world.velocities();
-  const std::size_t count = x.size() / 3;
-  frame.positions.assign(x.begin(), x.end());
-  frame.channels.assign(channels_.size() * count, 0.0F);
-  Vec tip;
+  for (const std::size_t i : drawn_) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      frame.positions.push_back(static_cast<float>(x[3 * i + c]));
+    }
+  }
+  frame.channels.assign(channels_.size() * drawn_.size(), 0.0F);
   std::size_t first = 0;
-  for (std::size_t k = 0; k < world.strands(); ++k) {
-    const auto points = static_cast<std::size_t>(world.points()[k]);
-    if (points == 0) continue;
-    const auto at = [&](std::size_t i) { return load3(&x[3 * (first + i)]); };
-    tip = tip + (1.0 / static_cast<double>(world.strands())) * at(points - 1);
+  for (const int line : lines_) {
+    const auto points = static_cast<std::size_t>(line);
+    const auto at = [&](std::size_t i) { return load3(&x[3 * drawn_[first + i]]); };
     for (std::size_t i = 0; i < points; ++i) {
       const std::size_t inner =
           std::clamp<std::size_t>(i, 1, std::max<std::size_t>(points, 3) - 2);
       const double bent =
           points < 3 ? 0
                      : curvature(at(inner) - at(inner - 1), at(inner + 1) - at(inner));
+      const double speed = length_of(load3(&u[3 * drawn_[first + i]]));
       frame.channels[first + i] = static_cast<float>(bent);
-      frame.channels[count + first + i] =
-          static_cast<float>(length_of(load3(&u[3 * (first + i)])));
+      frame.channels[drawn_.size() + first + i] = static_cast<float>(speed);
+      frame.fastest = std::isfinite(speed) ? std::max(frame.fastest, speed) : speed;
     }
-    if (!scene_.strands.empty()) read_loads(world, k, first, frame);
     first += points;
+  }
+  Vec tip;
+  std::size_t end = 0;
+  for (std::size_t k = 0; k < world.strands(); ++k) {
+    const auto points = static_cast<std::size_t>(world.points()[k]);
+    if (points == 0) continue;
+    // The places of strands are lines of their own.
+    if (!scene_.strands.empty()) read_loads(world, k, end, frame);
+    end += points;
+    tip = tip + (1.0 / static_cast<double>(world.strands())) * load3(&x[3 * (end - 1)]);
   }
   for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
 }
 
 /// Loads of the effects on the material points, over the length that each stands for.
 void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame) {
-  const std::size_t count = world.positions().size() / 3;
+  const std::size_t count = drawn_.size();
   const auto points = static_cast<std::size_t>(world.points()[k]);
   const In x = In(world.positions()).subspan(3 * first, 3 * points);
   const In u = In(world.velocities()).subspan(3 * first, 3 * points);

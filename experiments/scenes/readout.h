@@ -16,8 +16,9 @@ struct Reading {
 /// One instant of a scene, as it is written and shown.
 struct Frame3d {
   std::vector<double> series;    // as Readout::series()
-  std::vector<float> positions;  // (3 points) m
+  std::vector<float> positions;  // (3 points) m, points as Readout::lines()
   std::vector<float> channels;   // (points) of the first channel, of the second ...
+  double fastest = 0;            // m/s
 };
 
 /// What is told of a scene: places and energies of its strands, what its effects do.
@@ -25,7 +26,13 @@ struct Frame3d {
 /// that they are exactly those that the model itself counts.
 class Readout {
  public:
-  explicit Readout(const Scene& scene);
+  /// `world`: any of this scene.
+  Readout(const Scene& scene, const World& world);
+
+  /// Points of each line that is drawn, in the order of Frame3d's: a strand, or a chain
+  /// of segments of a tree, which begins at the point that it hangs on.
+  const std::vector<int>& lines() const { return lines_; }
+  std::size_t points() const { return drawn_.size(); }
 
   const std::vector<Reading>& series() const { return series_; }
   const std::vector<Reading>& channels() const { return channels_; }
@@ -40,10 +47,13 @@ class Readout {
   };
 
   void read_energies(World& world, std::vector<double>& row);
+  void find_lines(const World& world);
   void read_points(World& world, Frame3d& frame);
   void read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame);
 
   const Scene& scene_;
+  std::vector<int> lines_;
+  std::vector<std::size_t> drawn_;  // material points, line after line
   std::vector<Reading> series_, channels_;
   std::vector<Twins> twins_;
   Effects effects_;

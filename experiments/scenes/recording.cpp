@@ -83,11 +83,11 @@ std::optional<Saved> parse_state(const std::string& text, const std::string& key
 }  // namespace
 
 Recording::Recording(std::string stem, std::string key, const Readout& readout,
-                     std::size_t points, bool resume)
+                     bool resume)
     : stem_(std::move(stem)),
       key_(std::move(key) + '\n'),
       columns_(readout.series()),
-      points_(points),
+      points_(readout.points()),
       channels_(readout.channels().size()) {
   check_output(stem_ + ".csv");
   if (resume) this->resume();

@@ -17,8 +17,7 @@ class Recording {
   /// Starts afresh, or with `resume` continues what is there. `key` names the run: frames
   /// of another one are refused with an InputError. Throws InputError when a file cannot
   /// be written.
-  Recording(std::string stem, std::string key, const Readout& readout, std::size_t points,
-            bool resume);
+  Recording(std::string stem, std::string key, const Readout& readout, bool resume);
   /// What to continue from; frames() then ends with the frame of that state.
   const std::optional<Snapshot>& saved() const { return saved_; }
   const std::vector<Frame3d>& frames() const { return frames_; }

@@ -11,6 +11,7 @@
 #include "experiments/harness/message.h"
 #include "experiments/harness/progress.h"
 #include "experiments/scenes/export.h"
+#include "experiments/scenes/full_hair.h"
 #include "experiments/scenes/recording.h"
 
 namespace tress {
@@ -61,11 +62,8 @@ std::size_t last_frame(const Scene& scene) {
   return static_cast<std::size_t>(std::floor(scene.duration * scene.frame_rate + 1e-9));
 }
 
-std::size_t point_count(const World& world) {
-  std::size_t count = 0;
-  for (const int points : world.points()) count += static_cast<std::size_t>(points);
-  return count;
-}
+/// No strand or mechanism of ours moves faster: what does has lost its step's stability.
+constexpr double fastest = 1e3;  // m/s
 
 class VtkFiles {
  public:
@@ -92,12 +90,11 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
                    const SceneRunOptions& options,
                    const volatile std::sig_atomic_t& stop) {
   const Clock::time_point begin = Clock::now();
-  Readout readout(scene);
   auto world = std::make_unique<World>(scene, options.threads);
-  const std::vector<int> points = world->points();
-  Recording recording(options.stem, key, readout, point_count(*world), options.resume);
+  Readout readout(scene, *world);
+  Recording recording(options.stem, key, readout, options.resume);
   const auto animation = [&] {
-    return Animation{scene, readout.series(), readout.channels(), points,
+    return Animation{scene, readout.series(), readout.channels(), readout.lines(),
                      recording.frames()};
   };
   std::optional<VtkFiles> vtk;
@@ -105,6 +102,7 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
   const auto add_frame = [&] {
     recording.add(readout.read(*world));
     if (vtk) vtk->add(animation(), recording.frames().size() - 1);
+    return recording.frames().back().fastest;
   };
   if (recording.saved()) {
     world->restore(*recording.saved());
@@ -128,7 +126,12 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
       run.reason = world->failure();
       break;
     }
-    add_frame();
+    if (const double speed = add_frame(); !(speed <= fastest)) {
+      run.end = SceneRun::End::failed;
+      run.reason = fmt::format("unstable: a point moves at {:.3g} m/s at t = {:.9g} s",
+                               speed, world->time());
+      break;
+    }
     bar.show(world->time());
     if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
     const Snapshot snapshot = world->snapshot();
@@ -140,9 +143,10 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
   run.frames = recording.frames().size();
   run.simulated_s = world->time();
   run.wall_s = seconds_since(begin);
-  replace_file(options.stem + ".json", page_json(animation()));
   if (vtk) vtk->list(animation());
-  if (options.usd) replace_file(options.stem + ".usda", usda(animation()));
+  const FullHair hair(animation(), options.hairs, scene.seed);
+  replace_file(options.stem + ".json", page_json(hair.animation()));
+  if (options.usd) replace_file(options.stem + ".usda", usda(hair.animation()));
   if (run.end != SceneRun::End::interrupted) recording.close();
   return run;
 }

@@ -13,8 +13,9 @@ struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
   int threads = 1;
   bool resume = false;
-  bool vtk = false;  // <stem>_vtk/: .vtp for every frame and .pvd
-  bool usd = false;  // <stem>.usda
+  std::size_t hairs = 0;  // between the strands, in .json and .usda
+  bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
+  bool usd = false;       // <stem>.usda
   ProgressMode progress = ProgressMode::automatic;
 };
 

@@ -51,6 +51,7 @@ void StrandInteraction::update(In x, In v) {
   x_.assign(x.begin(), x.end());
   v_.assign(v.begin(), v.end());
   grid_.update(x);
+  ++updates_;
 }
 
 Vec StrandInteraction::velocity(int segment, double s) const {
@@ -136,11 +137,22 @@ class StrandInteraction::OnStrand final : public Effect {
  private:
   template <class F>
   void each_contact(const Points& p, F of_contact) const noexcept {
+    find(p);
+    for (const auto& [i, c] : found_) of_contact(i, c);
+  }
+
+  /// found_ = of the points as they are. A step asks for load and derivatives at the same
+  /// places, and the search is most of either's cost.
+  void find(const Points& p) const {
+    if (found_after_ == all_.updates_ && std::ranges::equal(p.x, found_at_)) return;
+    found_.clear();
     for (std::size_t i = 0; i < p.length.size(); ++i) {
       if (p.length[i] == 0) continue;
       all_.each_contact(all_.grid_, all_.law_.reach(), strand_, load3(&p.x[3 * i]),
-                        [&](const Contact& c) { of_contact(i, c); });
+                        [&](const Contact& c) { found_.emplace_back(i, c); });
     }
+    found_at_.assign(p.x.begin(), p.x.end());
+    found_after_ = all_.updates_;
   }
 
   template <class F>
@@ -153,6 +165,9 @@ class StrandInteraction::OnStrand final : public Effect {
 
   const StrandInteraction& all_;
   int strand_;
+  mutable std::vector<std::pair<std::size_t, Contact>> found_;
+  mutable std::vector<double> found_at_;
+  mutable long found_after_ = -1;
 };
 
 std::unique_ptr<const Effect> StrandInteraction::effect(std::size_t strand) const {

@@ -37,7 +37,8 @@ class StrandInteraction {
   StrandInteraction(const Parameters& parameters, std::vector<int> points);
   StrandInteraction(const ContactLaw& law, std::vector<int> points);
 
-  /// Refers to *this, which outlives it and does not move. No load before update().
+  /// Refers to *this, which outlives it and does not move. No load before update(). Keeps
+  /// what it found last: one thread at a time, though others may ask other effects.
   std::unique_ptr<const Effect> effect(std::size_t strand) const;
 
   /// At the start and after every step: positions and velocities (3 each) of all strands'
@@ -74,6 +75,7 @@ class StrandInteraction {
   SegmentGrid grid_;
   std::vector<int> points_;
   std::vector<double> x_, v_;
+  long updates_ = 0;
 };
 
 }  // namespace tress

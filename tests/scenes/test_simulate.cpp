@@ -31,8 +31,8 @@ std::string groom(int frames = 100) {
   return "title = \"groom\"\nduration_s = " + std::to_string(frames / 100.0) +
          "\nframes_1_s = 100\ncheckpoint_s = 0.05\nseed = 7\n"
          "[model]\nid = \"der\"\n[integrator]\nid = \"semi_implicit_euler\"\n"
-         "dt_s = 0.001\n[material]\nname = \"hair.african\"\n"
-         "[groom]\ncount = 20\nlength_m = 0.08\nelements = 12\nshape = \"material\"\n"
+         "dt_s = 0.001\n[material]\nname = \"hair.asian\"\n"
+         "[groom]\ncount = 20\nlength_m = 0.08\nelements = 12\n"
          "[root]\nmotion = \"rotate\"\nangle_rad = 0.5\nfrequency_hz = 2\n"
          "[effects.gravity]\n[effects.linear_drag]\n[effects.strand_interaction]\n";
 }
