@@ -44,11 +44,18 @@ constexpr Parameter own_settings[] = {
      .number = 0.01,
      .min = 1e-9,
      .max = 10},
+    {.name = "strands",
+     .help = "of a groom without interaction so many strands are looked at",
+     .number = 8,
+     .min = 1,
+     .max = 1e6,
+     .whole = true},
     {.name = "scenes",
      .help = "scene files, as in scenes/a.toml,scenes/b.toml",
      .text = true,
-     .fallback = "scenes/cantilever.toml,scenes/hair_under_wind.toml,"
-                 "scenes/head_shaking.toml,scenes/long_shaking.toml"},
+     .fallback = "scenes/cantilever.toml,scenes/curly_clump_oscillation.toml,"
+                 "scenes/hair_under_wind.toml,scenes/head_shaking.toml,"
+                 "scenes/spring_experiment.toml,scenes/twist_experiment.toml"},
 };
 
 /// An effect is worth its cost when it changes more than is wanted and more than the
@@ -127,7 +134,9 @@ std::vector<Case> cases(const CommandLine& line) {
   const double accuracy = settings.experiment().number("accuracy");
   std::vector<Case> all;
   for (const std::string& file : files_of(settings.experiment().word("scenes"))) {
-    const Scene scene = read_scene(file);
+    const auto strands =
+        static_cast<std::size_t>(settings.experiment().whole("strands"));
+    const Scene scene = thinned(read_scene(file), strands);
     if (scene.strands.empty()) {
       throw InputError("nothing to leave out: the model brings its own effects", file,
                        "give a scene with [strand] or [groom]");
@@ -177,6 +186,7 @@ int main(int argc, char** argv) {
       .name = "effect_audit",
       .question = "which effects of a scene change the result, and what does each cost?",
       .example = "--set scenes=scenes/head_shaking.toml --set accuracy=0.01",
+      .quick_timeout_s = 60,
       .columns = columns,
       .settings = own_settings,
       .cases = cases,

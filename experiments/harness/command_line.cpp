@@ -13,8 +13,6 @@
 namespace tress {
 namespace {
 
-constexpr double quick_timeout_s = 5;
-
 constexpr int most_jobs = 1024;
 constexpr int most_repeats = 1'000'000;
 
@@ -44,7 +42,7 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw) {
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
-                 "per row: 30s, 10m, 2h (default 10m; 5s with --quick)");
+                 "per row: 30s, 10m, 2h (default 10m; with --quick seconds)");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
   app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");
@@ -128,8 +126,6 @@ void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
   }
   if (given(raw.timeout, "timeout")) {
     line.timeout_s = parse_duration(raw.timeout, "--timeout");
-  } else if (line.quick) {
-    line.timeout_s = quick_timeout_s;
   }
   if (given(raw.jobs, "jobs")) {
     line.jobs = static_cast<int>(parse_whole(raw.jobs, "--jobs", 1, most_jobs));

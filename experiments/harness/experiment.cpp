@@ -249,6 +249,9 @@ int answer(const Experiment& experiment, int argc, char** argv) {
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
+  if (line.quick && line.places.count("timeout") == 0) {
+    line.timeout_s = experiment.quick_timeout_s;
+  }
   const Settings checked(line, experiment.settings);
   if (line.list) {
     write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),

@@ -44,6 +44,7 @@ struct Experiment {
   /// False: no time in the table is what is asked for, and as many rows run at once as
   /// the machine has processors unless --jobs says otherwise. True: one at a time.
   bool timed = true;
+  double quick_timeout_s = 5;  // a row with --quick has, unless --timeout says otherwise
   std::span<const Column> columns;  // status, reason and run_id are added to them
   std::span<const Parameter> settings =
       {};  // keys of --set that are the experiment's own

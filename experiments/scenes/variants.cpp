@@ -110,6 +110,15 @@ Scene bare(Scene scene) {
   return scene;
 }
 
+Scene thinned(Scene scene, std::size_t most) {
+  const std::size_t all = scene.strands.size();
+  if (scene.interaction || all <= most) return scene;
+  std::vector<Strand> chosen;
+  for (std::size_t i = 0; i < most; ++i) chosen.push_back(scene.strands[i * all / most]);
+  scene.strands = std::move(chosen);
+  return scene;
+}
+
 Scene refined(Scene scene) {
   for (Strand& strand : scene.strands) strand = halved(strand);
   scene.options.step /= 2;

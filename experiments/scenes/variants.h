@@ -22,6 +22,9 @@ std::vector<Ingredient> ingredients(const Scene& scene);
 /// The scene without any effect and interaction.
 Scene bare(Scene scene);
 
+/// At most `most` of its strands, evenly chosen; where they touch each other, all.
+Scene thinned(Scene scene, std::size_t most);
+
 /// Segments cut in halves of the same shape, steps halved: what the difference from the
 /// scene itself says about its discretisation.
 Scene refined(Scene scene);
