@@ -9,9 +9,9 @@ namespace tress {
 struct Pack {
   static constexpr int lanes = 4;
   using Vector __attribute__((vector_size(lanes * sizeof(double)))) = double;
-  Vector v{};
+  Vector v;
 
-  Pack() = default;
+  Pack() = default;  // Pack x; holds anything, Pack x{}; zeros, as with double
   // Implicit, so that kernels mix numbers and packs.
   Pack(double x) : v(Vector{x, x, x, x}) {}  // NOLINT(google-explicit-constructor)
   explicit Pack(const Vector& x) : v(x) {}

@@ -71,7 +71,7 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
   using S = Space<dofs>;
   constexpr int t = S::translations, size = S::size, columns = size + dofs;
   const auto& segment = kinematics.segments()[i];
-  std::array<std::array<Pack, columns>, columns> total{};  // upper triangle
+  std::array<Pack, columns*(columns + 1) / 2> total{};  // upper triangle by columns
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     const auto& block = kinematics.block_geometry(b);
     const Vec3<Pack>& p = block.position;
@@ -79,6 +79,7 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
         PointMatrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
                     kinematics.start(i).frame)
             .symmetric();
+    auto entry = total.begin();
     for (int c = 0; c < columns; ++c) {
       const Vec3<Pack> force =
           c < t      ? matrix.column[S::translation[c]]
@@ -88,17 +89,15 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
       AtPoints::put(force, cross(p, force), answer);
       for (std::size_t k = 0; k < dofs; ++k)
         answer[size + k] = dot(block.slope[k], force);
-      for (std::size_t r = 0; r <= static_cast<std::size_t>(c); ++r) {
-        total[r][static_cast<std::size_t>(c)] += answer[r];
-      }
+      for (int r = 0; r <= c; ++r) *entry++ += answer[r];
     }
   }
-  for (std::size_t c = 0; c < columns; ++c) {
-    for (std::size_t r = 0; r <= c; ++r) {
-      const Real entry = sum_over<Real>(total[r][c]);
-      const auto row = static_cast<int>(r), column = static_cast<int>(c);
-      tangent.local(row, column) += entry;
-      if (r != c) tangent.local(column, row) += entry;
+  auto entry = total.begin();
+  for (int c = 0; c < columns; ++c) {
+    for (int r = 0; r <= c; ++r) {
+      const Real sum = sum_over<Real>(*entry++);
+      tangent.local(r, c) += sum;
+      if (r != c) tangent.local(c, r) += sum;
     }
   }
 }
@@ -107,8 +106,8 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
 /// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
 /// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
 /// matrix is sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times
-/// minus the derivatives of the loads, (9) a point, or empty. Expects zeros in tip and
-/// local, or what an earlier call left there.
+/// minus the derivatives of the loads, (9) a point, or empty. Expects zeros in tip, or
+/// what an earlier call left there.
 template <class Kernel, int dofs>
 void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
                   SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent,
@@ -151,8 +150,6 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   }
 
   auto& local = tangent.local;
-  // What is not assigned below: turned by the mount, or added to.
-  if (segment.mounted || !of_effects.empty()) local.setZero();
   const Real acc(w.acc), total = acc * sum_over<Real>(mass);
   const Vec3<Real> p = acc * sum_over<Real>(first);
   Real pp[3][3];
@@ -160,7 +157,9 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
     for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = acc * sum_over<Real>(second[r][c]);
   }
   const Real trace = pp[0][0] + pp[1][1] + pp[2][2];
-  for (int r = 0; r < t; ++r) local(r, r) = total;
+  for (int c = 0; c < t; ++c) {
+    for (int r = 0; r < t; ++r) local(r, c) = r == c ? total : Real(0);
+  }
   for (int c = 0; c < S::rotations; ++c) {
     const int axis = S::rotation[c];
     const Vec3<Real> turned = cross(Frames::axis(axis), p);  // sum m e x P

@@ -1,90 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "integrators/catalogue.h"
-#include "models/effects/gravity.h"
-#include "models/effects/linear_drag.h"
-#include "models/input_error.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
-#include "tests/models/reduced/strand_cases.h"
+#include "tests/models/reduced/batch_strands.h"
 
 namespace tress {
 namespace {
 
 using namespace testing_support;
-
-constexpr int segments = 6;
-constexpr double h = 3e-4;  // s
-constexpr Weights backward_euler{1, h, h* h};
-
-/// A force that reads all that points have, and differs from point to point:
-/// f = m (-a (1 + i) x - b v + c tangent), i the index of the point.
-class Tether final : public Effect {
- public:
-  std::string_view name() const override { return "tether"; }
-  Needs needs() const override {
-    return {.position = true, .velocity = true, .tangent = true, .derivatives = true};
-  }
-  void add_load(double, const Points& p, InOut f) const noexcept override {
-    for (std::size_t i = 0; i < p.mass.size(); ++i) {
-      const Vec load = pull(i) * load3(&p.x[3 * i]) - drag * load3(&p.v[3 * i]) +
-                       along * load3(&p.tangent[3 * i]);
-      store3(load3(&f[3 * i]) + p.mass[i] * load, &f[3 * i]);
-    }
-  }
-  void add_derivatives(double, const Points& p, double pos, double vel,
-                       InOut blocks) const noexcept override {
-    for (std::size_t i = 0; i < p.mass.size(); ++i) {
-      for (std::size_t k = 0; k < 9; k += 4) {
-        blocks[9 * i + k] += p.mass[i] * (pos * pull(i) - vel * drag);
-      }
-    }
-  }
-  double potential(double, const Points&) const noexcept override { return 0; }
-  double power(double, const Points&) const noexcept override { return 0; }
-
- private:
-  static double pull(std::size_t i) { return -20.0 * static_cast<double>(1 + i); }
-  static constexpr double drag = 3, along = 5;  // 1/s, m/s^2
-};
-
-/// Four strands that have nothing in common but the number of segments.
-Strand strand(int lane, int dofs) {
-  const double k = lane + 1;
-  Material material;
-  material.density = 1000 + 100 * k;
-  material.youngs_modulus = 1e9 * k;
-  material.internal_friction = 1e-12 * (5 - k);
-  // In the plane of e0 and e2 where there is one bending plane only.
-  const Vec natural = dofs == 1 ? Vec{0, 3 * k, 0} : Vec{4 - k, 3 * k, -2 * k};
-  const Vec initial = dofs == 1 ? Vec{0, 5 - k, 0} : Vec{k, 5 - k, 2.0};
-  Strand made = make_strand(material, {4e-5 + 1e-5 * k, 6e-5},
-                            {.elements = segments, .length = 0.05 * k, .grading = k},
-                            uniform_shape(natural), uniform_shape(initial));
-  made.root.position = {0.1 * k, -0.2, 0.3};
-  made.root.frame = rotation({0, 0, 1}, 0.3 * k);
-  if (lane > 0) made.root.translations = {{{0, 1, 0.5}, sine(0.01 * k, 3)}};
-  if (lane > 1) made.root.rotations = {{{0, 0.6, 0.8}, one_minus_cosine(0.4, 2)}};
-  return made;
-}
-
-Effects effects(int lane) {
-  const auto gravity = std::make_shared<Gravity>(Vec{0, 1, -9.81});
-  const auto drag = std::make_shared<LinearDrag>(2e-5, 0.5);
-  switch (lane) {
-    case 0:
-      return {gravity, drag};
-    case 1:
-      return {};
-    case 2:
-      return {std::make_shared<Tether>()};
-    default:
-      return {std::make_shared<Gravity>(Vec{2, 0, -5}), drag, std::make_shared<Tether>()};
-  }
-}
 
 struct BatchCase {
   std::string name;
@@ -128,19 +53,6 @@ class Batch : public testing::TestWithParam<BatchCase> {
   std::size_t n = 0;  // unknowns of a strand
 };
 
-// A number takes part in at most some hundred operations per segment, whose rounding
-// errors of eps each add up: those of results are within this of the largest term.
-constexpr double rounding = 100 * segments * eps;
-
-double apart(In x, In y) {
-  double most = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i] - y[i])) return std::numeric_limits<double>::infinity();
-    most = std::max(most, std::abs(x[i] - y[i]));
-  }
-  return most;
-}
-
 TEST_P(Batch, ResidualIsThatOfTheStrands) {
   States s(*batch);
   s.shake(1);
@@ -157,22 +69,6 @@ TEST_P(Batch, ResidualIsThatOfTheStrands) {
         EXPECT_LE(apart(got, want), rounding * terms);
       },
       s.q, s.v, s.a, r);
-}
-
-/// The inverse of S(w), column by column.
-Eigen::MatrixXd inverse(System& strand, std::size_t n) {
-  Eigen::MatrixXd columns(n, n);
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    std::vector<double> unit(n);
-    unit[static_cast<std::size_t>(k)] = 1;
-    EXPECT_EQ(strand.solve(unit, unit), Status::ok);
-    columns.col(k) = Eigen::Map<const Eigen::VectorXd>(unit.data(), columns.rows());
-  }
-  return columns;
-}
-
-double condition(const Eigen::MatrixXd& inverse) {
-  return inverse.lpNorm<Eigen::Infinity>() * inverse.inverse().lpNorm<Eigen::Infinity>();
 }
 
 // Recursions are backward stable: |x - S^-1 b| <= rounding cond(S) |x|.
@@ -306,101 +202,6 @@ std::vector<BatchCase> batch_cases() {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Batch, testing::ValuesIn(batch_cases()),
                          [](const auto& test) { return test.param.name; });
-
-class BatchOf : public testing::Test {
- protected:
-  BatchOf() { options.tangent = ReducedTangent::stiff; }
-  void expect_refused(const char* what) {
-    try {
-      super_helix_batch(strands, options, acting);
-      ADD_FAILURE() << "not refused";
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
-    }
-  }
-
-  ReducedOptions options;
-  std::vector<Strand> strands{strand(0, 3), strand(1, 3)};
-  std::vector<Effects> acting{{}, {}};
-};
-
-TEST_F(BatchOf, FiveStrandsIsRefused) {
-  strands.resize(5, strand(0, 3));
-  acting.resize(5);
-  expect_refused("5 strands");
-}
-TEST_F(BatchOf, NoStrandsIsRefused) {
-  strands.clear();
-  acting.clear();
-  expect_refused("0 strands");
-}
-TEST_F(BatchOf, FewerEffectsThanStrandsIsRefused) {
-  acting.pop_back();
-  expect_refused("1 lists of effects for 2 strands");
-}
-TEST_F(BatchOf, ExactTangentsIsRefused) {
-  options.tangent = ReducedTangent::exact;
-  expect_refused("stiff tangent");
-}
-TEST_F(BatchOf, DenseSolversIsRefused) {
-  options.method = TreeMethod::composite;
-  expect_refused("recursively");
-}
-TEST_F(BatchOf, AFreeRootIsRefused) {
-  strands[1].free_root.emplace();
-  expect_refused("free root");
-}
-TEST_F(BatchOf, DifferentSegmentsIsRefused) {
-  strands[1].segments.pop_back();
-  expect_refused("different segments");
-}
-
-// 4 points would do for the first; the second winds by 2.4 rad a segment.
-TEST_F(BatchOf, AllStrandsHaveThePointsOfTheOneThatNeedsMost) {
-  for (Segment& segment : strands[1].segments) segment.natural.y = 2.4 / segment.length;
-  const auto batch = super_helix_batch(strands, options, acting);
-  options.quadrature = 8;
-  const auto with_eight = super_helix_batch(strands, options, acting);
-  States s(*batch);
-  s.shake(1);
-  EXPECT_EQ(residual(*batch, s.q, s.v, s.a), residual(*with_eight, s.q, s.v, s.a));
-}
-
-// Branches off the way of their parents: with mounts, and several children.
-TEST_F(BatchOf, TreesIsThatOfTheTrees) {
-  for (Strand& tree : strands) {
-    const double side = &tree == &strands[0] ? 1 : -1;
-    tree.segments[3].parent = 1;
-    tree.segments[3].mount = rotation({0, 0.6, 0.8}, side);
-    tree.segments[5].mount = rotation({1, 0, 0}, 0.5 * side);
-  }
-  strands[1].segments[5].mount = Frame{};  // one lane with a mount, one without
-  const auto batch = super_helix_batch(strands, options, acting);
-  States s(*batch);
-  s.shake(1);
-  const std::vector<double> got = residual(*batch, s.q, s.v, s.a);
-  std::vector<double> x(s.n);
-  ASSERT_EQ(batch->linearize(t0, s.q, s.v, s.a, backward_euler), Status::ok);
-  ASSERT_EQ(batch->solve(got, x), Status::ok);
-  const std::size_t n = s.n / 2;
-  for (std::size_t k = 0; k < 2; ++k) {
-    SCOPED_TRACE(k);
-    const auto alone = super_helix(strands[k], options, {});
-    const auto part = [&](const std::vector<double>& of) {
-      return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(k * n),
-                                 of.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
-    };
-    const std::vector<double> zero(n);
-    const auto want = residual(*alone, part(s.q), part(s.v), part(s.a));
-    const auto at_rest = residual(*alone, part(s.q), part(s.v), zero);
-    EXPECT_LE(apart(part(got), want), rounding * (largest(want) + 2 * largest(at_rest)));
-    ASSERT_EQ(alone->linearize(t0, part(s.q), part(s.v), zero, backward_euler),
-              Status::ok);
-    std::vector<double> y = part(got);
-    ASSERT_EQ(alone->solve(y, y), Status::ok);
-    EXPECT_LE(apart(part(x), y), rounding * condition(inverse(*alone, n)) * largest(y));
-  }
-}
 
 }  // namespace
 }  // namespace tress
