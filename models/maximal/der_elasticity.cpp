@@ -7,9 +7,6 @@
 namespace tress {
 namespace {
 
-// Cosine of the angle from its reference beyond which an edge gets a new one.
-constexpr double far_turned = 0.5;
-
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 /// h over (e, theta) of two neighbouring edges becomes a matrix over three nodes and two
@@ -265,15 +262,10 @@ double DerElasticity::power(const Placement& p) noexcept {
 bool DerElasticity::rebase(InOut z, InOut rate) {
   bool moved = false;
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
-    Frame& reference = edge_data_[i].reference;
     const Vec e = load3(&z[3 * i + 3]) - load3(&z[3 * i]);
-    const EdgeTurn turn(reference.e0, e);
-    if (dot(turn.a, turn.t) >= far_turned) continue;
     const Vec de = load3(&rate[3 * i + 3]) - load3(&rate[3 * i]);
-    rate[angles_ + i] += dot(turn.c, de);
-    reference = edge_frame(reference, e, theta(z, i));
-    z[angles_ + i] = 0;
-    moved = true;
+    moved |= renew_reference(edge_data_[i].reference, e, de, z[angles_ + i],
+                             rate[angles_ + i]);
   }
   return moved;
 }

@@ -79,4 +79,18 @@ struct EdgeTurn {
   Vec c;
 };
 
+/// Gives an edge that has turned by more than 60 degrees from its reference its present
+/// frame as the new one, and theta' the turning that the old one brought, so that neither
+/// the frame nor its spin jumps. False: left as it was.
+inline bool renew_reference(Frame& reference, const Vec& e, const Vec& de, double& theta,
+                            double& theta_rate) {
+  constexpr double far_turned = 0.5;  // cosine
+  const EdgeTurn turn(reference.e0, e);
+  if (dot(turn.a, turn.t) >= far_turned) return false;
+  theta_rate += dot(turn.c, de);
+  reference = edge_frame(reference, e, theta);
+  theta = 0;
+  return true;
+}
+
 }  // namespace tress

@@ -8,23 +8,18 @@ namespace {
 
 using Point = SplineElasticity::Point;
 
-Vec sum(const std::array<double, 4>& weight, const double* x) {
-  Vec total;
-  for (std::size_t k = 0; k < 4; ++k) total = total + weight[k] * load3(x + 3 * k);
-  return total;
-}
-
 /// The energy as a function of A = a . a, B = b . b and C = a . b, its derivatives:
-/// stretch (sqrt A - 1)^2/2 + bend (B/A - C^2/A^2)/2.
+/// stretch (sqrt A - l)^2/2 + bend (B/A - C^2/A^2)/2.
 struct Slopes {
   Slopes(const Point& point, const Vec& a, const Vec& b) {
     const double square = dot(a, a), along = dot(a, b) / square;
     const double curved = dot(b, b) / square, length = std::sqrt(square);
     const double bend = point.bend / square;
-    A = point.stretch / 2 * (1 - 1 / length) + bend * (along * along - curved / 2);
+    A = point.stretch / 2 * (1 - point.length / length) +
+        bend * (along * along - curved / 2);
     B = bend / 2;
     C = -bend * along;
-    AA = point.stretch / (4 * square * length) +
+    AA = point.stretch * point.length / (4 * square * length) +
          bend / square * (curved - 3 * along * along);
     AB = -bend / (2 * square);
     AC = 2 * bend * along / square;
@@ -45,8 +40,8 @@ std::vector<std::vector<int>> SplineElasticity::groups() const {
 
 void SplineElasticity::add_force(const Placement& p, InOut f) noexcept {
   for (const Point& point : points_) {
-    const Vec a = sum(point.first, &p.z[3 * point.span]);
-    const Vec b = sum(point.second, &p.z[3 * point.span]);
+    const Vec a = of_controls(point.first, &p.z[3 * point.span]);
+    const Vec b = of_controls(point.second, &p.z[3 * point.span]);
     const Slopes d(point, a, b);
     const Vec by_a = 2 * d.A * a + d.C * b, by_b = 2 * d.B * b + d.C * a;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -63,8 +58,8 @@ void SplineElasticity::add_tangent(const Placement& p, double pos, double,
     double h[12][12] = {};
     for (; point != points_.end() && point->span == span; ++point) {
       double a[3], b[3];
-      store3(sum(point->first, &p.z[3 * span]), a);
-      store3(sum(point->second, &p.z[3 * span]), b);
+      store3(of_controls(point->first, &p.z[3 * span]), a);
+      store3(of_controls(point->second, &p.z[3 * span]), b);
       const Slopes d(*point, load3(a), load3(b));
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
@@ -97,9 +92,9 @@ void SplineElasticity::add_tangent(const Placement& p, double pos, double,
 double SplineElasticity::energy(const Placement& p) noexcept {
   double total = 0;
   for (const Point& point : points_) {
-    total +=
-        spline_energy(point.stretch, point.bend, sum(point.first, &p.z[3 * point.span]),
-                      sum(point.second, &p.z[3 * point.span]));
+    total += spline_energy(point.stretch, point.length, point.bend,
+                           of_controls(point.first, &p.z[3 * point.span]),
+                           of_controls(point.second, &p.z[3 * point.span]));
   }
   return total;
 }
@@ -107,8 +102,8 @@ double SplineElasticity::energy(const Placement& p) noexcept {
 double SplineElasticity::stretch(const Placement& p) noexcept {
   double most = 0;
   for (const Point& point : points_) {
-    const Vec a = sum(point.first, &p.z[3 * point.span]);
-    most = std::max(most, std::abs(std::sqrt(dot(a, a)) - 1));
+    const Vec a = of_controls(point.first, &p.z[3 * point.span]);
+    most = std::max(most, std::abs(std::sqrt(dot(a, a)) / point.length - 1));
   }
   return most;
 }

@@ -8,15 +8,23 @@ namespace tress {
 
 /// Energy (J) of one point of quadrature of dynamic_spline.h: a = r', b = r'',
 ///
-///     stretch (|a| - 1)^2/2 + bend |a x b|^2/(2 |a|^4).
+///     stretch (|a| - length)^2/2 + bend |a x b|^2/(2 |a|^4).
 template <class T>
-T spline_energy(double stretch, double bend, const Vec3<T>& a, const Vec3<T>& b) {
+T spline_energy(double stretch, double length, double bend, const Vec3<T>& a,
+                const Vec3<T>& b) {
   using std::sqrt;
   const T square = dot(a, a);
-  const T longer = sqrt(square) - T(1);
+  const T longer = sqrt(square) - T(length);
   const Vec3<T> turn = cross(a, b);
   return T(stretch / 2) * longer * longer +
          T(bend / 2) * dot(turn, turn) / (square * square);
+}
+
+/// Sum of weights times the four control points of a span, `x` the first of them.
+inline Vec of_controls(const std::array<double, 4>& weight, const double* x) {
+  Vec total;
+  for (std::size_t k = 0; k < 4; ++k) total = total + weight[k] * load3(x + 3 * k);
+  return total;
 }
 
 /// Stretching and bending of a cubic spline, summed over points of quadrature.
@@ -26,6 +34,7 @@ class SplineElasticity final : public Elasticity {
     std::size_t span;                     // its control points are span, ..., span + 3
     std::array<double, 4> first, second;  // derivatives of their weights
     double stretch, bend;                 // EA and EI times the point's length
+    double length = 1;                    // |r'| at rest
   };
 
   /// `points` in the order of their spans.

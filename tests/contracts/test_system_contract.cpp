@@ -332,9 +332,9 @@ TEST_P(SystemContract, EnergyChangesByThePowerOfTheRemainingForces) {
   }
   std::vector<double> a(s.n), lambda(s.m);
   ASSERT_EQ(dynamics.accelerate(t0, s.q, s.v, a, lambda), Status::ok);
-  // The time in which the state moves by its own scale, whichever rate is faster.
-  const double time =
-      std::min(largest(s.q_typ) / largest(s.v), largest(s.v) / largest(a));
+  // The time in which a coordinate moves by its scale, whichever rate is faster.
+  const double time = std::min(1 / scaled_norm(s.v, s.q_typ),
+                               scaled_norm(s.v, s.v_typ) / scaled_norm(a, s.v_typ));
   const double step = difference_step * time;
   const auto energy = [&](double e) {
     const auto q = plus(plus(s.q, e, s.v), e * e / 2, a);

@@ -19,9 +19,14 @@ Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
 inline constexpr double beam[3] = {3.516015268500151, 22.03449156466677,
                                    61.69721441354909};
 
-/// Lowest frequencies (rad/s) of a straight clamped rod of circular section at rest, of
-/// its three lowest pairs of bending modes: K x = omega^2 M x on the motions that the
-/// constraints allow. The largest 1/omega^2 are what the solver finds to full precision.
+/// The lowest frequencies (rad/s) of a strand at rest, ascending: K x = omega^2 M x on
+/// the motions that the constraints allow. The largest 1/omega^2 are what the solver
+/// finds to full precision.
+std::vector<double> lowest_frequencies(std::string_view model,
+                                       const ModelSettings& settings, int count);
+
+/// Those of the three lowest pairs of bending modes of a straight clamped rod of circular
+/// section.
 std::vector<double> bending_frequencies(std::string_view model,
                                         const ModelSettings& settings);
 

@@ -72,16 +72,20 @@ TEST(Der, ClampedFrequenciesApproachTheBeamAtOrder2) {
   EXPECT_NEAR(log_log_slope(sizes, errors), 2, 0.1);
 }
 
-/// Rigid turning of a free strand takes every edge far from its reference: frames, spins
-/// and energy must not jump when it gets a new one.
-TEST(Der, NewReferenceFramesLeaveTheMotionAsItIs) {
-  const auto system = make_model("der", {{"elements", "6"},
+class ReferenceFrames
+    : public testing::TestWithParam<std::pair<std::string_view, std::size_t>> {};
+
+/// Rigid turning of a free strand of that many nodes takes every edge far from its
+/// reference: frames, spins and energy must not jump when it gets a new one.
+TEST_P(ReferenceFrames, NewOnesLeaveTheMotionAsItIs) {
+  const auto [model, nodes] = GetParam();
+  const auto system = make_model(model, {{"elements", "6"},
                                          {"root", "free"},
                                          {"natural_curvature_1_m", "40"},
                                          {"natural_twist_1_m", "30"},
                                          {"gravity_m_s2", "0"}});
   State state = initial_state(*system);
-  const std::size_t nodes = 7, angles = 3 * nodes;
+  const std::size_t angles = 3 * nodes;
   const Frame turn = rotation({0, 0.6, 0.8}, 1.3);  // 74 degrees
   for (std::size_t i = 0; i < nodes; ++i) {
     store3(turn * load3(&state.q[3 * i]) + Vec{0, 0, 1e-3 * std::sin(i)},
@@ -105,6 +109,11 @@ TEST(Der, NewReferenceFramesLeaveTheMotionAsItIs) {
   for (std::size_t k = 0; k < zero.size(); ++k) now += after[k] * state.v[k];
   EXPECT_NEAR(now / work[0], 1, 1e-10);
 }
+
+INSTANTIATE_TEST_SUITE_P(Maximal, ReferenceFrames,
+                         testing::Values(std::pair("der", 7),
+                                         std::pair("dynamic_spline", 9)),
+                         [](const auto& test) { return std::string(test.param.first); });
 
 /// Turning an edge around a cone and back leaves no trace while its reference stays;
 /// with a new one on the way the frame comes back turned about the edge by the area that

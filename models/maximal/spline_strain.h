@@ -1,0 +1,56 @@
+#pragma once
+
+#include "models/maximal/joint_strain.h"
+#include "models/maximal/rod_edge.h"
+
+/// Strains of a span of a spline with material frames at its knots (framed_spline.h),
+/// parts in the sense of strained.h. With - the knot before and + the one behind, the
+/// frames are edge_frame (rod_edge.h) of r' and the angle theta at the knot.
+namespace tress {
+
+/// Twist over the span (rad): that of joint_strain.h between the frames of its knots.
+/// x = (r'-, theta-, r'+, theta+).
+struct SplineTwist {
+  static constexpr int strains = 1, coordinates = 8;
+  const Frame* reference = nullptr;  // of the knots, two
+  double stiffness[1] = {}, friction[1] = {}, rest[1] = {};
+
+  template <class T>
+  void strain(const T* x, T* s) const {
+    s[0] = joint_strain(edge_frame(reference[0], load3(x), x[3]),
+                        edge_frame(reference[1], load3(x + 4), x[7]))
+               .x -
+           T(rest[0]);
+  }
+  void gradient(const double* x, double (&g)[1][8]) const;
+  void add_second(const double* x, const double* stress, double (&h)[8][8]) const;
+};
+
+/// Curvatures (1/m) at a point of the span about the axes e1 and e2, mixed of those of
+/// the knots: with kappa = r' x r''/|r'|^2,
+///
+///     kappa_j = kappa . ((1 - part) e_j- + part e_j+).
+///
+/// Turning about a normal to the curve's plane goes unnoticed: exact for plane bending,
+/// with an error of the squared turn between the frames for others. x = (r'-, theta-,
+/// r'+, theta+, r', r'').
+struct SplineBend {
+  static constexpr int strains = 2, coordinates = 14;
+  const Frame* reference = nullptr;  // of the knots, two
+  double part = 0;                   // of the span that lies before the point
+  double stiffness[2] = {}, friction[2] = {}, rest[2] = {};
+
+  template <class T>
+  void strain(const T* x, T* s) const {
+    const FrameOf<T> before = edge_frame(reference[0], load3(x), x[3]);
+    const FrameOf<T> behind = edge_frame(reference[1], load3(x + 4), x[7]);
+    const Vec3<T> a = load3(x + 8), b = load3(x + 11);
+    const Vec3<T> kappa = (T(1) / dot(a, a)) * cross(a, b);
+    s[0] = dot(kappa, T(1 - part) * before.e1 + T(part) * behind.e1) - T(rest[0]);
+    s[1] = dot(kappa, T(1 - part) * before.e2 + T(part) * behind.e2) - T(rest[1]);
+  }
+  void gradient(const double* x, double (&g)[2][14]) const;
+  void add_second(const double* x, const double* stress, double (&h)[14][14]) const;
+};
+
+}  // namespace tress
