@@ -82,6 +82,42 @@ struct Work {
   int repeat;
 };
 
+void add_change(const Work& work, const TipPaths& whole, const TipPaths& whole_fine,
+                double discretisation, Row& row) {
+  const Scene& scene = work.scene;
+  const auto& left_out = work.ingredient.without;
+  TipPaths without, without_fine;
+  try {
+    without = tip_paths(left_out(scene), work.repeat);
+    without_fine = tip_paths(left_out(refined(scene)), 0);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& failure) {
+    row.set("verdict", "keep");  // at this step the scene does not even run without it
+    throw;
+  }
+  const double change = distance_rel(whole, without, scene);
+  const double change_error =
+      std::abs(change - distance_rel(whole_fine, without_fine, scene));
+  row.set("error_without_rel", change).set("change_error_rel", change_error);
+  row.set("change_over_discretisation", change / discretisation);
+  row.set("cost_share", 1 - without.wall_s / whole.wall_s);
+  row.set("verdict", verdict(change, change_error, discretisation, work.accuracy));
+}
+
+/// Left empty where the scene without the others does not run: one effect alone is no
+/// scene that anybody asked for.
+void add_alone(const Work& work, Row& row) {
+  if (!work.ingredient.alone) return;
+  try {
+    const TipPaths none = tip_paths(bare(work.scene), work.repeat);
+    const TipPaths alone = tip_paths(work.ingredient.alone(work.scene), work.repeat);
+    row.set("error_alone_rel", distance_rel(none, alone, work.scene));
+    row.set("cost_alone_share", alone.wall_s / none.wall_s - 1);
+  } catch (const std::runtime_error&) {
+  }
+}
+
 void measure(const Work& work, Row& row) {
   const Scene &scene = work.scene, fine = refined(scene);
   const TipPaths whole = tip_paths(scene, work.repeat), whole_fine = tip_paths(fine, 0);
@@ -90,23 +126,9 @@ void measure(const Work& work, Row& row) {
   set_numbers(scene, row);
   if (work.ingredient.name.empty()) return;
 
-  const auto left_out = [&](const Scene& from, int repeat) {
-    return tip_paths(work.ingredient.without(from), repeat);
-  };
-  const TipPaths without = left_out(scene, work.repeat);
-  const double change = distance_rel(whole, without, scene);
-  const double fine_change = distance_rel(whole_fine, left_out(fine, 0), scene);
-  const double change_error = std::abs(change - fine_change);
-  row.set("error_without_rel", change).set("change_error_rel", change_error);
-  row.set("change_over_discretisation", change / discretisation);
-  row.set("cost_share", 1 - without.wall_s / whole.wall_s);
   row.set("load_over_weight", load_over_weight(scene, work.ingredient.name));
-  row.set("verdict", verdict(change, change_error, discretisation, work.accuracy));
-  if (!work.ingredient.alone) return;
-  const TipPaths none = tip_paths(bare(scene), work.repeat);
-  const TipPaths alone = tip_paths(work.ingredient.alone(scene), work.repeat);
-  row.set("error_alone_rel", distance_rel(none, alone, scene));
-  row.set("cost_alone_share", alone.wall_s / none.wall_s - 1);
+  add_alone(work, row);
+  add_change(work, whole, whole_fine, discretisation, row);
 }
 
 void run(const Work& work, Row& row) {
@@ -134,8 +156,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const double accuracy = settings.experiment().number("accuracy");
   std::vector<Case> all;
   for (const std::string& file : files_of(settings.experiment().word("scenes"))) {
-    const auto strands =
-        static_cast<std::size_t>(settings.experiment().whole("strands"));
+    const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
     const Scene scene = thinned(read_scene(file), strands);
     if (scene.strands.empty()) {
       throw InputError("nothing to leave out: the model brings its own effects", file,

@@ -136,7 +136,7 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   ordered_json rows = ordered_json::array();
   for (const std::size_t f : chosen) {
     const Frame3d& frame = animation.frames[f];
-    times.push_back(frame.series[1]);
+    times.push_back(frame.series[0]);
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
       const auto u = static_cast<std::uint16_t>(
           box[i % 3].part(static_cast<double>(frame.positions[i]), 65535));
@@ -234,7 +234,7 @@ std::string pvd(const Animation& animation, const std::string& stem) {
       "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (std::size_t f = 0; f < animation.frames.size(); ++f) {
     text += fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n",
-                        animation.frames[f].series[1], vtp_name(stem, f));
+                        animation.frames[f].series[0], vtp_name(stem, f));
   }
   return text + "</Collection>\n</VTKFile>\n";
 }

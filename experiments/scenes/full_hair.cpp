@@ -38,12 +38,14 @@ FullHair::FullHair(const Animation& guides, std::size_t hairs, std::uint64_t see
   lines_.insert(lines_.end(), hairs, lines[0]);
   const std::size_t simulated = roots.size() * points, drawn = hairs * points;
   std::vector<Vec> of_guides(simulated), places(drawn);
-  for (const Frame3d& frame : guides.frames) {
+  const std::size_t stride = (guides.frames.size() + 59) / 60;
+  for (std::size_t f = 0; f < guides.frames.size(); f += stride) {
+    const Frame3d& frame = guides.frames[f];
     Frame3d full{frame.series, frame.positions, {}, frame.fastest};
     for (std::size_t i = 0; i < simulated; ++i) {
       of_guides[i] = load3(&frame.positions[3 * i]);
     }
-    hair.grow(of_guides, turned(scene.head, frame.series[1]), places);
+    hair.grow(of_guides, turned(scene.head, frame.series[0]), places);
     for (const Vec& x : places) {
       for (const double c : {x.x, x.y, x.z}) {
         full.positions.push_back(static_cast<float>(c));

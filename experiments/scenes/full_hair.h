@@ -8,7 +8,8 @@
 namespace tress {
 
 /// An animation of simulated strands with hairs drawn between them (GuideHair), after
-/// them in every frame. What a channel says of a hair is what it says of its own guide.
+/// them in every frame; of about 60 of its frames, evenly chosen. What a channel says of
+/// a hair is what it says of its own guide.
 class FullHair {
  public:
   /// Throws InputError when hairs > 0 and the strands have not all as many points, or the

@@ -36,10 +36,10 @@ double curvature(const Vec& a, const Vec& b) {
 Readout::Readout(const Scene& scene, const World& world)
     : scene_(scene), effects_(make_effects(scene)) {
   find_lines(world);
+  const std::vector<std::string> names = effect_names(scene);
   const auto add = [this](std::string name, std::string help) {
     series_.push_back({std::move(name), std::move(help)});
   };
-  add("frame", "number of the frame");
   add("t_s", "time");
   for (const char* axis : {"x", "y", "z"}) {
     add(std::string("tip_") + axis + "_m", "tip, mean over the strands");
@@ -49,9 +49,7 @@ Readout::Readout(const Scene& scene, const World& world)
     add("potential_j", "potential energy");
   } else {
     add("elastic_j", "elastic energy of all strands");
-    for (const auto& effect : effects_) {
-      add(std::string(effect->name()) + "_j", "potential energy of this effect");
-    }
+    for (const std::string& name : names) add(name + "_j", "its potential energy");
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
   add("penetration_m", "largest depth of a strand in a body");
@@ -60,9 +58,7 @@ Readout::Readout(const Scene& scene, const World& world)
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
-  for (const auto& effect : effects_) {
-    channels_.push_back({"load " + std::string(effect->name()), "N/m"});
-  }
+  for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
   if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
 
   for (const Strand& strand : scene.strands) {
@@ -81,8 +77,7 @@ Readout::Readout(const Scene& scene, const World& world)
 Frame3d Readout::read(World& world) {
   Frame3d frame;
   std::vector<double>& row = frame.series;
-  row.assign(2, 0.0);
-  row[1] = world.time();
+  row.assign(1, world.time());
   read_points(world, frame);
   read_energies(world, row);
   row.push_back(world.stretch());

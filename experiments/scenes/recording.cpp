@@ -148,7 +148,6 @@ std::string Recording::record(const Frame3d& frame) {
 }
 
 void Recording::add(Frame3d frame) {
-  frame.series[0] = static_cast<double>(frames_.size());
   write_all(binary_->descriptor(), record(frame), stem_ + ".frames");
   write_all(csv_->descriptor(), series_line(frame), stem_ + ".csv");
   frames_.push_back(std::move(frame));

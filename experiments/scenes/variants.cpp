@@ -62,14 +62,10 @@ Ingredient mode(const std::string& name, const std::string& word) {
 }  // namespace
 
 std::vector<Ingredient> ingredients(const Scene& scene) {
+  const std::vector<std::string> names = effect_names(scene);
   std::vector<Ingredient> all;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string_view id = scene.effects[i].entry->id;
-    const auto same = std::ranges::count_if(
-        scene.effects, [id](const EffectChoice& other) { return other.entry->id == id; });
-    std::string name(id);
-    if (same > 1) name.append(" ").append(std::to_string(i + 1));
-    all.push_back({std::move(name),
+    all.push_back({names[i],
                    [i](const Scene& from) {
                      Scene changed = from;
                      changed.effects.erase(changed.effects.begin() +
