@@ -157,7 +157,7 @@ bool possible(const StabilityCase& c, const Settings& settings) {
     const auto system = c.model->make(c.parameters(settings));
     return !usable_formulations(find_integrator(c.integrator), *system).empty();
   } catch (const InputError&) {
-    return false;  // a scene that the model does not take, such as curls on a spline
+    return false;  // a scene that the model does not take
   }
 }
 

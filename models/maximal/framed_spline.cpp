@@ -207,7 +207,7 @@ double FramedSpline::power(const Placement& p) noexcept {
 
 bool FramedSpline::rebase(InOut z, InOut rate) {
   bool moved = false;
-  for (std::size_t knot = clamped_ ? 1 : 0; knot < references_.size(); ++knot) {
+  for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
     const std::size_t span = knot > 0 ? knot - 1 : 0;
     const auto& weight = knot > 0 ? spans_[span].end : spans_[span].start;
     moved |= renew_reference(references_[knot], of_controls(weight, &z[3 * span]),
@@ -218,16 +218,18 @@ bool FramedSpline::rebase(InOut z, InOut rate) {
 }
 
 std::vector<double> FramedSpline::memory() const {
-  std::vector<double> references(9 * references_.size());
-  for (std::size_t i = 0; i < references_.size(); ++i) {
-    store9(references_[i], &references[9 * i]);
+  std::vector<double> references(9 * (references_.size() - first_angle()));
+  double* to = references.data();
+  for (std::size_t knot = first_angle(); knot < references_.size(); ++knot, to += 9) {
+    store9(references_[knot], to);
   }
   return references;
 }
 
 void FramedSpline::recall(In memory) {
-  for (std::size_t i = 0; i < references_.size(); ++i) {
-    references_[i] = load9(&memory[9 * i]);
+  const double* from = memory.data();
+  for (std::size_t knot = first_angle(); knot < references_.size(); ++knot, from += 9) {
+    references_[knot] = load9(from);
   }
 }
 

@@ -28,6 +28,8 @@ class FramedSpline final : public Elasticity {
   /// initial one are the first references.
   FramedSpline(std::vector<Span> spans, std::vector<SplineElasticity::Point> stretching,
                const Shape& natural, std::vector<Frame> initial, bool clamped);
+  FramedSpline(const FramedSpline&) = delete;  // spans point to the references
+  FramedSpline& operator=(const FramedSpline&) = delete;
 
   std::vector<std::vector<int>> groups() const override;
   void add_force(const Placement& p, InOut f) noexcept override;
@@ -49,9 +51,10 @@ class FramedSpline final : public Elasticity {
   };
   using Square = double[most][most];
 
-  bool held(std::size_t knot) const { return clamped_ && knot == 0; }
+  std::size_t first_angle() const { return clamped_ ? 1 : 0; }  // knot
+  bool held(std::size_t knot) const { return knot < first_angle(); }
   std::size_t angle(std::size_t knot) const {
-    return 3 * (spans_.size() + 3) + knot - (clamped_ ? 1 : 0);
+    return 3 * (spans_.size() + 3) + knot - first_angle();
   }
   std::size_t size(std::size_t span) const { return held(span) ? most - 1 : most; }
   /// Values at a span's knots, with those of the clamp where it holds the first.
@@ -63,7 +66,7 @@ class FramedSpline final : public Elasticity {
 
   std::vector<Span> spans_;
   SplineElasticity stretching_;
-  std::vector<Frame> references_at_start_, references_;  // of the knots
+  std::vector<Frame> references_at_start_, references_;  // of the knots; held: the clamp
   bool clamped_;
 };
 

@@ -7,7 +7,6 @@
 #include "experiments/harness/fit.h"
 #include "experiments/harness/strand_models.h"
 #include "models/catalogue.h"
-#include "models/input_error.h"
 #include "tests/support/drive.h"
 
 namespace tress {
@@ -90,11 +89,7 @@ Outcome run(const Method& method, const Options& options) {
 std::vector<std::string_view> tested_models() {
   std::vector<std::string_view> all{"super_helix_tree"};
   for (const ModelEntry* model : strand_models()) {
-    try {
-      if (strand(model->id)->constraint_form() == nullptr) all.push_back(model->id);
-    } catch (const InputError&) {
-      // dynamic_spline, which has constraints too, takes no curls.
-    }
+    if (strand(model->id)->constraint_form() == nullptr) all.push_back(model->id);
   }
   return all;
 }

@@ -10,6 +10,15 @@
 
 namespace tress::testing_support {
 
+/// A bent strand of six elements thrown into space with a spin of 10 rad/s.
+inline const ModelSettings bent_throw = {{"elements", "6"},
+                                         {"root", "free"},
+                                         {"gravity_m_s2", "0"},
+                                         {"youngs_modulus_pa", "1e6"},
+                                         {"radius_m", "1e-3"},
+                                         {"initial", "bent"},
+                                         {"initial_curvature_1_m", "20"}};
+
 /// What implicit_midpoint loses of a free strand in 0.1 s: root mean square of the
 /// energy's drift over the largest kinetic energy, and the largest drift of linear and
 /// angular momentum over their sizes.

@@ -1,13 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <numbers>
 
 #include "experiments/harness/fit.h"
 #include "models/input_error.h"
 #include "models/maximal/cubic_spline.h"
 #include "models/maximal/spline_elasticity.h"
-#include "models/maximal/spline_strain.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/thin_rod.h"
@@ -86,85 +84,6 @@ TEST(DynamicSpline, ForcesAreTheGradientOfTheEnergy) {
   }
 }
 
-/// Gradients and second derivatives of a part (strained.h), numbers of order one, against
-/// derivative numbers.
-template <class Part>
-void expect_derivatives(Part part) {
-  constexpr int size = Part::coordinates;
-  const Frame references[2] = {rotation({0, 0.6, 0.8}, 0.7), rotation({0.8, 0, 0.6}, 1)};
-  part.reference = references;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  // Near the references' own directions: far from opposite to them, and from |r'| = 0.
-  double x[size], stress[2] = {0.7, -1.3};
-  for (double& entry : x) entry = 0.5 * uniform(random);
-  for (int side = 0; side < 2; ++side) {
-    store3(references[side].e0 + load3(x + 4 * side), x + 4 * side);
-  }
-  if constexpr (size > 8) x[8] += 1;
-  using T = testing::Dual2<size>;
-  T y[size], strain[Part::strains];
-  for (int k = 0; k < size; ++k) {
-    y[k] = testing::variable2<size>(x[k], static_cast<std::size_t>(k));
-  }
-  part.strain(y, strain);
-  double gradient[Part::strains][size], second[size][size] = {};
-  part.gradient(x, gradient);
-  part.add_second(x, stress, second);
-  for (std::size_t k = 0; k < size; ++k) {
-    for (int m = 0; m < Part::strains; ++m) {
-      EXPECT_NEAR(gradient[m][k], strain[m].part[k].value, 1e-13) << m << k;
-      EXPECT_GT(std::abs(gradient[m][k]), 1e-4) << m << k;
-    }
-    for (std::size_t l = 0; l < size; ++l) {
-      double expected = 0;
-      for (int m = 0; m < Part::strains; ++m) {
-        expected += stress[m] * strain[m].part[k].part[l];
-      }
-      // Sums of some twenty terms of order ten.
-      EXPECT_NEAR(second[k][l], expected, 1e-12) << k << " " << l;
-    }
-  }
-}
-
-TEST(SplineStrains, HaveExactDerivatives) {
-  expect_derivatives(SplineTwist{.rest = {0.3}});
-  expect_derivatives(SplineBend{.part = 0.2, .rest = {0.3, -0.4}});
-}
-
-const ModelSettings curly_hair = {{"elements", "6"},
-                                  {"natural_curvature_1_m", "40"},
-                                  {"natural_curvature2_1_m", "10"},
-                                  {"natural_twist_1_m", "20"},
-                                  {"ellipticity", "1.3"}};
-
-TEST(DynamicSpline, TangentIsExactForCurlsWithFriction) {
-  for (const char* root : {"shake_rotate", "free"}) {
-    const auto system = make_model(
-        "dynamic_spline",
-        with(curly_hair, {{"root", root}, {"internal_friction_kg_m3_s", "1e-7"}}));
-    States s(*system);
-    for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}}) {
-      s.shake(0.05);
-      EXPECT_LE(tangent_error(*system, *system, s, w), tangent_tolerance) << root;
-    }
-  }
-}
-
-// Forces of rounding: eps EA of each of some ten terms.
-TEST(DynamicSpline, ACurlAtRestHasNoForce) {
-  const auto system =
-      make_model("dynamic_spline", with(curly_hair, {{"gravity_m_s2", "0"}}));
-  const State start = initial_state(*system);
-  const std::vector<double> zero = zeros(*system);
-  const Strand hair = strand(parameters_of("dynamic_spline", curly_hair));
-  const double stretch =
-      hair.material.youngs_modulus * hair.segments.front().section.area();
-  EXPECT_LE(largest(residual(*system, start.q, zero, zero)), 10 * eps * stretch);
-  EXPECT_LE(system->energetics()->energy(0, start.q, zero).potential,
-            10 * eps * eps * stretch);
-}
-
 TEST(DynamicSpline, CantileverApproachesTheGravitoBendingCurveAtOrder4) {
   for (const Master& exact : master_curve) {
     std::vector<double> sizes, errors;
@@ -205,80 +124,6 @@ TEST(DynamicSpline, ClampedFrequenciesAreThoseOfTheBeamToOrder4) {
   }
 }
 
-// Of 1/sqrt(1.3) and sqrt(1.3) times the stiffness EI1 and EI2 of either plane has; the
-// same errors as of the circular section.
-TEST(DynamicSpline, EllipticSectionsSwingInTwoPlanes) {
-  constexpr int n = 40;
-  const ModelSettings flat = with(
-      thin_rod,
-      {{"gravity_m_s2", "0"}, {"elements", std::to_string(n)}, {"ellipticity", "1.3"}});
-  const std::vector<double> frequencies = lowest_frequencies("dynamic_spline", flat, 6);
-  std::vector<std::pair<double, double>> expected;  // and (beta h)^2
-  for (const double plane : {1 / std::sqrt(1.3), std::sqrt(1.3)}) {
-    for (const double mode : beam) {
-      expected.emplace_back(plane * mode / std::sqrt(line_density), mode / (n * n));
-    }
-  }
-  std::ranges::sort(expected);
-  for (std::size_t k = 0; k < 6; ++k) {
-    const auto [frequency, square] = expected[k];
-    const double off = frequencies[k] / frequency - 1, order4 = square * square / 1440;
-    std::printf("dynamic_spline, elliptic, mode %zu: off by %.2e\n", k + 1, off);
-    EXPECT_NEAR(off, order4, square / 2 * order4 + 1e-9);
-  }
-}
-
-// Linear elements with lumped inertia: 2/h sin(beta h/2) instead of beta. The angles of a
-// straight strand are on their own, the last of q.
-TEST(DynamicSpline, TwistsAtTheFrequenciesOfAShaft) {
-  for (const int n : {10, 20, 40}) {
-    const ModelSettings settings = {{"elements", std::to_string(n)},
-                                    {"ellipticity", "1.3"},
-                                    {"natural_twist_1_m", "20"}};
-    const auto system = make_model("dynamic_spline", settings);
-    const Strand shaft = strand(parameters_of("dynamic_spline", settings));
-    const CrossSection& section = shaft.segments.front().section;
-    const double speed = std::sqrt(shaft.material.shear_modulus * section.torsion() /
-                                   (shaft.material.density * section.polar()));
-    const State start = initial_state(*system);
-    const Eigen::MatrixXd k =
-        dense_tangent(*system, start.q, {0, 0, 1}).bottomRightCorner(n, n);
-    const Eigen::MatrixXd m =
-        dense_tangent(*system, start.q, {1, 0, 0}).bottomRightCorner(n, n);
-    const Eigen::VectorXd scale = m.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::VectorXd squares =
-        eigenvalues(scale.asDiagonal() * k * scale.asDiagonal());
-    for (int mode = 1; mode <= 3; ++mode) {
-      const double exact = (2 * mode - 1) * std::numbers::pi / 2 * speed / shaft.length();
-      const double off = std::sqrt(squares[mode - 1]) / exact - 1;
-      const double half = exact / speed * shaft.length() / n / 2;  // beta h/2
-      std::printf("dynamic_spline, N = %d, twist mode %d: off by %.2e\n", n, mode, off);
-      EXPECT_NEAR(off, std::sin(half) / half - 1, 1e-10);
-    }
-  }
-}
-
-// The load grows by smaller steps than elsewhere: from one to thrice its size Newton's
-// method goes astray at N = 24.
-TEST(DynamicSpline, CurlyHairApproachesKirchhoffsRodAtOrder2) {
-  std::vector<double> sizes, away, energy_off;
-  for (const std::size_t n : {12U, 24U, 48U, 84U, 168U}) {
-    const CurlyError error = curly_error("dynamic_spline", thin_rod, n, at_rest, 1.5);
-    sizes.push_back(1.0 / static_cast<double>(n));
-    away.push_back(error.points);
-    energy_off.push_back(error.energy);
-    std::printf("dynamic_spline, N = %zu: points off by %.2e L, energy by %.2e\n", n,
-                away.back(), energy_off.back());
-  }
-  EXPECT_LE(away[3], 5e-3);  // N = 84
-  const auto order = [&](const std::vector<double>& errors) {
-    return log_log_slope({sizes.begin() + 1, sizes.end()},
-                         {errors.begin() + 1, errors.end()});
-  };
-  EXPECT_NEAR(order(away), 2, 0.1);
-  EXPECT_NEAR(order(energy_off), 2, 0.1);
-}
-
 TEST(DynamicSpline, RefusesWhatNeedsAMaterialFrame) {
   for (const auto& [key, value] : ModelSettings{{"natural_curvature_1_m", "10"},
                                                 {"natural_curvature2_1_m", "10"},
@@ -292,18 +137,10 @@ TEST(DynamicSpline, RefusesWhatNeedsAMaterialFrame) {
   }
 }
 
-// A bent strand of six spans thrown into space with a spin of 10 rad/s.
 TEST(DynamicSpline, MidpointKeepsMomentumAndEnergyToOrder2) {
-  const ModelSettings thrown = {{"elements", "6"},
-                                {"root", "free"},
-                                {"gravity_m_s2", "0"},
-                                {"youngs_modulus_pa", "1e6"},
-                                {"radius_m", "1e-3"},
-                                {"initial", "bent"},
-                                {"initial_curvature_1_m", "20"},
-                                {"twist", "none"}};
   // Newton's tolerance is 1e-12.
-  expect_midpoint_keeps("dynamic_spline", thrown, {0.05e-3, 0.025e-3, 0.0125e-3}, 1e-12);
+  expect_midpoint_keeps("dynamic_spline", with(bent_throw, {{"twist", "none"}}),
+                        {0.05e-3, 0.025e-3, 0.0125e-3}, 1e-12);
 }
 
 /// Where a strand's points are at t, by the trapezoidal rule.
