@@ -8,6 +8,7 @@
 #include "models/maximal/spline_elasticity.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
+#include "tests/models/maximal/points_after.h"
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"
 #include "tests/support/variable.h"
@@ -141,27 +142,6 @@ TEST(DynamicSpline, MidpointKeepsMomentumAndEnergyToOrder2) {
   // Newton's tolerance is 1e-12.
   expect_midpoint_keeps("dynamic_spline", with(bent_throw, {{"twist", "none"}}),
                         {0.05e-3, 0.025e-3, 0.0125e-3}, 1e-12);
-}
-
-/// Where a strand's points are at t, by the trapezoidal rule.
-std::vector<double> points_after(std::string_view model, const ModelSettings& settings,
-                                 double t, std::vector<double>& q) {
-  const auto system = make_model(model, settings);
-  State start{zeros(*system), zeros(*system)};
-  system->initial_state(start.q, start.v);
-  Options options;
-  options.step = 1e-3;
-  if (system->layout().constraints > 0) options.formulation = Formulation::projection;
-  const Simulation run =
-      simulate("generalized_alpha", *system, options, start, t, [&](double, In now, In) {
-        q.assign(now.begin(), now.end());
-        return true;
-      });
-  EXPECT_EQ(run.status, Status::ok) << run.failure;
-  MaterialPoints& at = *system->material_points();
-  std::vector<double> x(3 * static_cast<std::size_t>(at.count()));
-  at.positions(t, q, x);
-  return x;
 }
 
 // The clamp turns and shakes: the end of the spline is where it is and looks where it
