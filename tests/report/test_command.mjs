@@ -1,4 +1,4 @@
-// The report command without a browser: `node --test tests/report/test_report.mjs`.
+// The report command without a browser: `node --test tests/report/test_command.mjs`.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
