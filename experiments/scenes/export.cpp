@@ -120,7 +120,8 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   const Scene& scene = animation.scene;
 
   Range box[3];
-  std::vector<Range> ranges(animation.channels.size());
+  // Channels are sizes of something: from nothing on.
+  std::vector<Range> ranges(animation.channels.size(), Range{0, 0});
   for (const std::size_t f : chosen) {
     const Frame3d& frame = animation.frames[f];
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
