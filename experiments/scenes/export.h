@@ -21,7 +21,7 @@ struct Animation {
 /// For the report page: <scene>.json, places in 16 bits of their box, colours in 8 bits
 /// (experiments/report/README.md has the format). Frames are thinned evenly to about
 /// `most_bytes`, though not below 24.
-std::string page_json(const Animation& animation, std::size_t most_bytes = 1'000'000);
+std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
 
 /// For ParaView: one .vtp a frame (PolyData, appended raw, float32) with every channel as
 /// point data, and the .pvd that lists them with their times [VTK file formats, XML].

@@ -71,6 +71,7 @@ class ReducedBatch final : public StrandBlock {
         q_(unknowns()),
         v_(unknowns()),
         a_(unknowns()),
+        zero_(unknowns(), Pack(0)),
         r_(unknowns()) {}
 
   Status residual(double t, In q, In v, In a, Out r) noexcept override {
@@ -119,11 +120,36 @@ class ReducedBatch final : public StrandBlock {
     return finite ? Status::ok : Status::retry;
   }
 
+  void positions(double t, In q, Out x) override {
+    gather(q, q_);
+    kinematics_.move(t, q_, zero_, zero_);
+    scatter_points([](const auto& m) { return m.x; }, x);
+  }
+  void velocities(double t, In q, In v, Out u) override {
+    gather(q, q_);
+    gather(v, v_);
+    kinematics_.move(t, q_, v_, zero_);
+    scatter_points([](const auto& m) { return m.frame * m.v; }, u);
+  }
+  /// `of` the root's and of all tips' motion.
+  template <class Of>
+  void scatter_points(Of of, Out x) const {
+    const std::size_t n = kinematics_.segments().size() + 1;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3<Pack> all =
+          of(i == 0 ? kinematics_.root() : kinematics_.motion(i - 1).tip);
+      for (std::size_t lane = 0; lane < strands(); ++lane) {
+        const int l = static_cast<int>(lane);
+        store3(Vec{all.x[l], all.y[l], all.z[l]}, &x[3 * (lane * n + i)]);
+      }
+    }
+  }
+
   Kinematics<Kernel, dofs> kinematics_;
   InverseDynamics<Kernel, dofs> dynamics_;
   Mechanics<Kernel, dofs> mechanics_;
   Status factored_ = Status::retry;
-  std::vector<Pack> q_, v_, a_, r_;
+  std::vector<Pack> q_, v_, a_, zero_, r_;
 };
 
 }  // namespace tress

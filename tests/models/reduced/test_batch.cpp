@@ -143,9 +143,13 @@ TEST_P(Batch, PointsAndEnergiesAreThoseOfTheStrands) {
     const In q = In(s.q).subspan(strand * n, n), v = In(s.v).subspan(strand * n, n);
     std::vector<double> own(of_strand);
     alone[strand]->material_points()->positions(t0, q, own);
-    EXPECT_EQ(apart(own, In(x).subspan(strand * of_strand, of_strand)), 0);
+    // Some ten products a segment, in another order; both sums err.
+    const double per_size = 20 * eps * (segments + 1);
+    EXPECT_LE(apart(own, In(x).subspan(strand * of_strand, of_strand)),
+              per_size * largest(own));
     alone[strand]->material_points()->velocities(t0, q, v, own);
-    EXPECT_EQ(apart(own, In(u).subspan(strand * of_strand, of_strand)), 0);
+    EXPECT_LE(apart(own, In(u).subspan(strand * of_strand, of_strand)),
+              per_size * largest(own));
     const Energy e = alone[strand]->energetics()->energy(t0, q, v);
     energy.kinetic += e.kinetic;
     energy.potential += e.potential;
