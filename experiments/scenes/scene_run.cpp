@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -145,7 +146,11 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
   run.wall_s = seconds_since(begin);
   if (vtk) vtk->list(animation());
   const FullHair hair(animation(), options.hairs, scene.seed);
-  replace_file(options.stem + ".json", page_json(hair.animation()));
+  // A single particle is no line to draw.
+  const auto& lines = readout.lines();
+  if (std::ranges::all_of(lines, [](int points) { return points > 1; })) {
+    replace_file(options.stem + ".json", page_json(hair.animation()));
+  }
   if (options.usd) replace_file(options.stem + ".usda", usda(hair.animation()));
   if (run.end != SceneRun::End::interrupted) recording.close();
   return run;

@@ -149,12 +149,12 @@ export function check_scene(scene, file) {
   check_series(scene.series, check);
 }
 
-// [{name, scene}] of every scenes/*.json in `directory`; none when there is no scenes/.
+// [{name, scene}] of every scenes/*.json in `directory` but manifests; none when there is no scenes/.
 export function load_scenes(directory) {
   const folder = join(directory, 'scenes');
   if (!existsSync(folder)) return [];
   return readdirSync(folder)
-    .filter((file) => file.endsWith('.json'))
+    .filter((file) => file.endsWith('.json') && !file.endsWith('.meta.json'))
     .sort()
     .map((name) => {
       const file = join(folder, name);
