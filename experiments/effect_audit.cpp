@@ -1,12 +1,12 @@
 // Which effects of a scene change the result, by how much, and what does each cost?
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "experiments/harness/experiment.h"
+#include "experiments/harness/parse.h"
 #include "experiments/harness/settings.h"
 #include "experiments/scenes/numbers.h"
 #include "experiments/scenes/variants.h"
@@ -141,22 +141,13 @@ void run(const Work& work, Row& row) {
   }
 }
 
-std::vector<std::string> files_of(std::string_view list) {
-  std::vector<std::string> files;
-  while (!list.empty()) {
-    const std::size_t comma = std::min(list.find(','), list.size());
-    files.emplace_back(list.substr(0, comma));
-    list.remove_prefix(std::min(comma + 1, list.size()));
-  }
-  return files;
-}
-
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
   const double accuracy = settings.experiment().number("accuracy");
   std::vector<Case> all;
-  for (const std::string& file : files_of(settings.experiment().word("scenes"))) {
-    const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
+  const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
+  for (const std::string& file :
+       split(settings.experiment().word("scenes"), ',', "scenes")) {
     const Scene scene = thinned(read_scene(file), strands);
     if (scene.strands.empty()) {
       throw InputError("nothing to leave out: the model brings its own effects", file,

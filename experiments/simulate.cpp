@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "experiments/harness/exit_code.h"
 #include "experiments/harness/files.h"
 #include "experiments/harness/manifest.h"
 #include "experiments/harness/message.h"
-#include "experiments/harness/parse.h"
 #include "experiments/scenes/scene_run.h"
 #include "experiments/scenes/schema.h"
 #include "models/input_error.h"
@@ -122,7 +122,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
 int run(const Arguments& a, CommandLine line) {
   if (a.print_defaults || a.print_schema) {
     write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
-    return 0;
+    return done;
   }
   line.progress = a.progress == "none"   ? ProgressMode::none
                   : a.progress == "json" ? ProgressMode::json
@@ -135,10 +135,10 @@ int run(const Arguments& a, CommandLine line) {
     complete = run_file(file, a, line) && complete;
     if (asked_to_stop != 0) {
       tell("simulate: interrupted: the same command with --resume continues\n");
-      return 130;
+      return interrupted;
     }
   }
-  return complete ? 0 : 3;
+  return complete ? done : rows_failed;
 }
 
 int answer(int argc, char** argv) {
@@ -148,8 +148,7 @@ int answer(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    write_all(1, app.help() + help_end, "standard output");
-    return 0;
+    throw Answer(app.help() + help_end);
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what(), "command line", "simulate --help shows the options");
   }
@@ -166,14 +165,5 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM}) {
     ::signal(signal, [](int) { asked_to_stop = 1; });
   }
-  ::signal(SIGXFSZ, SIG_IGN);  // then an error of write, with a message
-  try {
-    return answer(argc, argv);
-  } catch (const InputError& error) {
-    tell("simulate: error: {}\n", one_line(error.what()));
-    return 2;
-  } catch (const std::exception& error) {
-    tell("simulate: internal error: {}\n", one_line(error.what()));
-    return 1;
-  }
+  return exit_code("simulate", [&] { return answer(argc, argv); });
 }

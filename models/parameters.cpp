@@ -95,14 +95,7 @@ std::vector<double> parse_numbers(const Parameter& declared, std::string_view te
 }  // namespace
 
 std::vector<std::string_view> words_of(std::string_view choices) {
-  std::vector<std::string_view> words;
-  while (!choices.empty()) {
-    const std::size_t bar = choices.find('|');
-    words.push_back(choices.substr(0, bar));
-    choices =
-        bar == std::string_view::npos ? std::string_view{} : choices.substr(bar + 1);
-  }
-  return words;
+  return choices.empty() ? std::vector<std::string_view>{} : split(choices, '|');
 }
 
 std::string_view nearest(std::string_view word,

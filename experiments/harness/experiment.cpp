@@ -1,10 +1,8 @@
 #include "experiments/harness/experiment.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,7 @@
 #include <thread>
 
 #include "experiments/harness/csv.h"
+#include "experiments/harness/exit_code.h"
 #include "experiments/harness/files.h"
 #include "experiments/harness/journal.h"
 #include "experiments/harness/list.h"
@@ -27,14 +26,6 @@
 
 namespace tress {
 namespace {
-
-enum ExitCode {
-  done = 0,
-  internal_error = 1,
-  usage_error = 2,
-  rows_failed = 3,
-  interrupted = 130
-};
 
 constexpr const char* standard_output = "-";
 
@@ -268,20 +259,7 @@ int answer(const Experiment& experiment, int argc, char** argv) {
 }  // namespace
 
 int run_experiment(const Experiment& experiment, int argc, char** argv) {
-  ::signal(SIGXFSZ,
-           SIG_IGN);  // a file size limit is then an error of write, with a message
-  try {
-    return answer(experiment, argc, argv);
-  } catch (const Answer& text) {
-    std::fputs(text.what(), stdout);
-    return done;
-  } catch (const InputError& error) {
-    tell("{}: error: {}\n", experiment.name, one_line(error.what()));
-    return usage_error;
-  } catch (const std::exception& error) {
-    tell("{}: internal error: {}\n", experiment.name, one_line(error.what()));
-    return internal_error;
-  }
+  return exit_code(experiment.name, [&] { return answer(experiment, argc, argv); });
 }
 
 }  // namespace tress

@@ -2,7 +2,6 @@
 
 #include <barrier>
 #include <functional>
-#include <optional>
 #include <thread>
 #include <vector>
 

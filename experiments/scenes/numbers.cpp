@@ -10,17 +10,13 @@ namespace {
 
 constexpr double earth = 9.81;  // m/s^2
 
-int last_frame(const Scene& scene) {
-  return static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9));
-}
-
 double rms_root_acceleration(const Scene& scene, const RootMotion& root) {
   double squares = 0;
-  for (int f = 0; f <= last_frame(scene); ++f) {
-    const Vec a = root.at(f / scene.frame_rate).a;
+  for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
+    const Vec a = root.at(scene.time_of(f)).a;
     squares += dot(a, a);
   }
-  return std::sqrt(squares / (last_frame(scene) + 1));
+  return std::sqrt(squares / static_cast<double>(scene.last_frame() + 1));
 }
 
 /// kg/m of the first segment.
@@ -53,8 +49,8 @@ double load_over_weight(const Scene& scene, std::string_view effect) {
   if (channel == channels.size()) return std::numeric_limits<double>::quiet_NaN();
   double squares = 0;
   std::size_t count = 0;
-  for (int f = 0; f <= last_frame(scene); ++f) {
-    if (f > 0 && world.advance(f / scene.frame_rate) != Status::ok) break;
+  for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
+    if (f > 0 && world.advance(scene.time_of(f)) != Status::ok) break;
     const Frame3d frame = readout.read(world);
     const std::size_t points = frame.positions.size() / 3;
     for (std::size_t i = 0; i < points; ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "experiments/harness/files.h"
@@ -242,6 +243,11 @@ void refuse_large(std::size_t bytes, const std::string& file) {
 }
 
 }  // namespace
+
+std::size_t Scene::last_frame() const {
+  // 1e-9: a whole number of frames up to rounding is not one less.
+  return static_cast<std::size_t>(std::floor(duration * frame_rate + 1e-9));
+}
 
 Scene read_scene(const std::string& file) {
   std::error_code no_size;

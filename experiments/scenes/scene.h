@@ -43,6 +43,11 @@ struct Scene {
   double frame_rate = 0;  // 1/s, of the series and the geometry
   double checkpoint = 0;  // s between saved states; 0: none
   std::uint64_t seed = 1;
+
+  std::size_t last_frame() const;  // the first is 0, at t = 0
+  double time_of(std::size_t frame) const {
+    return static_cast<double>(frame) / frame_rate;
+  }
 };
 
 /// Throws InputError with file:line:column, what is wrong and what would be right.

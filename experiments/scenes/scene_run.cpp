@@ -59,10 +59,6 @@ class TimeBar {
   double last_ = 0;
 };
 
-std::size_t last_frame(const Scene& scene) {
-  return static_cast<std::size_t>(std::floor(scene.duration * scene.frame_rate + 1e-9));
-}
-
 /// No strand or mechanism of ours moves faster: what does has lost its step's stability.
 constexpr double fastest = 1e3;  // m/s
 
@@ -114,7 +110,7 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
   SceneRun run{SceneRun::End::complete, {}, 0, 0, 0};
   const auto between_saves =
       static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
-  const std::size_t last = last_frame(scene);
+  const std::size_t last = scene.last_frame();
   TimeBar bar(options.progress, scene);
   while (recording.frames().size() <= last) {
     if (stop != 0) {
@@ -122,7 +118,7 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
       break;
     }
     const std::size_t frame = recording.frames().size();
-    if (world->advance(static_cast<double>(frame) / scene.frame_rate) != Status::ok) {
+    if (world->advance(scene.time_of(frame)) != Status::ok) {
       run.end = SceneRun::End::failed;
       run.reason = world->failure();
       break;

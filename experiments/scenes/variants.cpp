@@ -10,14 +10,6 @@
 namespace tress {
 namespace {
 
-std::vector<double> frame_times(const Scene& scene) {
-  std::vector<double> times;
-  const auto last =
-      static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9));
-  for (int f = 0; f <= last; ++f) times.push_back(f / scene.frame_rate);
-  return times;
-}
-
 void advance(World& world, double t) {
   if (world.advance(t) != Status::ok) throw std::runtime_error(world.failure());
 }
@@ -122,11 +114,10 @@ Scene refined(Scene scene) {
 }
 
 TipPaths tip_paths(const Scene& scene, int repeat) {
-  const std::vector<double> times = frame_times(scene);
   TipPaths paths;
   World world(scene);
-  for (const double t : times) {
-    if (t > 0) advance(world, t);
+  for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
+    if (f > 0) advance(world, scene.time_of(f));
     add_tips(world, paths.x);
   }
   if (repeat == 0) return paths;
