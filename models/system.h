@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 /// The contract between what moves (models) and how time advances (integrators).
@@ -173,6 +174,10 @@ class MaterialPoints {
   };
   /// Fixed for life. False: points are not linear in the coordinates.
   virtual bool mean(int /*point*/, Mean&) { return false; }
+
+  /// Axes e0 (the tangent), e1, e2 of the section at the last point, row after row in
+  /// world components; they turn with the material. False: the model has no such frame.
+  virtual bool end_frame(double /*t*/, In /*q*/, std::array<double, 9>&) { return false; }
 };
 
 /// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing
@@ -201,6 +206,10 @@ class System {
   /// alike, which then continues as this one would.
   virtual std::vector<double> memory() const { return {}; }
   virtual void recall(In /*memory*/) {}
+
+  /// Which term of r(t, q, v, 0) is not finite and where, in words: "quadratic_drag at
+  /// point 7". Empty: all are finite, or the model does not say.
+  virtual std::string not_finite(double /*t*/, In /*q*/, In /*v*/) { return {}; }
 
   // Optional forms, null when absent; asked for once.
   virtual SparseForm* sparse_form() { return nullptr; }
