@@ -2,7 +2,9 @@
 # TRESS_SUNDIALS_ROOT, because Debian's package is compiled at -O0 (3 to 7 times slower).
 find_program(TRESS_CCACHE ccache)
 if(TRESS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TRESS_CCACHE})
+  # Without these it passes by what includes a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${TRESS_CCACHE})
 endif()
 
 set(TRESS_SUNDIALS_ROOT "$ENV{TRESS_SUNDIALS_ROOT}" CACHE PATH "Release build of SUNDIALS")

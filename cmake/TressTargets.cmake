@@ -26,9 +26,26 @@ function(tress_library name)
   tress_warnings(tress_${name})
 endfunction()
 
+# The headers of other libraries that most tests include, compiled once: half the time of a
+# test's compilation. Sources still include what they use.
+function(tress_test_headers)
+  file(WRITE ${PROJECT_BINARY_DIR}/test_headers.cpp "// carries precompiled headers\n")
+  add_library(tress_test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cpp)
+  target_link_libraries(tress_test_headers PRIVATE tress_harness GTest::gtest GTest::gmock
+                        Eigen3::Eigen)
+  target_compile_options(tress_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(tress_test_headers PRIVATE
+    <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <functional>
+    <limits> <memory> <numbers> <random> <sstream> <string> <vector>)
+  tress_warnings(tress_test_headers)
+endfunction()
+
 # tress_test(name source... [SHARDS n]): an executable whose GoogleTest cases ctest runs one
 # by one, or in n parts: thousands of cases that take a millisecond each are all start-up.
 function(tress_test name)
+  if(NOT TARGET tress_test_headers)
+    tress_test_headers()
+  endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "")
   add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE tress_harness tress::integrators tress::models
@@ -38,6 +55,7 @@ function(tress_test name)
                              TRESS_BINARY_DIR="${PROJECT_BINARY_DIR}")
   # Tests run once: optimising them costs more than it brings.
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(test_${name} REUSE_FROM tress_test_headers)
   tress_warnings(test_${name})
   if(NOT arg_SHARDS)
     gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/harness/command_line.h"
@@ -37,6 +38,12 @@ struct Case {
   std::function<void(Row&, const Deadline&)> run;  // the row comes with the identity set
 };
 
+/// What the rows that have `value` in `column` are about, in words: {"what", "..."}.
+struct Gloss {
+  std::string_view column, value;
+  std::vector<std::pair<std::string_view, std::string_view>> texts;
+};
+
 /// One executable, one question.
 struct Experiment {
   std::string_view name, question;
@@ -54,6 +61,8 @@ struct Experiment {
   /// Optional: states what the table must show; a claim that does not hold makes the exit
   /// code 3. Neither is called on a single shard.
   std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
+  /// Optional: kept in the manifest, where the report page reads it.
+  std::function<std::vector<Gloss>()> glossary = {};
   /// Optional: a row that is not ok but is what the experiment set out to find (a
   /// divergence beyond a limit, say) does not make the exit code 3.
   std::function<bool(const Row&)> finding = {};

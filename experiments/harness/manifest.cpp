@@ -69,6 +69,13 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   }
   ordered_json libraries;
   for (const auto& [library, version] : library_versions()) libraries[library] = version;
+  ordered_json glossary = ordered_json::object();
+  if (experiment_.glossary) {
+    for (const auto& [column, value, texts] : experiment_.glossary()) {
+      auto& entry = glossary[std::string(column)][std::string(value)];
+      for (const auto& [key, text] : texts) entry[std::string(key)] = text;
+    }
+  }
   const ordered_json manifest{
       {"experiment", experiment_.name},
       {"question", experiment_.question},
@@ -105,7 +112,8 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"sundials_speed_ratio", sundials_ratio_},
       {"rows",
        {{"total", rows.size()}, {"by_status", counts}, {"resumed", kept_from_before}}},
-      {"columns", columns}};
+      {"columns", columns},
+      {"glossary", glossary}};
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 

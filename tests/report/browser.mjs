@@ -105,6 +105,8 @@ export class Browser {
       deviceScaleFactor: 1,
       mobile: false,
     });
+    // A new document, also when only the address's last part differs.
+    await this.command('/url', { url: 'about:blank' });
     await this.command('/url', { url });
     for (let attempt = 0; attempt < 200; ++attempt) {
       if (await this.run("return document.documentElement.dataset.ready === 'yes'"))

@@ -1,6 +1,7 @@
 // Writes small tables with made-up but plausible numbers and the columns of the real
 // ones: `node tests/report/make_fixture.mjs DIRECTORY`. Nothing in here is a measurement.
 import './fixture/drift.mjs';
+import './fixture/questions.mjs';
 import './fixture/scenes.mjs';
 import './fixture/strand.mjs';
 import './fixture/work.mjs';

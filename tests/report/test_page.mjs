@@ -3,9 +3,16 @@
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { setTimeout as pause } from 'node:timers/promises';
 import { Browser } from './browser.mjs';
 import { fixture_directory, remove, run_report } from './support.mjs';
 
+// What each tab draws; addresses that name a section open its tab.
+const opening = {
+  validation: ['validation', 'validation_tests', 'validation_orders'],
+  hard_cases: ['hard_cases'],
+  cost_of_accuracy: ['cost_of_accuracy', 'cost_choices'],
+};
 const figures = [
   'drift_cost',
   'drift_heatmap',
@@ -19,12 +26,12 @@ const figures = [
   'swing',
   'force_transport',
 ];
-let directory, browser, url;
+let directory, browser, page;
 
 before(async () => {
   directory = fixture_directory();
   assert.equal(run_report(directory).status, 0);
-  url = `file://${join(directory, 'report.html')}`;
+  page = `file://${join(directory, 'report.html')}`;
   browser = await Browser.start({
     driver: process.env.CHROMEDRIVER,
     binary: process.env.CHROMIUM,
@@ -57,30 +64,83 @@ async function click_legend(figure, text) {
 }
 
 const settle = async (ready) => {
-  for (let attempt = 0; attempt < 50; ++attempt) {
+  for (let attempt = 0; attempt < 200; ++attempt) {
     if (await ready()) return true;
+    await pause(50);
   }
   return false;
 };
 
+// The tab of the measurements, all of its figures drawn.
+async function open_measurements(...size) {
+  await browser.open(page, ...size);
+  await browser.click('#tab-measured');
+  assert.ok(
+    await settle(() =>
+      browser.run(`return [...document.querySelectorAll('#panel-measured [data-figure]')]
+        .every((place) => place.querySelector('svg'))`),
+    ),
+  );
+}
+
+const marks_in = (figure) =>
+  browser.run(
+    `return document.querySelectorAll('#plot-${figure} svg .mark-symbol path, ` +
+      `#plot-${figure} svg .mark-rect path').length`,
+  );
+const least_marks = { validation: 8, cost_choices: 6 };
+
+test('Page_OpensWithTheThreeQuestions', async () => {
+  await browser.open(page);
+  assert.deepEqual(
+    await browser.run(
+      `return [...document.querySelectorAll('[role="tab"]')].map((tab) => tab.textContent)`,
+    ),
+    ['Is it right?', 'What survives?', 'What does accuracy cost?', 'Measurements', 'Scenes'],
+  );
+  assert.equal(await browser.run("return document.querySelector('h1').textContent"),
+    'Is the physics right?');
+  assert.ok((await marks_in('validation')) >= 8);
+  await browser.click('#tab-hard');
+  assert.ok(await settle(async () => (await marks_in('hard_cases')) > 10));
+  assert.equal(
+    await browser.run("return document.getElementById('panel-validation').hidden"),
+    true,
+  );
+});
+
+test('Questions_SayWhatTestsAndCasesAre', async () => {
+  await browser.open(page);
+  const text = (id) =>
+    browser.run(`return document.getElementById('${id}').nextElementSibling.textContent`);
+  assert.match(await text('validation-about'), /bent by its weight.*the <elastica>/);
+  assert.match(await text('hard-about'), /antipodal tangents/);
+});
+
 test('Page_DrawsEveryFigureWithoutErrorsOrRequests', async () => {
-  await browser.open(url);
-  for (const figure of figures) {
-    const marks = await browser.run(
-      `return document.querySelectorAll('#plot-${figure} svg .mark-symbol path, ` +
-        `#plot-${figure} svg .mark-rect path').length`,
-    );
-    assert.ok(marks > 10, `${figure}: ${marks} marks`);
+  await browser.open(page);
+  for (const [address, drawn] of [...Object.entries(opening), ['drift_cost', figures]]) {
+    await browser.run(`location.hash = '#${address}'`);
+    for (const figure of drawn) {
+      const least = least_marks[figure] ?? 11;
+      assert.ok(
+        await settle(async () => (await marks_in(figure)) >= least),
+        `${figure}: ${await marks_in(figure)} marks`,
+      );
+    }
   }
   assert.deepEqual(
     (await browser.log('browser')).map((entry) => entry.message),
     [],
   );
-  assert.deepEqual(await browser.requests(), [url]);
+  assert.deepEqual(
+    [...new Set((await browser.requests()).map((address) => address.split('#')[0]))],
+    [page],
+  );
 });
 
 test('Policy_StopsTheNetworkAndEvaluation', async () => {
-  await browser.open(url);
+  await open_measurements();
   assert.equal(
     await browser.run(`
     return fetch('https://example.org/').then(() => 'loaded', () => 'refused')`),
@@ -109,7 +169,7 @@ for (const [figure, entry] of [
   ['force_transport', 'corde'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
-    await browser.open(url);
+    await open_measurements();
     const dimmed = async () =>
       (await point_opacities(figure)).filter((o) => o < 0.2).length;
     assert.equal(await dimmed(), 0);
@@ -138,7 +198,7 @@ const column = (name) =>
   );
 
 test('Table_SortsFiltersAndShowsFailures', async () => {
-  await browser.open(url);
+  await open_measurements();
   await browser.run(`document.querySelector('[data-table="bdf_order"]').open = true`);
   const header = '[data-table="bdf_order"] thead th:nth-child(9) button';
   assert.ok(
@@ -178,7 +238,7 @@ test('Table_SortsFiltersAndShowsFailures', async () => {
 });
 
 test('UnknownTable_IsShownAsText', async () => {
-  await browser.open(url);
+  await open_measurements();
   await browser.run(
     `document.querySelector('[data-table="benchmark_extra"]').open = true`,
   );
@@ -193,7 +253,7 @@ test('UnknownTable_IsShownAsText', async () => {
 
 for (const width of [390, 768, 1400]) {
   test(`Page_HasNoHorizontalScroll_${width}`, async () => {
-    await browser.open(url, width);
+    await open_measurements(width);
     await browser.run(
       `for (const d of document.querySelectorAll('details')) d.open = true`,
     );
@@ -226,7 +286,7 @@ const overlapping_texts = (figure) =>
 
 for (const width of [390, 1240]) {
   test(`StrandFigures_KeepTheirLabelsApart_${width}`, async () => {
-    await browser.open(url, width);
+    await open_measurements(width);
     for (const figure of ['stability_limit', 'scaling', 'swing', 'work_precision']) {
       assert.deepEqual(await overlapping_texts(figure), [], figure);
     }
@@ -234,7 +294,7 @@ for (const width of [390, 1240]) {
 }
 
 test('Composite_IsDrawnOnTheLineOfRecursive', async () => {
-  await browser.open(url);
+  await open_measurements();
   const [composite, recursive] = await browser.run(`
     const places = (colour) =>
       [...document.querySelectorAll('#plot-stability_limit path[aria-roledescription="point"]')]
@@ -246,7 +306,7 @@ test('Composite_IsDrawnOnTheLineOfRecursive', async () => {
 });
 
 test('Figures_HaveDescriptions', async () => {
-  await browser.open(url);
+  await open_measurements();
   for (const figure of figures) {
     const label = await browser.run(`
       return document.querySelector('#plot-${figure} svg [aria-label]').getAttribute('aria-label')`);

@@ -23,11 +23,7 @@ after(async () => {
   remove(directory);
 });
 
-// A new document, also when only the address's last part differs.
-async function open(hash = '', ...size) {
-  await browser.command('/url', { url: 'about:blank' });
-  await browser.open(url + hash, ...size);
-}
+const open = (hash = '', ...size) => browser.open(url + hash, ...size);
 
 const keys = { right: '\uE014', left: '\uE012', end: '\uE010', home: '\uE011', escape: '\uE00C' };
 const frame = async () =>

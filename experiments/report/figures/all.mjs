@@ -1,4 +1,9 @@
 // The figures in reading order.
+import { cost_choices, cost_of_accuracy } from './cost_of_accuracy.mjs';
+import { hard_cases } from './hard_cases.mjs';
+import { validation } from './validation.mjs';
+import { validation_orders } from './validation_orders.mjs';
+import { validation_tests } from './validation_tests.mjs';
 import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
@@ -13,6 +18,12 @@ import { swing } from './swing.mjs';
 import { work_precision } from './work_precision.mjs';
 
 export const figures = [
+  validation,
+  validation_tests,
+  validation_orders,
+  hard_cases,
+  cost_of_accuracy,
+  cost_choices,
   drift_cost,
   drift_heatmap,
   drift_recovery,

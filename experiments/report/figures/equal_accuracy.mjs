@@ -1,7 +1,7 @@
 // Figure 10: what every strand model costs at the same error, and what it loses.
 import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
-import { spaced } from '../src/strand.mjs';
+import { spaced, variant_name } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -15,18 +15,12 @@ import {
 } from './common.mjs';
 import { series_style } from './palette.mjs';
 
-// "der, inextensible": the model and the word of its choice.
-const name_of = (row) =>
-  row.variant
-    ? `${spaced(row.model)}, ${row.variant.split('=').at(-1)}`
-    : spaced(row.model);
-
 const rows_of = (tables) =>
   (tables.equal_accuracy ?? [])
     .filter((row) => succeeded(row) && is_positive(row.wall_s_per_sim_s))
     .map((row) => ({
       ...row,
-      name: name_of(row),
+      name: variant_name(row),
       wall_ms: 1e3 * row.wall_s_per_sim_s,
       dt_ms: 1e3 * row.dt_s,
       error_pct: 100 * row.tip_error_rel,

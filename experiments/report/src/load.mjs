@@ -16,7 +16,7 @@ function read_manifest(directory, name) {
   }
 }
 
-// {name: {columns, rows, manifest}} for every *.csv in `directory`.
+// {name: {columns, rows, manifest, glossary}} for every *.csv in `directory`.
 export function load_results(directory) {
   let files;
   try {
@@ -34,7 +34,8 @@ export function load_results(directory) {
       const name = basename(file, '.csv');
       const path = join(directory, file);
       const table = parse_csv(readFileSync(path, 'utf8'), path, known_tables[name]);
-      return [name, { ...table, manifest: read_manifest(directory, name) }];
+      const manifest = read_manifest(directory, name);
+      return [name, { ...table, manifest, glossary: manifest?.glossary ?? {} }];
     }),
   );
 }

@@ -23,7 +23,7 @@ const facts = [
 ];
 
 // Claims the experiment itself checked, the ones that did not hold spelled out.
-function checks_html(name, { checks }) {
+export function checks_html(name, { checks }) {
   if (!Array.isArray(checks) || checks.length === 0) return '';
   const failed = checks.filter(({ held }) => !held);
   const items = failed.map(

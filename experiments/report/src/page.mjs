@@ -1,8 +1,11 @@
-// The text of the page: answers, sections, findings, places for figures and tables.
+// The text of the page: tabs, sections, findings, places for figures and tables.
+import { cost_findings } from '../figures/cost_of_accuracy.mjs';
 import { equal_accuracy_findings } from '../figures/equal_accuracy.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
+import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
 import { nodal_limit_findings } from '../figures/nodal_limit.mjs';
+import { validation_findings } from '../figures/validation.mjs';
 import { figures } from '../figures/all.mjs';
 import { escape_html } from './format.mjs';
 import {
@@ -15,14 +18,21 @@ import { scaling_findings } from './findings/scaling.mjs';
 import { stability_answer, stability_findings } from './findings/stability.mjs';
 import { swing_answer, swing_findings } from './findings/swing.mjs';
 import { bdf_findings, work_answer, work_findings } from './findings/work.mjs';
-import { manifest_html } from './manifest.mjs';
+import { checks_html, manifest_html } from './manifest.mjs';
 import { scenes_html } from './scenes_page.mjs';
-import { scaling_summary, stability_summary, swing_summary } from './summaries.mjs';
+import {
+  hard_summary,
+  scaling_summary,
+  stability_summary,
+  swing_summary,
+  validation_summary,
+} from './summaries.mjs';
 import { known_tables } from './tables.mjs';
 
 // Each section: the question, its figure, what its findings are, its tables, and a table
 // of selected numbers where it has one.
-const sections = [
+const none = () => [];
+const measurements = [
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {
     figure: 'drift_heatmap',
@@ -65,6 +75,60 @@ const sections = [
     figure: 'force_transport',
     findings: transport_findings,
     tables: ['force_transport'],
+  },
+];
+
+// The three questions first, each a tab; then the measurements behind them.
+const questions = [
+  {
+    name: 'validation',
+    tab: 'Is it right?',
+    heading: 'Is the physics right?',
+    intro: `Before speed comes truth. Each strand model is put to published tests of slender rods, where the
+      answer for the continuous rod is known from theory: how far a hair bends under its weight, when a rod buckles, at which
+      frequencies it swings. A model that is right comes closer to the rod the finer it is cut.`,
+    sections: [
+      {
+        figure: 'validation',
+        findings: validation_findings,
+        summary: validation_summary,
+        tables: ['validation'],
+      },
+      { figure: 'validation_tests', findings: none, tables: [] },
+      { figure: 'validation_orders', findings: none, tables: [] },
+    ],
+  },
+  {
+    name: 'hard',
+    tab: 'What survives?',
+    heading: 'What survives a hard case?',
+    intro: `Situations that break hair simulators, each with a criterion of physics: energy that nobody put in, a point
+      faster than anything drove it, a body passed through. A run is stable when no bound breaks, not merely when its numbers
+      stay finite, and accurate when it also agrees with a reference.`,
+    sections: [
+      {
+        figure: 'hard_cases',
+        findings: hard_findings,
+        summary: hard_summary,
+        tables: ['hard_cases'],
+      },
+    ],
+  },
+  {
+    name: 'cost',
+    tab: 'What does accuracy cost?',
+    heading: 'What does accuracy cost in time?',
+    intro: `For each scene and each wanted error a search over model, integrator, number of elements and step for the
+      cheapest run that meets it. The error is total: against the continuous rod, on which two models of different families
+      agree, not against a finer run of the same model.`,
+    sections: [
+      {
+        figure: 'cost_of_accuracy',
+        findings: cost_findings,
+        tables: ['cost_of_accuracy'],
+      },
+      { figure: 'cost_choices', findings: none, tables: [] },
+    ],
   },
 ];
 
@@ -136,6 +200,27 @@ function section_html(section, tables, objects) {
   );
 }
 
+const nav_html = (sections) =>
+  `<nav aria-label="Sections">${sections
+    .map(({ figure }) => figures.find(({ id }) => id === figure))
+    .map(({ id, title }) => `<a href="#${id}">${escape_html(title)}</a>`)
+    .join('')}<a href="#made">How this was made</a></nav>`;
+
+function question_html({ heading, intro, sections }, tables, objects) {
+  const checked = sections
+    .flatMap((section) => section.tables)
+    .map((name) => checks_html(name, tables[name]?.manifest ?? {}))
+    .join('');
+  return [
+    `<header><h1>${heading}</h1>\n<p>${escape_html(one_line(intro))}</p>` +
+      `${sections.length > 1 ? nav_html(sections) : ''}</header>`,
+    '<main>',
+    ...sections.map((section) => section_html(section, tables, objects)),
+    checked === '' ? '' : `<section><h2>What the run itself checked</h2>${checked}</section>`,
+    '</main>',
+  ].join('\n');
+}
+
 function header_html(objects) {
   const none = (name) =>
     `No answer yet: ${name}.csv is missing or holds no finished runs.`;
@@ -153,9 +238,7 @@ function header_html(objects) {
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 </header>
-<nav aria-label="Sections">${figures
-    .map(({ id, title }) => `<a href="#${id}">${escape_html(title)}</a>`)
-    .join('')}<a href="#made">How this was made</a></nav>`;
+${nav_html(measurements)}`;
 }
 
 const tab_html = (name, text, selected) =>
@@ -169,12 +252,19 @@ const panel_html = (name, content, attribute = '') =>
 // `tables` as load_results returns them, `objects` the same rows as objects, `scenes` as
 // load_scenes returns them.
 export function body_html(tables, objects, scenes) {
+  const panels = [
+    ...questions.map((question) => ({
+      ...question,
+      html: question_html(question, tables, objects),
+    })),
+    { name: 'measured', tab: 'Measurements', html: measured_html(tables, objects) },
+    { name: 'scenes', tab: 'Scenes', html: scenes_html(scenes) },
+  ];
   return [
     '<div class="tabs"><span class="kicker">tress report</span><div role="tablist" ' +
-      `aria-label="Parts of the report">${tab_html('measured', 'Measurements', true)}` +
-      `${tab_html('scenes', 'Scenes', false)}</div></div>`,
-    panel_html('measured', measured_html(tables, objects)),
-    panel_html('scenes', scenes_html(scenes), ' hidden'),
+      `aria-label="Parts of the report">` +
+      `${panels.map(({ name, tab }, i) => tab_html(name, tab, i === 0)).join('')}</div></div>`,
+    ...panels.map(({ name, html }, i) => panel_html(name, html, i === 0 ? '' : ' hidden')),
   ].join('\n');
 }
 
@@ -185,7 +275,7 @@ function measured_html(tables, objects) {
     '<main>',
     '<noscript><p class="missing">Scripts are off: the text stands, figures lie beside this file ' +
       'as SVG, tables as CSV.</p></noscript>',
-    ...sections.map((section) => section_html(section, tables, objects)),
+    ...measurements.map((section) => section_html(section, tables, objects)),
     extra.length > 0
       ? '<section id="other"><h2>Other tables</h2>' +
         `${extra.map((name) => table_html(name, name, tables[name].rows.length)).join('\n')}</section>`

@@ -4,7 +4,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { as_objects, InputError } from './csv.mjs';
+import { all_objects, InputError } from './csv.mjs';
 import { load_results } from './load.mjs';
 import { body_html } from './page.mjs';
 import { load_scenes } from './scene_file.mjs';
@@ -60,7 +60,10 @@ export function page_html(template, tables, objects, scenes) {
     "default-src 'none'; base-uri 'none'; form-action 'none'; " +
     `img-src data:; style-src 'unsafe-inline'; script-src ${script_hash(script)}`;
   const data = Object.fromEntries(
-    Object.entries(tables).map(([name, { columns, rows }]) => [name, { columns, rows }]),
+    Object.entries(tables).map(([name, { columns, rows, glossary }]) => [
+      name,
+      { columns, rows, glossary },
+    ]),
   );
   const values = {
     POLICY: policy,
@@ -82,9 +85,7 @@ async function main(argv) {
   }
   const tables = load_results(directory);
   const scenes = load_scenes(directory);
-  const objects = Object.fromEntries(
-    Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
-  );
+  const objects = all_objects(tables);
   const template = readFileSync(
     fileURLToPath(new URL('./page.html', import.meta.url)),
     'utf8',

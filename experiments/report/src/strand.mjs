@@ -8,6 +8,10 @@ export const scan_end_s = 0.1;
 
 export const spaced = (name) => String(name ?? '').replaceAll('_', ' ');
 
+// "der, inextensible": the model and the word of its choice.
+export const variant_name = ({ model, variant }) =>
+  variant ? `${spaced(model)}, ${variant.split('=').at(-1)}` : spaced(model);
+
 const papers_step = 'semi_implicit_euler';
 // Reduced coordinates: the models of the seed, whose solvers and tangents are compared.
 export const is_reduced = (row) => /^(super_helix|articulated_chain)/.test(row.model);

@@ -19,7 +19,7 @@ import {
 function grid_html(id, caption, head, rows, texts) {
   if (rows.length === 0) return '';
   const cell = (tag, text, i, scope = '') =>
-    `<${tag}${scope} class="${i < texts ? 'text' : 'number'}">${escape_html(text)}</${tag}>`;
+    `<${tag}${scope} class="${i < texts ? 'text' : 'number'}">${escape_html(text ?? '')}</${tag}>`;
   return (
     `<h3 id="${id}">${escape_html(caption)}</h3>` +
     `<div class="table-box" tabindex="0" role="region" aria-labelledby="${id}"><table class="selected"><thead><tr>` +
@@ -73,6 +73,36 @@ export function stability_summary({ stability_limit: rows = [] }) {
         ),
       ],
     })),
+    3,
+  );
+}
+
+// What each test is, where it comes from and what is asked of a model.
+export function validation_summary({ validation = [], glossary }) {
+  const texts = glossary?.validation?.test ?? {};
+  return grid_html(
+    'validation-about',
+    'The tests',
+    ['test', 'what', 'parameter', 'measured', 'accepted, and why', 'source'],
+    distinct(validation.map((row) => row.test)).map((test) => {
+      const { what, parameter, quantity, why, source } = texts[test] ?? {};
+      return { cells: [spaced(test), what, parameter, quantity, why, source] };
+    }),
+    6,
+  );
+}
+
+// Why each case is hard and what a run must keep.
+export function hard_summary({ hard_cases = [], glossary }) {
+  const texts = glossary?.hard_cases?.case ?? {};
+  return grid_html(
+    'hard-about',
+    'The cases',
+    ['case', 'why it is hard', 'criterion'],
+    distinct(hard_cases.map((row) => row.case)).map((name) => {
+      const { hard_because, criterion } = texts[name] ?? {};
+      return { cells: [spaced(name), hard_because, criterion] };
+    }),
     3,
   );
 }

@@ -2,6 +2,61 @@
 // the file.
 
 export const known_tables = {
+  validation: {
+    title: 'Validation',
+    required: ['test', 'model', 'elements', 'parameter', 'measured', 'reference', 'status'],
+    numeric: [
+      'elements',
+      'parameter',
+      'measured',
+      'reference',
+      'error_rel',
+      'tolerance',
+      'order',
+    ],
+    command: './tress run',
+    program: 'validation',
+  },
+  hard_cases: {
+    title: 'Hard cases',
+    required: ['case', 'model', 'integrator', 'dt_s', 'outcome'],
+    numeric: [
+      'dt_s',
+      'measure',
+      'limit',
+      'error_rel',
+      'error_limit',
+      'reference_gap',
+      't_s',
+      'steps',
+      'newton_iterations',
+      'wall_s',
+    ],
+    command: './tress run',
+    program: 'hard_cases',
+  },
+  cost_of_accuracy: {
+    title: 'Cost of accuracy',
+    required: ['scene', 'kind', 'model', 'integrator', 'elements', 'wall_s_per_sim_s', 'status'],
+    numeric: [
+      'target_error_rel',
+      'budget_ms',
+      'rank',
+      'elements',
+      'dt_s',
+      'error_rel',
+      'error_refined_rel',
+      'reference_gap',
+      'refined_gap',
+      'horizon_s',
+      'wall_s_per_sim_s',
+      'ms_per_frame',
+      'cost_factor',
+      'runs',
+    ],
+    command: './tress run',
+    program: 'cost_of_accuracy',
+  },
   constraint_drift: {
     title: 'Constraint drift',
     required: [

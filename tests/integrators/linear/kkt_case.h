@@ -7,11 +7,14 @@
 
 #include "integrators/linear/kkt.h"
 #include "tests/integrators/linear/matrices.h"
+#include "tests/support/dense.h"
 
 namespace tress::testing_matrices {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using testing_support::dense_solve;
+using testing_support::least_squares;
 
 inline constexpr double eps = std::numeric_limits<double>::epsilon();
 /// What the header promises of x against a dense reference with redundant constraints.
@@ -34,14 +37,10 @@ inline MatrixXd saddle(const Problem& p) {
 
 /// y = pinv(A) (c - H S^-1 b), A = H S^-1 G^T: least squares of least norm.
 inline Solution pseudo_inverse(const Problem& p, const VectorXd& b, const VectorXd& c) {
-  const Eigen::FullPivLU<MatrixXd> s(p.s);
-  const MatrixXd a = p.h * s.solve(p.g.transpose());
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse;
-  inverse.setThreshold(1e-11);
-  inverse.compute(a);
+  const MatrixXd a = p.h * dense_solve(p.s, p.g.transpose());
   Solution r;
-  r.y = inverse.solve(c - p.h * s.solve(b));
-  r.x = s.solve(b + p.g.transpose() * r.y);
+  r.y = least_squares(a, c - p.h * dense_solve(p.s, b), 1e-11);
+  r.x = dense_solve(p.s, b + p.g.transpose() * r.y);
   return r;
 }
 
@@ -100,7 +99,7 @@ class KktOf : public testing::TestWithParam<LinearKind> {
     const Eigen::Index n = b.size();
     VectorXd right(n + c.size());
     right << b, c;
-    const VectorXd expected = saddle(p).fullPivLu().solve(right);
+    const VectorXd expected = dense_solve(saddle(p), right);
     const Solution found = solve(b, c);
     const double size = static_cast<double>(right.size());
     const double bound = eps * size * size * kkt_->report().condition;

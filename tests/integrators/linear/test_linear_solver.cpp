@@ -6,6 +6,7 @@
 #include "integrators/linear/banded.h"
 #include "integrators/linear/linear_solver.h"
 #include "tests/integrators/linear/matrices.h"
+#include "tests/support/dense.h"
 
 namespace tress {
 namespace {
@@ -19,7 +20,7 @@ using testing_matrices::sparse;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 double condition_of(const Eigen::MatrixXd& a) {
-  const Eigen::VectorXd s = a.jacobiSvd().singularValues();
+  const Eigen::VectorXd s = testing_support::singular_values(a);
   return s(0) / s(s.size() - 1);
 }
 
@@ -39,7 +40,7 @@ void expect_solves(LinearSolver& solver, const Eigen::MatrixXd& a,
                        a.lpNorm<Eigen::Infinity>() * static_cast<double>(a.rows()) *
                        x.lpNorm<Eigen::Infinity>();
   EXPECT_LE((a * x - b).lpNorm<Eigen::Infinity>(), bound);
-  const Eigen::VectorXd reference = a.fullPivLu().solve(b);
+  const Eigen::VectorXd reference = testing_support::dense_solve(a, b);
   EXPECT_LE((x - reference).norm(),
             static_cast<double>(a.rows()) * eps * growth * condition_of(a) * x.norm());
 }
@@ -205,8 +206,7 @@ TEST_P(Solver, ConditionHasTheRightOrderOfMagnitude) {
   for (double small : {1e-3, 1e-6, 1e-9, 1e-12}) {
     Random random(9);
     const int n = 20;
-    const Eigen::MatrixXd q =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(random.matrix(n, n)).householderQ();
+    const Eigen::MatrixXd q = testing_support::orthogonal(random.matrix(n, n));
     Eigen::VectorXd spectrum = Eigen::VectorXd::Ones(n);
     spectrum(0) = small;
     const Eigen::MatrixXd a = q * spectrum.asDiagonal() * q.transpose();

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "models/system.h"
+#include "tests/support/dense.h"
 
 namespace tress::testing {
 
@@ -63,7 +64,7 @@ struct Oracle {
       kkt.topRightCorner(n, m) = -gradient().transpose();
       rhs.tail(m) = -bias;
     }
-    const Eigen::VectorXd x = kkt.completeOrthogonalDecomposition().solve(rhs);
+    const Eigen::VectorXd x = testing_support::least_squares(kkt, rhs);
     return x.head(n);
   }
 

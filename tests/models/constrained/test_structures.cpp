@@ -55,7 +55,7 @@ TEST_P(Structures, HaveTheirCountsAndRankDeficiency) {
   EXPECT_EQ(system->layout().coordinates, GetParam().coordinates);
   EXPECT_EQ(system->layout().constraints, GetParam().constraints);
   const Eigen::MatrixXd g = Oracle(*system).gradient();
-  const Eigen::VectorXd singular = g.jacobiSvd().singularValues();
+  const Eigen::VectorXd singular = testing_support::singular_values(g);
   // regular structures of these sizes keep singular values above 1e-2, rounding is 1e-16
   const auto rank = (singular.array() > 1e-9 * singular[0]).count();
   EXPECT_EQ(GetParam().constraints - rank, GetParam().deficiency);

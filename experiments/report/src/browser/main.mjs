@@ -3,15 +3,13 @@ import embed from 'vega-embed';
 import { expressionInterpreter } from 'vega-interpreter';
 import { figures, figure_spec } from '../../figures/all.mjs';
 import { page_theme, vega_config } from '../../figures/common.mjs';
-import { as_objects } from '../csv.mjs';
+import { all_objects } from '../csv.mjs';
 import { Player } from './scenes/player.mjs';
 import { fill_table } from './table.mjs';
 import { start_tabs } from './tabs.mjs';
 
 const tables = JSON.parse(document.getElementById('data').textContent);
-const objects = Object.fromEntries(
-  Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
-);
+const objects = all_objects(tables);
 
 // Only what the row has: an adaptive run has no dt, a fixed-step run no rtol.
 const tooltip_html = (fields, escape) =>
@@ -71,10 +69,14 @@ function add_tools(place) {
 const places = [...document.querySelectorAll('[data-figure]')];
 places.forEach(add_tools);
 
+// Figures of a hidden tab have no width: they are drawn when it is shown.
+let drawn = Promise.resolve();
+const draw_all = () => (drawn = Promise.all([drawn, ...places.map(draw)]));
+
 let pending = 0;
 new ResizeObserver(() => {
   clearTimeout(pending);
-  pending = setTimeout(() => places.forEach(draw), 120);
+  pending = setTimeout(draw_all, 120);
 }).observe(document.body);
 
 for (const details of document.querySelectorAll('[data-table]')) {
@@ -98,6 +100,7 @@ const player = scene_texts.size > 0 ? new Player(scene_texts) : undefined;
 let scenes_drawn;
 
 start_tabs((scenes_shown) => {
+  draw_all();
   if (player === undefined) return;
   player.shown = scenes_shown;
   if (!scenes_shown) {
@@ -107,6 +110,6 @@ start_tabs((scenes_shown) => {
   }
 });
 
-Promise.all([...places.map(draw), scenes_drawn]).then(() => {
+Promise.all([draw_all(), scenes_drawn]).then(() => {
   document.documentElement.dataset.ready = 'yes';
 });

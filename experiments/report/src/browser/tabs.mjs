@@ -1,4 +1,5 @@
-// The two tabs of the page. An address that starts with #scene opens the scenes.
+// The tabs of the page. An address that starts with #scene opens the scenes, one that
+// names a section the tab that it is in.
 const tabs = [...document.querySelectorAll('[role="tab"]')];
 const panel_of = (tab) => document.getElementById(tab.getAttribute('aria-controls'));
 
@@ -21,8 +22,11 @@ export function start_tabs(changed) {
   const follow_address = () => {
     if (location.hash.startsWith('#scene')) choose(named('tab-scenes'));
     else if (location.hash !== '') {
-      choose(named('tab-measured'));
-      document.getElementById(location.hash.slice(1))?.scrollIntoView();
+      const target = document.getElementById(location.hash.slice(1));
+      const panel = target?.closest('[role="tabpanel"]');
+      if (!panel) return;
+      choose(tabs.find((tab) => panel_of(tab) === panel));
+      target.scrollIntoView();
     }
   };
   tabs.forEach((tab, i) => {

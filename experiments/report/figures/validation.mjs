@@ -1,0 +1,172 @@
+// Every strand model against every published test: a matrix of errors.
+import { distinct, group_by, is_number, is_set } from '../src/tables.mjs';
+import { format_number } from '../src/format.mjs';
+import { spaced, variant_name } from '../src/strand.mjs';
+import { tooltips } from './common.mjs';
+
+export const answered = (row) => is_number(row.error_rel);
+
+// One cell of the matrix: the worst error over the parameters that were judged, or why
+// there is none.
+function cell(members) {
+  const [{ test, name }] = members;
+  const finest = Math.max(...members.map((row) => row.elements));
+  const judged = members.filter((row) => answered(row) && is_set(row.judged));
+  const told = members.filter((row) => answered(row) && row.elements === finest);
+  const counted = judged.length > 0 ? judged : told;
+  const missing = members.filter((row) => !['ok', 'refused'].includes(row.status));
+  const reason = (missing[0] ?? members.find((row) => row.reason))?.reason ?? '';
+  const shared = { test: spaced(test), name, reason };
+  if (counted.length === 0)
+    return {
+      ...shared,
+      outcome: missing.length > 0 ? 'no answer' : 'does not apply',
+      label: missing.length > 0 ? '–' : '',
+    };
+  const worst = counted.reduce((a, b) => (b.error_rel > a.error_rel ? b : a));
+  const within = counted.every((row) => is_set(row.passed));
+  const lost = missing.some((row) => is_set(row.judged) || row.elements === finest);
+  return {
+    ...shared,
+    outcome: within && !lost ? 'within' : 'outside',
+    error_pct: 100 * worst.error_rel,
+    tolerance_pct: 100 * worst.tolerance,
+    at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
+    label: format_number(100 * worst.error_rel, 2),
+    reason: lost ? reason : '',
+  };
+}
+
+export const named = (tables) =>
+  (tables.validation ?? []).map((row) => ({ ...row, name: variant_name(row) }));
+
+export const validation_cells = (tables) =>
+  [...group_by(named(tables), (row) => `${row.test}|${row.name}`).values()].map(cell);
+
+const outcomes = {
+  within: ['within the accepted error', '#009E73'],
+  outside: ['outside', '#D55E00'],
+  'no answer': ['no answer found', '#B6407F'],
+  'does not apply': ['does not apply to this model', '#9aa1aa'],
+};
+
+export function validation_findings(tables) {
+  const cells = validation_cells(tables);
+  const by_model = [...group_by(cells, (row) => row.name)].map(([name, members]) => {
+    const told = members.filter((row) => row.outcome !== 'does not apply');
+    return { name, told, within: told.filter((row) => row.outcome === 'within') };
+  });
+  const sentence = ({ name, told, within }) => {
+    const wrong = told.filter((row) => row.outcome !== 'within');
+    const list = wrong
+      .map((row) =>
+        row.outcome === 'outside'
+          ? `${row.test} (${format_number(row.error_pct)} % off)`
+          : `${row.test} (no answer)`,
+      )
+      .join(', ');
+    return (
+      `${name}: ${within.length} of ${told.length} tests within the accepted error` +
+      `${wrong.length > 0 ? `; not: ${list}` : ''}.`
+    );
+  };
+  return by_model
+    .sort((a, b) => b.within.length - a.within.length)
+    .filter(({ told }) => told.length > 0)
+    .map(sentence);
+}
+
+export const validation = {
+  id: 'validation',
+  title: 'Is the physics right?',
+  table: 'validation',
+  caption: `Each row is a strand model, each column a published test of slender rods. The number
+    is the largest error in per cent of what the test measures, over the parameters of the test, at
+    the numbers of elements at which it is judged. Grey: the model's kinematics do not know
+    what the test is about (a planar model and twist, say); the table gives the reason.
+    Made from validation.csv.`,
+
+  rows: validation_cells,
+
+  spec(tables, { width, theme }) {
+    const rows = validation_cells(tables);
+    const tests = distinct(rows.map((row) => row.test));
+    const known = Object.entries(outcomes).filter(([id]) =>
+      rows.some((row) => row.outcome === id),
+    );
+    const step = Math.max(38, Math.min(64, Math.floor((width - 190) / tests.length)));
+    const x = {
+      field: 'test',
+      type: 'nominal',
+      title: null,
+      sort: tests,
+      axis: { orient: 'top', labelAngle: -50, labelLimit: 0, domain: false, ticks: false },
+    };
+    const y = {
+      field: 'name',
+      type: 'nominal',
+      title: null,
+      sort: distinct(rows.map((row) => row.name)),
+      axis: { labelLimit: 0, domain: false, ticks: false },
+    };
+    return {
+      width: { step },
+      height: { step: 26 },
+      data: { values: rows },
+      layer: [
+        {
+          mark: { type: 'rect', cornerRadius: 3, stroke: theme.background, strokeWidth: 2 },
+          encoding: {
+            x,
+            y,
+            color: {
+              field: 'outcome',
+              type: 'nominal',
+              title: null,
+              scale: {
+                domain: known.map(([id]) => id),
+                range: known.map(([, [, colour]]) => colour),
+              },
+              legend: {
+                orient: 'bottom',
+                direction: 'horizontal',
+                columns: width > 600 ? 4 : 2,
+                symbolType: 'square',
+                labelLimit: 0,
+                labelExpr: `{${known
+                  .map(([id, [text]]) => `'${id}': '${text}'`)
+                  .join(', ')}}[datum.value]`,
+              },
+            },
+            opacity: {
+              condition: { test: "datum.outcome == 'does not apply'", value: 0.25 },
+              value: 0.85,
+            },
+            tooltip: tooltips([
+              ['name', 'model'],
+              ['test', 'test'],
+              ['outcome', 'outcome'],
+              ['error_pct', 'largest error (%)', '.3g'],
+              ['tolerance_pct', 'accepted (%)', '.3g'],
+              ['at', 'at the parameter'],
+              ['reason', 'reason'],
+            ]),
+          },
+        },
+        {
+          mark: { type: 'text', fontSize: 10.5, color: '#ffffff', fontWeight: 600 },
+          encoding: { x, y, text: { field: 'label' } },
+        },
+      ],
+    };
+  },
+
+  describe(tables) {
+    const rows = validation_cells(tables);
+    const count = (id) => rows.filter((row) => row.outcome === id).length;
+    return `Matrix of ${distinct(rows.map((row) => row.name)).length} models and
+      ${distinct(rows.map((row) => row.test)).length} tests: ${count('within')} within the accepted
+      error, ${count('outside')} outside, ${count('no answer')} without an answer,
+      ${count('does not apply')} that do not apply.`;
+  },
+};
