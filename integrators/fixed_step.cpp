@@ -33,17 +33,26 @@ Status FixedStep::start(double t, In q, In v) {
   std::fill(lambda_.begin(), lambda_.end(), 0.0);
   t_ = t;
   failure_.clear();
+  dynamics_.forget();
   const Stats fresh{.solver = dynamics_.stats.solver};
   dynamics_.stats = fresh;
   const Status s = reset(t);
   return s == Status::ok ? s : fail(s, t, "no acceleration at the initial state");
 }
 
-Status FixedStep::fail(Status status, double t, const std::string& what) {
+Status FixedStep::end(Status status, double t, const std::string& what) {
   char time[32];
   std::snprintf(time, sizeof time, "%.9g", t);
   failure_ = what + " at t = " + time + " s";
   return status == Status::ok ? Status::fatal : status;
+}
+
+Status FixedStep::fail(Status status, double t, const std::string& what) {
+  const Status s = end(status, t, what);
+  failure_ += ", step " + std::to_string(dynamics_.stats.steps + 1);
+  const std::string words = dynamics_.culprit(t, q_, v_);
+  if (!words.empty()) failure_ += ": not finite: " + words;
+  return s;
 }
 
 Status FixedStep::finish_step(double t) {
@@ -76,9 +85,10 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
       return fail(s, t, "no solution for the step");
     }
     t_ = i + 1 == steps ? t_end : t + h;
-    ++dynamics_.stats.steps;
     if (const Status s = finish_step(t_); s != Status::ok) return s;
-    if (each_step && !each_step(t_, q_, v_)) return fail(Status::fatal, t_, "stopped");
+    ++dynamics_.stats.steps;
+    dynamics_.forget();
+    if (each_step && !each_step(t_, q_, v_)) return end(Status::fatal, t_, "stopped");
   }
   return Status::ok;
 }

@@ -42,6 +42,9 @@ class FixedStep : public Integrator {
   std::vector<double> lambda_;  // (m) the last multipliers, a guess for the next ones
 
  private:
+  /// Ends the run with `what` at time t as failure().
+  Status end(Status status, double t, const std::string& what);
+  /// The same of a step that failed: with its number, and what was not finite in it.
   Status fail(Status status, double t, const std::string& what);
   Status finish_step(double t);
 

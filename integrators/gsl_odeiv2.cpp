@@ -65,6 +65,7 @@ class GslOdeiv2 final : public Integrator {
     h_ = first_step();
     dynamics_.stats = Stats{.solver = dynamics_.stats.solver};
     failure_.clear();
+    dynamics_.forget();
     gsl_odeiv2_driver_reset(driver_.get());
     return Status::ok;
   }
@@ -90,7 +91,8 @@ class GslOdeiv2 final : public Integrator {
       if (dynamics_.system().accept(t_, q_part(), v_part())) {
         gsl_odeiv2_driver_reset(driver_.get());
       }
-      if (each_step && !each_step(t_, q(), v())) return fail("stopped");
+      if (stuck == 0) dynamics_.forget();
+      if (each_step && !each_step(t_, q(), v())) return end("stopped");
     }
     return Status::ok;
   }
@@ -113,11 +115,20 @@ class GslOdeiv2 final : public Integrator {
   InOut q_part() { return InOut(y_).first(n_); }
   InOut v_part() { return InOut(y_).last(n_); }
 
-  Status fail(const char* what) {
+  Status end(const char* what) {
     char text[32];
     std::snprintf(text, sizeof text, " at t = %.9g s", t_);
     failure_ = std::string(what) + text;
     return Status::fatal;
+  }
+
+  /// The same with the number of the step and what was not finite in it.
+  Status fail(const char* what) {
+    const Status s = end(what);
+    failure_ += ", step " + std::to_string(dynamics_.stats.steps + 1);
+    const std::string words = dynamics_.culprit(t_, q(), v());
+    if (!words.empty()) failure_ += ": not finite: " + words;
+    return s;
   }
 
   static int rhs(double t, const double* y, double* dydt, void* self_pointer) {

@@ -21,59 +21,10 @@ double first_to_last(const std::vector<double>& points) {
                     points[tip + 2] - points[2]);
 }
 
-/// Watches one run; an Observer that never allocates.
-class Judge {
- public:
-  Judge(System& system, const StabilityBounds& bounds, const State& start)
-      : bounds_(bounds) {
-    if (bounds.energy < StabilityBounds::none) {
-      energetics_ = system.energetics();
-      if (energetics_ == nullptr) missing("energy");
-      energy_start_ = energetics_->energy(0, start.q, start.v).total();
-    }
-    if (bounds.reach < StabilityBounds::none || bounds.speed < StabilityBounds::none) {
-      points_ = system.material_points();
-      if (points_ == nullptr) missing("material points");
-      x_.resize(3 * static_cast<std::size_t>(points_->count()));
-      u_.resize(x_.size());
-    }
-  }
-
-  /// False as soon as a bound is broken. Comparisons are such that NaN breaks it.
-  bool operator()(double t, In q, In v) {
-    if (energetics_ != nullptr) {
-      const double gain = energetics_->energy(t, q, v).total() - energy_start_;
-      see(run.energy_gain, gain, bounds_.energy, Broken::energy);
-    }
-    if (points_ != nullptr) {
-      points_->positions(t, q, x_);
-      points_->velocities(t, q, v, u_);
-      see(run.reach, first_to_last(x_), bounds_.reach, Broken::reach);
-      see(run.speed, first_to_last(u_), bounds_.speed, Broken::speed);
-    }
-    return run.stable();
-  }
-
-  StabilityRun run;
-
- private:
-  [[noreturn]] static void missing(const std::string& what) {
-    throw InputError("stability of this scene is judged by the model's " + what,
-                     "stability judge", "choose a model that has it");
-  }
-
-  void see(double& largest, double value, double bound, Broken kind) {
-    largest = std::max(largest, value);
-    if (value <= bound || !run.stable()) return;
-    run.broken = std::isfinite(value) ? kind : Broken::not_finite;
-  }
-
-  StabilityBounds bounds_;
-  Energetics* energetics_ = nullptr;
-  MaterialPoints* points_ = nullptr;
-  double energy_start_ = 0;
-  std::vector<double> x_, u_;
-};
+[[noreturn]] void missing(const std::string& what) {
+  throw InputError("stability of this scene is judged by the model's " + what,
+                   "stability judge", "choose a model that has it");
+}
 
 struct Trial {
   double dt;
@@ -122,21 +73,45 @@ std::string_view name(Broken broken) {
   return "no solution";
 }
 
-std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
-                                      const Options& options, const State& start,
-                                      double t_end, const StabilityBounds& bounds,
-                                      const GiveUp& give_up) {
-  // 1e-9: a whole number of steps up to rounding is not run one step longer.
-  const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
-  Judge judge(system, bounds, start);
-  bool given_up = false;
-  const Simulation run = simulate(integrator, system, options, start,
-                                  steps * options.step, [&](double t, In q, In v) {
-                                    given_up = give_up && give_up();
-                                    return !given_up && judge(t, q, v);
-                                  });
-  if (given_up) return {};
-  StabilityRun result = std::move(judge.run);
+StabilityJudge::StabilityJudge(System& system, const StabilityBounds& bounds,
+                               const State& start)
+    : bounds_(bounds) {
+  if (bounds.energy < StabilityBounds::none) {
+    energetics_ = system.energetics();
+    if (energetics_ == nullptr) missing("energy");
+    energy_start_ = energetics_->energy(0, start.q, start.v).total();
+  }
+  if (bounds.reach < StabilityBounds::none || bounds.speed < StabilityBounds::none) {
+    points_ = system.material_points();
+    if (points_ == nullptr) missing("material points");
+    x_.resize(3 * static_cast<std::size_t>(points_->count()));
+    u_.resize(x_.size());
+  }
+}
+
+/// Comparisons are such that NaN breaks a bound.
+bool StabilityJudge::operator()(double t, In q, In v) {
+  if (energetics_ != nullptr) {
+    const double gain = energetics_->energy(t, q, v).total() - energy_start_;
+    see(run_.energy_gain, gain, bounds_.energy, Broken::energy);
+  }
+  if (points_ != nullptr) {
+    points_->positions(t, q, x_);
+    points_->velocities(t, q, v, u_);
+    see(run_.reach, first_to_last(x_), bounds_.reach, Broken::reach);
+    see(run_.speed, first_to_last(u_), bounds_.speed, Broken::speed);
+  }
+  return run_.stable();
+}
+
+void StabilityJudge::see(double& largest, double value, double bound, Broken kind) {
+  largest = std::max(largest, value);
+  if (value <= bound || !run_.stable()) return;
+  run_.broken = std::isfinite(value) ? kind : Broken::not_finite;
+}
+
+StabilityRun StabilityJudge::verdict(const Simulation& run) const {
+  StabilityRun result = run_;
   result.t = run.t;
   result.stats = run.stats;
   if (run.status != Status::ok && result.stable()) {
@@ -145,6 +120,23 @@ std::optional<StabilityRun> judge_run(std::string_view integrator, System& syste
     result.failure = run.failure;
   }
   return result;
+}
+
+std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
+                                      const Options& options, const State& start,
+                                      double t_end, const StabilityBounds& bounds,
+                                      const GiveUp& give_up) {
+  // 1e-9: a whole number of steps up to rounding is not run one step longer.
+  const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
+  StabilityJudge judge(system, bounds, start);
+  bool given_up = false;
+  const Simulation run = simulate(integrator, system, options, start,
+                                  steps * options.step, [&](double t, In q, In v) {
+                                    given_up = give_up && give_up();
+                                    return !given_up && judge(t, q, v);
+                                  });
+  if (given_up) return {};
+  return judge.verdict(run);
 }
 
 StepLimit find_step_limit(const StepSearch& search,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "experiments/harness/simulation.h"
 
@@ -37,13 +38,35 @@ struct StabilityRun {
   bool stable() const { return broken == Broken::nothing; }
 };
 
+/// Watches one run for what breaks first; an Observer that never allocates. The root is
+/// the system's first material point, the tip its last.
+class StabilityJudge {
+ public:
+  /// Throws InputError when a bound needs a form that the system lacks.
+  StabilityJudge(System& system, const StabilityBounds& bounds, const State& start);
+
+  /// False as soon as a bound is broken.
+  bool operator()(double t, In q, In v);
+  /// Of the run that was watched, once it has ended.
+  StabilityRun verdict(const Simulation& run) const;
+
+ private:
+  void see(double& largest, double value, double bound, Broken kind);
+
+  StabilityBounds bounds_;
+  Energetics* energetics_ = nullptr;
+  MaterialPoints* points_ = nullptr;
+  double energy_start_ = 0;
+  std::vector<double> x_, u_;
+  StabilityRun run_;
+};
+
 /// True ends the work: a budget is used up.
 using GiveUp = std::function<bool()>;
 
 /// Steps of exactly `options.step` until `t_end` is reached or passed, so that what is
 /// judged is the step asked for, not one that divides t_end; ends where a bound breaks.
-/// The root is the system's first material point, the tip its last. Empty when given up.
-/// Throws InputError when a bound needs a form that the system lacks.
+/// Empty when given up. Throws as StabilityJudge.
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
                                       double t_end, const StabilityBounds& bounds,

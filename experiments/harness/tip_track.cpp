@@ -7,80 +7,54 @@
 #include "experiments/harness/simulation.h"
 #include "experiments/harness/timing.h"
 #include "integrators/catalogue.h"
-#include "models/math/vec3.h"
 
 namespace tress {
-namespace {
 
-/// Where the tip is at equally spaced times, by the cubic through its places and
-/// velocities at both ends of a step. Places are read while the run is there: what q
-/// means may change as it goes on (System::accept).
-class TipSamples {
- public:
-  /// `growth`: a step is at most so many times as long as the one before.
-  TipSamples(System& system, double t_end, int count, double growth)
-      : points_(*system.material_points()),
-        t_end_(t_end),
-        count_(count),
-        growth_(growth),
-        x_(3 * static_cast<std::size_t>(points_.count())) {}
+TipSamples::TipSamples(System& system, double t_end, int count, double growth)
+    : points_(*system.material_points()),
+      t_end_(t_end),
+      count_(count),
+      growth_(growth),
+      x_(3 * static_cast<std::size_t>(points_.count())) {}
 
-  std::vector<double> tips;  // (3 samples)
+void TipSamples::start(In q, In v) {
+  tips.clear();
+  before_ = read(0, q, v);
+}
 
-  void start(In q, In v) {
-    tips.clear();
-    before_ = read(0, q, v);
-  }
-
-  void step_to(double t, In q, In v) {
-    const double h = t - before_.t;
-    // Only a step that ends beyond the next time of interest is read.
-    if (next() <= t + growth_ * h) {
-      const End now = read(t, q, v);
-      while (3 * static_cast<std::size_t>(count_) > tips.size() && next() <= t) {
-        interpolate(now);
-      }
-      before_ = now;
-    } else {
-      before_.t = t;
+void TipSamples::step_to(double t, In q, In v) {
+  const double h = t - before_.t;
+  // Only a step that ends beyond the next time of interest is read.
+  if (next() <= t + growth_ * h) {
+    const End now = read(t, q, v);
+    while (3 * static_cast<std::size_t>(count_) > tips.size() && next() <= t) {
+      interpolate(now);
     }
+    before_ = now;
+  } else {
+    before_.t = t;
   }
+}
 
- private:
-  struct End {
-    double t;
-    Vec x, u;
-  };
+double TipSamples::next() const {
+  const std::size_t taken = tips.size() / 3;
+  return t_end_ * (static_cast<double>(taken + 1) / count_);
+}
 
-  double next() const {
-    const std::size_t taken = tips.size() / 3;
-    return t_end_ * (static_cast<double>(taken + 1) / count_);
-  }
+TipSamples::End TipSamples::read(double t, In q, In v) {
+  const std::size_t last = x_.size() - 3;
+  points_.positions(t, q, x_);
+  const Vec x = load3(&x_[last]);
+  points_.velocities(t, q, v, x_);
+  return {t, x, load3(&x_[last])};
+}
 
-  End read(double t, In q, In v) {
-    const std::size_t last = x_.size() - 3;
-    points_.positions(t, q, x_);
-    const Vec x = load3(&x_[last]);
-    points_.velocities(t, q, v, x_);
-    return {t, x, load3(&x_[last])};
-  }
-
-  void interpolate(const End& now) {
-    const double h = now.t - before_.t, s = (next() - before_.t) / h, r = 1 - s;
-    const Vec x = r * r * (1 + 2 * s) * before_.x + s * s * (1 + 2 * r) * now.x +
-                  h * s * r * (r * before_.u - s * now.u);
-    tips.insert(tips.end(), {x.x, x.y, x.z});
-  }
-
-  MaterialPoints& points_;
-  double t_end_;
-  int count_;
-  double growth_;
-  std::vector<double> x_;
-  End before_{};
-};
-
-}  // namespace
+void TipSamples::interpolate(const End& now) {
+  const double h = now.t - before_.t, s = (next() - before_.t) / h, r = 1 - s;
+  const Vec x = r * r * (1 + 2 * s) * before_.x + s * s * (1 + 2 * r) * now.x +
+                h * s * r * (r * before_.u - s * now.u);
+  tips.insert(tips.end(), {x.x, x.y, x.z});
+}
 
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "integrators/linear/finite.h"
+
 namespace tress {
 namespace {
 
@@ -36,7 +38,8 @@ Dynamics::Dynamics(System& system, const Options& options)
     alpha_ = options.alpha;
     beta_ = options.beta;
   }
-  for (auto* values : {&q_typ_, &v_typ_, &zero_n_, &q_shift_, &v_shift_, &r_base_}) {
+  for (auto* values :
+       {&q_typ_, &v_typ_, &zero_n_, &q_shift_, &v_shift_, &r_base_, &lost_q_, &lost_v_}) {
     values->assign(size(n()), 0.0);
   }
   for (auto* values : {&g_typ_, &zero_m_, &g_, &g_dot_, &c_base_}) {
@@ -62,8 +65,8 @@ Dynamics::Dynamics(System& system, const Options& options)
 
 Status Dynamics::residual(double t, In q, In v, In a, In lambda, Out r, Out c) noexcept {
   ++stats.residuals;
-  if (const Status s = system_.residual(t, q, v, a, r); s != Status::ok) return s;
-  if (constraints_ == nullptr) return Status::ok;
+  const Status answer = noted(system_.residual(t, q, v, a, r), t, q, v);
+  if (answer != Status::ok || constraints_ == nullptr) return answer;
   if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
   const Pattern& pattern = constraints_->pattern();
   for (int k = 0; k < m(); ++k) {
@@ -94,8 +97,11 @@ Status Dynamics::constraint_row(double t, In q, In v, In a, Out c) noexcept {
 Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noexcept {
   ++stats.linearizations;
   weights_ = w;
-  if (constraints_ == nullptr) return system_.linearize(t, q, v, a, w);
-  if (const Status s = sparse_->values(t, q, v, a, w, s_); s != Status::ok) return s;
+  const Status answer =
+      noted(constraints_ == nullptr ? system_.linearize(t, q, v, a, w)
+                                    : sparse_->values(t, q, v, a, w, s_),
+            t, q, v);
+  if (answer != Status::ok || constraints_ == nullptr) return answer;
   if (w.pos != 0) {
     const Status s = constraints_->add_curvature(t, q, lambda, -w.pos, s_);
     if (s != Status::ok) return s;
@@ -165,7 +171,7 @@ Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv
 Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
   if (explicit_ != nullptr) {
     ++stats.residuals;
-    return explicit_->acceleration(t, q, v, a);
+    return noted(explicit_->acceleration(t, q, v, a), t, q, v);
   }
   const bool position_level = position_level_;
   position_level_ = false;
@@ -177,6 +183,27 @@ Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
   for (double& entry : a) entry = -entry;
   for (double& entry : lambda) entry = -entry;
   return solve(a, lambda);
+}
+
+/// A state that is itself not finite comes of steps gone wrong: it explains nothing where
+/// there is another.
+void Dynamics::keep_lost(double t, In q, In v) noexcept {
+  if (lost_ == Lost::at_finite_state) return;
+  const bool finite = all_finite(q) && all_finite(v);
+  if (lost_ == Lost::at_infinity && !finite) return;
+  lost_ = finite ? Lost::at_finite_state : Lost::at_infinity;
+  lost_t_ = t;
+  std::ranges::copy(q, lost_q_.begin());
+  std::ranges::copy(v, lost_v_.begin());
+}
+
+std::string Dynamics::culprit(double t, In q, In v) {
+  const auto there = [this] { return system_.not_finite(lost_t_, lost_q_, lost_v_); };
+  std::string words;
+  if (lost_ == Lost::at_finite_state) words = there();
+  if (words.empty()) words = system_.not_finite(t, q, v);
+  if (words.empty() && lost_ == Lost::at_infinity) words = there();
+  return words;
 }
 
 }  // namespace tress

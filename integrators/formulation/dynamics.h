@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "integrators/integrator.h"
@@ -56,12 +57,26 @@ class Dynamics {
   /// step, after which what has no mass is nearly in equilibrium.
   Status accelerate(double t, In q, In v, Out a, Out lambda) noexcept;
 
+  /// Where numbers stopped being finite, in the model's words (System::not_finite): at
+  /// the state at which the system gave no answer since forget(), the first finite one of
+  /// several, else at the given one. Empty when the model finds nothing there.
+  std::string culprit(double t, In q, In v);
+  /// After a step that went well. Nothing else is done while all is finite.
+  void forget() { lost_ = Lost::nowhere; }
+
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
   In q_typ() const { return q_typ_; }
   In v_typ() const { return v_typ_; }
   In g_typ() const { return g_typ_; }
 
  private:
+  enum class Lost { nowhere, at_infinity, at_finite_state };
+
+  Status noted(Status s, double t, In q, In v) noexcept {
+    if (s != Status::ok) keep_lost(t, q, v);
+    return s;
+  }
+  void keep_lost(double t, In q, In v) noexcept;
   Status constraint_row(double t, In q, In v, In a, Out c) noexcept;
   Status constraint_tangent(double t, In q, In v, In a, Weights w) noexcept;
 
@@ -80,6 +95,9 @@ class Dynamics {
   std::vector<double> s_, gt_, ht_, rate_gt_;                         // matrix values
   std::vector<double> zero_n_, zero_m_, q_shift_, v_shift_, r_base_;  // scratch
   std::vector<double> g_, g_dot_, c_base_;
+  Lost lost_ = Lost::nowhere;  // at the state below
+  double lost_t_ = 0;
+  std::vector<double> lost_q_, lost_v_;
 };
 
 /// Largest |x_i| / typ_i; infinity when any entry is not finite.

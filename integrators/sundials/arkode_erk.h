@@ -21,6 +21,7 @@ class ArkodeErk final : public Driver {
   Stats counters() const override;
   Stats work() const override { return equations_.work(); }
   std::string reason(int code) const override;
+  Dynamics& dynamics() override { return equations_.rates(); }
 
   FirstOrder equations_;
   ErkstepMemory memory_;

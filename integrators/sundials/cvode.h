@@ -17,6 +17,7 @@ class Cvode : public Driver {
   Stats counters() const override;
   Stats work() const override { return equations_.work(); }
   std::string reason(int code) const override;
+  Dynamics& dynamics() override { return equations_.rates(); }
 
   FirstOrder equations_;
   CvodeMemory memory_;

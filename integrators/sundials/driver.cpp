@@ -55,6 +55,7 @@ Status Driver::start(double t, In q, In v) {
   std::copy(q.begin(), q.end(), y_.values().begin());
   std::copy(v.begin(), v.end(), y_.values().begin() + static_cast<std::ptrdiff_t>(n_));
   failure_.clear();
+  dynamics().forget();
   steps_ = 0;
   carried_ = {};
   work_before_ = work();
@@ -99,7 +100,10 @@ Status Driver::advance(double t_end, const Observer& each_step) {
     ++steps_;
     restarted_ = false;
     lost = length > time_resolution * std::abs(time_) ? 0 : lost + 1;
-    if (lost > most_lost_steps) return fail("stuck: steps below the resolution of time");
+    if (lost == 0) dynamics().forget();
+    if (lost > most_lost_steps) {
+      return fail_in_step("stuck: steps below the resolution of time");
+    }
     const Out y = y_.values();
     if (system_.accept(time_, y.first(n_), y.subspan(n_, n_))) {
       carried_ = added_counters();
@@ -117,12 +121,20 @@ Status Driver::fail(const std::string& why) {
   return Status::fatal;
 }
 
+Status Driver::fail_in_step(std::string why) {
+  const std::string words = dynamics().culprit(time_, q(), v());
+  if (!words.empty()) {
+    why += ", step " + std::to_string(steps_ + 1) + ": not finite: " + words;
+  }
+  return fail(why);
+}
+
 Status Driver::fail_with(int code) {
   std::string why = reason(code);
   const std::string said = context_.messages.last();
   if (!said.empty()) why += " (" + said + ")";
   std::ranges::replace(why, '\n', ' ');
-  return fail(why);
+  return fail_in_step(std::move(why));
 }
 
 Stats Driver::added_counters() const {

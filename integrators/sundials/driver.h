@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "integrators/formulation/dynamics.h"
 #include "integrators/integrator.h"
 #include "integrators/sundials/sundials.h"
 
@@ -42,6 +43,8 @@ class Driver : public Integrator {
   /// Residuals, linearizations and solves since construction, and the solver.
   virtual Stats work() const = 0;
   virtual std::string reason(int code) const = 0;
+  /// Of the equations of motion, which knows what was not finite.
+  virtual Dynamics& dynamics() = 0;
 
   const Options options_;
   SundialsContext context_;
@@ -50,6 +53,8 @@ class Driver : public Integrator {
 
  private:
   Status fail(const std::string& why);
+  /// The same with the number of the step and what was not finite in it.
+  Status fail_in_step(std::string why);
   Status fail_with(int code);
   Status begin();
   Stats added_counters() const;

@@ -47,6 +47,7 @@ class FirstOrder final : public NewtonMatrix {
   void begin() { gave_up_ = false; }
 
   Stats work() const;
+  Dynamics& rates() { return rates_; }
 
   /// CVRhsFn and ARKRhsFn; user data: a FirstOrder.
   static int rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot,

@@ -28,6 +28,7 @@ class Ida final : public Driver {
   Stats counters() const override;
   Stats work() const override { return newton_->work(); }
   std::string reason(int code) const override;
+  Dynamics& dynamics() override { return form_.dynamics; }
 
   DaeForm form_;
   std::unique_ptr<DaeNewton> newton_;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "integrators/linear/finite.h"
 #include "integrators/linear/sparse_pattern.h"
 #include "models/input_error.h"
+#include "models/not_finite.h"
 
 namespace tress {
 namespace {
@@ -204,7 +206,7 @@ Status ParticleSystem::residual(double t, In q, In v, In a, Out r) noexcept {
     load(t, q, v);
     for (std::size_t i = 0; i < load_.size(); ++i) r[i] -= load_[i];
   }
-  return Status::ok;
+  return all_finite(r) ? Status::ok : Status::retry;
 }
 
 /// blocks_ = w.acc m I - w.pos df/dx - w.vel df/dv per particle.
@@ -265,7 +267,21 @@ Status ParticleSystem::acceleration(double t, In q, In v, Out a) noexcept {
   for (std::size_t i = 0; i < mass_.size(); ++i) {
     store3((1 / mass_[i]) * load3(&load_[3 * i]), &a[3 * i]);
   }
-  return Status::ok;
+  return all_finite(a) ? Status::ok : Status::retry;
+}
+
+std::string ParticleSystem::not_finite(double t, In q, In v) {
+  const auto particles = 3 * static_cast<std::size_t>(particles_);
+  const auto of_coordinates = [particles](In x, const std::string& what) {
+    return first_words(
+        [&] { return not_finite_place(x.first(particles), 3, what + " of particle"); },
+        [&] {
+          return not_finite_place(x.subspan(particles), 1, what + " of parameter");
+        });
+  };
+  return first_words([&] { return of_coordinates(q, "coordinates"); },
+                     [&] { return of_coordinates(v, "rates"); },
+                     [&] { return not_finite_load(scene_.effects, t, points(q, v)); });
 }
 
 Energy ParticleSystem::energy(double t, In q, In v) {

@@ -73,6 +73,7 @@ class ParticleSystem final : public System,
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
+  std::string not_finite(double t, In q, In v) override;
 
   SparseForm* sparse_form() override { return this; }
   ExplicitForm* explicit_form() override;

@@ -5,6 +5,14 @@
 
 namespace tress {
 
+std::string CoupledStrands::not_finite(double t, In q, In v) {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const std::string words = strands_[k]->not_finite(t, part(q, k), part(v, k));
+    if (!words.empty()) return "strand " + std::to_string(k) + ": " + words;
+  }
+  return {};
+}
+
 Energetics* CoupledStrands::energetics() {
   const bool all = std::ranges::all_of(
       strands_, [](const auto& strand) { return strand->energetics() != nullptr; });

@@ -1,9 +1,11 @@
-// What a strand of redundant coordinates tells of itself: energy, momentum, places.
+// What a strand of redundant coordinates tells of itself: energy, momentum, places, and
+// what is not finite.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "models/maximal/maximal_system.h"
+#include "models/not_finite.h"
 
 namespace tress {
 
@@ -113,6 +115,31 @@ bool MaximalSystem::stretch(double t, In q, double& relative) {
     relative = std::max(relative, std::abs(std::sqrt(dot(e, e)) / strand_.edges[i] - 1));
   }
   return true;
+}
+
+std::string MaximalSystem::not_finite(double t, In q, In v) {
+  const std::size_t first = strand_.clamped ? 1 : 0;  // node of the first coordinates
+  const std::size_t nodes = 3 * (static_cast<std::size_t>(strand_.nodes) - first);
+  const auto of_coordinates = [&](In x, const std::string& what) {
+    return first_words(
+        [&] { return not_finite_place(x.first(nodes), 3, what + " of node", first); },
+        [&] {
+          return not_finite_place(x.subspan(nodes), 1,
+                                  what + " beyond the nodes, number");
+        });
+  };
+  return first_words([&] { return of_coordinates(q, "coordinates"); },
+                     [&] { return of_coordinates(v, "rates"); },
+                     [&] {
+                       place(t, q, v);
+                       return not_finite_clamp(pose_.x, pose_.v, pose_.a);
+                     },
+                     [&] { return not_finite_load(strand_.effects, t, points(needs_)); },
+                     [&] {
+                       std::ranges::fill(force_, 0.0);
+                       strand_.elasticity->add_force(placement(), force_);
+                       return of_coordinates(In(force_).subspan(held()), "elasticity");
+                     });
 }
 
 }  // namespace tress

@@ -77,6 +77,7 @@ class MaximalSystem final : public System,
   void reset() override { strand_.elasticity->reset(); }
   std::vector<double> memory() const override { return strand_.elasticity->memory(); }
   void recall(In memory) override { strand_.elasticity->recall(memory); }
+  std::string not_finite(double t, In q, In v) override;
 
   SparseForm* sparse_form() override { return this; }
   ExplicitForm* explicit_form() override;

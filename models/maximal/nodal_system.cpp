@@ -5,6 +5,7 @@
 
 #include "integrators/linear/finite.h"
 #include "integrators/linear/sparse_pattern.h"
+#include "models/not_finite.h"
 
 namespace tress {
 namespace {
@@ -269,6 +270,24 @@ void NodalSystem::positions(double t, In q, Out x) {
 void NodalSystem::velocities(double t, In q, In v, Out u) {
   place(t, q, v);
   for (std::size_t i = 0; i < motion_.v.size(); ++i) store3(motion_.v[i], &u[3 * i]);
+}
+
+std::string NodalSystem::not_finite(double t, In q, In v) {
+  const auto of_joints = [](In x, std::string_view what) {
+    return not_finite_place(x, 3, std::string(what) + " of element");
+  };
+  return first_words([&] { return of_joints(q, "coordinates"); },
+                     [&] { return of_joints(v, "rates"); },
+                     [&] {
+                       place(t, q, v);
+                       return not_finite_clamp(pose_.x, pose_.v, pose_.a);
+                     },
+                     [&] { return not_finite_load(parts_.effects, t, points(needs_)); },
+                     [&] {  // tension couples all of them: one tells of none other
+                       std::vector<double> a(q.size());
+                       static_cast<void>(acceleration(t, q, v, a));
+                       return of_joints(a, "inertia or elasticity");
+                     });
 }
 
 }  // namespace tress

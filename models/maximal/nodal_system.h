@@ -36,6 +36,7 @@ class NodalSystem final : public System,
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
+  std::string not_finite(double t, In q, In v) override;
 
   ExplicitForm* explicit_form() override { return this; }
   Energetics* energetics() override { return this; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "models/not_finite.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
@@ -112,6 +113,29 @@ class ReducedSystem : public System,
   }
   void recall(In memory) override {
     if (kinematics_.free()) kinematics_.free_root().recall(load9(memory.data()));
+  }
+
+  std::string not_finite(double t, In q, In v) override {
+    const auto of_unknowns = [this](In x, const std::string& what) {
+      const std::size_t chain = dofs * kinematics_.segments().size();
+      return first_words(
+          [&] { return not_finite_place(x.first(chain), dofs, what + " of element"); },
+          [&] {
+            return not_finite_place(x.subspan(chain), 3, what + " of the root, part");
+          });
+    };
+    return first_words([&] { return of_unknowns(q, "coordinates"); },
+                       [&] { return of_unknowns(v, "rates"); },
+                       [&] {
+                         kinematics_.move(t, q, v, zero_);
+                         const FrameMotion& root = kinematics_.root();
+                         return not_finite_clamp(root.x, root.v, root.a);
+                       },
+                       [&] { return not_finite_load(dynamics_.effects(0), t, placed()); },
+                       [&] {
+                         dynamics_.residual(t, q, v, zero_, scratch_);
+                         return of_unknowns(scratch_, "inertia or elasticity");
+                       });
   }
 
   ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }

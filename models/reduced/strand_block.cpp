@@ -25,6 +25,14 @@ void StrandBlock::scale(Out q_typ, Out v_typ) const {
   }
 }
 
+std::string StrandBlock::not_finite(double t, In q, In v) {
+  for (std::size_t s = 0; s < strands_.size(); ++s) {
+    const std::string words = strands_[s]->not_finite(t, of(s, q), of(s, v));
+    if (!words.empty()) return "strand " + std::to_string(s) + ": " + words;
+  }
+  return {};
+}
+
 ExplicitForm* StrandBlock::explicit_form() {
   const bool all = std::ranges::all_of(
       strands_, [](const auto& strand) { return strand->explicit_form() != nullptr; });

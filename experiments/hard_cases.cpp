@@ -1,0 +1,122 @@
+// Which model by which integrator survives which hard case, and at which step? Each case
+// has a reason why it is hard, and a criterion from physics that a right answer meets.
+#include <memory>
+#include <vector>
+
+#include "experiments/hard_cases/claims.h"
+#include "experiments/hard_cases/grid.h"
+#include "experiments/harness/experiment.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"case", "name of the situation"},
+    {"hard_because", "why it is hard"},
+    {"model", "catalogue id"},
+    {"variant", "which of its choices: tangent, how it keeps lengths, structure"},
+    {"integrator", "method"},
+    {"dt_s", "its step"},
+    {"formulation", "how constraints enter, where there are some"},
+    {"outcome", "refused, not finished, unstable, stable, stable and accurate"},
+    {"measure_name", "what the criterion looks at"},
+    {"measure", "its value, the largest of the run"},
+    {"limit", "the criterion is measure <= limit"},
+    {"criterion", "the same in words, and why"},
+    {"passed", "stable, at least"},
+    {"error_rel", "of the tip, root mean square over the horizon, over the length"},
+    {"error_limit", "accurate: error <= error_limit"},
+    {"reference_gap", "of the reference to itself at twice the step, as error_rel"},
+    {"why", "it is no better: what was refused, what broke and when"},
+    {"t_s", "time simulated"},
+    {"steps", "steps done"},
+    {"newton_iterations", "linear solves"},
+    {"wall_s", "wall time of the run, and of its reference in the row that made it",
+     true},
+};
+
+/// Time of the processor (s) that a row has, and within it the reference that it makes
+/// for all rows of its case and model.
+struct Budget {
+  double row, reference;
+  double patience;  // for a reference that another row makes, wall time
+};
+
+void measure(const Cell& cell, References& references, const Budget& budget,
+             double coarser, Row& row) {
+  const HardCase& hard = *cell.attempt.hard;
+  row.set("hard_because", hard.why).set("measure_name", hard.measure);
+  row.set("limit", hard.limit).set("criterion", hard.criterion);
+  row.set("error_limit", largest_error);
+  const Survival s = survive(cell.attempt, CpuLimit(budget.row), [&] {
+    return references.get(cell.reference, budget.patience, [&] {
+      return reference(hard, cell.compared, cell.attempt.defaults, cell.attempt.options,
+                       coarser, CpuLimit(budget.reference));
+    });
+  });
+  row.set("wall_s", s.wall_s);
+  row.set("outcome", name(s.outcome)).set("passed", passed(s.outcome));
+  if (!s.why.empty()) row.set("why", s.why);
+  if (!s.formulation.empty()) row.set("formulation", s.formulation);
+  if (s.measure) row.set("measure", *s.measure);
+  if (s.error) row.set("error_rel", *s.error);
+  if (s.gap) row.set("reference_gap", *s.gap);
+  if (s.outcome != Outcome::refused) {
+    row.set("t_s", s.t).set("steps", s.stats.steps);
+    row.set("newton_iterations", s.stats.newton_iterations);
+  }
+  if (!passed(s.outcome)) row.failed(name(s.outcome), s.why);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, hard_case_settings());
+  const Grid grid = hard_grid(line, settings);
+  const auto references = std::make_shared<References>(grid.references);
+  // Less than half in all: a machine that is shared may take twice as long.
+  const Budget budget{line.timeout_s / 6, line.timeout_s / 6, line.timeout_s / 3};
+
+  const double coarser = line.quick ? 2 : 1;
+  std::vector<Case> all;
+  for (const Cell& cell : grid.cells) {
+    all.push_back(
+        {cell.identity(), [cell, references, budget, coarser](Row& row, const Deadline&) {
+           measure(cell, *references, budget, coarser, row);
+         }});
+  }
+  return all;
+}
+
+/// A row that was killed or that crashed says so.
+void fill(std::vector<Row>& rows) {
+  for (Row& row : rows) {
+    if (!row.text("outcome").empty()) continue;
+    const bool late = row.status() == "timeout";
+    row.set("outcome", name(late ? Outcome::not_finished : Outcome::unstable));
+    row.set("passed", false).set("why", row.text("reason"));
+  }
+}
+
+/// What does not survive is what is looked for.
+bool finding(const Row& row) { return row.status() != "crashed"; }
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "hard_cases",
+      .question =
+          "which model by which integrator survives which hard case, at which "
+          "step?",
+      .example = "--models super_helix,der --set case=violent_shake",
+      .timed = false,
+      .quick_timeout_s = 6,
+      .columns = columns,
+      .settings = hard_case_settings(),
+      .cases = cases,
+      .derive = fill,
+      .checks = check_hard_cases,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,124 @@
+#include <numbers>
+
+#include "experiments/hard_cases/gauges.h"
+#include "models/effects/body.h"
+#include "models/effects/self_contact.h"
+#include "models/effects/tether.h"
+
+namespace tress {
+namespace {
+
+constexpr double touch = 1.2e-3, separation = 0.02;  // m, of the coil's turns
+
+/// Turns 1.6 mm apart are pressed together until they touch, at 1.2 mm. The pull is ten
+/// times what closes the coil, k = GJ/(L R^2) [Love] over the 2 mm that it can close.
+void close_coil(const Strand&, Effects& effects) {
+  effects.push_back(std::make_shared<SelfContact>(
+      ContactLaw(
+          {.stiffness = 10, .viscosity = 1e-3, .inner = touch, .outer = 1.5 * touch},
+          "case coil_contact"),
+      separation));
+  effects.push_back(std::make_shared<Tether>(
+      Tether::Settings{.pull = 3e-5, .target = {}, .ramp = 0.05}));
+}
+
+/// What the pull does over twice the coil's diameter is all that there is.
+StabilityBounds coil_bounds(const Situation& s, double) {
+  return {.reach = 1.001 * s.length};
+}
+
+Body plane(const Vec& at, const Vec& axis, double angle, const BodyContact& law) {
+  return {Plane{}, StrandPlace{at, rotation(axis, angle)}, law};
+}
+
+constexpr double radius = 40e-6;  // m, of the strand
+constexpr BodyContact floor_contact{
+    .stiffness = 1e3, .damping = 1, .friction = 0.3, .offset = radius};
+constexpr BodyContact cone_contact{
+    .stiffness = 1e5, .damping = 1, .friction = 0.5, .offset = radius};
+
+/// Tilted by 5 degrees across the way of the root, which carries the strand along it.
+void slope(const Strand&, Effects& effects) {
+  effects.push_back(std::make_shared<Body>(
+      plane({0, 0, -5e-3}, {1, 0, 0}, 5 * std::numbers::pi / 180, floor_contact)));
+}
+
+/// Three planes of 45 degrees that meet below the middle of the strand.
+void cone(const Strand& strand, Effects& effects) {
+  const Vec apex{strand.length() / 2, 0, -0.06};
+  for (int side = 0; side < 3; ++side) {
+    const double around = side * 2 * std::numbers::pi / 3;
+    const Vec level{-std::sin(around), std::cos(around), 0};
+    effects.push_back(
+        std::make_shared<Body>(plane(apex, level, -std::numbers::pi / 4, cone_contact)));
+  }
+}
+
+/// 1 % of the fall of the strand to the apex.
+StabilityBounds cone_bounds(const Situation& s, double) {
+  constexpr double depth = 0.06;
+  return {.energy = 0.01 * s.mass * s.parameters.number("gravity_m_s2") * depth};
+}
+
+}  // namespace
+
+std::vector<HardCase> contact_cases() {
+  std::vector<HardCase> all;
+  all.push_back({.name = "coil_contact",
+                 .why = "a coil is pulled together until its turns lie on each other: "
+                        "contacts all along, which come and go",
+                 .measure = "overlap_over_radius",
+                 .criterion =
+                     "turns overlap by less than their radius, half of the "
+                     "distance at which they touch: they have not passed through "
+                     "each other; the tip stays within reach",
+                 .settings = {{"root", "fixed"},
+                              {"root_tangent", "x"},
+                              {"gravity_m_s2", "0"},
+                              {"natural_curvature_1_m", "200"},
+                              {"natural_twist_1_m", "10"},
+                              {"internal_friction_kg_m3_s", "1e-10"}},
+                 .t_end = 0.15,
+                 .horizon = 0.1,
+                 .bounds = coil_bounds,
+                 .gauge = [](const Situation& s) -> std::unique_ptr<Gauge> {
+                   return std::make_unique<OverlapGauge>(s, touch, separation);
+                 },
+                 .act = close_coil});
+  all.push_back({.name = "grazing_contact",
+                 .why =
+                     "a strand comes upon a plane at 5 degrees and 0.3 m/s, sliding with "
+                     "friction: 1/30 s moves it by a hundred of its diameters along "
+                     "the plane, and by ten into it",
+                 .measure = "penetration_over_bound",
+                 .criterion = "no point is deeper than the strand's radius and what the "
+                              "last quadrature point leaves of the tip: its axis stays "
+                              "outside; reach and speed as for driven roots",
+                 .settings = {{"root", "swing"},
+                              {"root_tangent", "x"},
+                              {"gravity_m_s2", "0"},
+                              {"amplitude_m", "0.025"},
+                              {"frequency_hz", "2"},
+                              {"natural_curvature_1_m", "0.8"}},
+                 .horizon = 0.2,
+                 .bounds = driven_bounds,
+                 .gauge = penetration_gauge,
+                 .act = slope});
+  all.push_back(
+      {.name = "cone",
+       .why = "a free strand falls into a cone of three planes with friction 0.5: "
+              "ends hit head-on, the middle is left hanging, contacts stick",
+       .measure = "penetration_over_bound",
+       .criterion = "no point is deeper than the strand's radius and what the "
+                    "last quadrature point leaves of the tip; energy grows by "
+                    "less than 1 % of the fall to the apex",
+       .settings = {{"root", "free"}, {"root_tangent", "x"}, {"spin_rad_s", "0"}},
+       .t_end = 0.2,
+       .horizon = 0.08,
+       .bounds = cone_bounds,
+       .gauge = penetration_gauge,
+       .act = cone});
+  return all;
+}
+
+}  // namespace tress

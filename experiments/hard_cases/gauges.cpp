@@ -1,0 +1,208 @@
+#include "experiments/hard_cases/gauges.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/harness/drift_monitor.h"
+#include "experiments/harness/momentum_drift.h"
+#include "models/effects/body.h"
+#include "models/input_error.h"
+#include "models/math/closest.h"
+
+namespace tress {
+namespace {
+
+constexpr double never = StabilityBounds::none;
+// The first of four points of Gauss is at (1 - 0.8611)/2 of the interval.
+constexpr double last_point = 0.0694;
+
+/// The larger of two, or NaN.
+double larger(double a, double b) { return b <= a ? a : b; }
+
+class PenetrationGauge final : public Gauge {
+ public:
+  explicit PenetrationGauge(const Situation& s)
+      : points_(*s.system->material_points()),
+        x_(3 * static_cast<std::size_t>(points_.count())) {
+    const Segment& last = s.strand.segments.back();
+    allowed_ = last.section.a1 + last_point * last.length;
+    for (const auto& effect : s.effects) {
+      if (const auto* body = dynamic_cast<const Body*>(effect.get())) {
+        bodies_.push_back(body);
+      }
+    }
+  }
+  void see(double t, In q, In) override {
+    points_.positions(t, q, x_);
+    for (const Body* body : bodies_) {
+      deepest_ = larger(deepest_, body->penetration(t, x_));
+    }
+  }
+  double measure() const override { return deepest_ / allowed_; }
+
+ private:
+  MaterialPoints& points_;
+  std::vector<double> x_;
+  std::vector<const Body*> bodies_;
+  double allowed_ = 0, deepest_ = 0;
+};
+
+class StretchGauge final : public Gauge {
+ public:
+  explicit StretchGauge(const Situation& s)
+      : drift_(*s.system, s.start.q, s.start.v, never) {}
+  void see(double t, In q, In v) override { static_cast<void>(drift_(t, q, v)); }
+  /// Particles say nothing of lengths; their violation is what stretches.
+  double measure() const override {
+    const double stretched = drift_.length_error();
+    return std::isnan(stretched) ? drift_.g_max() : stretched;
+  }
+
+ private:
+  DriftMonitor drift_;
+};
+
+class MomentumGauge final : public Gauge {
+ public:
+  explicit MomentumGauge(const Situation& s)
+      : energetics_(*s.system->energetics()),
+        momentum_(energetics_, s.start.q, s.start.v),
+        energy_(energetics_.energy(0, s.start.q, s.start.v).total()),
+        scale_(energetics_.energy(0, s.start.q, s.start.v).kinetic) {}
+  void see(double t, In q, In v) override {
+    momentum_.see(t, q, v);
+    const double gained = energetics_.energy(t, q, v).total() - energy_;
+    const double spun = momentum_.angular_now() / momentum_.angular_start() - 1;
+    growth_ = larger(growth_, larger(gained / scale_, spun));
+  }
+  double measure() const override { return growth_; }
+  std::optional<double> error() const override {
+    return momentum_.angular() / momentum_.angular_start();
+  }
+
+ private:
+  Energetics& energetics_;
+  MomentumDrift momentum_;
+  double energy_, scale_, growth_ = 0;
+};
+
+class SagGauge final : public Gauge {
+ public:
+  SagGauge(const Situation& s, double allowed)
+      : points_(*s.system->material_points()),
+        allowed_(allowed),
+        x_(3 * static_cast<std::size_t>(points_.count())) {}
+  void see(double t, In q, In) override {
+    points_.positions(t, q, x_);
+    lowest_ = larger(lowest_, std::abs(x_[2] - x_.back()));
+  }
+  double measure() const override { return lowest_ / allowed_; }
+
+ private:
+  MaterialPoints& points_;
+  double allowed_, lowest_ = 0;
+  std::vector<double> x_;
+};
+
+/// |g| over its scale, of a system that has constraints.
+class Violation {
+ public:
+  explicit Violation(System& system) : form_(*system.constraint_form()) {
+    g_.resize(static_cast<std::size_t>(system.layout().constraints));
+    typical_.resize(g_.size());
+    form_.scale(typical_);
+  }
+  double at(double t, In q) {
+    if (form_.value(t, q, g_) != Status::ok) return std::nan("");
+    double largest = 0;
+    for (std::size_t k = 0; k < g_.size(); ++k) {
+      largest = larger(largest, std::abs(g_[k]) / typical_[k]);
+    }
+    return largest;
+  }
+
+ private:
+  ConstraintForm& form_;
+  std::vector<double> g_, typical_;
+};
+
+class ViolationGauge final : public Gauge {
+ public:
+  explicit ViolationGauge(const Situation& s) : violation_(*s.system) {}
+  void see(double t, In q, In) override {
+    largest_ = larger(largest_, violation_.at(t, q));
+  }
+  double measure() const override { return largest_; }
+
+ private:
+  Violation violation_;
+  double largest_ = 0;
+};
+
+class RecoveryGauge final : public Gauge {
+ public:
+  RecoveryGauge(const Situation& s, double energy)
+      : energetics_(*s.system->energetics()),
+        violation_(*s.system),
+        allowed_(energy),
+        start_(energetics_.energy(0, s.start.q, s.start.v).total()) {}
+  void see(double t, In q, In v) override {
+    constexpr double recovered = 1e-3;
+    left_ = larger(violation_.at(t, q) / recovered,
+                   (energetics_.energy(t, q, v).total() - start_) / allowed_);
+  }
+  double measure() const override { return left_; }
+
+ private:
+  Energetics& energetics_;
+  Violation violation_;
+  double allowed_, start_, left_ = never;
+};
+
+}  // namespace
+
+OverlapGauge::OverlapGauge(const Situation& s, double touch, double separation)
+    : points_(*s.system->material_points()),
+      touch_(touch),
+      separation_(separation),
+      nearest_(touch),
+      arc_{0},
+      x_(3 * static_cast<std::size_t>(points_.count())) {
+  for (const Segment& segment : s.strand.segments) {
+    arc_.push_back(arc_.back() + segment.length);
+  }
+}
+
+void OverlapGauge::see(double t, In q, In) {
+  points_.positions(t, q, x_);
+  for (std::size_t i = 0; i < arc_.size(); ++i) {
+    const Vec x = load3(&x_[3 * i]);
+    for (std::size_t j = i + 1; j + 1 < arc_.size(); ++j) {
+      if (arc_[j] - arc_[i] < separation_) continue;
+      const StraightPiece piece(load3(&x_[3 * j]), load3(&x_[3 * j + 3]));
+      const Vec gap = x - piece.at(piece.nearest(x));
+      nearest_ = std::min(nearest_, std::sqrt(dot(gap, gap)));
+    }
+  }
+}
+
+std::unique_ptr<Gauge> penetration_gauge(const Situation& s) {
+  return std::make_unique<PenetrationGauge>(s);
+}
+std::unique_ptr<Gauge> stretch_gauge(const Situation& s) {
+  return std::make_unique<StretchGauge>(s);
+}
+std::unique_ptr<Gauge> momentum_gauge(const Situation& s) {
+  return std::make_unique<MomentumGauge>(s);
+}
+std::unique_ptr<Gauge> sag_gauge(const Situation& s, double allowed) {
+  return std::make_unique<SagGauge>(s, allowed);
+}
+std::unique_ptr<Gauge> violation_gauge(const Situation& s) {
+  return std::make_unique<ViolationGauge>(s);
+}
+std::unique_ptr<Gauge> recovery_gauge(const Situation& s, double energy) {
+  return std::make_unique<RecoveryGauge>(s, energy);
+}
+
+}  // namespace tress

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "experiments/hard_cases/hard_case.h"
+
+/// What the cases measure. Each reads the system of the situation, which outlives it.
+namespace tress {
+
+/// Largest depth of a material point in a Body among the effects, over what a right
+/// simulator may have: the strand's radius, by which its axis stays outside, and 0.07 of
+/// the last element's length, by which the tip is beyond the last point where bodies can
+/// hold a strand that hits them head-on (the last of four points of Gauss).
+std::unique_ptr<Gauge> penetration_gauge(const Situation& situation);
+
+/// Largest overlap of parts of the strand farther apart along it than `separation`, over
+/// half of the distance at which they begin to touch: at 1 the parts, as thick as half
+/// that distance each, have the axis of one on the surface of the other.
+class OverlapGauge final : public Gauge {
+ public:
+  OverlapGauge(const Situation& situation, double touch, double separation);
+  void see(double t, In q, In v) override;
+  double measure() const override { return 2 * (1 - nearest_ / touch_); }
+
+ private:
+  MaterialPoints& points_;
+  double touch_, separation_;
+  double nearest_;
+  std::vector<double> arc_, x_;
+};
+
+/// Largest relative change of an element's length.
+std::unique_ptr<Gauge> stretch_gauge(const Situation& situation);
+
+/// Growth of the angular momentum and of the energy of a free strand, over what they were
+/// at the start, the larger one; error: the largest change of angular momentum, over
+/// itself.
+std::unique_ptr<Gauge> momentum_gauge(const Situation& situation);
+
+/// Largest depth of the tip below its root, over `allowed` (m).
+std::unique_ptr<Gauge> sag_gauge(const Situation& situation, double allowed);
+
+/// Largest |g| over its scale.
+std::unique_ptr<Gauge> violation_gauge(const Situation& situation);
+
+/// How far from done a recovery is at the end: the larger of |g| over a thousandth of its
+/// scale and of the energy gained since the start over `energy` (J).
+std::unique_ptr<Gauge> recovery_gauge(const Situation& situation, double energy);
+
+}  // namespace tress

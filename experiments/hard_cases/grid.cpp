@@ -1,0 +1,145 @@
+#include "experiments/hard_cases/grid.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "experiments/harness/model_variants.h"
+#include "experiments/harness/strand_models.h"
+#include "integrators/catalogue.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter settings_of_rows[] = {
+    {.name = "case",
+     .help = "rows of one case; all: of every one",
+     .text = true,
+     .fallback = "all"},
+    {.name = "dt_s", .help = "rows of one step (s), 0: all", .number = 0, .min = 0},
+};
+
+constexpr double film = 1.0 / 30, substep = 1.0 / 300, fine = 1e-3;  // s
+
+constexpr std::string_view usual[] = {"semi_implicit_euler",
+                                      "backward_euler",
+                                      "implicit_midpoint",
+                                      "bdf2",
+                                      "generalized_alpha",
+                                      "xpbd",
+                                      "rattle",
+                                      "rk4"};
+constexpr std::size_t usual_quick = 3;  // the first of them
+
+std::vector<std::string_view> integrators_of(const CommandLine& line) {
+  std::vector<std::string_view> all;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.adaptive) continue;  // has no step
+    const auto place = std::ranges::find(usual, entry.id) - std::begin(usual);
+    const bool is_usual =
+        place < static_cast<std::ptrdiff_t>(line.quick ? usual_quick : std::size(usual));
+    const bool chosen = !line.integrators.empty();
+    if (chosen ? wanted(line.integrators, entry.id) : line.full || is_usual) {
+      all.push_back(entry.id);
+    }
+  }
+  return all;
+}
+
+std::vector<double> steps_of(const CommandLine& line, const HardCase& hard) {
+  std::vector<double> all{film, substep};
+  if (line.quick) return all;
+  all.push_back(fine);
+  if (hard.further_step > 0) all.push_back(hard.further_step);
+  return all;
+}
+
+std::string words(const ModelSettings& settings) {
+  std::string all;
+  for (const auto& [key, value] : settings) {
+    all += (all.empty() ? "" : " ") + key + "=" + value;
+  }
+  return all;
+}
+
+std::vector<Subject> subjects_of(const CommandLine& line, const HardCase& hard) {
+  std::vector<Subject> all;
+  for (const ModelVariant& variant : length_variants()) {
+    if (line.quick && !variant.settings.empty()) continue;
+    if (!wanted(line.models, variant.model->id)) continue;
+    all.push_back({variant.model, variant.settings, variant.words});
+  }
+  for (const auto& [model, settings] : hard.particles) {
+    if (!wanted(line.models, model)) continue;
+    all.push_back({&find_model(model), settings, words(settings)});
+  }
+  return all;
+}
+
+/// Tangents that an integrator is tried with; one empty word: the model has no choice.
+std::vector<std::string_view> tangents_of(const CommandLine& line,
+                                          const ModelEntry& model,
+                                          std::string_view integrator) {
+  const std::string_view whole = first_word(model, "tangent");
+  const std::string_view seed = usual_tangent(model);
+  if (whole == seed) return {whole};
+  if (line.full) return {whole, seed};
+  if (integrator != "semi_implicit_euler") return {whole};
+  if (line.quick) return {seed};
+  return {seed, whole};
+}
+
+}  // namespace
+
+std::span<const Parameter> hard_case_settings() { return settings_of_rows; }
+
+Row Cell::identity() const {
+  Row row;
+  row.set("case", attempt.hard->name).set("model", attempt.subject.model->id);
+  row.set("variant", attempt.subject.words).set("integrator", attempt.integrator);
+  row.set("dt_s", attempt.dt);
+  return row;
+}
+
+Grid hard_grid(const CommandLine& line, const Settings& settings) {
+  const std::string_view only = settings.experiment().word("case");
+  const double one_step = settings.experiment().number("dt_s");
+  constexpr double quick_part = 0.01;  // of a million steps
+  Grid grid;
+  std::vector<std::string_view> names;
+  for (const HardCase& hard : hard_cases()) {
+    names.push_back(hard.name);
+    if (only != "all" && only != hard.name) continue;
+    for (const Subject& subject : subjects_of(line, hard)) {
+      const std::size_t reference = grid.references++;
+      for (const std::string_view integrator : integrators_of(line)) {
+        for (const std::string_view tangent :
+             tangents_of(line, *subject.model, integrator)) {
+          Subject own = subject;
+          if (!tangent.empty()) {
+            own.settings.emplace_back("tangent", tangent);
+            own.words +=
+                (own.words.empty() ? "tangent=" : " tangent=") + std::string(tangent);
+          }
+          for (const double dt : steps_of(line, hard)) {
+            if (one_step > 0 && dt != one_step) continue;
+            Attempt attempt{&hard,      own, settings.parameters(*own.model),
+                            integrator, dt,  settings.options()};
+            if (line.quick) attempt.shorter = quick_part;
+            grid.cells.push_back({std::move(attempt), subject, reference});
+          }
+        }
+      }
+    }
+  }
+  if (only != "all" && std::ranges::find(names, only) == names.end()) {
+    const std::string_view near = nearest(only, names);
+    throw InputError("unknown case '" + std::string(only) + "'", "--set case",
+                     near.empty() ? "use one of experiments/hard_cases"
+                                  : "did you mean '" + std::string(near) + "'?");
+  }
+  return grid;
+}
+
+}  // namespace tress

@@ -1,0 +1,242 @@
+#include "experiments/hard_cases/survival.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "experiments/harness/formulations.h"
+#include "experiments/harness/tip_track.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr std::string_view names[] = {"refused", "not finished", "unstable", "stable",
+                                      "stable and accurate"};
+// Of order 2, and what it damps at the reference's steps no step of the table resolves.
+constexpr std::string_view reference_integrator = "bdf2";
+// A reference is one where it is this much better than what it judges.
+constexpr double reference_margin = 5;
+
+std::string text(double x) {
+  std::ostringstream out;
+  out.precision(3);
+  out << x;
+  return out.str();
+}
+
+/// Why no formulation serves: the reason against the most usual one.
+std::string objection(const IntegratorEntry& entry, System& system) {
+  return refusal(entry, system,
+                 system.layout().constraints > 0 ? Formulation::projection
+                                                 : Formulation::parametric);
+}
+
+/// Steps of dt that reach t_end, each ended exactly.
+struct Course {
+  Options options;
+  std::vector<double> stops;
+  double growth;  // of neighbouring steps, at most
+};
+
+Course course(const HardCase& hard, const Options& options, double dt, double shorter) {
+  constexpr double even = 1.5, jumping = 150;
+  Course c{options, {}, even};
+  c.options.step = dt;
+  const double t_end =
+      hard.count > 0 ? static_cast<double>(hard.count) * shorter * dt : hard.t_end;
+  if (hard.stops != nullptr) {
+    c.stops = hard.stops(dt, t_end);
+    c.growth = jumping;
+  } else {
+    c.stops = {std::max(1.0, std::ceil(t_end / dt - 1e-9)) * dt};
+  }
+  return c;
+}
+
+struct Watched {
+  Simulation end;
+  std::vector<double> tips;
+};
+
+/// One run, with the tip sampled up to the horizon, if there is one.
+Watched watch(std::string_view integrator, const HardCase& hard, Situation& s,
+              const Course& c, const Observer& each_step) {
+  std::optional<TipSamples> tip;
+  if (hard.horizon > 0) {
+    tip.emplace(*s.system, hard.horizon, Reference::samples, c.growth);
+    s.system->reset();
+    tip->start(s.start.q, s.start.v);
+  }
+  Simulation end = simulate(integrator, *s.system, c.options, s.start, c.stops, {},
+                            [&](double t, In q, In v) {
+                              if (tip) tip->step_to(t, q, v);
+                              return each_step(t, q, v);
+                            });
+  return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>()};
+}
+
+/// The reference's tips at one step; empty and `why` where there is none.
+std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
+                            const Parameters& defaults, const Options& options, double dt,
+                            const GiveUp& give_up, std::string& why) {
+  Situation s = situation(hard, subject, defaults);
+  Course c{options, {hard.horizon}, 1.5};
+  c.options.step = dt;
+  const auto formulations =
+      usable_formulations(find_integrator(reference_integrator), *s.system);
+  if (formulations.empty()) {
+    why = objection(find_integrator(reference_integrator), *s.system);
+    return {};
+  }
+  c.options.formulation = formulations.front();
+  bool late = false;
+  Watched run = watch(reference_integrator, hard, s, c, [&](double, In, In) {
+    late = give_up && give_up();
+    return !late;
+  });
+  if (run.end.status == Status::ok) return std::move(run.tips);
+  why = late ? "its time was over at t = " + text(run.end.t) + " s" : run.end.failure;
+  return {};
+}
+
+/// As `subject`, but the rod of super_helix of `elements`.
+Subject rod() { return {&find_model("super_helix"), {}, ""}; }
+
+}  // namespace
+
+std::string_view name(Outcome outcome) { return names[static_cast<int>(outcome)]; }
+
+Outcome outcome_of(std::string_view word, const std::string& where) {
+  const auto found = std::ranges::find(names, word);
+  if (found == std::end(names)) {
+    throw InputError("no outcome is called '" + std::string(word) + "'", where,
+                     "write refused, not finished, unstable, stable or stable and "
+                     "accurate");
+  }
+  return static_cast<Outcome>(found - std::begin(names));
+}
+
+Reference reference(const HardCase& hard, const Subject& subject,
+                    const Parameters& defaults, const Options& options, double coarser,
+                    const GiveUp& give_up) {
+  HardCase finer = hard;
+  Subject whose = subject;
+  Parameters parameters = defaults;
+  if (hard.rod_elements > 0) {
+    whose = rod();
+    parameters = Parameters(whose.model->parameters, "reference");
+    finer.settings.emplace_back("elements", std::to_string(hard.rod_elements));
+  }
+  Reference found;
+  const double dt = coarser * hard.reference_step;
+  const auto at = [&](double step) {
+    return tips_at(finer, whose, parameters, options, step, give_up, found.why);
+  };
+  const std::vector<double> coarse = at(2 * dt);
+  if (!coarse.empty()) found.tip = at(dt);
+  if (found.why.empty()) {
+    const Situation s = situation(hard, subject, defaults);
+    found.gap = tip_error(coarse, found.tip,
+                          hard.error_scale != nullptr ? hard.error_scale(s) : s.length);
+    if (!(found.gap <= largest_error / reference_margin)) {
+      found.why = "its own error is " + text(found.gap);
+    }
+  }
+  if (!found.why.empty()) {
+    found.why = "no reference by bdf2 at " + text(dt) + " s: " + found.why;
+  }
+  return found;
+}
+
+Survival survive(const Attempt& attempt, const GiveUp& give_up,
+                 const std::function<Reference()>& find) {
+  const HardCase& hard = *attempt.hard;
+  const IntegratorEntry& entry = find_integrator(attempt.integrator);
+  Survival result;
+  std::optional<Situation> made;
+  try {
+    if (!hard.not_for_strands.empty() && attempt.subject.model->on_strand != nullptr) {
+      result.why = hard.not_for_strands;
+      return result;
+    }
+    made.emplace(situation(hard, attempt.subject, attempt.defaults));
+  } catch (const InputError& error) {
+    result.why = error.what();
+    return result;
+  }
+  Situation& s = *made;
+  const auto formulations = usable_formulations(entry, *s.system);
+  if (formulations.empty()) {
+    result.why = objection(entry, *s.system);
+    return result;
+  }
+  Course c = course(hard, attempt.options, attempt.dt, attempt.shorter);
+  c.options.formulation = formulations.front();
+  if (s.system->layout().constraints > 0) result.formulation = name(formulations.front());
+
+  const StabilityBounds bounds = hard.bounds(s, c.stops.back());
+  StabilityJudge judge(*s.system, bounds, s.start);
+  const std::unique_ptr<Gauge> gauge = hard.gauge != nullptr ? hard.gauge(s) : nullptr;
+  bool late = false;
+  const auto began = std::chrono::steady_clock::now();
+  const Watched run = watch(attempt.integrator, hard, s, c, [&](double t, In q, In v) {
+    late = give_up && give_up();
+    if (late) return false;
+    if (gauge) gauge->see(t, q, v);
+    return judge(t, q, v);
+  });
+  result.wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+
+  const StabilityRun verdict = judge.verdict(run.end);
+  result.t = run.end.t;
+  result.stats = run.end.stats;
+  const auto part = [](double value, double bound) {
+    return bound < StabilityBounds::none ? value / bound : 0;
+  };
+  result.measure = gauge ? gauge->measure()
+                         : std::max({part(verdict.energy_gain, bounds.energy),
+                                     part(verdict.reach, bounds.reach),
+                                     part(verdict.speed, bounds.speed)});
+  if (late) {
+    result.outcome = Outcome::not_finished;
+    result.why = "its time was over at t = " + text(run.end.t) + " s";
+    return result;
+  }
+  result.outcome = Outcome::unstable;
+  if (!verdict.stable()) {
+    result.why = std::string(name(verdict.broken)) + " at t = " + text(run.end.t) + " s" +
+                 (verdict.failure.empty() ? "" : ": " + verdict.failure);
+    return result;
+  }
+  if (!(*result.measure <= hard.limit)) {
+    result.why = std::string(hard.measure) + " = " + text(*result.measure) + " > " +
+                 text(hard.limit);
+    return result;
+  }
+  result.outcome = Outcome::stable;
+  if (gauge) result.error = gauge->error();
+  if (hard.horizon > 0) {
+    const Reference exact = find();
+    if (!exact.why.empty()) {
+      result.why = exact.why;
+      return result;
+    }
+    result.gap = exact.gap;
+    result.error =
+        tip_error(run.tips, exact.tip,
+                  hard.error_scale != nullptr ? hard.error_scale(s) : s.length);
+  }
+  if (!result.error) {
+    result.why = "nothing to compare with";
+  } else if (*result.error <= largest_error) {
+    result.outcome = Outcome::accurate;
+  } else {
+    result.why = "error " + text(*result.error) + " > " + text(largest_error);
+  }
+  return result;
+}
+
+}  // namespace tress

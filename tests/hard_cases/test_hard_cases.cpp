@@ -1,0 +1,304 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "experiments/hard_cases/claims.h"
+#include "experiments/hard_cases/gauges.h"
+#include "experiments/hard_cases/grid.h"
+#include "models/effects/body.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+using testing::HasSubstr;
+
+const HardCase& named(std::string_view name) {
+  for (const HardCase& hard : hard_cases()) {
+    if (hard.name == name) return hard;
+  }
+  throw std::runtime_error("no case " + std::string(name));
+}
+
+Parameters defaults(std::string_view model) {
+  return {find_model(model).parameters, "test"};
+}
+
+Subject subject(std::string_view model, ModelSettings settings = {}) {
+  return {&find_model(model), std::move(settings), ""};
+}
+
+Situation made(std::string_view hard, std::string_view model = "super_helix",
+               ModelSettings settings = {}) {
+  return situation(named(hard), subject(model, std::move(settings)), defaults(model));
+}
+
+Survival survived(std::string_view hard, std::string_view model,
+                  std::string_view integrator, double dt, Reference exact = {}) {
+  const Attempt attempt{&named(hard), subject(model), defaults(model), integrator, dt, {},
+                        1e-3};
+  return survive(attempt, {}, [&] { return exact; });
+}
+
+// ---- the list -----------------------------------------------------------------------
+
+TEST(HardCases, SayWhatTheyAreAndWhenTheyArePassed) {
+  std::set<std::string_view> names;
+  for (const HardCase& hard : hard_cases()) {
+    EXPECT_TRUE(names.insert(hard.name).second) << hard.name;
+    EXPECT_FALSE(hard.why.empty()) << hard.name;
+    EXPECT_FALSE(hard.measure.empty()) << hard.name;
+    EXPECT_FALSE(hard.criterion.empty()) << hard.name;
+    EXPECT_NE(hard.bounds, nullptr) << hard.name;
+    EXPECT_TRUE(hard.horizon == 0 || hard.count > 0 || hard.horizon <= hard.t_end)
+        << hard.name;
+  }
+  EXPECT_GE(names.size(), 24U);
+}
+
+// Every model is in every situation, or says why not.
+TEST(HardCases, AreMadeOnEveryModelOrRefused) {
+  for (const HardCase& hard : hard_cases()) {
+    if (hard.settings.empty() || !hard.not_for_strands.empty()) continue;
+    for (const ModelEntry& model : models()) {
+      if (model.on_strand == nullptr) continue;
+      try {
+        const Situation s = situation(hard, {&model, {}, ""}, defaults(model.id));
+        EXPECT_GT(s.mass, 0) << hard.name << " " << model.id;
+        EXPECT_GT(s.length, 0) << hard.name << " " << model.id;
+        EXPECT_EQ(s.start.q.size(),
+                  static_cast<std::size_t>(s.system->layout().coordinates));
+      } catch (const InputError& refused) {
+        EXPECT_FALSE(std::string(refused.what()).empty());
+      }
+    }
+  }
+}
+
+TEST(HardCases, HaveTheGeometryThatTheySay) {
+  const Situation bead = made("heavy_tip");
+  const Segment& last = bead.strand.segments.back();
+  const double tip = bead.strand.material.density * last.section.area() * last.length;
+  EXPECT_NEAR(tip / (bead.mass - tip), 1000, 1e-9 * 1000);
+
+  const Situation vanishing = made("vanishing_element");
+  EXPECT_NEAR(vanishing.length, 0.1, 1e-15);
+  EXPECT_NEAR(vanishing.strand.segments[10].length / vanishing.strand.segments[0].length,
+              1e-4, 1e-12);
+
+  // Half a turn within one element.
+  const Segment bent = made("folded").strand.segments[10];
+  EXPECT_NEAR(bent.initial.y * bent.length, M_PI, 1e-14);
+
+  // EI from the softest to the stiffest.
+  const auto stiffness = [](const Situation& s) {
+    return s.strand.material.youngs_modulus *
+           s.strand.segments.front().section.inertia1();
+  };
+  EXPECT_GE(stiffness(made("stiffest")) / stiffness(made("softest")), 1e10);
+
+  // Six turns per element.
+  const Segment coil = made("turns_6_per_element").strand.segments.front();
+  EXPECT_NEAR(std::sqrt(dot(coil.natural, coil.natural)) * coil.length / (2 * M_PI), 6,
+              0.01);
+}
+
+// A tenth of the length along the first link: that constraint is off by as much, of a
+// scale that is the length.
+TEST(HardCases, InconsistentStartsViolateTheirConstraints) {
+  const ModelSettings links{{"links", "20"}, {"length_m", "0.1"}};
+  const Situation s = made("inconsistent_start", "inextensible_chain", links);
+  ConstraintForm& form = *s.system->constraint_form();
+  std::vector<double> g(20), g_typ(20);
+  ASSERT_EQ(form.value(0, s.start.q, g), Status::ok);
+  form.scale(g_typ);
+  // (l + 0.1 L)^2 - l^2 over 2 l, or the length itself: at least the length.
+  EXPECT_GE(std::abs(g[0]), 0.0999 * g_typ[0] * 0.1);
+  for (std::size_t k = 1; k < g.size(); ++k) EXPECT_LE(std::abs(g[k]), 1e-12);
+}
+
+// ---- the judge ----------------------------------------------------------------------
+
+TEST(HardCaseJudge, PassesWhatIsRightAndFailsWhatIsNot) {
+  Reference own;
+  const double step = 1.0 / 300;
+  own = reference(named("one_element"), subject("super_helix"), defaults("super_helix"),
+                  {}, 1, {});
+  ASSERT_EQ(own.why, "");
+  EXPECT_EQ(
+      survived("one_element", "super_helix", "implicit_midpoint", step, own).outcome,
+      Outcome::accurate);
+  // First order at a long step damps: stable, far from the reference.
+  const Survival damped =
+      survived("one_element", "super_helix", "backward_euler", 1.0 / 30, own);
+  EXPECT_EQ(damped.outcome, Outcome::stable);
+  EXPECT_THAT(damped.why, HasSubstr("error"));
+  // An explicit method beyond its limit gains energy.
+  const Survival wrong =
+      survived("two_elements", "super_helix", "explicit_euler", 1.0 / 30, own);
+  EXPECT_EQ(wrong.outcome, Outcome::unstable);
+  EXPECT_THAT(wrong.why, HasSubstr("at t ="));
+}
+
+TEST(HardCaseJudge, SaysWhyThereIsNoReferenceAndIsStableAtMost) {
+  const Reference none{{}, 0, "lost"};
+  const Survival s =
+      survived("one_element", "super_helix", "implicit_midpoint", 1.0 / 300, none);
+  EXPECT_EQ(s.outcome, Outcome::stable);
+  EXPECT_EQ(s.why, "lost");
+}
+
+TEST(HardCaseJudge, RefusesInTheWordsOfTheLibrary) {
+  const Survival no_free_root =
+      survived("million_steps", "articulated_chain", "backward_euler", 1e-3);
+  EXPECT_EQ(no_free_root.outcome, Outcome::refused);
+  EXPECT_THAT(no_free_root.why, HasSubstr("free"));
+  const Survival no_compliance = survived("straight", "super_helix", "xpbd", 1e-3);
+  EXPECT_EQ(no_compliance.outcome, Outcome::refused);
+  EXPECT_THAT(no_compliance.why, HasSubstr("compliant constraints"));
+  // Without inertia about the tangent there is no M^-1.
+  EXPECT_EQ(survived("straight", "super_helix", "rk4", 1e-3).outcome, Outcome::refused);
+  EXPECT_EQ(survived("redundant_constraints", "der", "backward_euler", 1e-3).outcome,
+            Outcome::refused);
+  EXPECT_EQ(survived("inconsistent_start", "der", "backward_euler", 1e-3).outcome,
+            Outcome::refused);
+}
+
+TEST(HardCaseJudge, StopsWhenTimeIsOver) {
+  const Attempt attempt{&named("one_element"),
+                        subject("super_helix"),
+                        defaults("super_helix"),
+                        "backward_euler",
+                        1.0 / 300,
+                        {}};
+  int steps = 0;
+  const Survival s = survive(
+      attempt, [&] { return ++steps > 5; }, [] { return Reference{}; });
+  EXPECT_EQ(s.outcome, Outcome::not_finished);
+  EXPECT_FALSE(passed(s.outcome));
+  // The sixth step was taken and not judged.
+  EXPECT_NEAR(s.t, 6.0 / 300, 1e-12);
+}
+
+// dt and dt/100 in turn: as many steps as the simulated time has of their sum, twice.
+TEST(HardCaseJudge, StepsJump) {
+  const Survival s = survived("step_jumps", "super_helix", "backward_euler", 0.01,
+                              {{}, 0, "none needed"});
+  EXPECT_EQ(s.outcome, Outcome::stable);
+  const double pairs = 0.25 / 0.0101;
+  EXPECT_NEAR(static_cast<double>(s.stats.steps), 2 * pairs, 2);
+}
+
+TEST(HardCaseJudge, OutcomesAreReadAsTheyAreWritten) {
+  for (const Outcome outcome : {Outcome::refused, Outcome::not_finished,
+                                Outcome::unstable, Outcome::stable, Outcome::accurate}) {
+    EXPECT_EQ(outcome_of(name(outcome), "test"), outcome);
+  }
+  EXPECT_THROW(static_cast<void>(outcome_of("fine", "test")), InputError);
+}
+
+// ---- what is measured ---------------------------------------------------------------
+
+// A straight strand along x, over the slope 5 mm below: as deep as it is lowered.
+TEST(HardCaseGauges, PenetrationIsDepthOverWhatIsAllowed) {
+  Situation s = made("nearly_inextensible", "der");
+  const BodyContact law{.stiffness = 1, .offset = 40e-6};
+  s.effects.push_back(
+      std::make_shared<Body>(Plane{}, StrandPlace{{0, 0, 1e-3}, {}}, law));
+  const auto gauge = penetration_gauge(s);
+  gauge->see(0, s.start.q, s.start.v);
+  const Segment& last = s.strand.segments.back();
+  const double allowed = last.section.a1 + 0.0694 * last.length;
+  EXPECT_NEAR(gauge->measure(), (1e-3 + 40e-6) / allowed, 1e-9);
+}
+
+// Antiparallel halves half a circle of one element apart: 2 l/pi.
+TEST(HardCaseGauges, OverlapIsThatOfPartsFarApartAlongTheStrand) {
+  const Situation s = made("folded", "super_helix");
+  const double l = 0.005, apart = 2 * l / M_PI;
+  OverlapGauge gauge(s, 2 * apart, 4 * l);
+  gauge.see(0, s.start.q, s.start.v);
+  EXPECT_NEAR(gauge.measure(), 2 * (1 - 0.5), 1e-9);
+  OverlapGauge nothing(s, 0.5 * apart, 4 * l);
+  nothing.see(0, s.start.q, s.start.v);
+  EXPECT_DOUBLE_EQ(nothing.measure(), 0);
+}
+
+TEST(HardCaseGauges, NumbersThatAreNotAreNotPassed) {
+  Situation s = made("stiffest", "der");
+  const auto sag = sag_gauge(s, 1);
+  sag->see(0, s.start.q, s.start.v);
+  EXPECT_LE(sag->measure(), 1e-12);
+  s.start.q.back() = s.start.q[s.start.q.size() / 2] = std::nan("");
+  for (double& x : s.start.q) x = std::nan("");
+  sag->see(0, s.start.q, s.start.v);
+  EXPECT_FALSE(sag->measure() <= 1);
+}
+
+// ---- references shared by processes, the grid and the claims --------------------------
+
+TEST(HardCaseReferences, AreMadeOnce) {
+  References references(2);
+  int made = 0;
+  const auto compute = [&] {
+    ++made;
+    return Reference{{1, 2, 3}, 0.5, ""};
+  };
+  EXPECT_EQ(references.get(1, 1, compute).tip, (std::vector<double>{1, 2, 3}));
+  const Reference again = references.get(1, 1, compute);
+  EXPECT_EQ(made, 1);
+  EXPECT_EQ(again.tip, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(again.gap, 0.5);
+  EXPECT_EQ(references.get(0, 1,
+                           [] {
+                             return Reference{{}, 0, "failed"};
+                           })
+                .why,
+            "failed");
+  EXPECT_EQ(references.get(0, 1, compute).why, "failed");
+}
+
+TEST(HardCaseGrid, HasEveryCellOnce) {
+  CommandLine line;
+  line.quick = true;
+  const Grid grid = hard_grid(line, Settings(line, hard_case_settings()));
+  std::set<std::string> cells, cases;
+  for (const Cell& cell : grid.cells) {
+    EXPECT_TRUE(cells.insert(describe(cell.identity())).second);
+    EXPECT_LT(cell.reference, grid.references);
+    cases.insert(std::string(cell.attempt.hard->name));
+  }
+  EXPECT_EQ(cases.size(), hard_cases().size());
+  // Three integrators at two steps on each model and system of particles.
+  EXPECT_EQ(grid.cells.size(), 6 * grid.references);
+  line.set = {{"case", "straihgt"}};
+  EXPECT_THROW(static_cast<void>(hard_grid(line, Settings(line, hard_case_settings()))),
+               InputError);
+}
+
+Row claimed(std::string_view passed, std::string_view outcome) {
+  Row row;
+  row.set("case", "x").set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("integrator", "backward_euler").set("dt_s", 1.0 / 30);
+  return row.set("passed", passed).set("outcome", outcome).set("why", "broke");
+}
+
+TEST(HardCaseClaims, FailOnAWrongTable) {
+  const auto held = [](const std::vector<Row>& rows) {
+    Verdicts verdicts;
+    check_hard_cases(rows, verdicts);
+    std::vector<bool> all;
+    for (const auto& verdict : verdicts.all()) all.push_back(verdict.held);
+    return all;
+  };
+  EXPECT_EQ(held({claimed("true", "stable")}), (std::vector<bool>{true, true}));
+  EXPECT_EQ(held({claimed("false", "unstable")}), (std::vector<bool>{true, false}));
+  EXPECT_EQ(held({claimed("false", "refused")}), (std::vector<bool>{true}));
+  EXPECT_EQ(held({claimed("true", "")}), (std::vector<bool>{false, true}));
+}
+
+}  // namespace
+}  // namespace tress
