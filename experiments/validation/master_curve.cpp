@@ -21,7 +21,7 @@ Cantilever cantilever(double gamma) {
   // then the clamp's angle rises with the tip's and there is one root.
   constexpr double right_angle = std::numbers::pi / 2;
   const double start = 1e-3 / std::cbrt(gamma);
-  const auto bend = [gamma](double x, const double* y, double* dy) {
+  const auto bend = [gamma, right_angle](double x, const double* y, double* dy) {
     dy[0] = y[1];
     dy[1] = gamma * x * std::sin(std::min(y[0], right_angle));
   };

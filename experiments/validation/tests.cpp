@@ -1,6 +1,9 @@
 #include <algorithm>
 
 #include "experiments/validation/cantilever.h"
+#include "experiments/validation/chain.h"
+#include "experiments/validation/pendulum.h"
+#include "experiments/validation/ringing.h"
 #include "experiments/validation/test.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
@@ -10,7 +13,7 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests}) {
+    for (auto* family : {cantilever_tests, pendulum_tests, chain_tests, ringing_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;
