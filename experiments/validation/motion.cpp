@@ -14,7 +14,7 @@ namespace tress {
 Effects weight() { return {std::make_shared<Gravity>(Vec{0, 0, -earth_gravity})}; }
 
 Track track(std::string_view integrator, System& system, double dt, double t_end,
-            const Look& look) {
+            const Look& look, const std::function<bool(double value)>& enough) {
   const auto formulations = usable_formulations(find_integrator(integrator), system);
   if (formulations.empty()) {
     throw InputError("cannot drive this model", std::string(integrator),
@@ -24,16 +24,18 @@ Track track(std::string_view integrator, System& system, double dt, double t_end
   options.formulation = formulations.front();
   options.step = dt;
   Track seen;
+  bool stopped = false;
   const Observer each_step = [&](double t, In q, In v) {
     seen.t.push_back(t);
     seen.value.push_back(look(t, q, v));
-    return true;
+    stopped = enough && enough(seen.value.back());
+    return !stopped;
   };
   const State start = initial_state(system);
   system.reset();
   each_step(0, start.q, start.v);
   const Simulation run = simulate(integrator, system, options, start, t_end, each_step);
-  if (run.status != Status::ok) throw std::runtime_error(run.failure);
+  if (run.status != Status::ok && !stopped) throw std::runtime_error(run.failure);
   return seen;
 }
 

@@ -22,10 +22,10 @@ struct Track {
 
 using Look = std::function<double(double t, In q, In v)>;
 
-/// One run from the initial state to t_end by steps of at most dt. Throws InputError when
-/// the integrator cannot drive the model.
+/// One run from the initial state to t_end by steps of at most dt, or until `enough` says
+/// so of the last value. Throws InputError when the integrator cannot drive the model.
 Track track(std::string_view integrator, System& system, double dt, double t_end,
-            const Look& look);
+            const Look& look, const std::function<bool(double value)>& enough = {});
 
 /// Component `axis` (0, 1, 2: x, y, z) of the place of material point i (from the tip:
 /// -1, -2, ...), m. The system outlives what is returned.

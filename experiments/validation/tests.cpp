@@ -4,6 +4,8 @@
 #include "experiments/validation/chain.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/ringing.h"
+#include "experiments/validation/spring.h"
+#include "experiments/validation/stick_slip.h"
 #include "experiments/validation/test.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
@@ -13,7 +15,8 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests, pendulum_tests, chain_tests, ringing_tests}) {
+    for (auto* family : {cantilever_tests, pendulum_tests, chain_tests, ringing_tests,
+                         spring_tests, stick_slip_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;

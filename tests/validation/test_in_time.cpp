@@ -8,6 +8,9 @@
 #include "experiments/validation/chain.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/ringing.h"
+#include "experiments/validation/rod.h"
+#include "experiments/validation/spring.h"
+#include "experiments/validation/stick_slip.h"
 
 namespace tress {
 namespace {
@@ -45,11 +48,44 @@ TEST(FoldedChain, StartsFreelyAndEndsFaster) {
   }
 }
 
+// Independent values: the same elastica by a two-parameter shooting with another
+// Runge-Kutta code, to 1e-10.
+TEST(PinnedElastica, AgreesWithAnotherShooting) {
+  struct Known {
+    double eps, friction, axial, tip;
+  };
+  constexpr Known table[] = {{0.0001, 0.00445130365308, 20.1914881049, 0.0249408026171},
+                             {0.01, 0.0448536979315, 20.2667993757, 0.249954037879},
+                             {0.1, 0.152792555407, 20.9586422056, 0.807292422616},
+                             {0.3, 0.326491314201, 22.4177246593, 1.4813273888}};
+  for (const Known& known : table) {
+    const PinnedElastica rod = pinned_elastica(known.eps);
+    EXPECT_NEAR(rod.lateral / rod.axial, known.friction, 1e-9) << known.eps;
+    EXPECT_NEAR(rod.axial, known.axial, 1e-7) << known.eps;
+    EXPECT_NEAR(rod.tip, known.tip, 1e-9) << known.eps;
+  }
+}
+
+// Flat turns: k = GJ/(r^2 wire), omega = (pi/2) sqrt(k/m), and the wave that turns has EI
+// in place of GJ. A pitch angle of 0.15 couples them by its square, 2 %, over how far
+// apart they are, 1/3: 7 % at most.
+TEST(SpringModes, AreNearlyLovesSpringOfFlatTurns) {
+  const SpringModes modes = spring_modes(5);
+  const double wire = TestRod::length, r = wire / (10 * std::numbers::pi);
+  const double mass = TestRod::line_mass() * wire;
+  const auto flat = [&](double stiffness) {
+    return std::numbers::pi / 2 * std::sqrt(stiffness / (r * r * wire) / mass);
+  };
+  EXPECT_NEAR(modes.low / flat(TestRod().twisting()), 1, 0.07);
+  EXPECT_NEAR(modes.high / flat(TestRod::bending()), 1, 0.07);
+}
+
 // ---- the measurements -------------------------------------------------------------
 
 std::vector<ValidationTest> tests_in_time() {
   std::vector<ValidationTest> all;
-  for (auto* family : {pendulum_tests, chain_tests, ringing_tests}) {
+  for (auto* family :
+       {pendulum_tests, chain_tests, ringing_tests, spring_tests, stick_slip_tests}) {
     for (ValidationTest& test : family()) all.push_back(std::move(test));
   }
   return all;
