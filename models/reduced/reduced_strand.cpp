@@ -96,13 +96,15 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
   segment.last_block = reduced.blocks.size();
 }
 
-/// Each segment's inertia about its tangent, half at its start and half at its tip.
-void add_rotors(ReducedStrand& reduced, const Strand& strand) {
+/// Each segment's inertia about its tangent. A helix has half of it at its start, where
+/// its parent's tip turns, a rigid link all of it.
+void add_rotors(ReducedStrand& reduced, const Strand& strand, bool rigid) {
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
     const double half =
         strand.material.density * segment.section.polar() * segment.length / 2;
-    reduced.segments[i].rotor += half;
+    reduced.segments[i].rotor += rigid ? 2 * half : half;
+    if (rigid) continue;
     if (segment.parent >= 0) {
       reduced.segments[static_cast<std::size_t>(segment.parent)].rotor += half;
     } else {
@@ -210,7 +212,7 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     add_points(reduced, segment, material.density * from.section.area(), points);
     reduced.segments.push_back(segment);
   }
-  if (options.rotary_inertia) add_rotors(reduced, strand);
+  if (options.rotary_inertia) add_rotors(reduced, strand, joints);
 
   constexpr double earth = 9.81;  // m/s^2
   const CrossSection& section = strand.segments.front().section;

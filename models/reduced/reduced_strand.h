@@ -46,8 +46,8 @@ struct ReducedOptions {
   ReducedTangent tangent = ReducedTangent::exact;
   TreeMethod method = TreeMethod::recursive;
   /// The section's rotational inertia about the tangent, rho (I1 + I2) per length, at the
-  /// ends of the segments (trapezoidal rule). Without it the mass matrix of a straight
-  /// strand with twist is singular.
+  /// ends of helices (trapezoidal rule), of a rigid link as one. Without it the mass
+  /// matrix of a straight strand with twist is singular.
   bool rotary_inertia = true;
   int quadrature = 0;  // Gauss-Legendre points a segment; 0: by the angle it winds
 };

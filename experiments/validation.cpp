@@ -1,0 +1,36 @@
+// Is the physics right? Every strand model against published tests of slender rods.
+#include "experiments/harness/experiment.h"
+#include "experiments/validation/table.h"
+
+namespace tress {
+namespace {
+
+std::vector<Case> cases(const CommandLine& line) {
+  return validation_cases(line, Settings(line, validation_settings()));
+}
+
+/// That a model refuses a test or has no answer to it is an answer; what must hold is
+/// among the checks.
+bool finding(const Row& row) {
+  return row.status() == "refused" || row.status() == "failed";
+}
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "validation",
+      .question = "is the physics right: what do published tests of rods say?",
+      .example = "--models der,super_helix --set tests=cantilever",
+      .timed = false,
+      .quick_timeout_s = 60,
+      .columns = validation_columns(),
+      .settings = validation_settings(),
+      .cases = cases,
+      .derive = fit_validation_orders,
+      .checks = check_validation,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

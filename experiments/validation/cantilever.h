@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/validation/test.h"
+
+namespace tress {
+
+/// A clamped strand bent by its weight or by a force at its tip.
+std::vector<ValidationTest> cantilever_tests();
+
+}  // namespace tress

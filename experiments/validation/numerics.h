@@ -1,0 +1,20 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace tress {
+
+/// dy/dx = f(x, y) from `from` to `to` by the Runge-Kutta method of Prince and Dormand
+/// (order 8, GSL), each step within `accuracy` of the size of y. Throws
+/// std::runtime_error where the step vanishes.
+using Slope = std::function<void(double x, const double* y, double* dy)>;
+std::vector<double> integrate(const Slope& slope, double from, double to,
+                              std::vector<double> y, double accuracy = 1e-13);
+
+/// x in [low, high] where f changes sign, to `accuracy` of itself, by Brent's method
+/// (GSL). Throws std::runtime_error when f has the same sign at both ends.
+double find_root(const std::function<double(double)>& f, double low, double high,
+                 double accuracy = 1e-14);
+
+}  // namespace tress

@@ -1,0 +1,135 @@
+#include "experiments/validation/ringing.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "experiments/harness/simulation.h"
+#include "experiments/validation/motion.h"
+#include "experiments/validation/rod.h"
+#include "experiments/validation/signals.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double length = TestRod::length;
+constexpr double bent = 0.05;  // rad, the largest curvature or twist times L
+
+/// A straight hair that is not at rest there.
+Strand hair(int elements, const Shape& initial) {
+  const Strand straight = TestRod().strand(elements, horizontal_clamp());
+  Strand strand =
+      make_strand(straight.material, straight.segments.front().section,
+                  {.elements = elements, .length = length}, uniform_shape({}), initial);
+  strand.root = straight.root;
+  return strand;
+}
+
+constexpr double first_mode = 1.875104068711961;  // cos x cosh x = -1
+
+double bending_rate() { return first_mode * first_mode * TestRod::rate(); }
+
+/// Curvature of the first mode of a clamped rod, 1 at the clamp.
+double mode_curvature(double s) {
+  const double b = first_mode, x = b * s / length;
+  const double mixed = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
+  return (std::cosh(x) + std::cos(x) - mixed * (std::sinh(x) + std::sin(x))) / 2;
+}
+
+double decay(double damping_ratio) { return damping_ratio * bending_rate(); }
+
+double measured_decay(const Trial& trial) {
+  Strand strand = hair(trial.elements, [](double s) {
+    return Vec{0, bent / length * mode_curvature(s), 0};
+  });
+  strand.material.internal_friction =
+      2 * trial.parameter * TestRod::bending() / bending_rate();
+  const auto system = on_strand(trial.variant, strand, {});
+  const double once = 2 * pi / bending_rate();
+  return decay_rate(
+      track("implicit_midpoint", *system, once / 200, 5.3 * once, place(*system, -1, 2)));
+}
+
+double torsion_rate(double mode) {
+  const double shear = TestRod().twisting() / TestRod::bending() / 2;  // G/E, J = 2 I
+  const double speed = std::sqrt(shear * TestRod::youngs_modulus / TestRod::density);
+  return (2 * mode - 1) * pi / 2 * speed / length;
+}
+
+double measured_torsion(const Trial& trial) {
+  const double wave = (2 * trial.parameter - 1) * pi / (2 * length);
+  const auto system =
+      on_strand(trial.variant,
+                hair(trial.elements,
+                     [wave](double s) {
+                       return Vec{bent / length * std::cos(wave * s), 0, 0};
+                     }),
+                {});
+  const State start = initial_state(*system);
+  const double energy = system->energetics()->energy(0, start.q, start.v).total();
+  const double once = 2 * pi / torsion_rate(trial.parameter);
+  const Look look = kinetic(*system);
+  const Track swing =
+      track("implicit_midpoint", *system, once / 200, 3.3 * once,
+            [&](double t, In q, In v) { return look(t, q, v) - energy / 2; });
+  return pi / period(swing);
+}
+
+/// What holds a model's twist back, from its energy.
+std::string twists(const ModelVariant& variant) {
+  const auto system =
+      on_strand(variant, hair(4, uniform_shape({bent / length, 0, 0})), {});
+  const State start = initial_state(*system);
+  const double energy = system->energetics()->energy(0, start.q, start.v).total();
+  const double expected = TestRod().twisting() * bent * bent / length / 2;
+  return energy > 0.5 * expected ? "" : "no twist";
+}
+
+}  // namespace
+
+std::vector<ValidationTest> ringing_tests() {
+  return {{
+              .name = "friction",
+              .what = "a hair that rings in its first mode dies out by internal friction",
+              .source = "Kelvin-Voigt: (gamma/EI) omega^2/2; the calibration of gamma of "
+                        "Bertails et al. 2006",
+              .parameter = "damping ratio gamma omega/(2 EI)",
+              .quantity = "rate of decay (1/s)",
+              .quick = {{0.01}, {20}},
+              .usual = {{0.003, 0.01, 0.03}, {5, 10, 20, 40}},
+              .full = {{0.001, 0.003, 0.01, 0.03, 0.1}, {5, 10, 20, 40, 80}},
+              .tolerance = 0.02,
+              .why = "frequencies are asked for within 1 %, and the rate goes with their "
+                     "square",
+              .judged_from = 20,
+              .claimed = {"super_helix", "articulated_chain", "der", "corde",
+                          "xpbd_cosserat", "dynamic_spline", "kirchhoff_nodal"},
+              .reference = decay,
+              .refusal = [](const ModelVariant&) { return std::string(); },
+              .measure = measured_decay,
+          },
+          {
+              .name = "torsion",
+              .what = "twist runs to and fro in a straight hair",
+              .source = "(2 n - 1) pi/2 sqrt(G/rho)/L [Landau & Lifshitz, Theory of "
+                        "Elasticity, section 25]",
+              .parameter = "mode n",
+              .quantity = "frequency (rad/s)",
+              .quick = {{1}, {20}},
+              .usual = {{1, 2}, {5, 10, 20, 40}},
+              .full = {{1, 2, 3}, {5, 10, 20, 40, 80}},
+              .tolerance = 0.01,
+              .why = "frequencies are asked for within 1 %",
+              .judged_from = 20,
+              .claimed = {"super_helix", "articulated_chain", "der", "corde",
+                          "xpbd_cosserat", "dynamic_spline", "kirchhoff_nodal"},
+              .reference = torsion_rate,
+              .refusal = twists,
+              .measure = measured_torsion,
+          }};
+}
+
+}  // namespace tress

@@ -1,0 +1,176 @@
+#include "experiments/validation/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "experiments/harness/fit.h"
+#include "experiments/harness/parse.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"test", "which published test"},
+    {"model", "catalogue id"},
+    {"variant", "how it keeps its length, where there is a choice"},
+    {"elements", "number of elements"},
+    {"parameter", "of the test; --list and the manifest say what it is"},
+    {"measured", "what the model makes of it"},
+    {"reference", "the same of the continuous rod"},
+    {"error_rel", "|measured/reference - 1|"},
+    {"tolerance", "on error_rel"},
+    {"judged", "whether the test asks so much of so few elements"},
+    {"passed", "error_rel <= tolerance"},
+    {"order", "error ~ elements^-order at this parameter"},
+};
+
+constexpr Parameter settings_table[] = {
+    {.name = "tests",
+     .help = "which tests, as in cantilever,greenhill; empty: all",
+     .text = true},
+    {.name = "parameters",
+     .help = "values of the tests' parameter instead of their own, as in 0.1;10",
+     .rows = true},
+};
+
+struct Work {
+  const ValidationTest* test;
+  ModelVariant variant;
+  int elements;
+  double parameter;
+};
+
+void measure(const Work& work, Row& row, const Deadline& deadline) {
+  const ValidationTest& test = *work.test;
+  const double reference = test.reference(work.parameter);
+  const bool judged = work.elements >= test.judged_from;
+  row.set("reference", reference).set("tolerance", test.tolerance).set("judged", judged);
+  try {
+    const double measured =
+        test.measure({work.variant, work.elements, work.parameter, deadline});
+    const double error = std::abs(measured / reference - 1);
+    row.set("measured", measured).set("error_rel", error);
+    row.set("passed", error <= test.tolerance);
+  } catch (const InputError& refused) {
+    row.failed("refused", refused.what());
+  } catch (const std::runtime_error& failure) {
+    row.failed("failed", failure.what());
+  }
+}
+
+std::vector<const ValidationTest*> chosen_tests(const Settings& settings) {
+  std::vector<const ValidationTest*> chosen;
+  const std::string names(settings.experiment().word("tests"));
+  if (names.empty()) {
+    for (const ValidationTest& test : validation_tests()) chosen.push_back(&test);
+  } else {
+    for (const std::string& name : split(names, ',', "--set tests")) {
+      chosen.push_back(&find_validation_test(name));
+    }
+  }
+  return chosen;
+}
+
+ValidationTest::Grid grid(const ValidationTest& test, const CommandLine& line,
+                          const Settings& settings) {
+  ValidationTest::Grid grid = line.quick  ? test.quick
+                              : line.full ? test.full
+                                          : test.usual;
+  if (!line.elements.empty()) grid.elements = line.elements;
+  const auto parameters = settings.experiment().numbers("parameters");
+  if (!parameters.empty()) grid.parameters.assign(parameters.begin(), parameters.end());
+  return grid;
+}
+
+Row identity(const ValidationTest& test, const ModelVariant& variant) {
+  Row row;
+  row.set("test", test.name).set("model", variant.model->id);
+  if (!variant.words.empty()) row.set("variant", variant.words);
+  return row;
+}
+
+}  // namespace
+
+std::span<const Column> validation_columns() { return columns; }
+std::span<const Parameter> validation_settings() { return settings_table; }
+
+std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {
+  std::vector<Case> all;
+  for (const ValidationTest* test : chosen_tests(settings)) {
+    const auto [parameters, elements] = grid(*test, line, settings);
+    for (const ModelVariant& variant : length_variants()) {
+      if (!wanted(line.models, variant.model->id)) continue;
+      const Row name = identity(*test, variant);
+      if (const std::string reason = test->refusal(variant); !reason.empty()) {
+        all.push_back({name, [reason](Row& row, const Deadline&) {
+                         row.failed("refused", reason);
+                       }});
+        continue;
+      }
+      for (const double parameter : parameters) {
+        for (const int n : elements) {
+          Row row = name;
+          row.set("elements", n).set("parameter", parameter);
+          const Work work{test, variant, n, parameter};
+          all.push_back({row, [work](Row& of_case, const Deadline& deadline) {
+                           measure(work, of_case, deadline);
+                         }});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+void fit_validation_orders(std::vector<Row>& rows) {
+  // Equilibria are found to 1e-9 of their sizes, thresholds to 1e-8 of themselves.
+  constexpr double rounding = 1e-7;
+  struct Series {
+    std::vector<double> elements, errors;
+    std::vector<Row*> rows;
+  };
+  std::map<std::string, Series> all;
+  for (Row& row : rows) {
+    const double error = row.number("error_rel");
+    if (!row.ok() || !(error > rounding)) continue;
+    Series& series = all[joined(row, {"test", "model", "variant", "parameter"})];
+    series.elements.push_back(row.number("elements"));
+    series.errors.push_back(error);
+    series.rows.push_back(&row);
+  }
+  for (const auto& [key, series] : all) {
+    if (std::ranges::minmax(series.elements).min ==
+        std::ranges::minmax(series.elements).max) {
+      continue;
+    }
+    const double order = -log_log_slope(series.elements, series.errors);
+    for (Row* row : series.rows) row->set("order", order);
+  }
+}
+
+void check_validation(const std::vector<Row>& rows, Verdicts& verdicts) {
+  for (const ValidationTest& test : validation_tests()) {
+    std::map<std::string_view, int> seen;
+    std::map<std::string_view, double> worst;
+    for (const Row& row : rows) {
+      if (row.text("test") != test.name) continue;
+      ++seen[row.text("model")];
+      const auto claim = std::ranges::find(test.claimed, row.text("model"));
+      if (claim == test.claimed.end() || row.text("judged") != "true") continue;
+      double& most = worst[*claim];
+      const double error = row.number("error_rel");
+      most = std::isnan(error) ? INFINITY : std::max(most, error);
+    }
+    if (seen.empty()) continue;  // not chosen
+    for (const auto& [model, error] : worst) {
+      verdicts.check(std::string(test.name) + ", " + std::string(model) + ": " +
+                         std::string(test.quantity) + " as in the reference",
+                     error <= test.tolerance, error);
+    }
+  }
+}
+
+}  // namespace tress

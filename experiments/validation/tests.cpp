@@ -1,0 +1,39 @@
+#include <algorithm>
+
+#include "experiments/validation/cantilever.h"
+#include "experiments/validation/chain.h"
+#include "experiments/validation/pendulum.h"
+#include "experiments/validation/ringing.h"
+#include "experiments/validation/spring.h"
+#include "experiments/validation/stick_slip.h"
+#include "experiments/validation/test.h"
+#include "models/input_error.h"
+#include "models/parameters.h"
+
+namespace tress {
+
+const std::vector<ValidationTest>& validation_tests() {
+  static const std::vector<ValidationTest> all = [] {
+    std::vector<ValidationTest> tests;
+    for (auto* family : {cantilever_tests, pendulum_tests, chain_tests, ringing_tests,
+                         spring_tests, stick_slip_tests}) {
+      std::ranges::move(family(), std::back_inserter(tests));
+    }
+    return tests;
+  }();
+  return all;
+}
+
+const ValidationTest& find_validation_test(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const ValidationTest& test : validation_tests()) {
+    if (test.name == name) return test;
+    names.push_back(test.name);
+  }
+  const std::string_view near = nearest(name, names);
+  throw InputError("unknown test '" + std::string(name) + "'", "--set tests",
+                   near.empty() ? "leave it out to run all of them"
+                                : "did you mean '" + std::string(near) + "'?");
+}
+
+}  // namespace tress
