@@ -21,8 +21,11 @@ double height_over_width(double gamma) {
 
 double bent_by_weight(const Trial& trial) {
   const double gamma = trial.parameter;
-  Statics statics(trial.variant, TestRod{}.strand(trial.elements, horizontal_clamp()),
-                  TestRod::gravity(gamma) * down);
+  // Where the weight is large the strand turns down within sqrt(1/(2 Gamma)) L of the
+  // clamp, and elements have to be short there.
+  const TestRod rod{.grading = std::max(1.0, std::sqrt(gamma) / 4)};
+  Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()),
+                  rod.gravity(gamma) * down);
   statics.follow(std::min(1.0, small_load / gamma), 1);
   const Vec tip = statics.tip();
   return -tip.z / tip.x;
@@ -32,10 +35,11 @@ double deflection(double alpha) { return cantilever(0, alpha).height; }
 
 double bent_by_force(const Trial& trial) {
   const double alpha = trial.parameter;
-  Statics statics(trial.variant, TestRod{}.strand(trial.elements, horizontal_clamp()), {},
-                  {.force = (alpha * TestRod::force()) * down});
+  const TestRod rod;
+  Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {},
+                  {.force = (alpha * rod.force()) * down});
   statics.follow(std::min(1.0, small_load / alpha), 1);
-  return -statics.tip().z / TestRod::length;
+  return -statics.tip().z / rod.length;
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "experiments/harness/eigenvalues.h"
-
 namespace tress {
 namespace {
 
@@ -28,41 +26,48 @@ bool symmetric(const MatrixXd& matrix) {
          noise * matrix.cwiseAbs().maxCoeff();
 }
 
-std::vector<double> of_symmetric(const MatrixXd& mass, const MatrixXd& stiffness) {
+std::vector<SmallMotion> of_symmetric(const MatrixXd& mass, const MatrixXd& stiffness) {
   // With omega^2 + shift = 1/mu, M x = mu (K + shift M) x.
   double shift = 0;
   const double first =
-      1e-14 * stiffness.cwiseAbs().maxCoeff() / mass.diagonal().maxCoeff();
+      1e-14 * stiffness.cwiseAbs().maxCoeff() / mass.cwiseAbs().maxCoeff();
   MatrixXd definite = stiffness;
   while (Eigen::LLT<MatrixXd>(definite).info() != Eigen::Success) {
     shift = shift == 0 ? first : 4 * shift;
     definite = stiffness + shift * mass;
   }
-  const VectorXd mu = Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(
-                          mass, definite, Eigen::EigenvaluesOnly)
-                          .eigenvalues();
-  std::vector<double> squares;
-  for (auto k = mu.size(); k-- > 0;) squares.push_back(1 / mu[k] - shift);
-  return squares;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(mass, definite);
+  std::vector<SmallMotion> all;
+  for (auto k = motions.eigenvalues().size(); k-- > 0;) {
+    all.push_back({1 / motions.eigenvalues()[k] - shift, motions.eigenvectors().col(k)});
+  }
+  return all;
 }
 
 }  // namespace
 
-std::vector<double> small_motions(const MatrixXd& mass, const MatrixXd& stiffness,
-                                  const MatrixXd& constraints, In typical) {
+std::vector<SmallMotion> small_motions(const MatrixXd& mass, const MatrixXd& stiffness,
+                                       const MatrixXd& columns, const MatrixXd& rows,
+                                       In typical) {
   const Eigen::Map<const VectorXd> size(typical.data(), mass.rows());
-  const MatrixXd basis = size.asDiagonal() * complement(size.asDiagonal() * constraints);
-  const MatrixXd m = basis.transpose() * mass * basis;
-  const MatrixXd k = basis.transpose() * stiffness * basis;
+  const MatrixXd right =
+      size.asDiagonal() * complement(size.asDiagonal() * rows.transpose());
+  const MatrixXd left = size.asDiagonal() * complement(size.asDiagonal() * columns);
+  const MatrixXd m = left.transpose() * mass * right;
+  const MatrixXd k = left.transpose() * stiffness * right;
+  std::vector<SmallMotion> all;
   if (symmetric(m) && symmetric(k)) {
-    return of_symmetric((m + m.transpose()) / 2, (k + k.transpose()) / 2);
+    all = of_symmetric((m + m.transpose()) / 2, (k + k.transpose()) / 2);
+    for (SmallMotion& motion : all) motion.shape = right * motion.shape;
+  } else {
+    const Eigen::EigenSolver<MatrixXd> motions(m.partialPivLu().solve(k));
+    for (Eigen::Index j = 0; j < m.rows(); ++j) {
+      all.push_back({motions.eigenvalues()[j].real(),
+                     right * motions.eigenvectors().col(j).real()});
+    }
+    std::ranges::sort(all, {}, &SmallMotion::square);
   }
-  std::vector<double> squares;
-  for (const auto& square : eigenvalues(m.partialPivLu().solve(k))) {
-    squares.push_back(square.real());
-  }
-  std::ranges::sort(squares);
-  return squares;
+  return all;
 }
 
 }  // namespace tress

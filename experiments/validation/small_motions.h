@@ -7,13 +7,21 @@
 
 namespace tress {
 
-/// omega^2 of M x'' + K x = 0 with x orthogonal to the columns of `constraints`,
-/// ascending. M must be positive definite there. Of a symmetric K: the eigenvalues of M
-/// against K + shift M with the least shift >= 0 that makes it definite, so that the
+/// A small motion x(t) = shape exp(i omega t).
+struct SmallMotion {
+  double square;  // omega^2, 1/s^2
+  Eigen::VectorXd shape;
+};
+
+/// Those of M x'' + K x = columns e with rows x = 0, ascending. M must be positive
+/// definite there. Where all is symmetric, K = K^T and columns = rows^T: the eigenvalues
+/// of M against K + shift M with the least shift >= 0 that makes it definite, so that the
 /// smallest are as accurate as K is, however stiff the rest (stretching, shear). Of
-/// others: real parts of the eigenvalues of M^-1 K. `typical`: sizes of the unknowns.
-std::vector<double> small_motions(const Eigen::MatrixXd& mass,
-                                  const Eigen::MatrixXd& stiffness,
-                                  const Eigen::MatrixXd& constraints, In typical);
+/// others: real parts of the eigenvalues of M^-1 K and their vectors. `typical`: sizes
+/// of the unknowns.
+std::vector<SmallMotion> small_motions(const Eigen::MatrixXd& mass,
+                                       const Eigen::MatrixXd& stiffness,
+                                       const Eigen::MatrixXd& columns,
+                                       const Eigen::MatrixXd& rows, In typical);
 
 }  // namespace tress

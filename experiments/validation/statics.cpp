@@ -7,7 +7,6 @@
 
 #include "experiments/harness/dense_form.h"
 #include "experiments/validation/rod.h"
-#include "experiments/validation/small_motions.h"
 
 namespace tress {
 namespace {
@@ -18,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr int iterations = 60;
 constexpr double accuracy = 1e-11;   // of typical sizes: as good as it gets
-constexpr double rounding = 1e-7;    // corrections below that no longer shrink may stay
+constexpr double rounding = 1e-6;    // corrections below that no longer shrink may stay
 constexpr double hopeless = 1e4;     // corrections beyond lead nowhere
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
@@ -75,7 +74,7 @@ Statics::Tangent Statics::tangent() {
   const Vec force = tip_force_->force;
   const VectorXd loaded = residual(*system_, t_, q_);
   for (Index i = 0; i < places; ++i) {
-    const double size = TestRod::force();
+    constexpr double size = 1e-6;  // N, of a hair's; r is linear in it
     tip_force_->force = force + size * end_.along[static_cast<std::size_t>(i)];
     all.columns.col(m + i) = (loaded - residual(*system_, t_, q_)) / size;
   }
@@ -196,19 +195,27 @@ double Statics::energy() {
   return system_->energetics()->energy(t_, q_, zero).potential;
 }
 
-std::vector<double> Statics::squares() {
+std::vector<SmallMotion> Statics::motions() {
   Tangent now = tangent();
   // What gives is a spring, the rest a constraint.
-  MatrixXd rigid(now.rows.cols(), 0);
+  std::vector<Index> rigid;
   for (Index i = 0; i < now.rows.rows(); ++i) {
     if (now.compliance[i] > 0) {
       now.stiffness += now.columns.col(i) / now.compliance[i] * now.rows.row(i);
     } else {
-      rigid.conservativeResize(Eigen::NoChange, rigid.cols() + 1);
-      rigid.rightCols(1) = now.rows.row(i).transpose();
+      rigid.push_back(i);
     }
   }
-  return small_motions(dense_mass(*system_, t_, q_), now.stiffness, rigid, q_typ_);
+  return small_motions(dense_mass(*system_, t_, q_), now.stiffness,
+                       now.columns(Eigen::all, rigid), now.rows(rigid, Eigen::all),
+                       q_typ_);
+}
+
+std::vector<double> Statics::displacements(const SmallMotion& motion) {
+  MaterialPoints& points = *system_->material_points();
+  std::vector<double> u(3 * static_cast<std::size_t>(points.count()));
+  points.velocities(t_, q_, {motion.shape.data(), q_.size()}, u);
+  return u;
 }
 
 }  // namespace tress

@@ -6,6 +6,7 @@
 #include "experiments/harness/model_variants.h"
 #include "experiments/validation/end.h"
 #include "experiments/validation/loads.h"
+#include "experiments/validation/small_motions.h"
 #include "models/strand/strand.h"
 
 namespace tress {
@@ -39,9 +40,12 @@ class Statics {
   /// Elastic energy and that of the weight, J.
   double energy();
 
-  /// omega^2 (1/s^2) of small motions about the equilibrium with all that holds it,
-  /// ascending; the least is negative where the equilibrium is not stable.
-  std::vector<double> squares();
+  /// About the equilibrium with all that holds it; the least square is negative where the
+  /// equilibrium is not stable.
+  std::vector<SmallMotion> motions();
+  double least_square() { return motions().front().square; }
+  /// What a shape does to the points, (3 count) m.
+  std::vector<double> displacements(const SmallMotion& motion);
 
  private:
   struct Tangent;  // of the conditions at the present state

@@ -1,7 +1,10 @@
 #include <algorithm>
 
+#include "experiments/validation/buckling.h"
 #include "experiments/validation/cantilever.h"
+#include "experiments/validation/curls.h"
 #include "experiments/validation/test.h"
+#include "experiments/validation/vibration.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
 
@@ -10,7 +13,7 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests}) {
+    for (auto* family : {cantilever_tests, vibration_tests, buckling_tests, curl_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;
