@@ -162,7 +162,7 @@ std::vector<ValidationTest> curl_tests() {
           .judged_from = 48,
           .claimed = rods,
           .reference = unity,
-          .refusal = every_model,
+          .refusal = no_curl,
           .measure = measure_curly_hair,
       },
       {
@@ -179,7 +179,7 @@ std::vector<ValidationTest> curl_tests() {
           .judged_from = 192,
           .claimed = rods,
           .reference = spring_rise,
-          .refusal = every_model,
+          .refusal = no_curl,
           .measure = measure_spring,
       },
       {
@@ -197,7 +197,7 @@ std::vector<ValidationTest> curl_tests() {
           .judged_from = 40,
           .claimed = rods,
           .reference = reference_curl,
-          .refusal = every_model,
+          .refusal = no_curl,
           .measure = measure_curl,
       },
       {
@@ -214,7 +214,7 @@ std::vector<ValidationTest> curl_tests() {
           .judged_from = 20,
           .claimed = rods,
           .reference = [](double) { return bathe_tip; },
-          .refusal = every_model,
+          .refusal = no_curl,
           .measure = measure_bathe,
       },
   };

@@ -10,6 +10,8 @@ namespace {
 constexpr CrossSection section{40e-6, 40e-6};
 constexpr double youngs_modulus = 3e9, density = 1300;
 
+constexpr std::array<std::string_view, 2> points = {"mass_spring", "inextensible_strand"};
+
 bool among(std::span<const std::string_view> models, const ModelVariant& variant) {
   return std::ranges::find(models, variant.model->id) != models.end();
 }
@@ -67,8 +69,6 @@ Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand) {
 }
 
 std::string no_section(const ModelVariant& variant) {
-  constexpr std::array<std::string_view, 2> points = {"mass_spring",
-                                                      "inextensible_strand"};
   constexpr std::array<std::string_view, 1> accelerations = {"kirchhoff_nodal"};
   if (among(points, variant)) return "points have no section to be held";
   if (among(accelerations, variant)) {
@@ -76,6 +76,12 @@ std::string no_section(const ModelVariant& variant) {
            "holds a section";
   }
   return {};
+}
+
+std::string no_curl(const ModelVariant& variant) {
+  return among(points, variant)
+             ? "springs hold the angles between edges, not the direction of a curl"
+             : std::string();
 }
 
 }  // namespace tress

@@ -48,4 +48,7 @@ Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand);
 /// Why a test that holds the section of the tip does not suit a model; empty: it does.
 std::string no_section(const ModelVariant& variant);
 
+/// The same of a test whose strand has a natural curvature that leads into space.
+std::string no_curl(const ModelVariant& variant);
+
 }  // namespace tress

@@ -15,15 +15,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int iterations = 60;
-constexpr double accuracy = 1e-11;   // of typical sizes: as good as it gets
-constexpr double rounding = 1e-6;    // corrections below that no longer shrink may stay
-constexpr double hopeless = 1e4;     // corrections beyond lead nowhere
+constexpr int iterations = 100;
+constexpr double accuracy = 1e-11;  // of typical sizes: as good as it gets
+// Where stretch is stiff or a motion is soft rounding leaves corrections that shrink no
+// more; so small, and so often in vain, they may stay.
+constexpr double rounding = 1e-5;
+constexpr int in_vain = 5;
+constexpr double longest = 3;        // correction, in typical sizes
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
 
-Effects loads(const Vec& gravity, std::shared_ptr<const Effect> tip) {
-  return {std::make_shared<Weight>(gravity), std::move(tip)};
+Effects loads(const Vec& gravity, std::shared_ptr<const Effect> tip, Effects others) {
+  others.push_back(std::make_shared<Weight>(gravity));
+  others.push_back(std::move(tip));
+  return others;
 }
 
 VectorXd residual(System& system, double t, In q) {
@@ -46,10 +51,10 @@ struct Statics::Tangent {
 };
 
 Statics::Statics(const ModelVariant& variant, const Strand& strand, const Vec& gravity,
-                 End end)
+                 End end, Effects others)
     : end_(std::move(end)),
       tip_force_(std::make_shared<TipForce>(static_cast<int>(strand.segments.size()))),
-      system_(on_strand(variant, strand, loads(gravity, tip_force_))),
+      system_(on_strand(variant, strand, loads(gravity, tip_force_, std::move(others)))),
       conditions_(std::make_unique<EndConditions>(*system_, end_)) {
   const Layout layout = system_->layout();
   q_.resize(static_cast<std::size_t>(layout.coordinates));
@@ -120,17 +125,18 @@ double Statics::newton_step() {
   for (Index j = n; j < n + rows; ++j) size[j] = 1 / all.col(j).cwiseAbs().maxCoeff();
   all = all * size.asDiagonal();
   for (Index i = 0; i < n + rows; ++i) {
-    const double largest = all.row(i).cwiseAbs().maxCoeff();
-    all.row(i) /= largest;
-    right[i] /= largest;
+    const double entry = all.row(i).cwiseAbs().maxCoeff();
+    all.row(i) /= entry;
+    right[i] /= entry;
   }
   const VectorXd correction = all.partialPivLu().solve(right);
   if (!correction.allFinite()) throw std::runtime_error("no static correction");
-  const VectorXd moved = size.cwiseProduct(correction);
+  const double largest = correction.head(n).cwiseAbs().maxCoeff();
+  const VectorXd moved = std::min(1.0, longest / largest) * size.cwiseProduct(correction);
   for (Index j = 0; j < n; ++j) q_[static_cast<std::size_t>(j)] -= moved[j];
   lambda_ -= moved.segment(n, m);
   holding_ -= moved.tail(conditions_->rows());
-  return correction.head(n).cwiseAbs().maxCoeff();
+  return largest;
 }
 
 void Statics::relax(double t) {
@@ -140,21 +146,21 @@ void Statics::relax(double t) {
     throw std::runtime_error("no equilibrium at load " + std::to_string(t) + ": " + why);
   };
   t_ = t;
-  double last = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < iterations; ++i) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0, worse = 0; i < iterations; ++i) {
     double correction = 0;
     try {
       correction = newton_step();
     } catch (const std::runtime_error& error) {
       fail(error.what());
     }
-    if (correction <= accuracy || (correction <= rounding && correction >= last / 2)) {
+    worse = correction < best / 2 ? 0 : worse + 1;
+    best = std::min(best, correction);
+    if (correction <= accuracy || (correction <= rounding && worse >= in_vain)) {
       std::vector<double> v(q_.size());
       system_->accept(t_, q_, v);
       return;
     }
-    if (!(correction <= hopeless)) fail("the iteration diverges");
-    last = correction;
   }
   fail("corrections do not vanish");
 }

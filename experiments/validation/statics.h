@@ -18,9 +18,10 @@ class Statics {
  public:
   /// At the strand's initial state. Under the load t the strand has the weight of t
   /// `gravity` (m/s^2) and t end.force at its tip; what is held is held at any load.
-  /// Throws InputError where the model refuses the strand.
+  /// `others` act as well, at the time t. Throws InputError where the model refuses the
+  /// strand.
   Statics(const ModelVariant& variant, const Strand& strand, const Vec& gravity,
-          End end = {});
+          End end = {}, Effects others = {});
 
   /// The equilibrium at this load, from where the strand is. Throws std::runtime_error
   /// when the iteration does not converge; the strand is then where it was.
