@@ -12,7 +12,6 @@ namespace {
 
 constexpr Column columns[] = {
     {"case", "name of the situation"},
-    {"hard_because", "why it is hard"},
     {"model", "catalogue id"},
     {"variant", "which of its choices: tangent, how it keeps lengths, structure"},
     {"integrator", "method"},
@@ -45,7 +44,7 @@ struct Budget {
 void measure(const Cell& cell, References& references, const Budget& budget,
              double coarser, Row& row) {
   const HardCase& hard = *cell.attempt.hard;
-  row.set("hard_because", hard.why).set("measure_name", hard.measure);
+  row.set("measure_name", hard.measure);
   row.set("limit", hard.limit).set("criterion", hard.criterion);
   row.set("error_limit", largest_error);
   const Survival s = survive(cell.attempt, CpuLimit(budget.row), [&] {
@@ -96,6 +95,15 @@ void fill(std::vector<Row>& rows) {
   }
 }
 
+std::vector<Gloss> glossary() {
+  std::vector<Gloss> all;
+  for (const HardCase& hard : hard_cases()) {
+    all.push_back(
+        {"case", hard.name, {{"hard_because", hard.why}, {"criterion", hard.criterion}}});
+  }
+  return all;
+}
+
 /// What does not survive is what is looked for.
 bool finding(const Row& row) { return row.status() != "crashed"; }
 
@@ -117,6 +125,7 @@ int main(int argc, char** argv) {
       .cases = cases,
       .derive = fill,
       .checks = check_hard_cases,
+      .glossary = glossary,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

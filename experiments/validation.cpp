@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
       .cases = cases,
       .derive = fit_validation_orders,
       .checks = check_validation,
+      .glossary = validation_glossary,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

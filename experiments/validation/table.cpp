@@ -17,7 +17,7 @@ constexpr Column columns[] = {
     {"model", "catalogue id"},
     {"variant", "how it keeps its length, where there is a choice"},
     {"elements", "number of elements"},
-    {"parameter", "of the test; --list and the manifest say what it is"},
+    {"parameter", "of the test; the manifest's glossary says what it is"},
     {"measured", "what the model makes of it"},
     {"reference", "the same of the continuous rod"},
     {"error_rel", "|measured/reference - 1|"},
@@ -95,6 +95,20 @@ Row identity(const ValidationTest& test, const ModelVariant& variant) {
 }  // namespace
 
 std::span<const Column> validation_columns() { return columns; }
+
+std::vector<Gloss> validation_glossary() {
+  std::vector<Gloss> all;
+  for (const ValidationTest& test : validation_tests()) {
+    all.push_back({"test",
+                   test.name,
+                   {{"what", test.what},
+                    {"source", test.source},
+                    {"parameter", test.parameter},
+                    {"quantity", test.quantity},
+                    {"why", test.why}}});
+  }
+  return all;
+}
 std::span<const Parameter> validation_settings() { return settings_table; }
 
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {

@@ -11,6 +11,8 @@
 namespace tress {
 
 std::span<const Column> validation_columns();
+/// What each test is, where it comes from, and what is asked why.
+std::vector<Gloss> validation_glossary();
 
 /// Keys of --set: which tests, and which values of their parameters.
 std::span<const Parameter> validation_settings();

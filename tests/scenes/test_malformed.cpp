@@ -9,6 +9,7 @@
 #include "experiments/harness/files.h"
 #include "experiments/scenes/scene.h"
 #include "models/input_error.h"
+#include "tests/harness/toy_process.h"
 #include "tests/scenes/mutations.h"
 
 namespace tress {
@@ -31,10 +32,13 @@ bool has_place_and_remedy(const std::string& message) {
   return std::regex_match(message, form);
 }
 
+/// Through the reader, and those that it refuses through the program as well: it says
+/// the same and leaves nothing behind.
 TEST(MalformedScenes, TwoHundredAreEachRefusedWithPlaceAndRemedy) {
   const std::vector<std::string> texts = shipped_texts();
   ASSERT_FALSE(texts.empty());
   testing_support::Mutations mutations(1);
+  Toy simulate;
   int refused = 0;
   for (int i = 0; i < 2000 && refused < 200; ++i) {
     std::string text = texts[static_cast<std::size_t>(i) % texts.size()];
@@ -45,6 +49,11 @@ TEST(MalformedScenes, TwoHundredAreEachRefusedWithPlaceAndRemedy) {
     } catch (const InputError& error) {
       EXPECT_TRUE(has_place_and_remedy(error.what())) << error.what();
       ++refused;
+      simulate.write("mutant.toml", text);
+      const Toy::Result run = simulate.run("mutant.toml --out out --progress none");
+      EXPECT_EQ(run.code, 2) << run.err;
+      EXPECT_EQ(run.err, std::string("simulate: ") + error.what() + '\n');
+      EXPECT_FALSE(simulate.exists("out"));
     } catch (const std::exception& error) {
       ADD_FAILURE() << error.what() << "\n" << text;
     }
