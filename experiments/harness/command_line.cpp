@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 #include "experiments/harness/parse.h"
 #include "experiments/harness/scene_file.h"
@@ -21,14 +22,26 @@ struct Raw {
   std::string models, integrators, elements, scene, out, shard, timeout, progress;
   std::string jobs, repeat, seed;
   std::vector<std::string> set;
+  std::vector<std::string> own;  // of the experiment's own options
 };
 
-void declare(CLI::App& app, CommandLine& line, Raw& raw) {
+/// Whether an option of the experiment stands in for the one that all have.
+bool takes_place(std::span<const OwnOption> own, std::string_view name) {
+  return std::ranges::find(own, name, &OwnOption::name) != own.end();
+}
+
+void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOption> own) {
   app.add_flag("--list", line.list, "print models, integrators and what drives what");
   app.add_option("--models", raw.models, "models to run, as in a,b");
   app.add_option("--integrators", raw.integrators, "integrators to run, as in a,b");
   app.add_option("--elements", raw.elements, "element counts, as in 1,2,5,10:40:10");
-  app.add_option("--scene", raw.scene, "TOML file with any of these options");
+  raw.own.resize(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    app.add_option("--" + std::string(own[i].name), raw.own[i], std::string(own[i].help));
+  }
+  if (!takes_place(own, "scene")) {
+    app.add_option("--scene", raw.scene, "TOML file with any of these options");
+  }
   app.add_option("--set", raw.set, "key=value for the experiment, integrators or models")
       ->allow_extra_args(false);
   app.add_option("--out", raw.out,
@@ -102,7 +115,8 @@ void parse_settings(const std::vector<std::string>& given, CommandLine& line) {
   }
 }
 
-void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
+void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> own,
+               CommandLine& line) {
   const auto given = [&app, &line](const std::string& text, const std::string& option) {
     if (app.count("--" + option) == 0) return false;
     if (text.empty()) {
@@ -112,7 +126,7 @@ void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
     line.places.emplace(option, "--" + option);
     return true;
   };
-  if (given(raw.scene, "scene")) line.scene = raw.scene;
+  if (!takes_place(own, "scene") && given(raw.scene, "scene")) line.scene = raw.scene;
   if (given(raw.out, "out")) line.out = raw.out;
   if (given(raw.models, "models")) line.models = split(raw.models, ',', "--models");
   if (given(raw.integrators, "integrators")) {
@@ -136,6 +150,30 @@ void interpret(const CLI::App& app, const Raw& raw, CommandLine& line) {
   if (given(raw.seed, "seed")) line.seed = parse_whole(raw.seed, "--seed");
   if (given(raw.progress, "progress")) line.progress = parse_progress(raw.progress);
   parse_settings(raw.set, line);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::string name(own[i].name), key(own[i].key);
+    if (!given(raw.own[i], name)) continue;
+    if (!line.places.emplace("set:" + key, "--" + name).second) {
+      throw InputError("'" + key + "' is set twice", "--" + name, "set it once");
+    }
+    line.set.emplace_back(key, raw.own[i]);
+  }
+}
+
+/// Where the table goes unless the user says so.
+std::string default_table(std::string_view name, const CommandLine& line,
+                          std::span<const OwnOption> own) {
+  std::string table = fmt::format("results/{}", name);
+  for (const OwnOption& option : own) {
+    if (!option.names_table || line.places.count(option.name) == 0) continue;
+    const auto value = std::ranges::find(line.set, option.key,
+                                         &std::pair<std::string, std::string>::first);
+    table += '.' + std::filesystem::path(value->second).stem().string();
+  }
+  if (line.shard_count > 1) {
+    table += fmt::format(".{}-of-{}", line.shard_index, line.shard_count);
+  }
+  return table + ".csv";
 }
 
 void check_combinations(const CommandLine& line) {
@@ -167,13 +205,13 @@ std::string CommandLine::place(std::string_view option) const {
 
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
-                               const char* const* argv) {
+                               const char* const* argv, std::span<const OwnOption> own) {
   CommandLine line;
   Raw raw;
   CLI::App app{std::string(question), std::string(name)};
   app.set_version_flag("--version",
                        fmt::format("{} {} ({})", name, TRESS_VERSION, TRESS_GIT_COMMIT));
-  declare(app, line, raw);
+  declare(app, line, raw, own);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -184,13 +222,9 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
     refuse(app, name, argc, argv, error);
   }
   line.argv.assign(argv, argv + argc);
-  interpret(app, raw, line);
+  interpret(app, raw, own, line);
   if (!line.scene.empty()) read_scene_options(line.scene, line);
-  if (line.out.empty()) {
-    line.out = line.shard_count == 1 ? fmt::format("results/{}.csv", name)
-                                     : fmt::format("results/{}.{}-of-{}.csv", name,
-                                                   line.shard_index, line.shard_count);
-  }
+  if (line.out.empty()) line.out = default_table(name, line, own);
   check_combinations(line);
   return line;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -35,6 +36,14 @@ struct CommandLine {
   std::string place(std::string_view option) const;
 };
 
+/// An option of one experiment: --name VALUE says the same as --set key=VALUE. One that
+/// is named as an option that all experiments have takes its place.
+struct OwnOption {
+  std::string_view name, key, help;
+  /// VALUE is a file: the default table is results/<experiment>.<file>.csv.
+  bool names_table = false;
+};
+
 /// Whether a choice such as --models leaves `id` in; an empty one leaves everything in.
 bool wanted(const std::vector<std::string>& chosen, std::string_view id);
 
@@ -48,6 +57,7 @@ class Answer : public std::runtime_error {
 /// --version. `example` completes "<name> ..." in the help text.
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
-                               const char* const* argv);
+                               const char* const* argv,
+                               std::span<const OwnOption> own = {});
 
 }  // namespace tress

@@ -53,9 +53,13 @@ class Rows {
     std::set<std::string_view> taken;
     for (const Case& work : plan) {
       const std::string id(work.identity.text("run_id"));
-      if (const Row* row = find(id)) {
-        result.push_back(*row);
-        taken.insert(row->text("run_id"));
+      // Further rows of a case have its run_id before a point.
+      for (auto at = place_.lower_bound(id);
+           at != place_.end() && (at->first == id || at->first.starts_with(id + '.'));
+           ++at) {
+        const Row& row = rows_[at->second];
+        result.push_back(row);
+        taken.insert(row.text("run_id"));
       }
     }
     for (const Row& row : rows_) {
@@ -151,6 +155,7 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
                  manifest.finished(rows, verdicts, kept_from_before));
     replace_file(line.out, csv);
   }
+  if (experiment.conclude && line.shard_count == 1) experiment.conclude(line, rows);
   return report(experiment, line, rows, verdicts);
 }
 
@@ -205,11 +210,14 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   SweepEnd end = SweepEnd::complete;
   {
     Progress progress(line.progress, experiment.name, todo.size());
-    end = sweep(todo, line.jobs, line.timeout_s, [&](std::size_t, Row row) {
-      static_cast<void>(in_order(row, columns));  // an undeclared column is our mistake
-      if (journal) journal->append(row);
-      progress.finished(row);
-      rows.keep(std::move(row));
+    end = sweep(todo, line.jobs, line.timeout_s, [&](std::size_t, std::vector<Row> of) {
+      progress.finished(of.front());
+      // A case's first row comes last: where it is there, all of them are.
+      for (std::size_t i = of.size(); i-- > 0;) {
+        static_cast<void>(in_order(of[i], columns));  // an undeclared column: our mistake
+        if (journal) journal->append(of[i]);
+        rows.keep(std::move(of[i]));
+      }
     });
   }
   if (end == SweepEnd::interrupted) {
@@ -235,8 +243,9 @@ int dry_run(const Experiment& experiment, const CommandLine& line) {
 }
 
 int answer(const Experiment& experiment, int argc, char** argv) {
-  CommandLine line = parse_command_line(experiment.name, experiment.question,
-                                        experiment.example, argc, argv);
+  CommandLine line =
+      parse_command_line(experiment.name, experiment.question, experiment.example, argc,
+                         argv, experiment.options);
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }

@@ -36,6 +36,10 @@ class Deadline {
 struct Case {
   Row identity;  // the columns that tell this row from all others; hashed into run_id
   std::function<void(Row&, const Deadline&)> run;  // the row comes with the identity set
+  /// Instead of `run`, where one piece of work answers several rows: all of them, from
+  /// the identity. The first has the run_id of the case, the others ".001" and so on
+  /// behind it.
+  std::function<std::vector<Row>(const Row&, const Deadline&)> run_rows = {};
 };
 
 /// What the rows that have `value` in `column` are about, in words: {"what", "..."}.
@@ -54,7 +58,8 @@ struct Experiment {
   double quick_timeout_s = 5;  // a row with --quick has, unless --timeout says otherwise
   std::span<const Column> columns;  // status, reason and run_id are added to them
   std::span<const Parameter> settings =
-      {};  // keys of --set that are the experiment's own
+      {};                                   // keys of --set that are the experiment's own
+  std::span<const OwnOption> options = {};  // short for --set of some of them
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
@@ -66,6 +71,8 @@ struct Experiment {
   /// Optional: a row that is not ok but is what the experiment set out to find (a
   /// divergence beyond a limit, say) does not make the exit code 3.
   std::function<bool(const Row&)> finding = {};
+  /// Optional: what to say of the complete table, or to write beside it.
+  std::function<void(const CommandLine&, const std::vector<Row>&)> conclude = {};
 };
 
 /// The whole main(): options, --list, sweep, table, manifest; returns the exit code.

@@ -13,9 +13,6 @@ constexpr double tolerance = 1e-5;
 
 constexpr int steps_per_sample = 8;
 
-constexpr int finest = 160;
-constexpr double finest_step = 2.5e-4;     // s: an error of 2e-5 of the length before
-                                           // extrapolation
 constexpr double newton_tolerance = 1e-4;  // corrections below 1e-6 of the length
 
 std::vector<double> tip(const MakeStrand& make, std::string_view model, int elements,
@@ -30,19 +27,20 @@ std::vector<double> tip(const MakeStrand& make, std::string_view model, int elem
   return std::move(run.tip);
 }
 
-std::vector<double> rod(const MakeStrand& make, std::string_view model,
-                        std::string_view integrator, const TipSampling& sampling) {
+std::vector<double> rod(const TipsOf& tips, std::string_view model,
+                        std::string_view integrator, const Finest& finest) {
   const auto converged_in_time = [&](int elements) {
     Options options;
     options.refresh = Refresh::every_step;
     options.newton_tolerance = newton_tolerance;
-    options.step = 2 * finest_step;
-    const auto coarse = tip(make, model, elements, integrator, options, sampling);
-    options.step = finest_step;
-    const auto fine = tip(make, model, elements, integrator, options, sampling);
+    options.step = 2 * finest.step;
+    const auto coarse = tips(model, integrator, elements, options);
+    options.step = finest.step;
+    const auto fine = tips(model, integrator, elements, options);
     return extrapolated(coarse, fine, 2);
   };
-  return extrapolated(converged_in_time(finest / 2), converged_in_time(finest), 2);
+  const auto half = converged_in_time(finest.elements / 2);
+  return extrapolated(half, converged_in_time(finest.elements), 2);
 }
 
 }  // namespace
@@ -68,13 +66,22 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
   return reference;
 }
 
+TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
+                           const Finest& finest) {
+  TipReference reference;
+  reference.tip = rod(tips, models.one, "implicit_midpoint", finest);
+  reference.other = rod(tips, models.other, "generalized_alpha", finest);
+  reference.gap = tip_error(reference.other, reference.tip, length);
+  return reference;
+}
+
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models) {
-  TipReference reference;
-  reference.tip = rod(make, models.one, "implicit_midpoint", sampling);
-  reference.other = rod(make, models.other, "generalized_alpha", sampling);
-  reference.gap = tip_error(reference.other, reference.tip, sampling.length);
-  return reference;
+  const auto tips = [&](std::string_view model, std::string_view integrator, int elements,
+                        const Options& options) {
+    return tip(make, model, elements, integrator, options, sampling);
+  };
+  return converged_rod(tips, sampling.length, models);
 }
 
 }  // namespace tress

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/system.h"
+#include "integrators/integrator.h"
 
 namespace tress {
 
@@ -41,10 +41,26 @@ struct RodModels {
 inline constexpr RodModels clamped_rod{"super_helix", "articulated_chain"};
 inline constexpr RodModels free_rod{"super_helix", "der"};
 
-/// The continuous rod: one model at 80 and 160 elements by implicit_midpoint, each at two
-/// steps, extrapolated to none in the step (order 2) and then in the element length
-/// (order 2; what is left of a higher order is small already). The same of the other
-/// model by generalized_alpha is the other side. About 10 s for 2 s of a hair.
+/// The finest run of a reference.
+struct Finest {
+  int elements = 160;
+  double step = 2.5e-4;  // s: an error of 2e-5 of the length before extrapolation
+};
+
+/// Tips of one run at all instants at which they are compared; throws std::runtime_error
+/// where it fails.
+using TipsOf =
+    std::function<std::vector<double>(std::string_view model, std::string_view integrator,
+                                      int elements, const Options& options)>;
+
+/// The continuous rod: one model with the finest and half as many elements by
+/// implicit_midpoint, each at the finest step and twice that, extrapolated to none in the
+/// step (order 2) and then in the element length (order 2; what is left of a higher order
+/// is small already). The same of the other model by generalized_alpha is the other side.
+TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
+                           const Finest& finest = {});
+
+/// The same of a strand of the catalogue. About 10 s for 2 s of a hair.
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models = clamped_rod);
 

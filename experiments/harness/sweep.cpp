@@ -68,7 +68,7 @@ void wait_for_news(const std::vector<Worker>& workers, int interrupts) {
 }  // namespace
 
 SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
-               const std::function<void(std::size_t index, Row)>& finished) {
+               const std::function<void(std::size_t index, std::vector<Row>)>& finished) {
   const Interrupts interrupts;
   std::vector<Worker> workers;
   std::size_t next = 0;
@@ -81,8 +81,8 @@ SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
     if (interrupts.happened()) return SweepEnd::interrupted;
     std::vector<Worker> running;
     for (Worker& worker : workers) {
-      if (std::optional<Row> row = worker.poll()) {
-        finished(worker.index(), std::move(*row));
+      if (std::optional<std::vector<Row>> rows = worker.poll()) {
+        finished(worker.index(), std::move(*rows));
       } else {
         running.push_back(std::move(worker));
       }

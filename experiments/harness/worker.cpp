@@ -30,22 +30,41 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
+/// What the case measures, as it stands where the case throws.
+std::vector<Row> measured(const Case& work, const Deadline& deadline) {
+  Row row = work.identity;
+  try {
+    if (!work.run_rows) {
+      work.run(row, deadline);
+      return {row};
+    }
+    std::vector<Row> rows = work.run_rows(row, deadline);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::string_view id = work.identity.text("run_id");
+      rows[i].set("run_id", i == 0 ? std::string(id) : fmt::format("{}.{:03}", id, i));
+    }
+    if (rows.empty()) throw std::logic_error("a case without rows");
+    return rows;
+  } catch (const std::exception& error) {
+    row.failed("exception", error.what());
+  } catch (...) {
+    row.failed("exception", "something that is no std::exception was thrown");
+  }
+  return {row};
+}
+
 [[noreturn]] void run_case(const Case& work, double timeout_s, int pipe, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it died before the line above
   reset_signals();
   dup2(STDERR_FILENO, STDOUT_FILENO);
-  Row row = work.identity;
   try {
-    work.run(row, Deadline(timeout_s));
-  } catch (const std::exception& error) {
-    row.failed("exception", error.what());
-  } catch (...) {
-    row.failed("exception", "something that is no std::exception was thrown");
-  }
-  try {
-    write_all(pipe, to_json_line(row) + '\n', "pipe");
+    std::string lines;
+    for (const Row& row : measured(work, Deadline(timeout_s))) {
+      lines += to_json_line(row) + '\n';
+    }
+    write_all(pipe, lines, "pipe");
   } catch (...) {
     _exit(1);
   }
@@ -113,7 +132,7 @@ void Worker::drain() {
   }
 }
 
-std::optional<Row> Worker::poll() {
+std::optional<std::vector<Row>> Worker::poll() {
   drain();
   int wait_status = 0;
   const bool timed_out = Clock::now() >= kill_at_;
@@ -126,24 +145,31 @@ std::optional<Row> Worker::poll() {
   return result(wait_status, timed_out);
 }
 
-Row Worker::result(int wait_status, bool timed_out) const {
+std::vector<Row> Worker::result(int wait_status, bool timed_out) const {
   if (received_.ends_with('\n')) {
     try {
-      return from_json_line(received_);
+      std::vector<Row> rows;
+      for (std::size_t at = 0; at < received_.size();) {
+        const std::size_t end = received_.find('\n', at);
+        rows.push_back(from_json_line(std::string_view(received_).substr(at, end - at)));
+        at = end + 1;
+      }
+      return rows;
     } catch (const std::exception&) {
-      // Not our line: told below as a crash.
+      // Not our lines: told below as a crash.
     }
   }
   Row row = work_->identity;
   if (timed_out) {
-    return row.failed("timeout", fmt::format("killed after {:.3g} s", timeout_s_));
-  }
-  if (WIFSIGNALED(wait_status)) {
+    row.failed("timeout", fmt::format("killed after {:.3g} s", timeout_s_));
+  } else if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
-    return row.failed("crashed", fmt::format("signal {}: {}", signal, strsignal(signal)));
+    row.failed("crashed", fmt::format("signal {}: {}", signal, strsignal(signal)));
+  } else {
+    row.failed("crashed", fmt::format("exit code {} before the row was complete",
+                                      WEXITSTATUS(wait_status)));
   }
-  return row.failed("crashed", fmt::format("exit code {} before the row was complete",
-                                           WEXITSTATUS(wait_status)));
+  return {row};
 }
 
 }  // namespace tress

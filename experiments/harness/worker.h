@@ -5,13 +5,15 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/harness/experiment.h"
 
 namespace tress {
 
 /// One case in a forked process of its own group, which dies with its parent. Its row
-/// comes back through a pipe; what it prints goes to standard error.
+/// comes back through a pipe (its rows, of Case::run_rows); what it prints goes to
+/// standard error.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
@@ -25,13 +27,13 @@ class Worker {
   int pipe() const { return pipe_; }  // -1 once the far end is closed
   Clock::time_point killed_at() const { return kill_at_; }
 
-  /// Reads what there is; the row once the process has ended or its time is over: its
+  /// Reads what there is; the rows once the process has ended or its time is over: its
   /// own, or the identity with status timeout or crashed.
-  std::optional<Row> poll();
+  std::optional<std::vector<Row>> poll();
 
  private:
   void drain();
-  Row result(int wait_status, bool timed_out) const;
+  std::vector<Row> result(int wait_status, bool timed_out) const;
 
   const Case* work_;
   std::size_t index_;

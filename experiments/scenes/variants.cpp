@@ -113,11 +113,14 @@ Scene refined(Scene scene) {
   return scene;
 }
 
-TipPaths tip_paths(const Scene& scene, int repeat) {
+TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
   TipPaths paths;
   World world(scene);
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
-    if (f > 0) advance(world, scene.time_of(f));
+    if (f > 0) {
+      paths.wall_s += time_calls(1, [&] { advance(world, scene.time_of(f)); }).median_s;
+    }
+    if (paths.wall_s > most_s) throw std::runtime_error("takes too long");
     add_tips(world, paths.x);
   }
   if (repeat == 0) return paths;

@@ -34,7 +34,16 @@ constexpr Parameter settings[] = {
      .help = "what row 2 does",
      .choices = "ok|crash|throw|busy|deaf|polite|quit|undeclared"},
     {.name = "promise", .help = "what the check says", .choices = "held|broken"},
+    {.name = "further",
+     .help = "rows of a case beyond its own",
+     .number = 0,
+     .min = 0,
+     .max = 100,
+     .whole = true},
 };
+
+constexpr OwnOption options[] = {{"pause", "nap", "time per row (s)"},
+                                 {"only", "odd_row", "what row 2 does", true}};
 
 void log_execution(int index) {
   if (const char* file = std::getenv("TOY_LOG")) {
@@ -76,6 +85,19 @@ std::vector<Case> cases(const CommandLine& line) {
       if (i == 2) misbehave(odd_row, row, deadline);
       if (row.ok()) row.set("square", i * i).set("wall_s", deadline.remaining_s());
     };
+    if (const int further = own.whole("further"); further > 0) {
+      work.run_rows = [further, run = work.run](const Row& identity,
+                                                const Deadline& deadline) {
+        Row first = identity;
+        run(first, deadline);
+        std::vector<Row> rows{first};
+        for (int k = 1; k <= further; ++k) {
+          rows.push_back(identity);
+          rows.back().set("square", -k);
+        }
+        return rows;
+      };
+    }
     list.push_back(std::move(work));
   }
   return list;
@@ -96,6 +118,7 @@ int main(int argc, char** argv) {
       .example = "--set particles=10 --out toy.csv",
       .columns = tress::columns,
       .settings = tress::settings,
+      .options = tress::options,
       .cases = tress::cases,
       .checks = [held](const std::vector<tress::Row>& rows, tress::Verdicts& verdicts) {
         verdicts.check("the promise", held, static_cast<double>(rows.size()));

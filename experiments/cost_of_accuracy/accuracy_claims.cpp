@@ -1,0 +1,55 @@
+#include "experiments/cost_of_accuracy/accuracy_claims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+namespace tress {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// A comparison with what is not a number must not pass.
+double shown(double value) { return std::isfinite(value) ? value : never; }
+
+struct Worst {
+  double refined = 0;      // error against the finer reference over target
+  double cheaper = never;  // wall time of what meets a winner's target, over its own
+};
+
+bool meets(const Row& row, const Row& winner) {
+  return row.ok() && row.text("scene") == winner.text("scene") &&
+         row.number("error_rel") + row.number("reference_gap") <=
+             winner.number("target_error_rel");
+}
+
+}  // namespace
+
+void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
+  std::map<std::string, Worst> scenes;
+  for (const Row& winner : rows) {
+    if (winner.text("kind") != "winner" || !winner.ok()) continue;
+    Worst& worst = scenes[std::string(winner.text("scene"))];
+    worst.refined = std::max(worst.refined, shown(winner.number("error_refined_rel") /
+                                                  winner.number("target_error_rel")));
+    for (const Row& row : rows) {
+      if (row.text("kind") == "as_given" || !meets(row, winner)) continue;
+      worst.cheaper = std::min(worst.cheaper, row.number("wall_s_per_sim_s") /
+                                                  winner.number("wall_s_per_sim_s"));
+    }
+  }
+  for (const auto& [scene, worst] : scenes) {
+    verdicts.check(scene +
+                       ": winners keep their error with the reference refined once "
+                       "more (largest error over target)",
+                   worst.refined <= 1, worst.refined);
+    verdicts.check(scene +
+                       ": nothing shown is cheaper than a winner whose target it "
+                       "meets (least time over the winner's)",
+                   worst.cheaper >= 1, worst.cheaper);
+  }
+}
+
+}  // namespace tress

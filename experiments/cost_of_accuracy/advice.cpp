@@ -1,0 +1,101 @@
+#include "experiments/cost_of_accuracy/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/harness/strand_models.h"
+
+namespace tress {
+namespace {
+
+/// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms"
+std::string what(const Row& row) {
+  const ModelEntry& model = find_model(row.text("model"));
+  std::string options;
+  const auto add = [&options](std::string_view text) {
+    options += fmt::format("{}{}", options.empty() ? "" : ", ", text);
+  };
+  for (const std::string_view key : {"modes", "tangent", "solver"}) {
+    if (row.has(key) && row.text(key) != first_word(model, key)) {
+      add(fmt::format("{}={}", key, row.text(key)));
+    }
+  }
+  if (row.has("options")) add(row.text("options"));
+  return fmt::format("{}{}, {} elements, {}, dt {:.3g} ms", model.id,
+                     options.empty() ? "" : fmt::format(" ({})", options),
+                     row.text("elements"), row.text("integrator"),
+                     1e3 * row.number("dt_s"));
+}
+
+/// "0.82 % of the length in 3.2 ms per simulated second (0.053 ms per frame)"
+std::string price(const Row& row) {
+  return fmt::format(
+      "{:.2g} % of the length in {:.3g} ms per simulated second ({:.2g} ms a frame)",
+      1e2 * row.number("error_rel"), 1e3 * row.number("wall_s_per_sim_s"),
+      row.number("ms_per_frame"));
+}
+
+const Row* find(const std::vector<Row>& rows, std::string_view kind) {
+  const auto found = std::ranges::find_if(rows, [kind](const Row& row) {
+    return row.text("kind") == kind && row.has("model") && row.has("error_rel");
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+/// The file's own configuration where it is worse, else the dearest of the replaced
+/// choices.
+std::string what_not(const std::vector<Row>& rows, const Row& best) {
+  const double target = best.number("target_error_rel");
+  if (const Row* given = find(rows, "as_given")) {
+    const double factor =
+        given->number("wall_s_per_sim_s") / best.number("wall_s_per_sim_s");
+    const bool misses = given->number("error_rel") > target;
+    if (misses || factor > 1) {
+      return fmt::format("not as the file has it, {}: {}{}", what(*given), price(*given),
+                         misses ? fmt::format(", misses {:.3g} %", 1e2 * target)
+                                : fmt::format(", {:.3g} times the time", factor));
+    }
+  }
+  const Row* worst = nullptr;
+  for (const Row& row : rows) {
+    if (row.text("kind") != "without" || !row.ok()) continue;
+    if (worst == nullptr || row.number("cost_factor") > worst->number("cost_factor")) {
+      worst = &row;
+    }
+  }
+  if (worst == nullptr) return "not: nothing else was found that does";
+  return fmt::format("not another {}, {}: {:.3g} times the time", worst->text("choice"),
+                     what(*worst), worst->number("cost_factor"));
+}
+
+}  // namespace
+
+const Row* advised(const std::vector<Row>& rows) {
+  const Row* budget = find(rows, "budget");
+  return budget != nullptr ? budget : find(rows, "winner");
+}
+
+std::vector<std::string> advice(const std::vector<Row>& rows) {
+  const Row* best = advised(rows);
+  if (best == nullptr) {
+    const Row& first = rows.front();
+    return {fmt::format("nothing: {}", first.text("reason"))};
+  }
+  std::vector<std::string> lines{fmt::format("take {}: {}", what(*best), price(*best))};
+  const Row* winner = find(rows, "winner");
+  const Row* next = best == winner ? find(rows, "runner_up") : winner;
+  lines.push_back(next == nullptr
+                      ? "next best: no other model or integrator does"
+                      : fmt::format("next best {}: {}", what(*next), price(*next)));
+  lines.push_back(what_not(rows, winner == nullptr ? *best : *winner));
+  return lines;
+}
+
+std::string advised_text(const SceneText& text, const Row& row, double rate) {
+  const Configuration taken = configuration(row, rate);
+  return text.with(taken.method, taken.elements, taken.substeps, rate);
+}
+
+}  // namespace tress

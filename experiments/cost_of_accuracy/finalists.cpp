@@ -1,0 +1,158 @@
+#include "experiments/cost_of_accuracy/finalists.h"
+
+#include <algorithm>
+#include <set>
+
+#include "experiments/scenes/scene_tables.h"
+
+namespace tress {
+namespace {
+
+/// So many of the cheapest are timed again before one of them wins.
+constexpr std::size_t contenders = 3;
+
+/// Where so few methods are asked for they are tried near the winner, with up to so many
+/// times its substeps.
+constexpr std::ptrdiff_t few_methods = 6;
+constexpr int dearest = 16;
+
+std::tuple<std::size_t, int, int> place(const Trial& run) {
+  return {run.method, run.elements, run.substeps};
+}
+
+}  // namespace
+
+Finalists::Finalists(Search& search, const std::vector<Method>& methods, Time time)
+    : search_(search), methods_(methods), time_(std::move(time)) {}
+
+std::vector<Trial> Finalists::runs() const {
+  std::vector<Trial> all = search_.runs();
+  for (Trial& run : all) {
+    const auto found = wall_s_.find(place(run));
+    if (found != wall_s_.end()) run.wall_s = found->second;
+  }
+  return all;
+}
+
+void Finalists::time(const Trial& run) {
+  if (wall_s_.contains(place(run))) return;
+  wall_s_.emplace(place(run), std::min(run.wall_s, time_(run)));
+}
+
+std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
+  std::set<std::tuple<std::size_t, int, int>> tried;
+  const std::vector<Trial> before = runs();
+  for (std::size_t i = 0; i < contenders; ++i) {
+    const Trial* next = cheapest(before, target, [&](const Trial& run) {
+      return !tried.contains(place(run)) && (!accept || accept(run));
+    });
+    if (next == nullptr) break;
+    time(*next);
+    tried.insert(place(*next));
+  }
+  const std::vector<Trial> after = runs();
+  const Trial* best = cheapest(after, target, accept);
+  return best == nullptr ? std::nullopt : std::optional<Trial>(*best);
+}
+
+/// The search may have given up the methods that are asked for now: of few, one run that
+/// meets the target is looked for near the winner. The cheapest is tuned as well as that.
+std::optional<Trial> Finalists::replaced(
+    const Trial& winner, double target, const std::function<bool(const Method&)>& other) {
+  const Accept accept = [&](const Trial& run) { return other(methods_[run.method]); };
+  if (cheapest(search_.runs(), target, accept) == nullptr &&
+      std::ranges::count_if(methods_, other) <= few_methods) {
+    for (std::size_t method = 0; method < methods_.size(); ++method) {
+      if (!other(methods_[method])) continue;
+      for (const int elements :
+           {winner.elements, winner.elements + winner.elements / 2}) {
+        search_.fewest_substeps(method, elements, target, winner.substeps,
+                                dearest * winner.substeps);
+      }
+    }
+  }
+  const Trial* first = cheapest(search_.runs(), target, accept);
+  if (first == nullptr) return {};
+  search_.refine(first->method, target);
+  return settled(target, accept);
+}
+
+std::optional<Trial> Finalists::twice_the_elements(const Trial& winner, double target) {
+  const Trial* found = search_.fewest_substeps(winner.method, 2 * winner.elements, target,
+                                               winner.substeps, 2 * winner.substeps);
+  if (found == nullptr) return {};
+  return settled(target, [place_of = place(*found)](const Trial& run) {
+    return place(run) == place_of;
+  });
+}
+
+std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target) {
+  const int substeps = 2 * winner.substeps;
+  const auto meets = [&](int elements) {
+    const Trial* found = search_.run(winner.method, elements, substeps);
+    return found != nullptr && found->error <= target;
+  };
+  int elements = winner.elements;
+  // Errors of space and time may have cancelled each other: more elements then.
+  while (!meets(elements) && elements < 2 * winner.elements) {
+    elements += std::max(1, elements / 10);
+  }
+  while (elements > 1 && meets(elements)) --elements;
+  return settled(target, [&winner, substeps](const Trial& run) {
+    return run.method == winner.method && run.substeps == substeps;
+  });
+}
+
+std::optional<BestRuns> Finalists::of(double target) {
+  const auto winner = settled(target, {});
+  if (!winner) return {};
+  const Method& won = methods_[winner->method];
+  const auto model = [&](const Method& method) { return method.model == won.model; };
+  const auto integrator = [&](const Method& method) {
+    return method.integrator == won.integrator;
+  };
+  BestRuns best{*winner, {}, {}};
+  const auto add = [&](std::string_view choice, const auto& other) {
+    best.without.emplace_back(choice, replaced(*winner, target, other));
+  };
+  add("model", [&](const Method& method) { return !model(method); });
+  add("integrator",
+      [&](const Method& method) { return model(method) && !integrator(method); });
+  for (const Parameter& p : model_table_parameters(*won.model)) {
+    if (p.choices.empty() || p.name == "id") continue;
+    const auto other = [&](const Method& method) {
+      return model(method) && integrator(method) &&
+             method.word(p.name) != won.word(p.name);
+    };
+    if (std::ranges::any_of(methods_, other)) add(p.name, other);
+  }
+  best.without.emplace_back("elements", twice_the_elements(*winner, target));
+  best.without.emplace_back("dt_s", half_the_step(*winner, target));
+  best.runner_up = settled(target, [&](const Trial& run) {
+    return !model(methods_[run.method]) || !integrator(methods_[run.method]);
+  });
+  return best;
+}
+
+std::optional<Trial> Finalists::within(double wall_s, double floor) {
+  for (std::size_t i = 0; i < contenders; ++i) {
+    const std::vector<Trial> before = runs();
+    const Trial* next = most_accurate(before, wall_s, floor);
+    if (next == nullptr) return {};
+    time(*next);
+  }
+  const std::vector<Trial> after = runs();
+  return *most_accurate(after, wall_s, floor);
+}
+
+std::vector<Trial> Finalists::front(double floor, double loosest) {
+  const auto now = [&] {
+    std::vector<Trial> all = runs();
+    std::erase_if(all, [loosest](const Trial& run) { return run.error > loosest; });
+    return pareto_front(std::move(all), floor);
+  };
+  for (const Trial& run : now()) time(run);
+  return now();
+}
+
+}  // namespace tress

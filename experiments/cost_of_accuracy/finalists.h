@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/search.h"
+
+namespace tress {
+
+/// The answer for one wanted error.
+struct BestRuns {
+  Trial winner;
+  std::optional<Trial> runner_up;  // another model or integrator
+  /// What each choice of the winner contributes: the cheapest run with another; none
+  /// where nothing that was tried meets the target.
+  std::vector<std::pair<std::string, std::optional<Trial>>> without;
+};
+
+/// What comes of a search: the few runs that are shown, timed once more, each by the
+/// least of all its times.
+class Finalists {
+ public:
+  using Time = std::function<double(const Trial&)>;
+
+  Finalists(Search& search, const std::vector<Method>& methods, Time time);
+
+  /// Nothing where no run meets the target.
+  std::optional<BestRuns> of(double target);
+  std::optional<Trial> within(double wall_s, double floor);
+  /// The Pareto front of all runs with errors up to `loosest`.
+  std::vector<Trial> front(double floor, double loosest);
+
+ private:
+  using Accept = std::function<bool(const Trial&)>;
+
+  std::vector<Trial> runs() const;  // of the search, with the times of here
+  void time(const Trial& run);
+  std::optional<Trial> settled(double target, const Accept& accept);
+  std::optional<Trial> replaced(const Trial& winner, double target,
+                                const std::function<bool(const Method&)>& other);
+  std::optional<Trial> twice_the_elements(const Trial& winner, double target);
+  std::optional<Trial> half_the_step(const Trial& winner, double target);
+
+  Search& search_;
+  const std::vector<Method>& methods_;
+  Time time_;
+  std::map<std::tuple<std::size_t, int, int>, double> wall_s_;
+};
+
+}  // namespace tress

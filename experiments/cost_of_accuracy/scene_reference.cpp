@@ -1,0 +1,189 @@
+#include "experiments/cost_of_accuracy/scene_reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "experiments/harness/csv.h"
+#include "experiments/harness/files.h"
+#include "experiments/harness/message.h"
+#include "experiments/harness/tip_track.h"
+#include "experiments/scenes/variants.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+/// Of the way references are made; raised when it changes, so that none of the old are
+/// taken.
+constexpr int reference_version = 1;
+
+constexpr Column columns[] = {{"t_s", "time"},
+                              {"strand", "counted from 0"},
+                              {"x_m", "the tip by super_helix"},
+                              {"y_m", "the same"},
+                              {"z_m", "the same"},
+                              {"other_x_m", "the tip by der"},
+                              {"other_y_m", "the same"},
+                              {"other_z_m", "the same"}};
+
+std::string hash(const std::string& text) {
+  Row row;
+  row.set("text", text);
+  return run_id("reference", row);
+}
+
+std::string csv_file(const std::string& folder, const std::string& name) {
+  return folder + '/' + name + ".csv";
+}
+std::string meta_file(const std::string& folder, const std::string& name) {
+  return folder + '/' + name + ".meta.json";
+}
+
+std::string text_of(const SceneReference& reference, const Comparison& comparison) {
+  const std::size_t strands = reference.tips.tip.size() / 3 / (reference.frames + 1);
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < reference.tips.tip.size(); i += 3) {
+    Row row;
+    row.set("t_s", static_cast<double>(i / 3 / strands) / comparison.rate);
+    row.set("strand", i / 3 % strands);
+    for (std::size_t k = 0; k < 3; ++k) {
+      row.set(columns[2 + k].name, reference.tips.tip[i + k]);
+      row.set(columns[5 + k].name, reference.tips.other[i + k]);
+    }
+    rows.push_back(std::move(row));
+  }
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.emplace_back(column.name);
+  names.emplace_back("status");
+  return to_csv(names, rows);
+}
+
+}  // namespace
+
+Comparison comparison(const SceneText& text, double rate, double horizon,
+                      std::size_t strands) {
+  Comparison made{.rate = rate, .strands = strands};
+  const double span = std::min(horizon, text.given().duration);
+  made.frames = static_cast<std::size_t>(std::max(1.0, std::floor(span * rate + 1e-9)));
+  const Scene few = thinned(text.given(), strands);
+  for (const Strand& strand : few.strands) made.length += strand.length();
+  made.length /= static_cast<double>(few.strands.size());
+  return made;
+}
+
+Scene compared(Scene scene, const Comparison& comparison) {
+  scene.frame_rate = comparison.rate;
+  scene.duration = comparison.horizon();
+  return thinned(std::move(scene), comparison.strands);
+}
+
+SceneReference scene_reference(const SceneText& text, const Comparison& comparison,
+                               const ReferenceCut& cut) {
+  const auto tips = [&](std::string_view model, std::string_view integrator, int elements,
+                        const Options& options) {
+    const Method method{&find_model(model), {}, std::string(integrator)};
+    Scene scene = compared(text.scene(method, elements, 1, comparison.rate), comparison);
+    scene.options = options;
+    // Fast swings stretch der so quickly that an old Newton matrix fails.
+    scene.options.refresh = Refresh::every_iteration;
+    return tip_paths(scene, 0).x;
+  };
+  const Finest finest{cut.elements, 1 / (comparison.rate * cut.substeps)};
+  return {converged_rod(tips, comparison.length, {"super_helix", "der"}, finest),
+          comparison.frames};
+}
+
+SceneReference first_frames(const SceneReference& reference,
+                            const Comparison& comparison) {
+  const std::size_t per_frame = reference.tips.tip.size() / (reference.frames + 1);
+  SceneReference cut = reference;
+  cut.frames = std::min(comparison.frames, reference.frames);
+  cut.tips.tip.resize(per_frame * (cut.frames + 1));
+  cut.tips.other.resize(per_frame * (cut.frames + 1));
+  cut.tips.gap = tip_error(cut.tips.other, cut.tips.tip, comparison.length);
+  return cut;
+}
+
+SceneReference agreed(const SceneReference& reference, const Comparison& comparison,
+                      double gap) {
+  Comparison shorter = comparison;
+  SceneReference cut = first_frames(reference, shorter);
+  while (cut.tips.gap > gap && cut.frames > 1) {
+    shorter.frames = cut.frames - 1;
+    cut = first_frames(reference, shorter);
+  }
+  return cut;
+}
+
+std::optional<SceneReference> load_reference(const std::string& folder,
+                                             const std::string& name,
+                                             const std::string& key) {
+  try {
+    const auto meta = nlohmann::json::parse(read_file(meta_file(folder, name)));
+    const std::string text = read_file(csv_file(folder, name));
+    if (meta.at("key") != key || meta.at("table") != hash(text)) return {};
+    SceneReference reference;
+    reference.frames = meta.at("frames").get<std::size_t>();
+    reference.tips.gap = meta.at("gap").get<double>();
+    for (const Row& row : parse_csv(text, name).rows) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        reference.tips.tip.push_back(row.number(columns[2 + k].name));
+        reference.tips.other.push_back(row.number(columns[5 + k].name));
+      }
+    }
+    return reference;
+  } catch (const std::exception&) {  // none, or damaged: it is made anew
+    return {};
+  }
+}
+
+void save_reference(const std::string& folder, const std::string& name,
+                    const std::string& key, const SceneReference& reference,
+                    const Comparison& comparison, const ReferenceCut& cut) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  const std::string text = text_of(reference, comparison);
+  nlohmann::ordered_json meta{
+      {"what",
+       "tips of the rod: super_helix by implicit_midpoint, der by "
+       "generalized_alpha, extrapolated in step and element length"},
+      {"key", key},
+      {"table", hash(text)},
+      {"version", reference_version},
+      {"gap", reference.tips.gap},
+      {"frames", reference.frames},
+      {"frames_1_s", comparison.rate},
+      {"length_m", comparison.length},
+      {"finest_elements", cut.elements},
+      {"finest_dt_s", 1 / (comparison.rate * cut.substeps)}};
+  nlohmann::ordered_json help;
+  for (const Column& column : columns) help[std::string(column.name)] = column.help;
+  meta["columns"] = help;
+  replace_file(csv_file(folder, name), text);
+  replace_file(meta_file(folder, name), meta.dump(2) + '\n');
+}
+
+std::string reference_key(const SceneText& text, const Comparison& comparison,
+                          const ReferenceCut& cut) {
+  return hash(fmt::format("{} {} {} {} {} {}\n{}", reference_version, comparison.rate,
+                          comparison.frames, comparison.strands, cut.elements,
+                          cut.substeps, text.physics()));
+}
+
+SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
+                              const ReferenceCut& cut, const std::string& folder,
+                              const std::string& name) {
+  const std::string key = reference_key(text, comparison, cut);
+  if (auto found = load_reference(folder, name, key)) return *found;
+  tell("{}: computing the reference, {} elements\n", name, cut.elements);
+  const SceneReference made = scene_reference(text, comparison, cut);
+  save_reference(folder, name, key, made, comparison, cut);
+  return made;
+}
+
+}  // namespace tress

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/harness/strand_reference.h"
+
+namespace tress {
+
+/// What of a scene is compared: tips of so many strands at all frames up to a horizon.
+struct Comparison {
+  double rate = 60;         // frames per second
+  std::size_t frames = 30;  // the horizon
+  std::size_t strands = 1;  // of a groom
+  double length = 0;        // of the strands, mean (m)
+
+  double horizon() const { return static_cast<double>(frames) / rate; }
+};
+Comparison comparison(const SceneText& text, double rate, double horizon,
+                      std::size_t strands);
+
+/// The scene as a run of the comparison: its strands, its frames.
+Scene compared(Scene scene, const Comparison& comparison);
+
+/// The tips of the rod itself, frame after frame from t = 0 on, as super_helix and der
+/// agree on them: models of different families, reduced and maximal coordinates.
+struct SceneReference {
+  TipReference tips;
+  std::size_t frames = 0;
+};
+
+struct ReferenceCut {
+  int elements = 160, substeps = 64;
+  ReferenceCut refined() const { return {2 * elements, 2 * substeps}; }
+};
+
+/// Computed anew. Throws std::runtime_error where one of the runs fails.
+SceneReference scene_reference(const SceneText& text, const Comparison& comparison,
+                               const ReferenceCut& cut);
+
+/// The reference up to the last frame at which the two sides are at most `gap` apart, rms
+/// from the start: undamped strands are chaotic, and beyond there nobody knows the
+/// answer. At least one frame.
+SceneReference agreed(const SceneReference& reference, const Comparison& comparison,
+                      double gap);
+
+/// As far as the comparison goes.
+SceneReference first_frames(const SceneReference& reference,
+                            const Comparison& comparison);
+
+/// References kept as <folder>/<name>.csv, the places of both sides, with a manifest
+/// <name>.meta.json that says what they belong to. Nothing where there is no such file,
+/// it is damaged or belongs to another key.
+std::optional<SceneReference> load_reference(const std::string& folder,
+                                             const std::string& name,
+                                             const std::string& key);
+void save_reference(const std::string& folder, const std::string& name,
+                    const std::string& key, const SceneReference& reference,
+                    const Comparison& comparison, const ReferenceCut& cut);
+
+/// 16 hexadecimal digits of all that the reference depends on but the code.
+std::string reference_key(const SceneText& text, const Comparison& comparison,
+                          const ReferenceCut& cut);
+
+/// Loaded where it is there, else computed and saved.
+SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
+                              const ReferenceCut& cut, const std::string& folder,
+                              const std::string& name);
+
+}  // namespace tress

@@ -1,0 +1,234 @@
+#include "experiments/cost_of_accuracy/scene_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/cost_of_accuracy/finalists.h"
+#include "experiments/cost_of_accuracy/scene_measure.h"
+#include "experiments/cost_of_accuracy/search.h"
+#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/scenes/scene_tables.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+/// How much longer than usual a run may take on a machine that does other things too.
+constexpr double noise = 1.5;
+
+/// What all rows of a scene are written from.
+struct Study {
+  const StudyPlan& plan;
+  const SceneText text;
+  const Row& identity;
+  Comparison comparison = {};  // cut where the references part
+  bool cut = false;
+  SceneReference reference = {}, refined = {};
+  std::vector<Method> methods = {};
+
+  double gap() const { return reference.tips.gap; }
+  double floor() const { return believed * gap(); }
+};
+
+Study ready(const std::string& file, const StudyPlan& plan, const Row& identity) {
+  Study study{.plan = plan, .text = SceneText(file), .identity = identity};
+  const std::string name = study.text.given().name;
+  study.comparison = comparison(study.text, plan.rate, plan.horizon, plan.strands);
+  const auto kept = [&](const ReferenceCut& cut, const std::string& as) {
+    return kept_reference(study.text, study.comparison, cut, plan.references, as);
+  };
+  const SceneReference whole = kept(plan.reference, name);
+  const SceneReference fine = kept(plan.reference.refined(), name + ".refined");
+  study.reference = agreed(whole, study.comparison, parted);
+  study.cut = study.reference.frames < study.comparison.frames;
+  study.comparison.frames = study.reference.frames;
+  study.refined = first_frames(fine, study.comparison);
+  study.methods = methods(study.text, plan.methods);
+  return study;
+}
+
+Row begin(const Study& study, std::string_view kind) {
+  Row row = study.identity;
+  row.set("kind", kind).set("reference_gap", study.gap());
+  row.set("refined_gap", study.refined.tips.gap);
+  row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut);
+  return row;
+}
+
+void set_wall(const Study& study, double wall_s, Row& row) {
+  row.set("wall_s_per_sim_s", wall_s / study.comparison.horizon());
+  row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
+}
+
+Row row_of(const Study& study, std::string_view kind, const Trial& run) {
+  Row row = begin(study, kind);
+  set_method(study.methods[run.method], row);
+  row.set("elements", run.elements);
+  row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
+  row.set("error_rel", run.error);
+  set_wall(study, run.wall_s, row);
+  return row;
+}
+
+SceneMeasure measure_of(const Study& study) {
+  return {study.text, study.comparison, study.reference.tips.tip};
+}
+
+void add_target(const Study& study, Finalists& finalists, double target,
+                std::vector<Row>& rows) {
+  if (target < study.floor()) {
+    Row row = begin(study, "winner");
+    row.set("target_error_rel", target);
+    rows.push_back(row.failed("below_reference",
+                              fmt::format("target {} < {} x gap {:.3g} of the references",
+                                          target, believed, study.gap())));
+    return;
+  }
+  const auto met = finalists.of(target - study.gap());
+  if (!met) {
+    Row row = begin(study, "winner");
+    row.set("target_error_rel", target);
+    rows.push_back(row.failed("not_met", "no run within the target"));
+    return;
+  }
+  const auto add = [&](std::string_view kind, const Trial& run) -> Row& {
+    Row row = row_of(study, kind, run);
+    row.set("target_error_rel", target);
+    row.set("cost_factor", run.wall_s / met->winner.wall_s);
+    rows.push_back(std::move(row));
+    return rows.back();
+  };
+  const SceneMeasure measure = measure_of(study);
+  const auto refined_error = [&](const Trial& run) {
+    return measure.error(study.methods[run.method], run.elements, run.substeps,
+                         study.refined.tips.tip);
+  };
+  add("winner", met->winner)
+      .set("rank", 1)
+      .set("error_refined_rel", refined_error(met->winner));
+  if (met->runner_up) {
+    add("runner_up", *met->runner_up)
+        .set("rank", 2)
+        .set("error_refined_rel", refined_error(*met->runner_up));
+  }
+  for (const auto& [choice, run] : met->without) {
+    if (run) {
+      add("without", *run).set("choice", choice);
+      continue;
+    }
+    Row row = begin(study, "without");
+    row.set("target_error_rel", target).set("choice", choice);
+    rows.push_back(row.failed("not_met", "none that was tried meets the target"));
+  }
+}
+
+void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows) {
+  const double budget_s = study.plan.budget_s;
+  if (budget_s == 0) return;
+  const auto frames = static_cast<double>(study.comparison.frames);
+  const auto run = finalists.within(budget_s * frames, study.floor());
+  Row row = run ? row_of(study, "budget", *run) : begin(study, "budget");
+  row.set("budget_ms", 1e3 * budget_s);
+  if (!run) {
+    row.failed("not_met", "no run in the time there is");
+  } else if (run->error < study.floor()) {
+    row.failed("below_reference", "more accurate than the reference can tell");
+  }
+  rows.push_back(std::move(row));
+}
+
+/// The scene with the file's own model, integrator, elements and step; steps end at the
+/// frames of the comparison.
+void add_given(const Study& study, std::vector<Row>& rows) {
+  const Scene& given = study.text.given();
+  Row row = begin(study, "as_given");
+  Method method{given.model, {}, given.integrator, given.options.formulation};
+  for (const Parameter& p : model_table_parameters(*given.model)) {
+    if (p.name == "id" || p.choices.empty()) continue;
+    const std::string_view word = given.model_options.word(p.name);
+    if (word != words_of(p.choices).front()) method.options.emplace_back(p.name, word);
+  }
+  set_method(method, row);
+  row.set("elements", given.strands.front().segments.size());
+  row.set("dt_s", given.options.step);
+  const auto run = measure_of(study).best_of(given, study.plan.repeat);
+  if (!run) {
+    row.failed("diverged", "the scene as given does not run to the horizon");
+  } else {
+    row.set("error_rel", run->error);
+    set_wall(study, run->wall_s, row);
+  }
+  rows.push_back(std::move(row));
+}
+
+std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
+  const StudyPlan& plan = study.plan;
+  const SceneMeasure measure = measure_of(study);
+  SearchPlan search_plan{.targets = {},
+                         .elements = plan.elements,
+                         .substeps = plan.substeps,
+                         .longest_run_s = plan.longest_run_s,
+                         .slack = 0};
+  for (const double target : plan.targets) {
+    if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
+  }
+  search_plan.slack = ladder_slack(search_plan, noise);
+  std::vector<Row> rows;
+  if (search_plan.targets.empty()) {
+    Row row = begin(study, "winner");
+    rows.push_back(row.failed(
+        "below_reference",
+        fmt::format("all targets are < {} x gap {:.3g}", believed, study.gap())));
+    return rows;
+  }
+  const Deadline end(std::min(plan.search_s, 0.6 * deadline.remaining_s()));
+  Search search(
+      search_plan, study.methods.size(),
+      [&](std::size_t method, int elements, int substeps, double most_s) {
+        auto run = measure.quick(study.methods[method], elements, substeps, most_s);
+        if (run) run->method = method;
+        return run;
+      },
+      [&end] { return end.passed(); });
+  search.coarse();
+  search.refine();
+  const std::string how = search.cut()
+                              ? fmt::format("cut: {} of {} methods climbed",
+                                            search.tried(), study.methods.size())
+                              : fmt::format("whole: {} methods", study.methods.size());
+  search.go_on([&deadline] { return deadline.passed(); });
+  Finalists finalists(search, study.methods, [&](const Trial& run) {
+    return measure.time(study.methods[run.method], run.elements, run.substeps,
+                        plan.repeat);
+  });
+  for (const double target : plan.targets) add_target(study, finalists, target, rows);
+  add_budget(study, finalists, rows);
+  for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {
+    rows.push_back(row_of(study, "front", run));
+  }
+  add_given(study, rows);
+  for (Row& row : rows) row.set("runs", search.runs().size()).set("search", how);
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
+                             const Row& identity, const Deadline& deadline) {
+  std::optional<Study> study;
+  try {
+    study.emplace(ready(file, plan, identity));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& failure) {
+    Row row = identity;
+    return {row.failed("no_reference", failure.what())};
+  }
+  return all_rows(*study, deadline);
+}
+
+}  // namespace tress

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/scene_reference.h"
+#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/harness/experiment.h"
+
+namespace tress {
+
+/// What is wanted of every scene.
+struct StudyPlan {
+  std::vector<double> targets;          // errors of the tip over the length, descending
+  std::vector<int> elements, substeps;  // coarse ladders
+  MethodChoice methods;
+  ReferenceCut reference;
+  std::string references;      // folder in which they are kept
+  double rate = 60;            // frames per second
+  double horizon = 0.5;        // s
+  std::size_t strands = 1;     // of a groom
+  double search_s = 10;        // wall time of one scene's search
+  double longest_run_s = 0.5;  // of one run in it
+  double budget_s = 0;         // wall time per frame; 0: not asked
+  int repeat = 3;              // runs of what is timed again
+};
+
+/// Errors are believed from this many gaps of the two sides of the reference on.
+constexpr double believed = 10;
+
+/// The horizon ends where the two sides are this far apart, over the length: from there
+/// on not even 1 % could be told.
+constexpr double parted = 0.01 / believed;
+
+/// All rows of one scene, each beginning with the cells of `identity`:
+///
+///     winner     the cheapest run that meets a target
+///     runner_up  the cheapest of another model or integrator
+///     without    the cheapest with one choice of the winner replaced: another model; on
+///                the same model another integrator; the same model and integrator with
+///                another option; the winner with twice as many elements, and with half
+///                the step. Elements and step are tuned anew.
+///     budget     the most accurate run in the time per frame that there is
+///     front      runs that no other beats in both error and time
+///     as_given   the scene as its file has it
+///
+/// A run meets a target when it does so wherever the rod is within the gap of the two
+/// sides: error + gap <= target.
+std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
+                             const Row& identity, const Deadline& deadline);
+
+}  // namespace tress

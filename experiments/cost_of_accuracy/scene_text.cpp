@@ -1,0 +1,169 @@
+#include "experiments/cost_of_accuracy/scene_text.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "experiments/harness/command_line.h"
+#include "experiments/harness/files.h"
+#include "experiments/harness/formulations.h"
+#include "experiments/harness/strand_models.h"
+#include "experiments/harness/toml_text.h"
+#include "experiments/scenes/scene_tables.h"
+#include "experiments/scenes/world.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+std::string written(const toml::table& table) {
+  std::ostringstream stream;
+  stream << toml::toml_formatter(table) << '\n';
+  return std::move(stream).str();
+}
+
+/// Every [name] or [[name]].
+template <class F>
+void each(toml::table& scene, std::string_view name, const F& use) {
+  if (toml::table* one = scene[name].as_table()) use(*one);
+  if (toml::array* many = scene[name].as_array()) {
+    for (toml::node& node : *many) use(*node.as_table());
+  }
+}
+
+void cut(toml::table& scene, int elements) {
+  for (const std::string_view name : {"strand", "groom"}) {
+    each(scene, name,
+         [elements](toml::table& one) { one.insert_or_assign("elements", elements); });
+  }
+}
+
+void name_files_in_full(toml::table& scene, const std::string& file) {
+  toml::table* effects = scene["effects"].as_table();
+  if (effects == nullptr) return;
+  const auto folder = std::filesystem::absolute(file).parent_path();
+  each(*effects, "body", [&folder](toml::table& body) {
+    const auto* name = body["sdf_file"].as_string();
+    if (name == nullptr) return;
+    body.insert_or_assign("sdf_file", (folder / name->get()).lexically_normal().string());
+  });
+}
+
+/// The combinations of options that are tried of one model.
+std::vector<ModelSettings> option_sets(const ModelEntry& model,
+                                       const std::vector<std::string>& varied) {
+  // What may be set instead of the default, which is no setting.
+  const auto others = [&](const Parameter& p) {
+    std::vector<ModelSettings> all;
+    const auto words = words_of(p.choices);
+    const std::string key(p.name);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::string word(words[i]);
+      if (varied.empty() || std::ranges::count(varied, key) > 0 ||
+          std::ranges::count(varied, key + '=' + word) > 0) {
+        all.push_back({{key, word}});
+      }
+    }
+    return all;
+  };
+  std::vector<ModelSettings> pairs{{}}, single;
+  for (const Parameter& p : model_table_parameters(model)) {
+    if (p.choices.empty() || p.name == "id") continue;
+    const bool paired = p.name == "modes" || p.name == "tangent";
+    const std::vector<ModelSettings> before = pairs;
+    for (const ModelSettings& one : others(p)) {
+      if (!paired) single.push_back(one);
+      for (const ModelSettings& first : before) {
+        if (!paired) continue;
+        pairs.push_back(first);
+        pairs.back().push_back(one.front());
+      }
+    }
+  }
+  pairs.insert(pairs.end(), single.begin(), single.end());
+  return pairs;
+}
+
+/// The model on the scene's first strand; null where it cannot do it: a model without
+/// curls, say.
+std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& options,
+                                 const Scene& scene) {
+  Parameters parameters(model_table_parameters(model), std::string(model.id));
+  set_known(parameters, options);
+  try {
+    return model.on_strand(scene.strands.front(), parameters, make_effects(scene));
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+std::string_view Method::word(std::string_view choice) const {
+  for (const auto& [key, value] : options) {
+    if (key == choice) return value;
+  }
+  for (const Parameter& p : model->parameters) {
+    if (p.name == choice && !p.choices.empty()) return words_of(p.choices).front();
+  }
+  return {};
+}
+
+SceneText::SceneText(const std::string& file)
+    : file_(file), text_(read_file(file)), given_(parse_scene(text_, file)) {
+  if (!given_.strands.empty()) return;
+  throw InputError("the model brings its own geometry: no other model can do this scene",
+                   file, "give a scene with [strand] or [groom]");
+}
+
+std::string SceneText::with(const Method& method, int elements, int substeps,
+                            double rate) const {
+  toml::table scene = parse_toml(text_, file_);
+  toml::table model{{"id", method.model->id}};
+  for (const auto& [key, value] : method.options) model.insert_or_assign(key, value);
+  scene.insert_or_assign("model", std::move(model));
+  scene.insert_or_assign("integrator",
+                         toml::table{{"id", method.integrator},
+                                     {"formulation", name(method.formulation)},
+                                     {"dt_s", 1 / (rate * substeps)},
+                                     {"newton_tolerance", newton_tolerance}});
+  scene.insert_or_assign("frames_1_s", rate);
+  cut(scene, elements);
+  name_files_in_full(scene, file_);
+  return written(scene);
+}
+
+Scene SceneText::scene(const Method& method, int elements, int substeps,
+                       double rate) const {
+  return parse_scene(with(method, elements, substeps, rate), file_);
+}
+
+std::string SceneText::physics() const {
+  toml::table scene = parse_toml(text_, file_);
+  for (const std::string_view key :
+       {"title", "source", "model", "integrator", "frames_1_s", "checkpoint_s"}) {
+    scene.erase(key);
+  }
+  cut(scene, 1);
+  return written(scene);
+}
+
+std::vector<Method> methods(const SceneText& text, const MethodChoice& choice) {
+  std::vector<Method> all;
+  for (const ModelEntry& model : models()) {
+    if (model.on_strand == nullptr || !wanted(choice.models, model.id)) continue;
+    for (const ModelSettings& options : option_sets(model, choice.options)) {
+      const auto system = on_scene(model, options, text.given());
+      if (system == nullptr) continue;
+      for (const IntegratorEntry& entry : integrators()) {
+        if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
+        const auto usable = usable_formulations(entry, *system);
+        if (usable.empty()) continue;
+        all.push_back({&model, options, std::string(entry.id), usable.front()});
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace tress

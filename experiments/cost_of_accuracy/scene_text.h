@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/harness/simulation.h"
+#include "experiments/scenes/scene.h"
+
+namespace tress {
+
+/// How a scene is simulated, but for the cut in space and time.
+struct Method {
+  const ModelEntry* model = nullptr;
+  ModelSettings options;  // of the model, where not the default
+  std::string integrator;
+  Formulation formulation = Formulation::parametric;
+
+  /// The word of a choice of the model; empty where it has no such choice.
+  std::string_view word(std::string_view choice) const;
+};
+
+/// A scene file whose [model], [integrator], numbers of elements and steps are for others
+/// to choose. Frames come `rate` times a second, and steps divide a frame.
+class SceneText {
+ public:
+  /// Throws InputError as read_scene does, and where the scene has no strand.
+  explicit SceneText(const std::string& file);
+
+  const std::string& file() const { return file_; }
+  const Scene& given() const { return given_; }  // as the file has it
+
+  /// The text of a scene file: of the model and the integrator only what `method` says,
+  /// Newton's tolerance newton_tolerance. Other files that it names are named by their
+  /// full paths, so that it may lie in any folder.
+  std::string with(const Method& method, int elements, int substeps, double rate) const;
+  /// The same, read. Throws InputError where the method cannot do the scene.
+  Scene scene(const Method& method, int elements, int substeps, double rate) const;
+
+  /// What the answer of the rod itself depends on, for keys of references: the text
+  /// without what is chosen, however it is written.
+  std::string physics() const;
+
+  /// Newton's corrections below 1e-6 of the scale of an unknown: a thousandth of the
+  /// smallest error that is asked for.
+  static constexpr double newton_tolerance = 1e-6;
+
+ private:
+  std::string file_, text_;
+  Scene given_;
+};
+
+/// Every strand model with its options and every fixed-step integrator that can drive it
+/// on this scene. Methods whose step is controlled by a tolerance are not here: what a
+/// frame costs them is not known beforehand.
+struct MethodChoice {
+  std::vector<std::string> models, integrators;  // empty: all
+  /// Options of models that are varied, "key" or "key=word"; empty: all. Of `modes` and
+  /// `tangent` all pairs, of others one at a time.
+  std::vector<std::string> options;
+};
+std::vector<Method> methods(const SceneText& text, const MethodChoice& choice);
+
+}  // namespace tress

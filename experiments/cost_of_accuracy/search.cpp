@@ -1,0 +1,258 @@
+#include "experiments/cost_of_accuracy/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tress {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Steps half as long that gain less than a fifth: what is left is not of time.
+constexpr double little_gain = 0.8;
+
+/// Finer than this the bisection in substeps would save less than timing noise.
+constexpr double close_enough = 1.1;
+
+/// What looks so much dearer may not be: of one run beside others.
+constexpr double noise = 1.2;
+
+/// Of two runs on the front the cheaper stands for both when the other gains less.
+constexpr double front_gain = 0.95;
+
+/// Numbers of elements from two thirds of this to half as many more, a tenth apart, the
+/// nearest first.
+std::vector<int> around(int elements) {
+  std::vector<int> all{elements};
+  int low = elements, high = elements;
+  while (2 * high < 3 * elements) {
+    high += std::max(1, high / 10);
+    all.push_back(high);
+    low -= std::max(1, low / 10);
+    if (low > 0 && 3 * low >= 2 * elements) all.push_back(low);
+  }
+  return all;
+}
+
+double largest_ratio(const std::vector<int>& ladder) {
+  double ratio = 1;
+  for (std::size_t i = 1; i < ladder.size(); ++i) {
+    ratio = std::max(ratio, static_cast<double>(ladder[i]) / ladder[i - 1]);
+  }
+  return ratio;
+}
+
+}  // namespace
+
+const Trial* cheapest(const std::vector<Trial>& runs, double target,
+                      const std::function<bool(const Trial&)>& accept) {
+  const Trial* best = nullptr;
+  for (const Trial& run : runs) {
+    if (run.error > target || (accept && !accept(run))) continue;
+    if (best == nullptr || run.wall_s < best->wall_s) best = &run;
+  }
+  return best;
+}
+
+const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor) {
+  const Trial* best = nullptr;
+  for (const Trial& run : runs) {
+    if (run.wall_s > wall_s) continue;
+    const double error = std::max(run.error, floor);
+    const double least = best == nullptr ? never : std::max(best->error, floor);
+    if (error < least || (error == least && run.wall_s < best->wall_s)) best = &run;
+  }
+  return best;
+}
+
+std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor) {
+  std::ranges::sort(runs, {}, &Trial::wall_s);
+  std::vector<Trial> front;
+  double least = never;
+  for (const Trial& run : runs) {
+    const double error = std::max(run.error, floor);
+    if (!(error < front_gain * least)) continue;
+    least = error;
+    front.push_back(run);
+  }
+  std::ranges::reverse(front);
+  return front;
+}
+
+double ladder_slack(const SearchPlan& plan, double noise) {
+  return largest_ratio(plan.elements) * largest_ratio(plan.substeps) * noise;
+}
+
+Search::Search(SearchPlan plan, std::size_t methods, Measure measure,
+               std::function<bool()> stop)
+    : plan_(std::move(plan)),
+      methods_(methods),
+      measure_(std::move(measure)),
+      stop_(std::move(stop)) {
+  // Pointers into runs_ are held across a few runs.
+  runs_.reserve(1 << 16);
+}
+
+void Search::go_on(std::function<bool()> stop) {
+  stop_ = std::move(stop);
+  cut_ = false;
+}
+
+bool Search::stopped() {
+  cut_ = cut_ || stop_() || runs_.size() == runs_.capacity();
+  return cut_;
+}
+
+const Trial* Search::run(std::size_t method, int elements, int substeps) {
+  const Place place{method, elements, substeps};
+  const auto known = seen_.find(place);
+  if (known != seen_.end()) {
+    return known->second ? &runs_[*known->second] : nullptr;
+  }
+  if (stopped()) return nullptr;
+  const auto found = measure_(method, elements, substeps, plan_.longest_run_s);
+  if (!found || !std::isfinite(found->error)) {
+    seen_.emplace(place, std::nullopt);
+    return nullptr;
+  }
+  seen_.emplace(place, runs_.size());
+  runs_.push_back(*found);
+  return &runs_.back();
+}
+
+/// From the method's run that is nearest in elements, then in substeps; 0 without one.
+double Search::expected_s(std::size_t method, int elements, int substeps) const {
+  const auto away = [&](const Trial& run) {
+    return 4 * std::abs(std::log(static_cast<double>(run.elements) / elements)) +
+           std::abs(std::log(static_cast<double>(run.substeps) / substeps));
+  };
+  const Trial* near = nullptr;
+  for (const Trial& run : runs_) {
+    if (run.method != method) continue;
+    if (near == nullptr || away(run) < away(*near)) near = &run;
+  }
+  if (near == nullptr) return 0;
+  return near->wall_s * (static_cast<double>(elements) / near->elements) *
+         (static_cast<double>(substeps) / near->substeps);
+}
+
+void Search::climb(std::size_t method) {
+  const auto& ladder = plan_.substeps;
+  const double tightest = plan_.targets.back(), loosest = plan_.targets.front();
+  std::size_t begin = 0;
+  int met = 0;  // the next rung after the first that does may do with longer steps
+  for (const int elements : plan_.elements) {
+    if (met > 1) return;
+    double last = never;
+    int idle = 0;
+    std::size_t at = begin;
+    for (; at < ladder.size(); ++at) {
+      // Longer than any run that could still keep the method in.
+      const Trial* best = cheapest(runs_, tightest);
+      const double most = std::min(plan_.longest_run_s,
+                                   best == nullptr ? never : plan_.slack * best->wall_s);
+      if (expected_s(method, elements, ladder[at]) > most) break;
+      const Trial* found = run(method, elements, ladder[at]);
+      if (cut_) return;
+      if (found == nullptr) continue;  // too long a step
+      if (found->error <= tightest) {
+        ++met;
+        break;
+      }
+      // A motion that is all damped away gains little as well, for a while.
+      idle = found->error > little_gain * last ? idle + 1 : 0;
+      if (idle > 0 && (found->error < loosest || idle > 2)) break;
+      last = found->error;
+    }
+    begin = std::max(begin, at < 3 ? 0 : at - 3);
+  }
+}
+
+std::vector<std::size_t> Search::promising_first() {
+  const int elements = plan_.elements[plan_.elements.size() / 2];
+  const int substeps = plan_.substeps[plan_.substeps.size() / 3];
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t method = 0; method < methods_; ++method) {
+    const Trial* probe = run(method, elements, substeps);
+    order.emplace_back(probe == nullptr ? never : probe->error * probe->wall_s, method);
+  }
+  std::ranges::sort(order);
+  std::vector<std::size_t> methods;
+  for (const auto& [price, method] : order) methods.push_back(method);
+  return methods;
+}
+
+void Search::coarse() {
+  for (const std::size_t method : promising_first()) {
+    if (stopped()) return;
+    climb(method);
+    ++tried_;
+  }
+}
+
+const Trial* Search::fewest_substeps(std::size_t method, int elements, double target,
+                                     int guess, int most) {
+  const auto meets = [target](const Trial* run) {
+    return run != nullptr && run->error <= target;
+  };
+  // An interval: too few fail, enough do.
+  int few = 0, enough = std::clamp(guess, 1, most);
+  const Trial* best = run(method, elements, enough);
+  while (!meets(best)) {
+    if (cut_ || enough == most) return nullptr;
+    few = enough;
+    enough = std::min(most, enough + std::max(1, enough / 2));
+    best = run(method, elements, enough);
+  }
+  while (enough > few + 1 && enough > close_enough * few) {
+    const int middle = few == 0
+                           ? enough / 2
+                           : static_cast<int>(std::lround(std::sqrt(1.0 * few * enough)));
+    const int next = std::clamp(middle, few + 1, enough - 1);
+    const Trial* found = run(method, elements, next);
+    if (cut_) return best;
+    if (meets(found)) {
+      best = found;
+      enough = next;
+    } else {
+      few = next;
+    }
+  }
+  return best;
+}
+
+void Search::refine(std::size_t method, double target) {
+  if (!refined_.emplace(method, target).second) return;
+  const auto own = [method](const Trial& run) { return run.method == method; };
+  for (int before = 0; !stopped();) {
+    const Trial start = *cheapest(runs_, target, own);
+    if (start.elements == before) return;
+    before = start.elements;
+    for (const int elements : around(start.elements)) {
+      if (stopped()) return;
+      // More substeps than make it dearer than the best so far do not pay.
+      const double best_s = cheapest(runs_, target, own)->wall_s;
+      const double one_s = expected_s(method, elements, start.substeps) / start.substeps;
+      const int most =
+          static_cast<int>(std::min(noise * best_s / one_s, 4.0 * start.substeps));
+      if (most < 1) continue;
+      fewest_substeps(method, elements, target, start.substeps, most);
+    }
+  }
+}
+
+void Search::refine() {
+  for (const double target : plan_.targets) {
+    const Trial* best = cheapest(runs_, target);
+    if (best == nullptr) continue;
+    const double most = plan_.slack * best->wall_s;
+    for (std::size_t method = 0; method < methods_; ++method) {
+      const auto own = [method](const Trial& run) { return run.method == method; };
+      const Trial* mine = cheapest(runs_, target, own);
+      if (mine != nullptr && mine->wall_s <= most) refine(method, target);
+    }
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,91 @@
+#include "experiments/cost_of_accuracy/study_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/harness/parse.h"
+#include "experiments/harness/strand_models.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "name of the scene"},
+    {"kind",
+     "winner, runner_up (another model or integrator), without (one choice replaced), "
+     "budget, front (Pareto), as_given (by the scene file)"},
+    {"choice", "of kind without: what is replaced; elements: twice, dt_s: half"},
+    {"target_error_rel", "wanted error"},
+    {"budget_ms", "of kind budget: wall time per frame that there is"},
+    {"rank", "1 winner, 2 runner-up"},
+    {"model", "catalogue id"},
+    {"integrator", "method"},
+    {"formulation", "how constraints enter"},
+    {"modes", "unknowns of an element, where there is a choice"},
+    {"tangent", "terms of the Newton matrix, where there is a choice"},
+    {"solver", "linear solver, where there is a choice"},
+    {"options", "other options of the model that are not the default"},
+    {"elements", "number of elements"},
+    {"dt_s", "time step"},
+    {"error_rel",
+     "tip against the continuous rod: rms over frames and strands, over the length"},
+    {"error_refined_rel", "the same against the reference refined once more"},
+    {"reference_gap", "how far super_helix and der, extrapolated, are apart"},
+    {"refined_gap", "the same refined once more"},
+    {"horizon_s", "compared time: what was asked for, or until the references part"},
+    {"horizon_cut", "whether the references parted before the end"},
+    {"wall_s_per_sim_s", "wall time per simulated second, least of some runs", true},
+    {"ms_per_frame", "the same per frame", true},
+    {"cost_factor", "wall time over the winner's", true},
+    {"runs", "runs that the search took", true},
+    {"search", "whole, or how far it came in its time", true},
+};
+
+constexpr std::string_view own_columns[] = {"modes", "tangent", "solver"};
+
+}  // namespace
+
+std::span<const Column> study_columns() { return columns; }
+
+void set_method(const Method& method, Row& row) {
+  row.set("model", method.model->id).set("integrator", method.integrator);
+  row.set("formulation", name(method.formulation));
+  std::string others;
+  for (const auto& [key, value] : method.options) {
+    if (std::ranges::count(own_columns, key) > 0) continue;
+    others += fmt::format("{}{}={}", others.empty() ? "" : ",", key, value);
+  }
+  for (const std::string_view choice : own_columns) {
+    if (!method.word(choice).empty()) row.set(choice, method.word(choice));
+  }
+  if (!others.empty()) row.set("options", others);
+}
+
+Configuration configuration(const Row& row, double rate) {
+  Configuration made;
+  made.method.model = &find_model(row.text("model"));
+  made.method.integrator = std::string(row.text("integrator"));
+  for (int i = 0; i <= static_cast<int>(Formulation::correction); ++i) {
+    const auto one = static_cast<Formulation>(i);
+    if (name(one) == row.text("formulation")) made.method.formulation = one;
+  }
+  for (const std::string_view key : own_columns) {
+    const std::string_view first = first_word(*made.method.model, key);
+    if (row.has(key) && row.text(key) != first) {
+      made.method.options.emplace_back(key, row.text(key));
+    }
+  }
+  if (row.has("options")) {
+    for (const std::string& one : split(row.text("options"), ',', "options")) {
+      const std::size_t equals = one.find('=');
+      made.method.options.emplace_back(one.substr(0, equals), one.substr(equals + 1));
+    }
+  }
+  made.elements = static_cast<int>(row.number("elements"));
+  made.substeps = static_cast<int>(std::lround(1 / (rate * row.number("dt_s"))));
+  return made;
+}
+
+}  // namespace tress

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/scene_reference.h"
+#include "tests/cost_of_accuracy/scratch.h"
+
+namespace tress {
+namespace {
+
+const char* const sagging = R"(
+title = "a hair sags"
+duration_s = 0.2
+[model]
+id = "der"
+[strand]
+elements = 5
+[effects.gravity]
+[effects.linear_drag]
+nu_kg_m_s = 5e-5
+)";
+
+constexpr ReferenceCut coarse{8, 4};
+
+/// Nothing that any run gives, with digits to lose.
+SceneReference invented(std::size_t frames) {
+  SceneReference made;
+  made.frames = frames;
+  for (std::size_t i = 0; i < 3 * (frames + 1); ++i) {
+    made.tips.tip.push_back(1.0 / (static_cast<double>(i) + 3));
+    made.tips.other.push_back(1.0 / (static_cast<double>(i) + 3.000001));
+  }
+  made.tips.gap = 1.0 / 3;
+  return made;
+}
+
+struct Kept {
+  Scratch folder;
+  SceneText text{folder.write("scene.toml", sagging)};
+  Comparison compare = comparison(text, 60, 0.5, 1);
+  std::string key = reference_key(text, compare, coarse);
+
+  void save(const SceneReference& reference) const {
+    save_reference(folder.folder(), "scene", key, reference, compare, coarse);
+  }
+};
+
+TEST(SceneReference, ComesBackToTheLastBit) {
+  const Kept kept;
+  const SceneReference made = invented(kept.compare.frames);
+  kept.save(made);
+  const auto back = load_reference(kept.folder.folder(), "scene", kept.key);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->frames, made.frames);
+  EXPECT_EQ(back->tips.tip, made.tips.tip);
+  EXPECT_EQ(back->tips.other, made.tips.other);
+  EXPECT_EQ(back->tips.gap, made.tips.gap);
+}
+
+TEST(SceneReference, IsNotComputedTwice) {
+  const Kept kept;
+  const SceneReference made = invented(kept.compare.frames);
+  kept.save(made);
+  EXPECT_EQ(kept_reference(kept.text, kept.compare, coarse, kept.folder.folder(), "scene")
+                .tips.tip,
+            made.tips.tip);
+}
+
+TEST(SceneReference, OfAnotherSceneIsComputedAnew) {
+  const Kept kept;
+  kept.save(invented(kept.compare.frames));
+  std::string heavier = sagging;
+  heavier.replace(heavier.find("5e-5"), 4, "6e-5");
+  const SceneText other(kept.folder.write("other.toml", heavier));
+  const SceneReference fresh =
+      kept_reference(other, kept.compare, coarse, kept.folder.folder(), "scene");
+  EXPECT_NE(fresh.tips.tip, invented(kept.compare.frames).tips.tip);
+  EXPECT_LT(fresh.tips.gap, 0.1);
+  // It has taken the place of the old one.
+  EXPECT_FALSE(load_reference(kept.folder.folder(), "scene", kept.key));
+  EXPECT_TRUE(load_reference(kept.folder.folder(), "scene",
+                             reference_key(other, kept.compare, coarse)));
+}
+
+TEST(SceneReference, KeyDependsOnTheComparisonAndTheCut) {
+  const Kept kept;
+  Comparison longer = kept.compare;
+  ++longer.frames;
+  EXPECT_NE(reference_key(kept.text, longer, coarse), kept.key);
+  EXPECT_NE(reference_key(kept.text, kept.compare, coarse.refined()), kept.key);
+}
+
+TEST(SceneReference, DamagedOrMissingIsNone) {
+  const Kept kept;
+  EXPECT_FALSE(load_reference(kept.folder.folder(), "scene", kept.key));
+  kept.save(invented(kept.compare.frames));
+  const std::string meta = kept.folder.path("scene.meta.json");
+  kept.folder.write("scene.csv", "t_s,strand\n0,0\n");
+  EXPECT_FALSE(load_reference(kept.folder.folder(), "scene", kept.key));
+  kept.save(invented(kept.compare.frames));
+  EXPECT_TRUE(load_reference(kept.folder.folder(), "scene", kept.key));
+  kept.folder.write("scene.meta.json", "{\"key\": ");
+  EXPECT_FALSE(load_reference(kept.folder.folder(), "scene", kept.key));
+}
+
+// Orders 2 in step and element, both extrapolated: what is left falls at least as they
+// do, by four, when both are halved.
+TEST(SceneReference, ModelsAgreeBetterWhenRefined) {
+  const Kept kept;
+  const SceneReference first = scene_reference(kept.text, kept.compare, {16, 16});
+  const SceneReference second =
+      scene_reference(kept.text, kept.compare, ReferenceCut{16, 16}.refined());
+  EXPECT_LT(second.tips.gap, first.tips.gap / 4);
+  EXPECT_LT(second.tips.gap, 1e-3);
+}
+
+TEST(SceneReference, EndsWhereItsSidesPart) {
+  Comparison compare{.rate = 10, .frames = 9, .strands = 1, .length = 1};
+  SceneReference reference;
+  reference.frames = 9;
+  for (std::size_t frame = 0; frame <= 9; ++frame) {
+    // They agree up to frame 5 and are 1 apart from there on.
+    const double apart = frame > 5 ? 1 : 0;
+    for (const double x : {1., 2., 3.}) {
+      reference.tips.tip.push_back(x);
+      reference.tips.other.push_back(x == 1. ? x + apart : x);
+    }
+  }
+  EXPECT_EQ(agreed(reference, compare, 0.1).frames, 5u);
+  EXPECT_EQ(agreed(reference, compare, 0.1).tips.gap, 0);
+  EXPECT_EQ(agreed(reference, compare, 0.1).tips.tip.size(), 18u);
+  // rms over frames 0 to 6: sqrt(1/7).
+  EXPECT_EQ(agreed(reference, compare, 0.4).frames, 6u);
+  EXPECT_EQ(agreed(reference, compare, 1).frames, 9u);
+  reference.tips.other[3] = 50;
+  EXPECT_EQ(agreed(reference, compare, 0.1).frames, 1u);  // one at least
+}
+
+}  // namespace
+}  // namespace tress

@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/accuracy_claims.h"
+#include "experiments/cost_of_accuracy/advice.h"
+#include "experiments/cost_of_accuracy/scene_study.h"
+#include "experiments/harness/tip_track.h"
+#include "experiments/scenes/variants.h"
+#include "tests/cost_of_accuracy/scratch.h"
+
+namespace tress {
+namespace {
+
+const char* const sagging = R"(
+title = "a hair sags"
+duration_s = 0.2
+[model]
+id = "super_helix"
+[integrator]
+id = "semi_implicit_euler"
+dt_s = 0.001
+[strand]
+elements = 12
+[effects.gravity]
+[effects.linear_drag]
+nu_kg_m_s = 5e-5
+)";
+
+/// A small study: two models, two integrators, seconds.
+struct Small {
+  Scratch folder;
+  std::string file = folder.write("sagging.toml", sagging);
+  StudyPlan plan;
+
+  Small() {
+    plan.targets = {0.03, 0.01};
+    plan.elements = {3, 6, 12};
+    plan.substeps = {1, 4, 16};
+    plan.methods = {{"super_helix", "articulated_chain"},
+                    {"semi_implicit_euler", "implicit_midpoint"},
+                    {"modes=bend"}};
+    plan.reference = {20, 16};
+    plan.references = folder.path("reference");
+    plan.search_s = 60;
+    plan.repeat = 1;
+  }
+  std::vector<Row> rows() const {
+    Row identity;
+    identity.set("scene", "sagging");
+    return study_scene(file, plan, identity, Deadline(300));
+  }
+};
+
+std::vector<Row> of_kind(const std::vector<Row>& rows, std::string_view kind) {
+  std::vector<Row> some;
+  for (const Row& row : rows) {
+    if (row.text("kind") == kind) some.push_back(row);
+  }
+  return some;
+}
+
+/// Of the study as it is, made once.
+struct Made {
+  Small small;
+  std::vector<Row> rows = small.rows();
+};
+const Made& made() {
+  static const Made once;
+  return once;
+}
+
+TEST(SceneStudy, AnswersEveryTarget) {
+  const std::vector<Row>& rows = made().rows;
+  const auto winners = of_kind(rows, "winner");
+  ASSERT_EQ(winners.size(), 2u);
+  for (const Row& row : winners) {
+    ASSERT_TRUE(row.ok()) << row.text("reason");
+    EXPECT_LE(row.number("error_rel") + row.number("reference_gap"),
+              row.number("target_error_rel"));
+    EXPECT_EQ(row.number("cost_factor"), 1);
+    EXPECT_GT(row.number("wall_s_per_sim_s"), 0);
+    EXPECT_EQ(row.number("horizon_s"), 0.2);
+  }
+  EXPECT_EQ(of_kind(rows, "runner_up").size(), 2u);
+  const auto front = of_kind(rows, "front");
+  ASSERT_FALSE(front.empty());
+  for (std::size_t i = 1; i < front.size(); ++i) {
+    EXPECT_GT(front[i].number("error_rel"), front[i - 1].number("error_rel"));
+    EXPECT_LT(front[i].number("wall_s_per_sim_s"),
+              front[i - 1].number("wall_s_per_sim_s"));
+  }
+  const auto given = of_kind(rows, "as_given");
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_EQ(given.front().text("elements"), "12");
+  EXPECT_EQ(given.front().text("integrator"), "semi_implicit_euler");
+}
+
+TEST(SceneStudy, SaysWhatEachChoiceContributes) {
+  for (const Row& row : of_kind(made().rows, "without")) {
+    if (!row.ok()) continue;
+    EXPECT_GE(row.number("cost_factor"), 1) << row.text("choice");
+    EXPECT_LE(row.number("error_rel"), row.number("target_error_rel"));
+  }
+}
+
+// The table says enough to repeat a run to the last bit, and its scene file as well.
+TEST(SceneStudy, RowsAndAdvisedScenesRepeatTheirError) {
+  const Small& small = made().small;
+  const Row* best = advised(made().rows);
+  ASSERT_NE(best, nullptr);
+  const SceneText text(small.file);
+  const std::string file =
+      small.folder.write("advised.toml", advised_text(text, *best, small.plan.rate));
+  const Scene scene = read_scene(file);
+  EXPECT_EQ(scene.options.step, best->number("dt_s"));
+  EXPECT_EQ(static_cast<double>(scene.strands.front().segments.size()),
+            best->number("elements"));
+  const Comparison compare = comparison(text, small.plan.rate, small.plan.horizon, 1);
+  const SceneReference reference = kept_reference(text, compare, small.plan.reference,
+                                                  small.plan.references, "sagging");
+  const TipPaths paths = tip_paths(compared(scene, compare), 0);
+  EXPECT_EQ(tip_error(paths.x, reference.tips.tip, compare.length),
+            best->number("error_rel"));
+}
+
+TEST(SceneStudy, DoesNotJudgeBelowTheReference) {
+  Small small;
+  small.plan.reference = {8, 16};
+  const double gap = of_kind(small.rows(), "as_given").front().number("reference_gap");
+  small.plan.targets = {20 * gap, 9.9 * gap};
+  const auto winners = of_kind(small.rows(), "winner");
+  ASSERT_EQ(winners.size(), 2u);
+  EXPECT_NE(winners[0].status(), "below_reference");
+  EXPECT_EQ(winners[1].status(), "below_reference");
+  EXPECT_FALSE(winners[1].has("error_rel"));
+  for (const Row& row : of_kind(small.rows(), "front")) {
+    if (row.number("error_rel") >= 10 * gap) continue;
+    // At most one, the cheapest of those that cannot be told apart.
+    EXPECT_EQ(row.number("error_rel"),
+              of_kind(small.rows(), "front").front().number("error_rel"));
+  }
+}
+
+TEST(SceneStudy, BudgetBuysTheBestThatFits) {
+  Small small;
+  small.plan.budget_s = 1;  // for a frame: all runs fit
+  const auto rich = of_kind(small.rows(), "budget");
+  ASSERT_EQ(rich.size(), 1u);
+  EXPECT_LE(rich.front().number("error_rel"), 0.01);
+  small.plan.budget_s = 1e-9;
+  const auto poor = of_kind(small.rows(), "budget");
+  ASSERT_EQ(poor.size(), 1u);
+  EXPECT_EQ(poor.front().status(), "not_met");
+}
+
+TEST(SceneStudy, AdviceIsThreeLines) {
+  const auto lines = advice(made().rows);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_TRUE(lines[0].starts_with("take ")) << lines[0];
+  EXPECT_NE(lines[0].find("elements"), std::string::npos);
+  EXPECT_NE(lines[0].find(" dt "), std::string::npos);
+  EXPECT_NE(lines[0].find("% of the length in"), std::string::npos);
+  EXPECT_TRUE(lines[1].starts_with("next best ")) << lines[1];
+  EXPECT_TRUE(lines[2].starts_with("not ")) << lines[2];
+}
+
+// ---- claims -----------------------------------------------------------------------
+
+Row shown(std::string_view kind, double error, double refined, double wall) {
+  Row row;
+  row.set("scene", "s").set("kind", kind).set("target_error_rel", 0.01);
+  row.set("error_rel", error).set("error_refined_rel", refined).set("reference_gap", 0.);
+  return row.set("wall_s_per_sim_s", wall);
+}
+
+bool hold(const std::vector<Row>& rows) {
+  Verdicts verdicts;
+  check_accuracy_claims(rows, verdicts);
+  bool all = !verdicts.all().empty();
+  for (const auto& [claim, held, value] : verdicts.all()) all = all && held;
+  return all;
+}
+
+TEST(AccuracyClaims, HoldForATrueWinner) {
+  EXPECT_TRUE(hold({shown("winner", 0.009, 0.0095, 1), shown("front", 0.02, 0.02, 0.5),
+                    shown("runner_up", 0.008, 0.008, 1.5)}));
+}
+
+TEST(AccuracyClaims, FailWhereTheErrorDoesNotLast) {
+  EXPECT_FALSE(hold({shown("winner", 0.009, 0.011, 1)}));
+  EXPECT_FALSE(hold({shown("winner", 0.009, NAN, 1)}));
+}
+
+TEST(AccuracyClaims, FailWhereSomethingElseIsCheaper) {
+  EXPECT_FALSE(hold({shown("winner", 0.009, 0.009, 1), shown("front", 0.0099, 0, 0.9)}));
+}
+
+}  // namespace
+}  // namespace tress

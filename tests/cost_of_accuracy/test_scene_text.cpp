@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "experiments/cost_of_accuracy/scene_text.h"
+#include "models/input_error.h"
+#include "tests/cost_of_accuracy/scratch.h"
+
+namespace tress {
+namespace {
+
+const char* const curly = R"(
+title = "curly # not a comment"
+frames_1_s = 50
+[model]
+id = "mass_spring"
+torsion = "altitude"
+[integrator]
+id = "backward_euler"
+dt_s = 0.004
+linear = "banded"
+[material]
+name = "hair.african"
+[strand]
+elements = 17
+shape = "material"
+[effects.gravity]
+[[effects.body]]
+shape = "sphere"
+)";
+
+TEST(SceneText, WritesASceneWithTheChoiceAndNothingElseChanged) {
+  const Scratch folder;
+  const SceneText text(folder.write("curly.toml", curly));
+  const Method method{&find_model("super_helix"),
+                      {{"modes", "bend"}, {"tangent", "stiff"}},
+                      "implicit_midpoint"};
+  const Scene& given = text.given();
+  const Scene scene = parse_scene(text.with(method, 9, 7, 60), "written.toml");
+  EXPECT_EQ(scene.model->id, "super_helix");
+  EXPECT_EQ(scene.model_options.word("modes"), "bend");
+  EXPECT_EQ(scene.model_options.word("tangent"), "stiff");
+  EXPECT_EQ(scene.integrator, "implicit_midpoint");
+  EXPECT_EQ(scene.options.step, 1.0 / (60 * 7));  // to the last bit
+  EXPECT_EQ(scene.options.linear, LinearKind::automatic);
+  EXPECT_EQ(scene.frame_rate, 60);
+  ASSERT_EQ(scene.strands.size(), 1u);
+  EXPECT_EQ(scene.strands.front().segments.size(), 9u);
+  // A sum of 17 lengths, each rounded.
+  EXPECT_NEAR(scene.strands.front().length(), given.strands.front().length(), 17e-17);
+  EXPECT_EQ(scene.strands.front().segments.front().natural.x,
+            given.strands.front().segments.front().natural.x);
+  EXPECT_EQ(scene.effects.size(), given.effects.size());
+  EXPECT_EQ(scene.title, given.title);
+  EXPECT_EQ(scene.duration, given.duration);
+}
+
+TEST(SceneText, PhysicsDoesNotDependOnWhatIsChosen) {
+  const Scratch folder;
+  std::string other = curly;
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"mass_spring\"\ntorsion = \"altitude", "der"},
+        {"backward_euler", "rk4"},
+        {"elements = 17", "elements = 5"},
+        {"[effects.gravity]", "# said otherwise\n\n[effects.gravity]"}}) {
+    other.replace(other.find(from), from.size(), to);
+  }
+  const SceneText one(folder.write("a.toml", curly)), same(folder.write("b.toml", other));
+  EXPECT_EQ(one.physics(), same.physics());
+  other.replace(other.find("african"), 7, "asian");
+  EXPECT_NE(one.physics(), SceneText(folder.write("c.toml", other)).physics());
+}
+
+TEST(SceneText, NamesFilesInFull) {
+  const Scratch folder;
+  std::string ball = "4 4 4\n0 0 -1\n1\n";
+  for (int i = 0; i < 64; ++i) ball += "9\n";
+  folder.write("ball.txt", ball);
+  const std::string body = "[effects.body]\nshape = \"sdf\"\nsdf_file = \"ball.txt\"\n";
+  const SceneText text(folder.write("sdf.toml", "title = \"sdf\"\n[strand]\n" + body));
+  const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};
+  const std::string written = text.with(method, 4, 1, 60);
+  EXPECT_NE(written.find(folder.path("ball.txt")), std::string::npos) << written;
+  EXPECT_NO_THROW(parse_scene(written, "elsewhere/written.toml"));
+}
+
+TEST(SceneText, RefusesASceneWithoutStrands) {
+  const Scratch folder;
+  const std::string file =
+      folder.write("bead.toml",
+                   "title = \"bead\"\n[model]\nid = \"bead_on_wire\"\n[integrator]\n"
+                   "id = \"backward_euler\"\nformulation = \"index3\"\n");
+  EXPECT_NO_THROW(read_scene(file));
+  EXPECT_THROW(SceneText{file}, InputError);
+}
+
+TEST(Methods, AreAllThatCanDoTheScene) {
+  const Scratch folder;
+  const SceneText text(folder.write("curly.toml", curly));
+  const auto all = methods(text, {});
+  for (const Method& method : all) {
+    EXPECT_NO_THROW(text.scene(method, 6, 1, 60))
+        << method.model->id << ' ' << method.integrator;
+  }
+  const auto has = [&all](std::string_view model, std::string_view choice,
+                          std::string_view word) {
+    return std::ranges::any_of(all, [&](const Method& method) {
+      return method.model->id == model && method.word(choice) == word;
+    });
+  };
+  EXPECT_TRUE(has("super_helix", "modes", "bend"));
+  EXPECT_TRUE(has("super_helix", "solver", "sparse"));
+  EXPECT_TRUE(has("der", "stretch", "inextensible"));
+  EXPECT_TRUE(has("mass_spring", "torsion", "altitude"));
+}
+
+TEST(Methods, AreThoseAskedFor) {
+  const Scratch folder;
+  const SceneText text(folder.write("curly.toml", curly));
+  const auto some =
+      methods(text, {{"super_helix"}, {"implicit_midpoint"}, {"modes=bend"}});
+  ASSERT_EQ(some.size(), 2u);
+  EXPECT_EQ(some[0].word("modes"), "bend_twist");
+  EXPECT_EQ(some[1].word("modes"), "bend");
+  // bend_planar refuses a curl: two modes, two tangents.
+  EXPECT_EQ(methods(text, {{"super_helix"}, {"rk4"}, {"modes", "tangent=stiff"}}).size(),
+            4u);
+}
+
+}  // namespace
+}  // namespace tress

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/search.h"
+
+namespace tress {
+namespace {
+
+/// A method whose error and cost are known: a (1/n)^p + b (1/k)^q at cost c n k.
+struct Known {
+  double a, p, b, q, c;
+  Trial run(std::size_t method, int elements, int substeps) const {
+    return {method, elements, substeps,
+            a * std::pow(elements, -p) + b * std::pow(substeps, -q),
+            c * elements * substeps};
+  }
+};
+
+constexpr int most_elements = 63, most_substeps = 128;
+
+SearchPlan plan(std::vector<double> targets) {
+  SearchPlan made{.targets = std::move(targets),
+                  .elements = {3, 4, 6, 9, 13, 19, 28, 42, most_elements},
+                  .substeps = {1, 2, 4, 8, 16, 32, 64, most_substeps},
+                  .longest_run_s = 1e9,
+                  .slack = 0};
+  made.slack = ladder_slack(made, 1);
+  return made;
+}
+
+/// By trying everything.
+double least_cost(const std::vector<Known>& all, double target) {
+  double least = INFINITY;
+  for (const Known& known : all) {
+    for (int n = 1; n <= most_elements; ++n) {
+      for (int k = 1; k <= most_substeps; ++k) {
+        const Trial run = known.run(0, n, k);
+        if (run.error <= target) least = std::min(least, run.wall_s);
+      }
+    }
+  }
+  return least;
+}
+
+struct Counted {
+  std::vector<Known> methods;
+  int runs = 0;
+  Search::Measure measure() {
+    return [this](std::size_t method, int elements, int substeps, double) {
+      ++runs;
+      return std::optional<Trial>(methods[method].run(method, elements, substeps));
+    };
+  }
+};
+
+const std::function<bool()> no_end = [] { return false; };
+
+/// Orders 1 to 4 and constants over two powers of ten, so that now one method wins, now
+/// another.
+std::vector<Known> some_methods(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::uniform_int_distribution<int> order(1, 2);
+  std::vector<Known> all;
+  for (int i = 0; i < 6; ++i) {
+    const double p = 2 * order(random), q = order(random);
+    all.push_back({0.3 * std::pow(10, 2 * unit(random)), p,
+                   0.03 * std::pow(10, 2 * unit(random)), q,
+                   1e-5 * std::pow(10, unit(random))});
+  }
+  return all;
+}
+
+TEST(Search, FindsTheCheapestOfKnownErrorsAndCosts) {
+  std::mt19937 random(1);
+  int looked = 0;
+  for (int round = 0; round < 100; ++round) {
+    Counted counted{some_methods(random)};
+    const std::vector<double> targets{0.1, 0.03, 0.01, 0.003, 0.001};
+    Search search(plan(targets), counted.methods.size(), counted.measure(), no_end);
+    search.coarse();
+    search.refine();
+    for (const double target : targets) {
+      const double least = least_cost(counted.methods, target);
+      const Trial* found = cheapest(search.runs(), target);
+      if (!std::isfinite(least)) {
+        EXPECT_EQ(found, nullptr);
+        continue;
+      }
+      ++looked;
+      ASSERT_NE(found, nullptr) << round << ' ' << target;
+      // Elements are tried a tenth apart, or one; the bisection in substeps ends a tenth
+      // from one that fails, or one.
+      const double of_elements = std::max(1.1, 1 + 1.0 / found->elements);
+      EXPECT_LE(found->wall_s, 1.1 * of_elements * least) << round << ' ' << target;
+    }
+    // Of 6 x 63 x 128 that there are.
+    EXPECT_LT(counted.runs, 1500);
+  }
+  EXPECT_GT(looked, 400);
+}
+
+TEST(Search, PruningNeverDropsTheWinner) {
+  std::mt19937 random(2);
+  for (int round = 0; round < 100; ++round) {
+    Counted counted{some_methods(random)};
+    const std::vector<double> targets{0.03, 0.003};
+    Search search(plan(targets), counted.methods.size(), counted.measure(), no_end);
+    search.coarse();
+    for (const double target : targets) {
+      const Trial* of_all = cheapest(search.runs(), target);
+      if (of_all == nullptr) continue;
+      std::size_t winner = 0;
+      double least = INFINITY;
+      for (std::size_t m = 0; m < counted.methods.size(); ++m) {
+        const double cost = least_cost({counted.methods[m]}, target);
+        if (cost < least) {
+          least = cost;
+          winner = m;
+        }
+      }
+      const Trial* of_winner =
+          cheapest(search.runs(), target,
+                   [winner](const Trial& run) { return run.method == winner; });
+      ASSERT_NE(of_winner, nullptr);
+      EXPECT_LE(of_winner->wall_s, plan(targets).slack * of_all->wall_s);
+    }
+  }
+}
+
+TEST(Search, FindsNothingWhereNothingIs) {
+  Counted counted{{{100, 1, 0, 1, 1}}};  // never below 100/63
+  Search search(plan({0.1}), 1, counted.measure(), no_end);
+  search.coarse();
+  search.refine();
+  EXPECT_EQ(cheapest(search.runs(), 0.1), nullptr);
+}
+
+TEST(Search, LeavesOutRunsThatFail) {
+  const Known known{1, 2, 1, 1, 1e-6};
+  const auto measure = [&](std::size_t method, int elements, int substeps,
+                           double) -> std::optional<Trial> {
+    if (substeps < elements) return {};  // a limit of stability
+    return known.run(method, elements, substeps);
+  };
+  Search search(plan({0.1}), 1, measure, no_end);
+  search.coarse();
+  search.refine();
+  const Trial* found = cheapest(search.runs(), 0.1);
+  ASSERT_NE(found, nullptr);
+  EXPECT_GE(found->substeps, found->elements);
+  EXPECT_LE(found->error, 0.1);
+}
+
+TEST(Search, EndsWhenTold) {
+  Counted counted{{{1, 2, 1, 1, 1e-6}, {1, 2, 1, 1, 1e-6}}};
+  Search search(plan({0.001}), 2, counted.measure(),
+                [&counted] { return counted.runs >= 5; });
+  search.coarse();
+  search.refine();
+  EXPECT_EQ(counted.runs, 5);
+  EXPECT_TRUE(search.cut());
+  search.go_on(no_end);
+  EXPECT_FALSE(search.cut());
+}
+
+TEST(Search, FewestSubstepsAreFound) {
+  Counted counted{{{0, 1, 1, 1, 1e-6}}};  // error 1/k
+  Search search(plan({0.1}), 1, counted.measure(), no_end);
+  const Trial* found = search.fewest_substeps(0, 10, 1.0 / 37, 8, 100);
+  ASSERT_NE(found, nullptr);
+  EXPECT_GE(found->substeps, 37);
+  EXPECT_LE(found->substeps, 1.1 * 37);
+  EXPECT_EQ(search.fewest_substeps(0, 11, 1.0 / 37, 8, 36), nullptr);
+  EXPECT_EQ(search.fewest_substeps(0, 12, 1, 64, 100)->substeps, 1);
+}
+
+// ---- of runs ----------------------------------------------------------------------
+
+TEST(Runs, FrontHasNoRunThatAnotherBeats) {
+  const std::vector<Trial> front =
+      pareto_front({{0, 1, 1, 0.1, 1},
+                    {1, 1, 1, 0.2, 2},  // dearer and worse
+                    {2, 1, 1, 0.01, 3},
+                    {3, 1, 1, 0.0099, 4},  // hardly better
+                    {4, 1, 1, 1e-7, 5},
+                    {5, 1, 1, 1e-8, 6}},  // both below the floor
+                   1e-4);
+  ASSERT_EQ(front.size(), 3u);
+  EXPECT_EQ(front[0].method, 4u);
+  EXPECT_EQ(front[1].method, 2u);
+  EXPECT_EQ(front[2].method, 0u);
+}
+
+TEST(Runs, BudgetBuysTheSmallestErrorThatCanBeTold) {
+  const std::vector<Trial> runs{
+      {0, 1, 1, 0.1, 1}, {1, 1, 1, 0.01, 3}, {2, 1, 1, 1e-7, 5}, {3, 1, 1, 1e-6, 4}};
+  EXPECT_EQ(most_accurate(runs, 0.5, 0), nullptr);
+  EXPECT_EQ(most_accurate(runs, 2, 0)->method, 0u);
+  EXPECT_EQ(most_accurate(runs, 3, 0)->method, 1u);
+  EXPECT_EQ(most_accurate(runs, 9, 0)->method, 2u);
+  EXPECT_EQ(most_accurate(runs, 9, 1e-4)->method, 3u);
+}
+
+TEST(Runs, BudgetAndTargetAgree) {
+  std::mt19937 random(3);
+  Counted counted{some_methods(random)};
+  Search search(plan({0.03, 0.003}), counted.methods.size(), counted.measure(), no_end);
+  search.coarse();
+  search.refine();
+  for (const double target : {0.03, 0.003}) {
+    const Trial* found = cheapest(search.runs(), target);
+    ASSERT_NE(found, nullptr);
+    EXPECT_LE(most_accurate(search.runs(), found->wall_s, 0)->error, target);
+  }
+}
+
+}  // namespace
+}  // namespace tress
