@@ -5,46 +5,15 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <stdexcept>
-#include <vector>
 
+#include "experiments/harness/dense_form.h"
 #include "experiments/harness/eigenvalues.h"
 
 namespace tress {
-namespace {
-
-Eigen::VectorXd residual(System& system, In q, In a) {
-  const std::vector<double> zero(q.size());
-  Eigen::VectorXd r(static_cast<Eigen::Index>(q.size()));
-  const Status s = system.residual(0, q, zero, a, {r.data(), q.size()});
-  if (s != Status::ok) throw std::runtime_error("no residual at a state of rest");
-  return r;
-}
-
-}  // namespace
 
 LinearModes linear_modes(System& system, In q) {
-  const std::size_t n = q.size();
-  std::vector<double> q_typ(n), v_typ(n), a(n), moved(q.begin(), q.end());
-  system.scale(q_typ, v_typ);
-  const auto size = static_cast<Eigen::Index>(n);
-  Eigen::MatrixXd mass(size, size), stiffness(size, size);
-  const Eigen::VectorXd forces = residual(system, q, a);
-  // Differences of order 2: eps^(1/3).
-  constexpr double step = 6e-6;
-  for (std::size_t j = 0; j < n; ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    a[j] = 1;
-    mass.col(column) = residual(system, q, a) - forces;
-    a[j] = 0;
-    const double e = step * q_typ[j];
-    moved[j] = q[j] + e;
-    stiffness.col(column) = residual(system, moved, a);
-    moved[j] = q[j] - e;
-    stiffness.col(column) -= residual(system, moved, a);
-    stiffness.col(column) /= 2 * e;
-    moved[j] = q[j];
-  }
+  const Eigen::MatrixXd mass = dense_mass(system, 0, q);
+  const Eigen::MatrixXd stiffness = dense_stiffness(system, 0, q);
   const Eigen::MatrixXd dynamics = mass.partialPivLu().solve(stiffness);
   LinearModes modes;
   modes.slowest_rad_s = std::numeric_limits<double>::infinity();

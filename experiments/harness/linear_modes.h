@@ -13,8 +13,7 @@ struct LinearModes {
   int complex_modes = 0;     // eigenvalues that are not real
 };
 
-/// M from the residual, which is linear in a, K by its central differences; for models
-/// without constraints whose M is regular. O(n^3).
+/// For models without constraints whose M is regular, whatever its symmetry. O(n^3).
 LinearModes linear_modes(System& system, In q);
 
 }  // namespace tress

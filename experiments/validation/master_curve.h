@@ -2,17 +2,22 @@
 
 namespace tress {
 
-/// A planar inextensible rod clamped horizontally under its own weight: with theta the
-/// angle below the horizontal and s from the clamp, over the length,
+/// A planar inextensible rod clamped horizontally, under its own weight and a force P
+/// down on its tip: with theta the angle below the horizontal and s from the clamp, over
+/// the length, Gamma = rho g S L^3/EI and alpha = P L^2/EI,
 ///
-///     theta'' = -Gamma (1 - s) cos theta,   theta(0) = 0,   theta'(1) = 0,
+///     theta'' = -(Gamma (1 - s) + alpha) cos theta,   theta(0) = 0,   theta'(1) = 0,
 ///     width = int cos theta ds,   height = int sin theta ds.
+///
+/// alpha = 0: the master curve of [Romero et al. 2021]; Gamma = 0: [Bisshopp & Drucker
+/// 1945].
 struct Cantilever {
   double width, height;  // of the tip from the clamp, over the length
+  double tip_angle;      // theta, rad
 };
 
-/// By shooting from the tip, whose angle is what is sought; 1e-10 of height/width for
-/// Gamma in (0, 1e5]. Throws InputError on others.
-Cantilever cantilever(double gamma);
+/// By shooting from the tip, whose angle is what is sought; 1e-10 of all numbers for
+/// Gamma and alpha in [0, 1e5], not both 0. Throws InputError on others.
+Cantilever cantilever(double gamma, double alpha);
 
 }  // namespace tress

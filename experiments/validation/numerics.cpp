@@ -20,22 +20,32 @@ double call_function(double x, void* f) {
   return (*static_cast<const std::function<double(double)>*>(f))(x);
 }
 
-}  // namespace
-
 std::vector<double> integrate(const Slope& slope, double from, double to,
-                              std::vector<double> y, double accuracy) {
+                              std::vector<double> y, double absolute, double relative) {
   Slope called = slope;
   gsl_odeiv2_system system{call_slope, nullptr, y.size(), &called};
   const auto release = [](gsl_odeiv2_driver* driver) { gsl_odeiv2_driver_free(driver); };
   const double first = 1e-3 * (to - from);
   const std::unique_ptr<gsl_odeiv2_driver, decltype(release)> driver(
-      gsl_odeiv2_driver_alloc_standard_new(&system, gsl_odeiv2_step_rk8pd, first, 0,
-                                           accuracy, 1, 1),
+      gsl_odeiv2_driver_alloc_standard_new(&system, gsl_odeiv2_step_rk8pd, first,
+                                           absolute, relative, 1, 1),
       release);
   if (gsl_odeiv2_driver_apply(driver.get(), &from, to, y.data()) != GSL_SUCCESS) {
     throw std::runtime_error("the step vanishes at x = " + std::to_string(from));
   }
   return y;
+}
+
+}  // namespace
+
+std::vector<double> integrate(const Slope& slope, double from, double to,
+                              std::vector<double> y) {
+  return integrate(slope, from, to, std::move(y), 0, 1e-13);
+}
+
+std::vector<double> integrate_scaled(const Slope& slope, double from, double to,
+                                     std::vector<double> y) {
+  return integrate(slope, from, to, std::move(y), 1e-13, 1e-13);
 }
 
 double find_root(const std::function<double(double)>& f, double low, double high,

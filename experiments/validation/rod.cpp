@@ -1,38 +1,48 @@
 #include "experiments/validation/rod.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tress {
 namespace {
 
-constexpr CrossSection section{TestRod::radius, TestRod::radius};
+constexpr CrossSection section{40e-6, 40e-6};
+constexpr double youngs_modulus = 3e9, density = 1300;
+
+constexpr std::array<std::string_view, 2> points = {"mass_spring", "inextensible_strand"};
+
+bool among(std::span<const std::string_view> models, const ModelVariant& variant) {
+  return std::ranges::find(models, variant.model->id) != models.end();
+}
 
 }  // namespace
 
-double TestRod::bending() { return youngs_modulus * section.inertia1(); }
+double TestRod::bending() const { return youngs_modulus * section.inertia1(); }
 
-double TestRod::twisting() const {
-  return Material::shear_modulus_of(youngs_modulus, poisson_ratio) * section.torsion();
+double TestRod::twisting() const { return bending() / (1 + poisson_ratio); }
+
+double TestRod::line_mass() const { return density * section.area(); }
+
+double TestRod::rate() const {
+  return std::sqrt(bending() / line_mass()) / (length * length);
 }
 
-double TestRod::line_mass() { return density * section.area(); }
+double TestRod::force() const { return bending() / (length * length); }
 
-double TestRod::rate() { return std::sqrt(bending() / line_mass()) / (length * length); }
-
-double TestRod::force() { return bending() / (length * length); }
-
-double TestRod::gravity(double gamma) {
-  return gamma * bending() / (line_mass() * length * length * length);
+double TestRod::gravity(double gamma) const {
+  return gamma * bending() / (line_mass() * std::pow(length, 3));
 }
 
-Strand TestRod::strand(int elements, const Frame& frame) const {
+Strand TestRod::strand(int elements, const Frame& clamp) const {
   Material material;
   material.density = density;
   material.youngs_modulus = youngs_modulus;
   material.shear_modulus = Material::shear_modulus_of(youngs_modulus, poisson_ratio);
-  Strand strand = make_strand(material, section, {.elements = elements, .length = length},
-                              uniform_shape(natural), uniform_shape(initial));
-  strand.root.frame = frame;
+  Strand strand = make_strand(
+      material, section, {.elements = elements, .length = length, .grading = grading},
+      natural, initial);
+  strand.root.frame = clamp;
   return strand;
 }
 
@@ -46,6 +56,32 @@ std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& str
                         "model " + std::string(variant.model->id));
   for (const auto& [key, value] : variant.settings) parameters.set(key, value);
   return variant.model->on_strand(strand, parameters, std::move(effects));
+}
+
+Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand) {
+  constexpr std::array<std::string_view, 5> framed_in_the_middle = {
+      "articulated_chain", "force_transport", "der", "corde", "xpbd_cosserat"};
+  if (!among(framed_in_the_middle, variant)) return {};
+  const Segment& last = strand.segments.back();
+  const Vec moduli = stiffness(strand.material, last.section);
+  return {last.length / 2 / moduli.x, last.length / 2 / moduli.y,
+          last.length / 2 / moduli.z};
+}
+
+std::string no_section(const ModelVariant& variant) {
+  constexpr std::array<std::string_view, 1> accelerations = {"kirchhoff_nodal"};
+  if (among(points, variant)) return "points have no section to be held";
+  if (among(accelerations, variant)) {
+    return "its equations are accelerations of curvatures: no place for the moment that "
+           "holds a section";
+  }
+  return {};
+}
+
+std::string no_curl(const ModelVariant& variant) {
+  return among(points, variant)
+             ? "springs hold the angles between edges, not the direction of a curl"
+             : std::string();
 }
 
 }  // namespace tress

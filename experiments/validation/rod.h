@@ -12,23 +12,21 @@ namespace tress {
 /// kg/m^3, 10 cm long, so EI = 6.03e-9 N m^2, EA L^2/EI = 2.5e7. What a test measures has
 /// no dimension, so that only ratios matter: Gamma = rho g S L^3/EI is set by gravity.
 struct TestRod {
-  static constexpr double length = 0.1, radius = 40e-6;  // m
-  static constexpr double youngs_modulus = 3e9;          // Pa
-  static constexpr double density = 1300;                // kg/m^3
+  double length = 0.1;                   // L, m
+  double poisson_ratio = 0.5;            // GJ/EI = 1/(1 + nu)
+  Shape natural = uniform_shape(Vec{});  // over s in [0, L], 1/m
+  Shape initial = {};                    // where statics start; empty: natural
+  double grading = 1;                    // last element over the first
 
-  double poisson_ratio = 0.5;
-  Vec natural{},
-      initial{};  // twist and curvatures, 1/m; initial also where it is natural
+  double bending() const;              // EI, N m^2
+  double twisting() const;             // GJ
+  double line_mass() const;            // rho S, kg/m
+  double rate() const;                 // sqrt(EI/(rho S L^4)), 1/s
+  double force() const;                // EI/L^2, N
+  double gravity(double gamma) const;  // g (m/s^2) of that Gamma
 
-  static double bending();              // EI, N m^2
-  double twisting() const;              // GJ
-  static double line_mass();            // rho S, kg/m
-  static double rate();                 // sqrt(EI/(rho S L^4)), 1/s
-  static double force();                // EI/L^2, N
-  static double gravity(double gamma);  // g (m/s^2) of that Gamma
-
-  /// Clamped at the origin with its tangent along `frame.e0`.
-  Strand strand(int elements, const Frame& frame) const;
+  /// Clamped at the origin with its tangent along `clamp.e0`.
+  Strand strand(int elements, const Frame& clamp) const;
 };
 
 /// Clamps: horizontal (e0 = x, e1 = y, curvature about e1 bends down), hanging and
@@ -40,5 +38,17 @@ Frame standing_clamp();
 /// The variant's model of that strand. Throws InputError where the model refuses it.
 std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& strand,
                                   Effects effects);
+
+/// Compliance (rad/(N m)) about the axes of the section of the half of the last segment
+/// beyond the last joint, of models whose end section is fixed to their last edge or
+/// link; 0 of those that bend up to their tip. What holds the section of a tip must give
+/// that much, or half an edge of the rod would be missing.
+Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand);
+
+/// Why a test that holds the section of the tip does not suit a model; empty: it does.
+std::string no_section(const ModelVariant& variant);
+
+/// The same of a test whose strand has a natural curvature that leads into space.
+std::string no_curl(const ModelVariant& variant);
 
 }  // namespace tress

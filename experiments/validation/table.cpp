@@ -126,8 +126,8 @@ std::vector<Case> validation_cases(const CommandLine& line, const Settings& sett
 }
 
 void fit_validation_orders(std::vector<Row>& rows) {
-  // Equilibria are found to 1e-9 of their sizes, thresholds to 1e-8 of themselves.
-  constexpr double rounding = 1e-7;
+  // Equilibria are found to 1e-9 of their sizes, thresholds to 1e-6 of themselves.
+  constexpr double rounding = 2e-6;
   struct Series {
     std::vector<double> elements, errors;
     std::vector<Row*> rows;

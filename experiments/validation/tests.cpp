@@ -1,12 +1,16 @@
 #include <algorithm>
 
+#include "experiments/validation/buckling.h"
 #include "experiments/validation/cantilever.h"
 #include "experiments/validation/chain.h"
+#include "experiments/validation/curls.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/ringing.h"
 #include "experiments/validation/spring.h"
 #include "experiments/validation/stick_slip.h"
 #include "experiments/validation/test.h"
+#include "experiments/validation/vibration.h"
+#include "experiments/validation/wisp.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
 
@@ -15,8 +19,9 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests, pendulum_tests, chain_tests, ringing_tests,
-                         spring_tests, stick_slip_tests}) {
+    for (auto* family :
+         {cantilever_tests, vibration_tests, buckling_tests, curl_tests, pendulum_tests,
+          chain_tests, ringing_tests, spring_tests, stick_slip_tests, wisp_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;

@@ -228,6 +228,13 @@ void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
   }
 }
 
+bool DerElasticity::end_frame(const Placement& p, Frame& frame) noexcept {
+  const std::size_t last = edges_.size() - 1;
+  const Vec e = load3(&p.z[3 * last + 3]) - load3(&p.z[3 * last]);
+  frame = edge_frame(edge_data_[last].reference, e, theta(p.z, last));
+  return true;
+}
+
 double DerElasticity::energy(const Placement& p) noexcept {
   place(p);
   double e = 0;

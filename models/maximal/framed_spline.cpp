@@ -205,6 +205,13 @@ double FramedSpline::power(const Placement& p) noexcept {
   return total;
 }
 
+bool FramedSpline::end_frame(const Placement& p, Frame& frame) noexcept {
+  const std::size_t last = spans_.size() - 1, knot = last + 1;
+  frame = edge_frame(references_[knot], of_controls(spans_[last].end, &p.z[3 * last]),
+                     p.z[angle(knot)]);
+  return true;
+}
+
 bool FramedSpline::rebase(InOut z, InOut rate) {
   bool moved = false;
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {

@@ -38,6 +38,7 @@ class FramedSpline final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
+  bool end_frame(const Placement& p, Frame& frame) noexcept override;
   bool rebase(InOut z, InOut rate) override;
   void reset() override { references_ = references_at_start_; }
   std::vector<double> memory() const override;

@@ -92,6 +92,14 @@ void MaximalSystem::velocities(double t, In q, In v, Out u) {
   }
 }
 
+bool MaximalSystem::end_frame(double t, In q, std::array<double, 9>& axes) {
+  place(t, q);
+  Frame last;
+  if (!strand_.elasticity->end_frame(placement(), last)) return false;
+  store9(last * strand_.to_tip, axes.data());
+  return true;
+}
+
 bool MaximalSystem::mean(int point, Mean& mean) {
   const NodeMean& at = strand_.shown[static_cast<std::size_t>(point)];
   mean.count = 0;

@@ -43,6 +43,7 @@ struct MaximalStrand {
   std::vector<double> edges;    // m, between nodes at rest; none: Elasticity::stretch
   RootMotion root;
   std::unique_ptr<Elasticity> elasticity;
+  Frame to_tip;  // from Elasticity::end_frame to the section at the tip, as at rest
   Effects effects;
   /// Of q: its particles are the nodes that are not prescribed, its parameters the other
   /// coordinates.
@@ -101,6 +102,7 @@ class MaximalSystem final : public System,
   void velocities(double t, In q, In v, Out u) override;
   bool stretch(double t, In q, double& relative) override;
   bool mean(int point, Mean& mean) override;
+  bool end_frame(double t, In q, std::array<double, 9>& axes) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
   void build_pattern();

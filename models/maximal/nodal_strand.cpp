@@ -67,6 +67,9 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   root = root_start(strand);
   initial = edge_frames(strand, ShapeOf::initial, root.place);
   natural = edge_frames(strand, ShapeOf::natural, root.place);
+  const Frame& last = natural.back();
+  const Frame tip = joints(strand, ShapeOf::natural, root.place).back().frame;
+  parts.to_tip = {last.back(tip.e0), last.back(tip.e1), last.back(tip.e2)};
   parts.clamped = !strand.free_root.has_value();
   parts.root = strand.root;
   const std::size_t nodes = initial.size() + 1, coordinates = 3 * nodes;

@@ -19,7 +19,9 @@ struct RootStart {
 };
 RootStart root_start(const Strand& strand);
 
-/// What every model with nodes at the segments' ends has in common.
+/// What every model with nodes at the segments' ends has in common. From the middle of
+/// the last edge on, where its frame is, the strand is as at rest: it has no joint there,
+/// and at a free tip no moment.
 struct NodalStrand {
   /// Nodes, masses and lengths lumped at them, motion of the root, typical sizes, and
   /// `others` further coordinates of size one without inertia, all 0. Edges have the

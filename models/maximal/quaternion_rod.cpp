@@ -1,5 +1,7 @@
 #include "models/maximal/quaternion_rod.h"
 
+#include <cmath>
+
 #include "models/maximal/corde_edge.h"
 #include "models/maximal/cosserat_edge.h"
 #include "models/maximal/nodal_strand.h"
@@ -172,6 +174,13 @@ double QuaternionRod<Edge>::power(const Placement& p) noexcept {
     }
   }
   return sum;
+}
+
+template <class Edge>
+bool QuaternionRod<Edge>::end_frame(const Placement& p, Frame& frame) noexcept {
+  const Quaternion q = load_quaternion(&p.z[at(edges_.size() - 1)]);
+  frame = axes((1 / std::sqrt(dot(q, q))) * q);
+  return true;
 }
 
 /// A world rotation w moves q by w q/2.

@@ -6,6 +6,7 @@
 
 #include "models/input_error.h"
 #include "models/math/gauss_legendre.h"
+#include "models/strand/geometry.h"
 
 namespace tress {
 namespace {
@@ -213,6 +214,10 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     reduced.segments.push_back(segment);
   }
   if (options.rotary_inertia) add_rotors(reduced, strand, joints);
+  if (joints) {  // beyond the last half of a link there is no joint
+    const Segment& last = strand.segments.back();
+    reduced.to_tip = helix_turn(times(free, last.natural), last.length / 2);
+  }
 
   constexpr double earth = 9.81;  // m/s^2
   const CrossSection& section = strand.segments.front().section;

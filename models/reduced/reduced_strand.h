@@ -67,6 +67,7 @@ struct ReducedStrand {
   RootMotion root;
   std::optional<FreeRoot> free_root;
   double root_rotor = 0;  // as ReducedSegment::rotor, of a free root
+  Frame to_tip;  // from the frame of the last segment's tip to its section's, as at rest
   Effects effects;
   ReducedTangent tangent = ReducedTangent::exact;
   TreeMethod method = TreeMethod::recursive;

@@ -27,6 +27,7 @@ class ReducedSystem : public System,
         unknown_scale_(strand.unknown_scale),
         length_(strand.length),
         rate_(strand.rate),
+        to_tip_(strand.to_tip),
         kinematics_(std::move(strand.segments), std::move(strand.blocks),
                     {std::move(strand.root)},
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
@@ -265,8 +266,17 @@ class ReducedSystem : public System,
     return true;
   }
 
+  /// With several free ends, of the last segment's.
+  bool end_frame(double t, In q, std::array<double, 9>& axes) override {
+    kinematics_.move(t, q, zero_, zero_);
+    const std::size_t last = kinematics_.segments().size() - 1;
+    store9(kinematics_.motion(last).tip.frame * to_tip_, axes.data());
+    return true;
+  }
+
   bool exact_, regular_mass_;
   double unknown_scale_, length_, rate_;
+  Frame to_tip_;
   K kinematics_;
   InverseDynamics<Kernel, dofs> dynamics_;
   ExactTangent<Kernel, dofs> exact_tangent_;

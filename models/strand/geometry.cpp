@@ -6,17 +6,26 @@
 namespace tress {
 namespace {
 
-/// The end of a helix of constant Darboux vector (math/helix.h) that starts at `from`.
-StrandPlace along(const StrandPlace& from, const Vec& darboux, double s) {
-  const HelixFunctions<double> f = helix_functions(s, dot(darboux, darboux), s);
-  const auto turned = [&](double along_y, double along_u, double along_z, const Vec& y) {
+/// y -> (along_y y + along_u darboux x y + along_z darboux x (darboux x y)).
+struct Turned {
+  const Vec& darboux;
+  Vec operator()(double along_y, double along_u, double along_z, const Vec& y) const {
     const Vec u = cross(darboux, y);
     return along_y * y + along_u * u + along_z * cross(darboux, u);
-  };
-  const Vec e0{1, 0, 0}, e1{0, 1, 0}, e2{0, 0, 1};
-  const Frame turn{turned(1, f.S, f.A, e0), turned(1, f.S, f.A, e1),
-                   turned(1, f.S, f.A, e2)};
-  return {from.x + from.frame * turned(s, f.A, f.B, e0), from.frame * turn};
+  }
+};
+
+constexpr Vec e0{1, 0, 0}, e1{0, 1, 0}, e2{0, 0, 1};
+
+HelixFunctions<double> functions(const Vec& darboux, double s) {
+  return helix_functions(s, dot(darboux, darboux), s);
+}
+
+/// The end of a helix of constant Darboux vector (math/helix.h) that starts at `from`.
+StrandPlace along(const StrandPlace& from, const Vec& darboux, double s) {
+  const HelixFunctions<double> f = functions(darboux, s);
+  return {from.x + from.frame * Turned{darboux}(s, f.A, f.B, e0),
+          from.frame * helix_turn(darboux, s)};
 }
 
 const Vec& darboux(const Segment& segment, ShapeOf shape) {
@@ -24,6 +33,12 @@ const Vec& darboux(const Segment& segment, ShapeOf shape) {
 }
 
 }  // namespace
+
+Frame helix_turn(const Vec& darboux, double s) {
+  const HelixFunctions<double> f = functions(darboux, s);
+  const Turned turned{darboux};
+  return {turned(1, f.S, f.A, e0), turned(1, f.S, f.A, e1), turned(1, f.S, f.A, e2)};
+}
 
 std::vector<StrandPlace> joints(const Strand& strand, ShapeOf shape,
                                 const StrandPlace& root) {

@@ -13,6 +13,10 @@ struct StrandPlace {
   Frame frame;
 };
 
+/// The frame at `s` (m) of a helix of constant Darboux vector (1/m), in the components of
+/// the one at 0.
+Frame helix_turn(const Vec& darboux, double s);
+
 /// Which of a strand's two shapes: Segment::natural or Segment::initial.
 enum class ShapeOf { natural, initial };
 

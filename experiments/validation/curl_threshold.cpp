@@ -1,0 +1,75 @@
+#include "experiments/validation/curl_threshold.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/validation/numerics.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+struct Curl {
+  double phi, poisson_ratio, gamma;
+
+  /// theta and theta' over x = 1 - s, from the tip. Solutions that miss the clamp grow as
+  /// straight ones would, one way or the other, so that one tip angle is right.
+  void bend(double x, const double* y, double* dy) const {
+    const bool missing = y[0] < 0 || y[1] > 0;
+    dy[0] = y[1];
+    dy[1] = gamma * x * (missing ? y[0] : std::sin(y[0]));
+  }
+
+  /// Two solutions (alpha, beta, X, Y) after theta and theta'.
+  void turn(double x, const double* y, double* dy) const {
+    bend(x, y, dy);
+    const double k = -y[1], moment = k - phi;
+    const double f_t = gamma * x * std::cos(y[0]), f_n = -gamma * x * std::sin(y[0]);
+    for (int i = 2; i < 10; i += 4) {
+      const double alpha = y[i], beta = y[i + 1], along = y[i + 2], across = y[i + 3];
+      dy[i] = -(k * beta + (1 + poisson_ratio) * (along - moment * beta));
+      dy[i + 1] = -(across + moment * alpha - k * alpha);
+      dy[i + 2] = -(k * across - beta * f_n);
+      dy[i + 3] = -(-k * along + beta * f_t);
+    }
+  }
+
+  double tip_angle() const {
+    const Slope slope = [this](double x, const double* y, double* dy) { bend(x, y, dy); };
+    const auto at_clamp = [&](double tip) {
+      return integrate_scaled(slope, 0, 1, {tip, -phi})[0];
+    };
+    return find_root(at_clamp, 0, std::numbers::pi);
+  }
+
+  /// Passes 0 where the plane is left.
+  double determinant() const {
+    const Slope slope = [this](double x, const double* y, double* dy) { turn(x, y, dy); };
+    const std::vector<double> y =
+        integrate_scaled(slope, 0, 1, {tip_angle(), -phi, 1, 0, 0, 0, 0, 1, 0, 0});
+    return y[2] * y[7] - y[3] * y[6];
+  }
+};
+
+}  // namespace
+
+double curl_threshold(double phi, double poisson_ratio) {
+  constexpr double highest = 0.75, lowest = 0.35, step = 0.01;
+  const auto determinant = [&](double ratio) {
+    return Curl{phi, poisson_ratio, std::pow(ratio * phi, 3)}.determinant();
+  };
+  if (!(phi > 0 && phi <= 8 * std::numbers::pi)) {
+    throw InputError("no such curl", "phi", "give an angle above 0, at most 8 pi");
+  }
+  double above = highest, value = determinant(above);
+  while (above > lowest) {
+    const double below = above - step, next = determinant(below);
+    if (value * next <= 0) return find_root(determinant, below, above, 1e-10);
+    above = below;
+    value = next;
+  }
+  throw InputError("a strand of this phi stays in its plane at any weight", "phi",
+                   "give an angle of 1.8 pi or more (nu = 0.5)");
+}
+
+}  // namespace tress

@@ -1,0 +1,27 @@
+#pragma once
+
+namespace tress {
+
+/// A strand clamped with its tangent down whose natural shape is an arc of angle phi in a
+/// plane [Miller, Lazarus, Audoly & Reis 2014; Romero et al. 2021]: under much weight it
+/// hangs in that plane. Returns Gamma^(1/3)/phi = 1/(kappa_n L_gb) at the Gamma = rho g S
+/// L^3/EI where, with less and less weight, this is stable no more and the tip curls out
+/// of the plane. Of long strands 0.6206885 (Poisson's ratio nu = 0.5).
+///
+/// With theta the angle from down, k = theta', M = k - phi, over EI/L and EI/L^2:
+///
+///     theta'' = Gamma (1 - s) sin theta,   theta(0) = 0,   M(1) = 0.
+///
+/// Turned by alpha t + beta n (t tangent, n normal in the plane) moments change by X t +
+/// Y n, and with GJ/EI = 1/(1 + nu) and the weight below, F = Gamma (1 - s) down,
+///
+///     X = (alpha' - k beta)/(1 + nu) + M beta,   X' = k Y - beta F.n,
+///     Y = beta' + k alpha - M alpha,             Y' = -k X + beta F.t;
+///
+/// the threshold has a solution with alpha = beta = 0 at the clamp, X = Y = 0 at the tip.
+/// 1e-6; agrees with values computed by another method (test_references.cpp). Throws
+/// InputError where strands of this phi are stable at any weight (below 1.8 pi at nu =
+/// 0.5) and beyond 8 pi.
+double curl_threshold(double phi, double poisson_ratio);
+
+}  // namespace tress

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/validation/test.h"
+
+namespace tress {
+
+/// Strands with a natural curvature or twist.
+std::vector<ValidationTest> curl_tests();
+
+}  // namespace tress

@@ -1,0 +1,145 @@
+#include "experiments/validation/end.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace tress {
+namespace {
+
+using Eigen::Index;
+
+Vec tip(MaterialPoints& points, double t, In q) {
+  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+  points.positions(t, q, x);
+  return load3(&x[x.size() - 3]);
+}
+
+/// The last components of x, as many as there are rows.
+Eigen::VectorXd last_of(const Vec& x, int rows) {
+  const double components[3] = {x.x, x.y, x.z};
+  Eigen::VectorXd last(rows);
+  for (int k = 0; k < rows; ++k) last[k] = components[3 - rows + k];
+  return last;
+}
+
+}  // namespace
+
+int End::section_rows() const {
+  return section == Section::free ? 0 : section == Section::tangent ? 2 : 3;
+}
+
+EndConditions::EndConditions(System& system, const End& end)
+    : system_(system),
+      points_(*system.material_points()),
+      end_(end),
+      places_(static_cast<int>(end.along.size())),
+      sections_(end.section_rows()),
+      q_typ_(static_cast<std::size_t>(system.layout().coordinates)) {
+  std::vector<double> v_typ(q_typ_.size()), q = q_typ_, v = q_typ_;
+  system_.scale(q_typ_, v_typ);
+  system_.initial_state(q, v);
+  std::array<double, 9> axes;
+  if (sections_ > 0 && !points_.end_frame(0, q, axes)) {
+    throw std::runtime_error("the model has no frame at its end");
+  }
+}
+
+Eigen::VectorXd EndConditions::section(double t, In q) {
+  std::array<double, 9> axes;
+  points_.end_frame(t, q, axes);
+  const Frame now = load9(axes.data()), &held = end_.frame;
+  const Vec turned =
+      0.5 * (cross(held.e0, now.e0) + cross(held.e1, now.e1) + cross(held.e2, now.e2));
+  return last_of(held.back(turned), sections_);
+}
+
+Eigen::VectorXd EndConditions::value(double t, In q) {
+  Eigen::VectorXd c(rows());
+  const Vec away = tip(points_, t, q) - end_.place;
+  for (int i = 0; i < places_; ++i) {
+    c[i] = dot(end_.along[static_cast<std::size_t>(i)], away);
+  }
+  if (sections_ > 0) c.tail(sections_) = section(t, q);
+  return c;
+}
+
+Eigen::MatrixXd EndConditions::gradient(double t, In q) {
+  const auto n = static_cast<Index>(q.size());
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(n, rows());
+  std::vector<double> v(q.size()), u(3 * static_cast<std::size_t>(points_.count()));
+  for (Index j = 0; j < n && places_ > 0; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    v[at] = 1;
+    points_.velocities(t, q, v, u);
+    v[at] = 0;
+    const Vec moved = load3(&u[u.size() - 3]);
+    for (int i = 0; i < places_; ++i) {
+      g(j, i) = dot(end_.along[static_cast<std::size_t>(i)], moved);
+    }
+  }
+  if (sections_ == 0) return g;
+  std::vector<double> moved(q.begin(), q.end());
+  constexpr double step = 1e-3;  // error step^4 and eps/step: 1e-12
+  for (Index j = 0; j < n; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double e = step * q_typ_[at];
+    const auto shifted = [&](double by) {
+      moved[at] = q[at] + by * e;
+      return section(t, moved);
+    };
+    g.row(j).tail(sections_) =
+        ((8 * (shifted(1) - shifted(-1)) - (shifted(2) - shifted(-2))) / (12 * e))
+            .transpose();
+    moved[at] = q[at];
+  }
+  return g;
+}
+
+std::vector<std::size_t> EndConditions::turning(double t, In q) {
+  const Eigen::VectorXd here = section(t, q);
+  std::vector<double> moved(q.begin(), q.end());
+  std::vector<std::size_t> all;
+  constexpr double far = 0.1;  // of what is typical: nothing turns by chance
+  for (std::size_t j = 0; j < q.size(); ++j) {
+    moved[j] = q[j] + far * q_typ_[j];
+    if (section(t, moved) != here) all.push_back(j);
+    moved[j] = q[j];
+  }
+  return all;
+}
+
+Eigen::MatrixXd EndConditions::curvature(double t, In q, const Eigen::VectorXd& moment) {
+  const auto n = static_cast<Index>(q.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+  if (sections_ == 0) return all;
+  std::vector<double> moved(q.begin(), q.end());
+  constexpr double step = 1e-4;  // error step^2 and eps/step^2: 1e-8
+  const std::vector<std::size_t> active = turning(t, q);
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      const std::size_t i = active[k], j = active[l];
+      const double e = step * q_typ_[i], f = step * q_typ_[j];
+      const auto work = [&](double a, double b) {
+        moved[i] += a * e;
+        moved[j] += b * f;
+        const double w = moment.dot(section(t, moved));
+        moved[i] = q[i];
+        moved[j] = q[j];
+        return w;
+      };
+      const double second =
+          (work(1, 1) - work(1, -1) - work(-1, 1) + work(-1, -1)) / (4 * e * f);
+      all(static_cast<Index>(i), static_cast<Index>(j)) = second;
+      all(static_cast<Index>(j), static_cast<Index>(i)) = second;
+    }
+  }
+  return all;
+}
+
+Eigen::VectorXd EndConditions::compliance() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(rows());
+  all.tail(sections_) = last_of(end_.compliance, sections_);
+  return all;
+}
+
+}  // namespace tress

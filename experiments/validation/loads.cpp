@@ -1,0 +1,70 @@
+#include "experiments/validation/loads.h"
+
+#include "models/math/gauss_legendre.h"
+
+namespace tress {
+namespace {
+
+// Models carry a segment's mass by one node, or by a multiple of so many points.
+constexpr int fewest_points = 4, most_points = 32;
+
+/// Of the polynomial through the points of Gauss's rule, at the end of its interval.
+std::vector<double> at_end(int points) {
+  const std::vector<QuadraturePoint> rule = gauss_legendre(points, 1);
+  std::vector<double> weights;
+  for (const QuadraturePoint& one : rule) {
+    double weight = 1;
+    for (const QuadraturePoint& other : rule) {
+      if (other.at != one.at) weight *= (1 - other.at) / (one.at - other.at);
+    }
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
+}  // namespace
+
+void Weight::add_load(double t, const Points& p, InOut f) const noexcept {
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    store3(load3(&f[3 * i]) + (t * p.mass[i]) * g_, &f[3 * i]);
+  }
+}
+
+double Weight::potential(double t, const Points& p) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    sum -= t * p.mass[i] * dot(g_, load3(&p.x[3 * i]));
+  }
+  return sum;
+}
+
+TipForce::TipForce(int elements) : elements_(elements), rules_{{1}} {
+  for (int points = fewest_points; points <= most_points; points += fewest_points) {
+    rules_.push_back(at_end(points));
+  }
+}
+
+const std::vector<double>& TipForce::weights(const Points& p) const noexcept {
+  return rules_[static_cast<std::size_t>(p.count / (fewest_points * elements_))];
+}
+
+void TipForce::add_load(double, const Points& p, InOut f) const noexcept {
+  const std::vector<double>& w = weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    double* load = &f[3 * (first + k)];
+    store3(load3(load) + w[k] * force, load);
+  }
+}
+
+double TipForce::potential(double, const Points& p) const noexcept {
+  const std::vector<double>& w = weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  double sum = 0;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    sum -= w[k] * dot(force, load3(&p.x[3 * (first + k)]));
+  }
+  return sum;
+}
+
+}  // namespace tress

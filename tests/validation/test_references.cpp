@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/validation/beam_modes.h"
+#include "experiments/validation/master_curve.h"
+#include "models/input_error.h"
+
+/// References against values computed independently of this code: boundary-value problems
+/// on two meshes that agree to 1e-12, and published zeros.
+namespace tress {
+namespace {
+
+TEST(MasterCurve, IsThatOfTheElastica) {
+  constexpr double height_over_width[][2] = {
+      {0.01, 1.249999553589576e-3}, {0.1, 1.249955365543758e-2}, {1, 0.124561766441707},
+      {10, 1.06680232043307},       {100, 5.88810462332732},     {1e3, 21.3354404999},
+      {1e4, 69.7088295792},         {1e5, 222.6114204}};
+  for (const auto& [gamma, ratio] : height_over_width) {
+    const Cantilever rod = cantilever(gamma, 0);
+    EXPECT_NEAR(rod.height / rod.width / ratio, 1, 1e-10) << gamma;
+  }
+}
+
+TEST(MasterCurve, HasTheTipLoadOfBisshoppAndDrucker) {
+  constexpr double alpha_angle_height_width[][4] = {
+      {0.1, 0.049954255754753138, 0.033295319268174331, 0.99933460003695242},
+      {1, 0.46135194971187896, 0.30172077379981353, 0.94356676371662312},
+      {10, 1.4302855388038575, 0.81060902488029645, 0.44500440224624873},
+      {100, 1.5706458846600332, 0.94142135086201098, 0.14142135543711792}};
+  for (const auto& [alpha, angle, height, width] : alpha_angle_height_width) {
+    const Cantilever rod = cantilever(0, alpha);
+    EXPECT_NEAR(rod.tip_angle, angle, 1e-10) << alpha;
+    EXPECT_NEAR(rod.height, height, 1e-10) << alpha;
+    EXPECT_NEAR(rod.width, width, 1e-10) << alpha;
+  }
+}
+
+TEST(MasterCurve, RefusesLoadsOutOfRange) {
+  EXPECT_THROW(cantilever(-1, 0), InputError);
+  EXPECT_THROW(cantilever(0, 0), InputError);
+  EXPECT_THROW(cantilever(2e5, 0), InputError);
+}
+
+TEST(HeavyRod, HasTheModesOfABeamAndOfAHeavyRod) {
+  constexpr double beam[] = {3.5160152685001512, 22.03449156466677, 61.697214413549102,
+                             120.90191605230572, 199.85953011680345};
+  for (int mode = 1; mode <= 5; ++mode) {
+    EXPECT_NEAR(heavy_rod_mode(0, mode) / beam[mode - 1], 1, 1e-11) << mode;
+  }
+  constexpr double first_and_second[][3] = {
+      {-7.8, 0.243259604592, 20.4436611487}, {-7, 1.15155322617, 20.612760578},
+      {1, 3.73262569953, 22.2297969559},     {10, 5.29178335724, 23.9119990469},
+      {100, 12.8687419059, 36.5091671279},   {1000, 38.6955051341, 92.2800860864}};
+  for (const auto& [gamma, first, second] : first_and_second) {
+    EXPECT_NEAR(heavy_rod_mode(gamma, 1) / first, 1, 1e-10) << gamma;
+    EXPECT_NEAR(heavy_rod_mode(gamma, 2) / second, 1, 1e-10) << gamma;
+  }
+  EXPECT_NEAR(heavy_rod_mode(1e4, 1), 120.86470755, 1e-8);
+  EXPECT_THROW(heavy_rod_mode(-7.9, 1), InputError);
+}
+
+// A nearly straight arc is a beam; its shape moves omega by O(opening^2).
+TEST(CurvedBeam, TendsToTheBeam) {
+  for (int mode = 1; mode <= 3; ++mode) {
+    const double beam = heavy_rod_mode(0, mode);
+    EXPECT_NEAR(curved_beam_mode(1e-4, mode) / beam, 1, 1e-7) << mode;
+  }
+}
+
+}  // namespace
+}  // namespace tress

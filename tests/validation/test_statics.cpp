@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/validation/rod.h"
+#include "experiments/validation/statics.h"
+
+namespace tress {
+namespace {
+
+constexpr Vec axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};
+
+ModelVariant variant(std::string_view id, ModelSettings settings = {}) {
+  return {&find_model(id), std::move(settings), ""};
+}
+
+TestRod curl() {
+  TestRod rod;
+  rod.natural = uniform_shape({8, 20, 5});
+  return rod;
+}
+
+class Rods : public testing::TestWithParam<ModelVariant> {};
+
+std::string name(const testing::TestParamInfo<ModelVariant>& info) {
+  std::string text(info.param.model->id);
+  for (const auto& [key, word] : info.param.settings) text += "_" + word;
+  return text;
+}
+
+/// A curl that hangs in its weight and is pulled aside.
+Statics pulled(const ModelVariant& of, End end) {
+  const TestRod rod = curl();
+  Statics statics(of, rod.strand(6, hanging_clamp()), -rod.gravity(5) * axis_z,
+                  std::move(end));
+  statics.follow(0.1, 1);
+  return statics;
+}
+
+// The force that holds a tip is the force that brings it there: the same equilibrium
+// twice, once with the force given and once with the place. Corrections of 1e-7 may be
+// the last of a model whose stretch is 2.5e7 times as stiff as its bending.
+TEST_P(Rods, HoldAPlaceByTheForceThatLeadsThere) {
+  const TestRod rod = curl();
+  const Vec force = rod.force() * Vec{0.7, 0.4, -0.2};
+  Statics free = pulled(GetParam(), {.force = force});
+  const Vec x = free.tip();
+  Statics held = pulled(GetParam(), {.along = {axis_x, axis_y, axis_z}, .place = x});
+  const Vec there = held.tip();
+  EXPECT_LE(std::sqrt(dot(there - x, there - x)), 1e-9 * rod.length);
+  const std::vector<double> found = held.holding();
+  const double wanted[3] = {force.x, force.y, force.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(found[k], wanted[k], 2e-5 * rod.force());
+  }
+}
+
+// The same for a section: held where it is, it takes no moment.
+TEST_P(Rods, HoldTheirOwnSectionByNothing) {
+  if (!no_section(GetParam()).empty()) GTEST_SKIP() << no_section(GetParam());
+  const TestRod rod = curl();
+  Statics free = pulled(GetParam(), {});
+  std::array<double, 9> axes{};
+  ASSERT_TRUE(free.system().material_points()->end_frame(1, free.q(), axes));
+  Statics held =
+      pulled(GetParam(), {.section = End::Section::frame, .frame = load9(axes.data())});
+  for (const double moment : held.holding()) {
+    EXPECT_LE(std::abs(moment), 1e-6 * rod.bending() / rod.length);
+  }
+}
+
+// A hanging rod is stable, and so is a standing one below Greenhill's weight (7.84; six
+// elements are 5 % off at most), not above.
+TEST_P(Rods, StandUpToGreenhillsWeight) {
+  const TestRod rod;
+  const Strand up = rod.strand(6, standing_clamp());
+  for (const double gamma : {6.0, 9.0}) {
+    Statics statics(GetParam(), up, -rod.gravity(gamma) * axis_z);
+    statics.relax(1);
+    EXPECT_EQ(statics.least_square() > 0, gamma < 7) << gamma;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Statics, Rods,
+                         testing::Values(variant("super_helix"),
+                                         variant("articulated_chain"), variant("der"),
+                                         variant("der", {{"stretch", "inextensible"}}),
+                                         variant("corde"), variant("xpbd_cosserat"),
+                                         variant("dynamic_spline"),
+                                         variant("kirchhoff_nodal")),
+                         name);
+
+// Gradients of a section's rows against differences of order 4 (other steps), their
+// curvature against differences of the gradients: 1e-8 of its size.
+TEST(EndConditions, DifferentiateTheSection) {
+  for (const std::string_view model : {"super_helix", "der", "corde", "dynamic_spline"}) {
+    const TestRod rod = curl();
+    const auto system = on_strand(variant(model), rod.strand(3, horizontal_clamp()), {});
+    const End end{.along = {axis_z},
+                  .section = End::Section::frame,
+                  .frame = rotation({0, 1, 0}, 0.4)};
+    EndConditions conditions(*system, end);
+    const auto n = static_cast<std::size_t>(system->layout().coordinates);
+    std::vector<double> q(n), v(n), q_typ(n);
+    system->initial_state(q, v);
+    system->scale(q_typ, v);
+    const Eigen::MatrixXd g = conditions.gradient(0, q);
+    const Eigen::Vector3d moment(0.3, -0.5, 0.8);
+    const Eigen::MatrixXd curvature = conditions.curvature(0, q, moment);
+    for (std::size_t j = 0; j < n; ++j) {
+      const double e = 2e-3 * q_typ[j];
+      const auto shifted = [&](double by) {
+        std::vector<double> moved = q;
+        moved[j] += by * e;
+        return moved;
+      };
+      const auto slope = [&](auto&& f) -> Eigen::VectorXd {
+        return (8 * (f(shifted(1)) - f(shifted(-1))) - (f(shifted(2)) - f(shifted(-2)))) /
+               (12 * e);
+      };
+      const auto column = static_cast<Eigen::Index>(j);
+      const Eigen::VectorXd of_value =
+          slope([&](const std::vector<double>& at) { return conditions.value(0, at); });
+      const Eigen::VectorXd of_gradient = slope([&](const std::vector<double>& at) {
+        return Eigen::VectorXd(conditions.gradient(0, at).rightCols(3) * moment);
+      });
+      const double size = q_typ[j];
+      EXPECT_LE((of_value - g.row(column).transpose()).cwiseAbs().maxCoeff() * size, 1e-9)
+          << model << " " << j;
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        EXPECT_NEAR(of_gradient[row] * size * q_typ[i],
+                    curvature(row, column) * size * q_typ[i], 1e-6)
+            << model << " " << i << " " << j;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tress
