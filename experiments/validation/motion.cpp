@@ -1,17 +1,52 @@
 #include "experiments/validation/motion.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
 #include "experiments/harness/formulations.h"
 #include "experiments/harness/simulation.h"
+#include "experiments/validation/rod.h"
 #include "models/effects/gravity.h"
 #include "models/input_error.h"
 
 namespace tress {
+namespace {
+
+/// Keeps the lowest of the points at which it is asked for its potential; does nothing.
+class LowestPoint final : public Effect {
+ public:
+  std::string_view name() const override { return "lowest_point"; }
+  Needs needs() const override { return {}; }
+  void add_load(double, const Points&, InOut) const noexcept override {}
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  double potential(double, const Points& p) const noexcept override {
+    for (std::size_t i = 0; i < p.length.size(); ++i) {
+      if (p.length[i] > 0) z_ = std::min(z_, p.x[3 * i + 2]);
+    }
+    return 0;
+  }
+  double power(double, const Points&) const noexcept override { return 0; }
+  double z() const { return z_; }
+
+ private:
+  mutable double z_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
 
 Effects weight() { return {std::make_shared<Gravity>(Vec{0, 0, -earth_gravity})}; }
+
+double lowest_point(const ModelVariant& variant, const Strand& strand) {
+  const auto lowest = std::make_shared<LowestPoint>();
+  const auto system = on_strand(variant, strand, {lowest});
+  const State start = initial_state(*system);
+  (void)system->energetics()->energy(0, start.q, start.v);
+  return lowest->z();
+}
 
 Track track(std::string_view integrator, System& system, double dt, double t_end,
             const Look& look, const std::function<bool(double value)>& enough) {

@@ -4,7 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/harness/model_variants.h"
 #include "models/effects/effect.h"
+#include "models/strand/strand.h"
 #include "models/system.h"
 
 namespace tress {
@@ -14,6 +16,11 @@ namespace tress {
 
 inline constexpr double earth_gravity = 9.81;  // m/s^2
 Effects weight();                              // along -z
+
+/// Height (m) of the lowest of the points at which effects act on the strand: where it
+/// touches a plane first. Models that integrate over segments have no such point at their
+/// very end.
+double lowest_point(const ModelVariant& variant, const Strand& strand);
 
 /// What was seen at the start and after every step.
 struct Track {

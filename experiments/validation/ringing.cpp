@@ -15,22 +15,19 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double length = TestRod::length;
-constexpr double bent = 0.05;  // rad, the largest curvature or twist times L
+const double length = TestRod().length;  // m
+constexpr double bent = 0.05;            // rad, the largest curvature or twist times L
 
 /// A straight hair that is not at rest there.
 Strand hair(int elements, const Shape& initial) {
-  const Strand straight = TestRod().strand(elements, horizontal_clamp());
-  Strand strand =
-      make_strand(straight.material, straight.segments.front().section,
-                  {.elements = elements, .length = length}, uniform_shape({}), initial);
-  strand.root = straight.root;
-  return strand;
+  TestRod rod;
+  rod.initial = initial;
+  return rod.strand(elements, horizontal_clamp());
 }
 
 constexpr double first_mode = 1.875104068711961;  // cos x cosh x = -1
 
-double bending_rate() { return first_mode * first_mode * TestRod::rate(); }
+double bending_rate() { return first_mode * first_mode * TestRod().rate(); }
 
 /// Curvature of the first mode of a clamped rod, 1 at the clamp.
 double mode_curvature(double s) {
@@ -46,7 +43,7 @@ double measured_decay(const Trial& trial) {
     return Vec{0, bent / length * mode_curvature(s), 0};
   });
   strand.material.internal_friction =
-      2 * trial.parameter * TestRod::bending() / bending_rate();
+      2 * trial.parameter * TestRod().bending() / bending_rate();
   const auto system = on_strand(trial.variant, strand, {});
   const double once = 2 * pi / bending_rate();
   return decay_rate(
@@ -54,8 +51,8 @@ double measured_decay(const Trial& trial) {
 }
 
 double torsion_rate(double mode) {
-  const double shear = TestRod().twisting() / TestRod::bending() / 2;  // G/E, J = 2 I
-  const double speed = std::sqrt(shear * TestRod::youngs_modulus / TestRod::density);
+  const Material material = hair(1, {}).material;
+  const double speed = std::sqrt(material.shear_modulus / material.density);
   return (2 * mode - 1) * pi / 2 * speed / length;
 }
 

@@ -18,7 +18,7 @@ using std::numbers::pi;
 constexpr double pitch_angle = 0.15;  // rad
 
 double radius(double turns) {
-  return TestRod::length * std::cos(pitch_angle) / (2 * pi * turns);
+  return TestRod().length * std::cos(pitch_angle) / (2 * pi * turns);
 }
 
 /// Mean height of the strand, m.
@@ -37,13 +37,13 @@ double measured_rate(const Trial& trial) {
   const double sine = std::sin(pitch_angle), cosine = std::cos(pitch_angle);
   const double r = radius(trial.parameter);
   TestRod rod;
-  rod.natural = rod.initial = {sine * cosine / r, cosine * cosine / r, 0};
+  rod.natural = uniform_shape({sine * cosine / r, cosine * cosine / r, 0});
   // The axis of the helix, sine e0 + cosine e1, points down.
   const Vec e0{cosine, 0, -sine}, e1{-sine, 0, -cosine};
   const Strand strand = rod.strand(trial.elements, {e0, e1, cross(e0, e1)});
   const SpringModes modes = spring_modes(trial.parameter);
   // It sags by 1 % of its height: k = m omega^2 (2/pi)^2, sag = m g/(2 k).
-  const double height = TestRod::length * sine;
+  const double height = TestRod().length * sine;
   const double g = 0.02 * height * std::pow(2 * modes.low / pi, 2);
   const auto system =
       on_strand(trial.variant, strand, {std::make_shared<Gravity>(Vec{0, 0, -g})});
@@ -60,19 +60,19 @@ double measured_rate(const Trial& trial) {
 SpringModes spring_modes(double turns) {
   const double r = radius(turns), p = std::sin(pitch_angle);
   const double c = std::cos(pitch_angle), w = c / r;
-  const double bending = TestRod::bending(), twisting = TestRod().twisting();
+  const double bending = TestRod().bending(), twisting = TestRod().twisting();
   const double j[2][2] = {{-w * p / c, c}, {w, p}};  // d(curvature, twist)/d(p, w)
   // Over the masses m and m r^2: A = M^-1/2 D M^-1/2.
   double a[2][2];
   for (int i = 0; i < 2; ++i) {
     for (int k = 0; k < 2; ++k) {
       a[i][k] = (j[0][i] * bending * j[0][k] + j[1][i] * twisting * j[1][k]) /
-                (TestRod::line_mass() * std::pow(r, i + k));
+                (TestRod().line_mass() * std::pow(r, i + k));
     }
   }
   const double mean = (a[0][0] + a[1][1]) / 2, half = (a[0][0] - a[1][1]) / 2;
   const double split = std::hypot(half, a[0][1]);
-  const double wave = pi / 2 / TestRod::length;
+  const double wave = pi / 2 / TestRod().length;
   return {wave * std::sqrt(mean - split), wave * std::sqrt(mean + split)};
 }
 

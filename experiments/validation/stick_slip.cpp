@@ -8,7 +8,7 @@
 #include <string>
 
 #include "experiments/validation/motion.h"
-#include "experiments/validation/numerics.h"
+#include "experiments/validation/pinned_elastica.h"
 #include "experiments/validation/rod.h"
 #include "models/effects/body.h"
 #include "models/effects/linear_drag.h"
@@ -16,56 +16,27 @@
 namespace tress {
 namespace {
 
-constexpr double length = TestRod::length;
+const double length = TestRod().length;  // m
 
-/// Finds the lowest of the points that effects act on; does nothing.
-class LowestPoint final : public Effect {
- public:
-  std::string_view name() const override { return "lowest_point"; }
-  Needs needs() const override { return {}; }
-  void add_load(double, const Points&, InOut) const noexcept override {}
-  void add_derivatives(double, const Points&, double, double,
-                       InOut) const noexcept override {}
-  double potential(double, const Points& p) const noexcept override {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      if (p.length[i] > 0) z_ = std::min(z_, p.x[3 * i + 2]);
-    }
-    return 0;
-  }
-  double power(double, const Points&) const noexcept override { return 0; }
-  double z() const { return z_; }
-
- private:
-  mutable double z_ = 0;
-};
-
-double touching_height(const ModelVariant& variant, const Strand& strand) {
-  const auto lowest = std::make_shared<LowestPoint>();
-  const auto system = on_strand(variant, strand, {lowest});
-  const State start = initial_state(*system);
-  (void)system->energetics()->energy(0, start.q, start.v);
-  return lowest->z();
-}
-
-constexpr double away = 0.05 * length;  // where a tip is that slipped, m
+const double away = 0.05 * length;  // where a tip is that slipped, m
 
 /// The clamp goes down by eps L in the first 70 % of the time and then waits. The time is
 /// 16 periods of the strand, which drag damps critically.
 bool slips(const ModelVariant& variant, const Strand& strand, double height,
            double friction) {
-  const double t_end = 100 / TestRod::rate(), depth = 1e-4 * length;
+  const double t_end = 100 / TestRod().rate(), depth = 1e-4 * length;
   // The last node carries half a segment.
-  const double touching = strand.segments.back().length / 2;
-  const BodyContact law{.stiffness = 22 * TestRod::force() / (depth * touching),
+  const Segment& last = strand.segments.back();
+  const double touching = last.length / 2, radius = last.section.a1;
+  const BodyContact law{.stiffness = 22 * TestRod().force() / (depth * touching),
                         .damping = 0,
                         .friction = friction,
                         .slip = 3e-3 * length / t_end,
-                        .offset = TestRod::radius};
-  const StrandPlace plane{{0, 0, height - TestRod::radius},
-                          {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+                        .offset = radius};
+  const StrandPlace plane{{0, 0, height - radius}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const auto system = on_strand(variant, strand,
                                 {std::make_shared<Body>(Plane{}, plane, law),
-                                 std::make_shared<LinearDrag>(0, 5 * TestRod::rate())});
+                                 std::make_shared<LinearDrag>(0, 5 * TestRod().rate())});
   const auto gone = [](double x) { return std::abs(x) > away; };
   // A quarter of the step where one is too long for Newton's iteration to follow the
   // strand as it buckles.
@@ -89,10 +60,10 @@ double measured_friction(const Trial& trial) {
   // Tilted, so that it bows out to one side.
   Strand strand =
       TestRod().strand(trial.elements, rotation({0, 1, 0}, 5e-4) * hanging_clamp());
-  const double height = touching_height(trial.variant, strand);
+  const double height = lowest_point(trial.variant, strand);
   const double down = trial.parameter * length;
   strand.root.translations.push_back(
-      {{0, 0, -1}, smooth_step(down, 0, 70 / TestRod::rate())});
+      {{0, 0, -1}, smooth_step(down, 0, 70 / TestRod().rate())});
   const auto slipped = [&](double friction) {
     return slips(trial.variant, strand, height, friction);
   };
@@ -107,40 +78,6 @@ double measured_friction(const Trial& trial) {
 }
 
 }  // namespace
-
-PinnedElastica pinned_elastica(double eps) {
-  struct End {
-    double turn, along, across;  // u at the clamp; X, Y in the frame of the force
-  };
-  const auto shape = [](double tip, double size) {
-    const auto y = integrate(
-        [](double, const double* z, double* dz) {
-          dz[0] = z[1];
-          dz[1] = -std::sin(z[0]);
-          dz[2] = std::cos(z[0]);
-          dz[3] = std::sin(z[0]);
-        },
-        0, size, {-tip, 0, 0, 0});
-    return End{y[0], y[2], y[3]};
-  };
-  const auto off_line = [&](double tip, double size) {
-    const End s = shape(tip, size);
-    return std::cos(s.turn) * s.across - std::sin(s.turn) * s.along;
-  };
-  const auto size_of = [&](double tip) {
-    return find_root([&](double size) { return off_line(tip, size); }, 4.2, 5.5);
-  };
-  const auto shortening = [&](double tip) {
-    const double size = size_of(tip);
-    const End s = shape(tip, size);
-    return 1 - (std::cos(s.turn) * s.along + std::sin(s.turn) * s.across) / size;
-  };
-  const double tip = find_root([&](double u) { return shortening(u) - eps; }, 1e-3, 1.6);
-  const double size = size_of(tip);
-  const double turn = shape(tip, size).turn;
-  return {size * size * std::cos(turn), std::abs(size * size * std::sin(turn)),
-          tip + turn};
-}
 
 std::vector<ValidationTest> stick_slip_tests() {
   return {{

@@ -18,17 +18,4 @@ namespace tress {
 /// found by halving between half and twice mu_c, to 0.5 %.
 std::vector<ValidationTest> stick_slip_tests();
 
-/// A clamped strand whose pinned tip stays on the line of the clamp's tangent, at (1 -
-/// eps) L from it: theta'' = -(H cos theta + P sin theta)/EI, theta(0) = 0, theta'(L) =
-/// 0, in the first buckled shape, eps in (0, 0.4]. Throws std::runtime_error beyond.
-///
-/// In the frame of the force R, u = theta + atan(H/P), it is a pendulum, u'' = -q^2 sin
-/// u with q^2 = R/EI, at rest at the tip: found by integrating from the tip, the length q
-/// L from the tip being on the line and the tip's u from eps.
-struct PinnedElastica {
-  double axial, lateral;  // P, |H| over EI/L^2
-  double tip;             // |theta(L)|, rad
-};
-PinnedElastica pinned_elastica(double eps);
-
 }  // namespace tress

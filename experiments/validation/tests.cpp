@@ -10,6 +10,7 @@
 #include "experiments/validation/stick_slip.h"
 #include "experiments/validation/test.h"
 #include "experiments/validation/vibration.h"
+#include "experiments/validation/wisp.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
 
@@ -20,7 +21,7 @@ const std::vector<ValidationTest>& validation_tests() {
     std::vector<ValidationTest> tests;
     for (auto* family :
          {cantilever_tests, vibration_tests, buckling_tests, curl_tests, pendulum_tests,
-          chain_tests, ringing_tests, spring_tests, stick_slip_tests}) {
+          chain_tests, ringing_tests, spring_tests, stick_slip_tests, wisp_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;
