@@ -23,6 +23,9 @@ constexpr int most_grown = 2;
 constexpr int damped_patience = 3;
 constexpr double shortest = 1e-4;
 
+// Of a step lengthened bit by bit: where it begins, and when it gets nowhere.
+constexpr double first_part = 0.1, shortest_part = 1e-3, least_growth = 1.05;
+
 }  // namespace
 
 Stage::Stage(Dynamics& dynamics, const Options& options)
@@ -87,7 +90,38 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
     std::ranges::copy(lambda_guess_, lambda.begin());
     s = damped(t, q_bar, v_bar, w, a, lambda);
   }
-  return s;
+  if (s != Status::retry) return s;
+  std::ranges::copy(lambda_guess_, lambda.begin());
+  return lengthened(t, q_bar, v_bar, w, a, lambda);
+}
+
+/// Continuation in the length of the step [Deuflhard 2011, section 5.1]: of a very short
+/// one no acceleration is a good guess, of each longer one the displacement before.
+Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, InOut a,
+                         InOut lambda) noexcept {
+  std::ranges::fill(a, 0.0);
+  double part = 0, growth = first_part;
+  while (part < 1) {
+    const double next = std::min(1.0, part == 0 ? growth : part * growth);
+    const double same_place = (part / next) * (part / next);
+    std::ranges::copy(a, a_guess_.begin());
+    std::ranges::copy(lambda, lambda_guess_.begin());
+    for (double& entry : a) entry *= same_place;
+    factored_ = {};
+    const Status s =
+        damped(t, q_bar, v_bar, {w.acc, next * w.vel, next * next * w.pos}, a, lambda);
+    if (s == Status::fatal) return s;
+    if (s == Status::ok) {
+      growth = part == 0 ? 2 : std::min(2.0, growth * growth);
+      part = next;
+      continue;
+    }
+    std::ranges::copy(a_guess_, a.begin());
+    std::ranges::copy(lambda_guess_, lambda.begin());
+    growth = part == 0 ? growth / 4 : std::sqrt(growth);
+    if (growth < (part == 0 ? shortest_part : least_growth)) return Status::retry;
+  }
+  return Status::ok;
 }
 
 Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,

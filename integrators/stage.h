@@ -12,8 +12,10 @@ namespace tress {
 /// by Newton's method; where that does not converge, with steps damped by the natural
 /// monotonicity test [Deuflhard 2011, Newton Methods for Nonlinear Problems, section 3.3]
 /// from the guess, from no acceleration and from standstill: long steps of shaken strands
-/// need it. Options: newton_tolerance bounds the last correction of q and v over
-/// System::scale, newton_iterations, refresh.
+/// need it. Where that fails too the step is solved short and made longer bit by bit
+/// [section 5.1]: soft strands that fall far in one step need that. Options:
+/// newton_tolerance bounds the last correction of q and v over System::scale,
+/// newton_iterations, refresh.
 class Stage {
  public:
   Stage(Dynamics& dynamics, const Options& options);
@@ -34,6 +36,8 @@ class Stage {
   double size_of(In correction, Weights w) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
   Status damped(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status lengthened(double t, In q_bar, In v_bar, Weights w, InOut a,
+                    InOut lambda) noexcept;
   Status halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
                              InOut a, InOut lambda) noexcept;
   Status correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
