@@ -95,7 +95,9 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
 
 std::string advised_text(const SceneText& text, const Row& row, double rate) {
   const Configuration taken = configuration(row, rate);
-  return text.with(taken.method, taken.elements, taken.substeps, rate);
+  return fmt::format("# {} as advised for {} frames per second: {}.\n# {}\n\n{}",
+                     text.given().name, rate, price(row), what(row),
+                     text.with(taken.method, taken.elements, taken.substeps, rate));
 }
 
 }  // namespace tress

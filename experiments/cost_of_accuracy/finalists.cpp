@@ -78,8 +78,9 @@ std::optional<Trial> Finalists::replaced(
 }
 
 std::optional<Trial> Finalists::twice_the_elements(const Trial& winner, double target) {
-  const Trial* found = search_.fewest_substeps(winner.method, 2 * winner.elements, target,
-                                               winner.substeps, 2 * winner.substeps);
+  const Trial* found =
+      search_.fewest_substeps(winner.method, 2 * winner.elements, target, winner.substeps,
+                              dearest * winner.substeps);
   if (found == nullptr) return {};
   return settled(target, [place_of = place(*found)](const Trial& run) {
     return place(run) == place_of;

@@ -33,6 +33,9 @@ class Finalists {
   /// Nothing where no run meets the target.
   std::optional<BestRuns> of(double target);
   std::optional<Trial> within(double wall_s, double floor);
+  /// Grows as long as the answers may still change: looking for what replaces a choice
+  /// now and then finds something better.
+  std::size_t known() const { return search_.runs().size() + wall_s_.size(); }
   /// The Pareto front of all runs with errors up to `loosest`.
   std::vector<Trial> front(double floor, double loosest);
 

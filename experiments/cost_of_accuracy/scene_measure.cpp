@@ -1,7 +1,5 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "experiments/harness/tip_track.h"
@@ -11,9 +9,9 @@
 namespace tress {
 namespace {
 
-/// Shorter runs are repeated: one interruption is a large part of them.
+/// Shorter runs are repeated: reading the clock at every frame is a part of them.
 constexpr double short_run = 0.01;  // s
-constexpr int short_repeats = 2;
+constexpr int short_repeats = 3;
 
 }  // namespace
 
@@ -25,14 +23,11 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
                                          double most_s) const {
   try {
     const Scene run = scene(method, elements, substeps);
-    TipPaths paths = tip_paths(run, 0, most_s);
-    if (paths.wall_s < short_run) {
-      for (int i = 0; i < short_repeats; ++i) {
-        paths.wall_s = std::min(paths.wall_s, tip_paths(run, 0).wall_s);
-      }
-    }
+    const TipPaths paths = tip_paths(run, 0, most_s);
+    const double wall_s =
+        paths.busy_s < short_run ? least_busy_s(run, short_repeats) : paths.busy_s;
     return Trial{0, elements, substeps,
-                 tip_error(paths.x, reference_, comparison_.length), paths.wall_s};
+                 tip_error(paths.x, reference_, comparison_.length), wall_s};
   } catch (const InputError&) {  // refused at this number of elements
     return {};
   } catch (const std::runtime_error&) {
@@ -42,27 +37,17 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
 
 std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const {
   const Scene run = compared(given, comparison_);
-  Trial best{0, 0, 0, 0, std::numeric_limits<double>::infinity()};
   try {
-    for (int i = 0; i < count; ++i) {
-      const TipPaths paths = tip_paths(run, 0);
-      best.error = tip_error(paths.x, reference_, comparison_.length);
-      best.wall_s = std::min(best.wall_s, paths.wall_s);
-    }
+    const double error = tip_error(tip_paths(run, 0).x, reference_, comparison_.length);
+    return Trial{0, 0, 0, error, least_busy_s(run, count)};
   } catch (const std::runtime_error&) {
     return {};
   }
-  return best;
 }
 
 double SceneMeasure::time(const Method& method, int elements, int substeps,
                           int count) const {
-  const Scene run = scene(method, elements, substeps);
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < std::max(1, count); ++i) {
-    least = std::min(least, tip_paths(run, 0).wall_s);
-  }
-  return least;
+  return least_busy_s(scene(method, elements, substeps), count);
 }
 
 double SceneMeasure::error(const Method& method, int elements, int substeps,

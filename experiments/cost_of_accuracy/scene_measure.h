@@ -8,9 +8,10 @@
 
 namespace tress {
 
-/// Runs a scene by any method and compares its tips with the reference. Times are wall
-/// times of stepping on one thread, the least of several runs: what else the machine
-/// does can only lengthen one.
+/// Runs a scene by any method and compares its tips with the reference. Times are those
+/// of stepping on one thread: its processor time, which is the wall time on a machine
+/// that does nothing else, and of that the least of several runs, for what else it does
+/// still takes caches away.
 class SceneMeasure {
  public:
   SceneMeasure(const SceneText& text, const Comparison& comparison,
@@ -23,7 +24,7 @@ class SceneMeasure {
                              double most_s) const;
   /// The same of any scene, `count` times.
   std::optional<Trial> best_of(const Scene& scene, int count) const;
-  /// Wall time alone, s.
+  /// The time alone, s.
   double time(const Method& method, int elements, int substeps, int count) const;
   /// Against another reference.
   double error(const Method& method, int elements, int substeps,

@@ -11,6 +11,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/harness/timing.h"
 #include "experiments/scenes/scene_tables.h"
 #include "models/input_error.h"
 
@@ -19,6 +20,9 @@ namespace {
 
 /// How much longer than usual a run may take on a machine that does other things too.
 constexpr double noise = 1.5;
+
+/// Of the time of a search; what is left is for the best of what was found.
+constexpr double coarse_share = 0.6;
 
 /// What all rows of a scene are written from.
 struct Study {
@@ -165,6 +169,16 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   rows.push_back(std::move(row));
 }
 
+/// Answers all targets until none changes another.
+void settle(Finalists& finalists, const std::vector<double>& targets) {
+  constexpr int most = 5;
+  std::size_t before = 0;
+  for (int i = 0; i < most && finalists.known() != before; ++i) {
+    before = finalists.known();
+    for (const double target : targets) static_cast<void>(finalists.of(target));
+  }
+}
+
 std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
   const StudyPlan& plan = study.plan;
   const SceneMeasure measure = measure_of(study);
@@ -185,7 +199,13 @@ std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
         fmt::format("all targets are < {} x gap {:.3g}", believed, study.gap())));
     return rows;
   }
-  const Deadline end(std::min(plan.search_s, 0.6 * deadline.remaining_s()));
+  const Deadline latest(0.6 * deadline.remaining_s());
+  const double start_s = thread_seconds();
+  const auto spent = [&](double share) {
+    return [&latest, end_s = start_s + share * plan.search_s] {
+      return thread_seconds() > end_s || latest.passed();
+    };
+  };
   Search search(
       search_plan, study.methods.size(),
       [&](std::size_t method, int elements, int substeps, double most_s) {
@@ -193,18 +213,20 @@ std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
         if (run) run->method = method;
         return run;
       },
-      [&end] { return end.passed(); });
+      spent(coarse_share));
   search.coarse();
+  std::string how =
+      fmt::format("{}: {} of {} methods climbed", search.cut() ? "cut" : "whole",
+                  search.tried(), study.methods.size());
+  search.go_on(spent(1));
   search.refine();
-  const std::string how = search.cut()
-                              ? fmt::format("cut: {} of {} methods climbed",
-                                            search.tried(), study.methods.size())
-                              : fmt::format("whole: {} methods", study.methods.size());
+  if (search.cut()) how += ", cut while refining";
   search.go_on([&deadline] { return deadline.passed(); });
   Finalists finalists(search, study.methods, [&](const Trial& run) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });
+  settle(finalists, search_plan.targets);
   for (const double target : plan.targets) add_target(study, finalists, target, rows);
   add_budget(study, finalists, rows);
   for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {

@@ -111,9 +111,16 @@ std::string_view Method::word(std::string_view choice) const {
 
 SceneText::SceneText(const std::string& file)
     : file_(file), text_(read_file(file)), given_(parse_scene(text_, file)) {
-  if (!given_.strands.empty()) return;
-  throw InputError("the model brings its own geometry: no other model can do this scene",
-                   file, "give a scene with [strand] or [groom]");
+  if (given_.strands.empty()) {
+    throw InputError(
+        "the model brings its own geometry: no other model can do this scene", file,
+        "give a scene with [strand] or [groom]");
+  }
+  if (given_.interaction) {
+    throw InputError(
+        "strands that touch each other: no two models agree on them for long", file,
+        "leave out [effects.strand_interaction]");
+  }
 }
 
 std::string SceneText::with(const Method& method, int elements, int substeps,

@@ -23,7 +23,8 @@ struct Method {
 /// to choose. Frames come `rate` times a second, and steps divide a frame.
 class SceneText {
  public:
-  /// Throws InputError as read_scene does, and where the scene has no strand.
+  /// Throws InputError as read_scene does, and where the scene has no strand or strands
+  /// that touch each other.
   explicit SceneText(const std::string& file);
 
   const std::string& file() const { return file_; }

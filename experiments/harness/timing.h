@@ -9,6 +9,10 @@ namespace tress {
 /// The middle value (mean of the two middle ones); 0 of none.
 double median(std::vector<double> values);
 
+/// Processor time of the calling thread so far (s). Of work on one thread it is the wall
+/// time that the work would take if the machine did nothing else.
+double thread_seconds();
+
 /// Wall time of repeated calls, in s. The median is what tables show: the smallest is an
 /// unusually lucky run, the mean is spoilt by one interruption.
 struct Timing {

@@ -33,14 +33,18 @@ Scene refined(Scene scene);
 /// Tips of all strands at every frame, and how long the run took.
 struct TipPaths {
   std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
-  double wall_s = 0;      // without reading the tips: median over the repeats, of this
-                          // very run without repeats
+  double wall_s = 0;      // median over the repeats, without reading the tips
+  double busy_s = 0;      // processor time of stepping in the run that was read
 };
 
 /// Throws InputError where the scene cannot be built and std::runtime_error, with what
-/// happened and when, where it does not run to its end or is not there after `most_s`.
+/// happened and when, where it does not run to its end or is not there after `most_s` of
+/// processor time.
 TipPaths tip_paths(const Scene& scene, int repeat,
                    double most_s = std::numeric_limits<double>::infinity());
+
+/// Least processor time of some runs to the end (s).
+double least_busy_s(const Scene& scene, int runs);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);

@@ -96,6 +96,16 @@ TEST(SceneText, RefusesASceneWithoutStrands) {
   EXPECT_THROW(SceneText{file}, InputError);
 }
 
+TEST(SceneText, RefusesStrandsThatTouch) {
+  const Scratch folder;
+  const std::string file =
+      folder.write("two.toml",
+                   "title = \"two\"\n[[strand]]\n[[strand]]\nposition_m = [0, 0.01, 0]\n"
+                   "[effects.strand_interaction]\n");
+  EXPECT_NO_THROW(read_scene(file));
+  EXPECT_THROW(SceneText{file}, InputError);
+}
+
 TEST(Methods, AreAllThatCanDoTheScene) {
   const Scratch folder;
   const SceneText text(folder.write("curly.toml", curly));

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<std::string> shipped() {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(TRESS_SCENES)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(TRESS_SCENES)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   }
   return files;
