@@ -136,7 +136,7 @@ std::vector<Case> cases(const CommandLine& line) {
         for (const std::string_view solver : solvers(problem, entry.id)) {
           // The finest steps add nothing to a total error.
           const int points =
-              (line.full ? 10 : 7) - (problem.error_kind == "total" ? 2 : 0);
+              (line.full ? 10 : line.quick ? 6 : 7) - (problem.error_kind == "total" ? 2 : 0);
           for (int level = 0; level < points; ++level) {
             Work work{problem, entry.id, solver, base, line.repeat};
             work.options.formulation = formulation;
@@ -210,6 +210,7 @@ int main(int argc, char** argv) {
       .name = "work_precision",
       .question = "what does accuracy cost in time, per integrator?",
       .example = "--models beam --integrators cvode_bdf,arkode_dirk",
+      .quick_timeout_s = 3,
       .columns = columns,
       .cases = cases,
       .derive = add_series_columns,
