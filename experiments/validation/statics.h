@@ -49,8 +49,12 @@ class Statics {
   std::vector<double> displacements(const SmallMotion& motion);
 
  private:
-  struct Tangent;  // of the conditions at the present state
-  Tangent tangent();
+  struct Conditions;  // their slopes at the present state
+  Conditions conditions();
+  Eigen::MatrixXd stiffness();
+  void take_curvature();
+  void load_tip();
+  void guess_forces();
   double newton_step();  // the largest correction, over typical sizes
 
   End end_;
@@ -59,6 +63,7 @@ class Statics {
   std::unique_ptr<EndConditions> conditions_;
   std::vector<double> q_, q_typ_;
   Eigen::VectorXd lambda_, holding_;
+  Eigen::MatrixXd curvature_;  // of the held section, as last taken
   double t_ = 0;
 };
 
