@@ -71,8 +71,8 @@ std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, hard_case_settings());
   const Grid grid = hard_grid(line, settings);
   const auto references = std::make_shared<References>(grid.references);
-  // Less than half in all: a machine that is shared may take twice as long.
-  const Budget budget{line.timeout_s / 6, line.timeout_s / 6, line.timeout_s / 3};
+  // A third in all: a machine that is shared may take three times as long.
+  const Budget budget{line.timeout_s / 10, line.timeout_s / 5, 0.6 * line.timeout_s};
 
   const double coarser = line.quick ? 2 : 1;
   std::vector<Case> all;
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
           "step?",
       .example = "--models super_helix,der --set case=violent_shake",
       .timed = false,
-      .quick_timeout_s = 6,
+      .quick_timeout_s = 5,
       .columns = columns,
       .settings = hard_case_settings(),
       .cases = cases,

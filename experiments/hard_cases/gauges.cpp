@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "experiments/harness/drift_monitor.h"
-#include "experiments/harness/momentum_drift.h"
 #include "models/effects/body.h"
 #include "models/input_error.h"
 #include "models/math/closest.h"
@@ -62,28 +61,60 @@ class StretchGauge final : public Gauge {
   DriftMonitor drift_;
 };
 
+double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
+
 class MomentumGauge final : public Gauge {
  public:
   explicit MomentumGauge(const Situation& s)
       : energetics_(*s.system->energetics()),
-        momentum_(energetics_, s.start.q, s.start.v),
-        energy_(energetics_.energy(0, s.start.q, s.start.v).total()),
-        scale_(energetics_.energy(0, s.start.q, s.start.v).kinetic) {}
+        points_(*s.system->material_points()),
+        segments_(s.strand.segments),
+        length_(s.length),
+        x_(3 * static_cast<std::size_t>(points_.count())) {
+    const Energy energy = energetics_.energy(0, s.start.q, s.start.v);
+    energy_ = energy.total();
+    kinetic_ = energy.kinetic;
+    start_ = momentum(0, s.start.q, s.start.v);
+  }
   void see(double t, In q, In v) override {
-    momentum_.see(t, q, v);
+    const Motion now = momentum(t, q, v);
     const double gained = energetics_.energy(t, q, v).total() - energy_;
-    const double spun = momentum_.angular_now() / momentum_.angular_start() - 1;
-    growth_ = larger(growth_, larger(gained / scale_, spun));
+    const double spin = norm(start_.angular);
+    growth_ = larger(growth_, larger(gained / kinetic_, norm(now.angular) / spin - 1));
+    error_ = larger(error_, larger(norm(now.angular - start_.angular),
+                                   norm(now.linear - start_.linear) * length_) /
+                                spin);
   }
   double measure() const override { return growth_; }
-  std::optional<double> error() const override {
-    return momentum_.angular() / momentum_.angular_start();
-  }
+  std::optional<double> error() const override { return error_; }
 
  private:
+  struct Motion {
+    Vec linear, angular;  // the latter about the centre of mass
+  };
+
+  /// Segments are taken as straight.
+  Motion momentum(double t, In q, In v) {
+    Momentum total;
+    energetics_.momentum(t, q, v, total);
+    points_.positions(t, q, x_);
+    Vec moment;
+    double volume = 0;
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const double part = segments_[i].section.area() * segments_[i].length;
+      moment = moment + part / 2 * (load3(&x_[3 * i]) + load3(&x_[3 * i + 3]));
+      volume += part;
+    }
+    const Vec p = load3(total.linear.data());
+    return {p, load3(total.angular.data()) - cross(1 / volume * moment, p)};
+  }
+
   Energetics& energetics_;
-  MomentumDrift momentum_;
-  double energy_, scale_, growth_ = 0;
+  MaterialPoints& points_;
+  const std::vector<Segment>& segments_;
+  double length_, energy_ = 0, kinetic_ = 0, growth_ = 0, error_ = 0;
+  std::vector<double> x_;
+  Motion start_;
 };
 
 class SagGauge final : public Gauge {

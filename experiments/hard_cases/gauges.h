@@ -30,9 +30,9 @@ class OverlapGauge final : public Gauge {
 /// Largest relative change of an element's length.
 std::unique_ptr<Gauge> stretch_gauge(const Situation& situation);
 
-/// Growth of the angular momentum and of the energy of a free strand, over what they were
-/// at the start, the larger one; error: the largest change of angular momentum, over
-/// itself.
+/// Growth of the energy and of the angular momentum of a free strand about its centre of
+/// mass, over what they were at the start, the larger one; error: the largest change of
+/// that angular momentum, and of the linear one times the length, over the former.
 std::unique_ptr<Gauge> momentum_gauge(const Situation& situation);
 
 /// Largest depth of the tip below its root, over `allowed` (m).

@@ -105,7 +105,7 @@ Row Cell::identity() const {
 Grid hard_grid(const CommandLine& line, const Settings& settings) {
   const std::string_view only = settings.experiment().word("case");
   const double one_step = settings.experiment().number("dt_s");
-  constexpr double quick_part = 0.01;  // of a million steps
+  constexpr double quick_part = 0.005;  // of a million steps
   Grid grid;
   std::vector<std::string_view> names;
   for (const HardCase& hard : hard_cases()) {

@@ -93,6 +93,15 @@ TEST(HardCases, HaveTheGeometryThatTheySay) {
   const Segment bent = made("folded").strand.segments[10];
   EXPECT_NEAR(bent.initial.y * bent.length, M_PI, 1e-14);
 
+  // Turns about its middle: no linear momentum.
+  const Situation free = made("million_steps", "der");
+  const State rest = initial_state(*free.system);
+  Momentum momentum;
+  ASSERT_TRUE(free.system->energetics()->momentum(0, rest.q, rest.v, momentum));
+  const double spun =
+      std::hypot(momentum.angular[0], momentum.angular[1], momentum.angular[2]);
+  for (const double p : momentum.linear) EXPECT_LE(std::abs(p), 1e-12 * spun / 0.1);
+
   // EI from the softest to the stiffest.
   const auto stiffness = [](const Situation& s) {
     return s.strand.material.youngs_modulus *
@@ -141,6 +150,15 @@ TEST(HardCaseJudge, PassesWhatIsRightAndFailsWhatIsNot) {
       survived("two_elements", "super_helix", "explicit_euler", 1.0 / 30, own);
   EXPECT_EQ(wrong.outcome, Outcome::unstable);
   EXPECT_THAT(wrong.why, HasSubstr("at t ="));
+}
+
+// Neither Newton's steps nor damped ones get there from any start; a step made longer bit
+// by bit does.
+TEST(HardCaseJudge, LongStepsOfSoftStrandsAreSolved) {
+  EXPECT_EQ(survived("softest", "super_helix", "backward_euler", 1.0 / 30,
+                     {{}, 0, "none needed"})
+                .outcome,
+            Outcome::stable);
 }
 
 TEST(HardCaseJudge, SaysWhyThereIsNoReferenceAndIsStableAtMost) {
