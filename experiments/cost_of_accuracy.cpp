@@ -60,7 +60,7 @@ constexpr Parameter own_settings[] = {
      .max = 1e4,
      .whole = true},
     {.name = "search_s",
-     .help = "processor time of one scene's search (s), 0: 10 with --quick, else 240",
+     .help = "processor time of one scene's search (s), 0: 10 with --quick, else 90",
      .number = 0,
      .min = 0,
      .max = 1e6},
@@ -130,7 +130,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.horizon = own.number("horizon_s");
   plan.strands = static_cast<std::size_t>(own.whole("strands"));
   plan.search_s = own.number("search_s");
-  if (plan.search_s == 0) plan.search_s = line.quick ? 10 : 240;
+  if (plan.search_s == 0) plan.search_s = line.quick ? 10 : 90;
   plan.longest_run_s = line.quick ? 0.3 : 2;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;

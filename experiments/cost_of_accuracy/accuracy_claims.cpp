@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "experiments/cost_of_accuracy/finalists.h"
+
 namespace tress {
 namespace {
 
@@ -47,8 +49,8 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
                    worst.refined <= 1, worst.refined);
     verdicts.check(scene +
                        ": nothing shown is cheaper than a winner whose target it "
-                       "meets (least time over the winner's)",
-                   worst.cheaper >= 1, worst.cheaper);
+                       "meets, but for a toss-up (least time over the winner's)",
+                   toss_up * worst.cheaper >= 1, worst.cheaper);
   }
 }
 

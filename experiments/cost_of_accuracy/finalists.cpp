@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "experiments/scenes/scene_tables.h"
-
 namespace tress {
 namespace {
 
@@ -22,8 +20,9 @@ std::tuple<std::size_t, int, int> place(const Trial& run) {
 
 }  // namespace
 
-Finalists::Finalists(Search& search, const std::vector<Method>& methods, Time time)
-    : search_(search), methods_(methods), time_(std::move(time)) {}
+Finalists::Finalists(Search& search, const SceneText& text, std::vector<Method>& methods,
+                     Time time)
+    : search_(search), text_(text), methods_(methods), time_(std::move(time)) {}
 
 std::vector<Trial> Finalists::runs() const {
   std::vector<Trial> all = search_.runs();
@@ -52,7 +51,16 @@ std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
   }
   const std::vector<Trial> after = runs();
   const Trial* best = cheapest(after, target, accept);
-  return best == nullptr ? std::nullopt : std::optional<Trial>(*best);
+  if (best == nullptr) return {};
+  const double most_s = toss_up * best->wall_s;
+  for (const Trial& run : after) {
+    if (run.error > target || run.wall_s > most_s || (accept && !accept(run))) continue;
+    const auto off = [&](const Trial& one) {
+      return std::pair(methods_[one.method].options.size(), one.wall_s);
+    };
+    if (off(run) < off(*best)) best = &run;
+  }
+  return *best;
 }
 
 /// The search may have given up the methods that are asked for now: of few, one run that
@@ -75,6 +83,17 @@ std::optional<Trial> Finalists::replaced(
   if (first == nullptr) return {};
   search_.refine(first->method, target);
   return settled(target, accept);
+}
+
+/// Makes sure that the methods with another word are there; false where there are none.
+bool Finalists::varied(const Method& method, std::string_view choice) {
+  const std::vector<Method> others = with_other_words(text_, method, choice);
+  for (const Method& other : others) {
+    const bool known = std::ranges::any_of(
+        methods_, [&other](const Method& one) { return same(one, other); });
+    if (!known) methods_.push_back(other);
+  }
+  return !others.empty();
 }
 
 std::optional<Trial> Finalists::twice_the_elements(const Trial& winner, double target) {
@@ -107,7 +126,7 @@ std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target
 std::optional<BestRuns> Finalists::of(double target) {
   const auto winner = settled(target, {});
   if (!winner) return {};
-  const Method& won = methods_[winner->method];
+  const Method won = methods_[winner->method];
   const auto model = [&](const Method& method) { return method.model == won.model; };
   const auto integrator = [&](const Method& method) {
     return method.integrator == won.integrator;
@@ -119,13 +138,14 @@ std::optional<BestRuns> Finalists::of(double target) {
   add("model", [&](const Method& method) { return !model(method); });
   add("integrator",
       [&](const Method& method) { return model(method) && !integrator(method); });
-  for (const Parameter& p : model_table_parameters(*won.model)) {
-    if (p.choices.empty() || p.name == "id") continue;
-    const auto other = [&](const Method& method) {
-      return model(method) && integrator(method) &&
-             method.word(p.name) != won.word(p.name);
-    };
-    if (std::ranges::any_of(methods_, other)) add(p.name, other);
+  for (const std::string_view choice : choices_of(*won.model)) {
+    if (!varied(won, choice)) continue;
+    add(choice, [&](const Method& method) {
+      if (!model(method) || !integrator(method)) return false;
+      return std::ranges::all_of(choices_of(*won.model), [&](std::string_view one) {
+        return (method.word(one) == won.word(one)) != (one == choice);
+      });
+    });
   }
   best.without.emplace_back("elements", twice_the_elements(*winner, target));
   best.without.emplace_back("dt_s", half_the_step(*winner, target));

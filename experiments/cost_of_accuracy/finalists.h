@@ -4,14 +4,19 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/search.h"
 
 namespace tress {
+
+/// Of runs whose times are this near, over the shorter, the one stands for all that has
+/// the fewest options off their defaults: the rest is a toss-up.
+inline constexpr double toss_up = 1.05;
 
 /// The answer for one wanted error.
 struct BestRuns {
@@ -23,12 +28,14 @@ struct BestRuns {
 };
 
 /// What comes of a search: the few runs that are shown, timed once more, each by the
-/// least of all its times.
+/// least of all its times. What the search did not try but for a winner's other options
+/// is added to its methods.
 class Finalists {
  public:
   using Time = std::function<double(const Trial&)>;
 
-  Finalists(Search& search, const std::vector<Method>& methods, Time time);
+  Finalists(Search& search, const SceneText& text, std::vector<Method>& methods,
+            Time time);
 
   /// Nothing where no run meets the target.
   std::optional<BestRuns> of(double target);
@@ -47,11 +54,13 @@ class Finalists {
   std::optional<Trial> settled(double target, const Accept& accept);
   std::optional<Trial> replaced(const Trial& winner, double target,
                                 const std::function<bool(const Method&)>& other);
+  bool varied(const Method& method, std::string_view choice);
   std::optional<Trial> twice_the_elements(const Trial& winner, double target);
   std::optional<Trial> half_the_step(const Trial& winner, double target);
 
   Search& search_;
-  const std::vector<Method>& methods_;
+  const SceneText& text_;
+  std::vector<Method>& methods_;
   Time time_;
   std::map<std::tuple<std::size_t, int, int>, double> wall_s_;
 };

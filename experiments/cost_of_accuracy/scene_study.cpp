@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "experiments/cost_of_accuracy/finalists.h"
+#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_table.h"
@@ -169,17 +170,19 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   rows.push_back(std::move(row));
 }
 
-/// Answers all targets until none changes another.
-void settle(Finalists& finalists, const std::vector<double>& targets) {
+/// Answers everything until nothing changes an answer before it.
+void settle(const Study& study, Finalists& finalists,
+            const std::vector<double>& targets) {
   constexpr int most = 5;
   std::size_t before = 0;
   for (int i = 0; i < most && finalists.known() != before; ++i) {
     before = finalists.known();
     for (const double target : targets) static_cast<void>(finalists.of(target));
+    static_cast<void>(finalists.front(study.floor(), study.plan.targets.front()));
   }
 }
 
-std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
+std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   const StudyPlan& plan = study.plan;
   const SceneMeasure measure = measure_of(study);
   SearchPlan search_plan{.targets = {},
@@ -222,11 +225,11 @@ std::vector<Row> all_rows(const Study& study, const Deadline& deadline) {
   search.refine();
   if (search.cut()) how += ", cut while refining";
   search.go_on([&deadline] { return deadline.passed(); });
-  Finalists finalists(search, study.methods, [&](const Trial& run) {
+  Finalists finalists(search, study.text, study.methods, [&](const Trial& run) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });
-  settle(finalists, search_plan.targets);
+  settle(study, finalists, search_plan.targets);
   for (const double target : plan.targets) add_target(study, finalists, target, rows);
   add_budget(study, finalists, rows);
   for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {

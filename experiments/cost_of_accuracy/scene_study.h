@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
-#include "experiments/cost_of_accuracy/scene_text.h"
 #include "experiments/harness/experiment.h"
 
 namespace tress {
@@ -36,10 +36,10 @@ constexpr double parted = 0.01 / believed;
 ///
 ///     winner     the cheapest run that meets a target
 ///     runner_up  the cheapest of another model or integrator
-///     without    the cheapest with one choice of the winner replaced: another model; on
-///                the same model another integrator; the same model and integrator with
-///                another option; the winner with twice as many elements, and with half
-///                the step. Elements and step are tuned anew.
+///     without    the cheapest with one choice of the winner replaced: another model with
+///                what serves it best; on the same model another integrator; the winner
+///                with another word of one option, with twice as many elements, and with
+///                half the step. Elements and step are tuned anew.
 ///     budget     the most accurate run in the time per frame that there is
 ///     front      runs that no other beats in both error and time
 ///     as_given   the scene as its file has it

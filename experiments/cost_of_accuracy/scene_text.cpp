@@ -1,16 +1,10 @@
 #include "experiments/cost_of_accuracy/scene_text.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
-#include "experiments/harness/command_line.h"
 #include "experiments/harness/files.h"
-#include "experiments/harness/formulations.h"
-#include "experiments/harness/strand_models.h"
 #include "experiments/harness/toml_text.h"
-#include "experiments/scenes/scene_tables.h"
-#include "experiments/scenes/world.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -47,54 +41,6 @@ void name_files_in_full(toml::table& scene, const std::string& file) {
     if (name == nullptr) return;
     body.insert_or_assign("sdf_file", (folder / name->get()).lexically_normal().string());
   });
-}
-
-/// The combinations of options that are tried of one model.
-std::vector<ModelSettings> option_sets(const ModelEntry& model,
-                                       const std::vector<std::string>& varied) {
-  // What may be set instead of the default, which is no setting.
-  const auto others = [&](const Parameter& p) {
-    std::vector<ModelSettings> all;
-    const auto words = words_of(p.choices);
-    const std::string key(p.name);
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const std::string word(words[i]);
-      if (varied.empty() || std::ranges::count(varied, key) > 0 ||
-          std::ranges::count(varied, key + '=' + word) > 0) {
-        all.push_back({{key, word}});
-      }
-    }
-    return all;
-  };
-  std::vector<ModelSettings> pairs{{}}, single;
-  for (const Parameter& p : model_table_parameters(model)) {
-    if (p.choices.empty() || p.name == "id") continue;
-    const bool paired = p.name == "modes" || p.name == "tangent";
-    const std::vector<ModelSettings> before = pairs;
-    for (const ModelSettings& one : others(p)) {
-      if (!paired) single.push_back(one);
-      for (const ModelSettings& first : before) {
-        if (!paired) continue;
-        pairs.push_back(first);
-        pairs.back().push_back(one.front());
-      }
-    }
-  }
-  pairs.insert(pairs.end(), single.begin(), single.end());
-  return pairs;
-}
-
-/// The model on the scene's first strand; null where it cannot do it: a model without
-/// curls, say.
-std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& options,
-                                 const Scene& scene) {
-  Parameters parameters(model_table_parameters(model), std::string(model.id));
-  set_known(parameters, options);
-  try {
-    return model.on_strand(scene.strands.front(), parameters, make_effects(scene));
-  } catch (const InputError&) {
-    return nullptr;
-  }
 }
 
 }  // namespace
@@ -153,24 +99,6 @@ std::string SceneText::physics() const {
   }
   cut(scene, 1);
   return written(scene);
-}
-
-std::vector<Method> methods(const SceneText& text, const MethodChoice& choice) {
-  std::vector<Method> all;
-  for (const ModelEntry& model : models()) {
-    if (model.on_strand == nullptr || !wanted(choice.models, model.id)) continue;
-    for (const ModelSettings& options : option_sets(model, choice.options)) {
-      const auto system = on_scene(model, options, text.given());
-      if (system == nullptr) continue;
-      for (const IntegratorEntry& entry : integrators()) {
-        if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
-        const auto usable = usable_formulations(entry, *system);
-        if (usable.empty()) continue;
-        all.push_back({&model, options, std::string(entry.id), usable.front()});
-      }
-    }
-  }
-  return all;
 }
 
 }  // namespace tress

@@ -50,15 +50,4 @@ class SceneText {
   Scene given_;
 };
 
-/// Every strand model with its options and every fixed-step integrator that can drive it
-/// on this scene. Methods whose step is controlled by a tolerance are not here: what a
-/// frame costs them is not known beforehand.
-struct MethodChoice {
-  std::vector<std::string> models, integrators;  // empty: all
-  /// Options of models that are varied, "key" or "key=word"; empty: all. Of `modes` and
-  /// `tangent` all pairs, of others one at a time.
-  std::vector<std::string> options;
-};
-std::vector<Method> methods(const SceneText& text, const MethodChoice& choice);
-
 }  // namespace tress

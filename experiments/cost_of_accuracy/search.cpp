@@ -19,7 +19,7 @@ constexpr double close_enough = 1.1;
 constexpr double noise = 1.2;
 
 /// Of two runs on the front the cheaper stands for both when the other gains less.
-constexpr double front_gain = 0.95;
+constexpr double front_gain = 0.9;
 
 /// Numbers of elements from two thirds of this to half as many more, a tenth apart, the
 /// nearest first.

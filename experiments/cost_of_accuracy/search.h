@@ -30,7 +30,7 @@ const Trial* cheapest(const std::vector<Trial>& runs, double target,
 const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor);
 
 /// Runs that no other beats in both error and time, from the dearest, most accurate one
-/// on, without those that gain less than a twentieth of the error on a cheaper one.
+/// on, without those that gain less than a tenth of the error on a cheaper one.
 /// Errors below `floor` count as `floor`.
 std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/methods.h"
 #include "models/input_error.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
@@ -124,6 +124,23 @@ TEST(Methods, AreAllThatCanDoTheScene) {
   EXPECT_TRUE(has("super_helix", "solver", "sparse"));
   EXPECT_TRUE(has("der", "stretch", "inextensible"));
   EXPECT_TRUE(has("mass_spring", "torsion", "altitude"));
+}
+
+TEST(Methods, DifferInOneWord) {
+  const Scratch folder;
+  const SceneText text(folder.write("curly.toml", curly));
+  const Method method{&find_model("super_helix"),
+                      {{"modes", "bend"}, {"tangent", "stiff"}},
+                      "implicit_midpoint"};
+  EXPECT_TRUE(same(method, {&find_model("super_helix"),
+                            {{"tangent", "stiff"}, {"modes", "bend"}},
+                            "implicit_midpoint"}));
+  const auto others = with_other_words(text, method, "modes");
+  ASSERT_EQ(others.size(), 1u);  // bend_planar refuses a curl
+  EXPECT_EQ(others.front().word("modes"), "bend_twist");
+  EXPECT_EQ(others.front().word("tangent"), "stiff");
+  EXPECT_FALSE(same(method, others.front()));
+  EXPECT_TRUE(with_other_words(text, method, "bending").empty());
 }
 
 TEST(Methods, AreThoseAskedFor) {

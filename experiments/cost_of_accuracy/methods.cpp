@@ -1,0 +1,122 @@
+#include "experiments/cost_of_accuracy/methods.h"
+
+#include <algorithm>
+
+#include "experiments/harness/command_line.h"
+#include "experiments/harness/formulations.h"
+#include "experiments/harness/strand_models.h"
+#include "experiments/scenes/scene_tables.h"
+#include "experiments/scenes/world.h"
+#include "models/input_error.h"
+
+namespace tress {
+namespace {
+
+/// The combinations of options that are tried of one model.
+std::vector<ModelSettings> option_sets(const ModelEntry& model,
+                                       const std::vector<std::string>& varied) {
+  // What may be set instead of the default, which is no setting.
+  const auto others = [&](const Parameter& p) {
+    std::vector<ModelSettings> all;
+    const auto words = words_of(p.choices);
+    const std::string key(p.name);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::string word(words[i]);
+      if (varied.empty() || std::ranges::count(varied, key) > 0 ||
+          std::ranges::count(varied, key + '=' + word) > 0) {
+        all.push_back({{key, word}});
+      }
+    }
+    return all;
+  };
+  std::vector<ModelSettings> pairs{{}}, single;
+  for (const Parameter& p : model_table_parameters(model)) {
+    if (p.choices.empty() || p.name == "id") continue;
+    const bool paired = p.name == "modes" || p.name == "tangent";
+    const std::vector<ModelSettings> before = pairs;
+    for (const ModelSettings& one : others(p)) {
+      if (!paired) single.push_back(one);
+      for (const ModelSettings& first : before) {
+        if (!paired) continue;
+        pairs.push_back(first);
+        pairs.back().push_back(one.front());
+      }
+    }
+  }
+  pairs.insert(pairs.end(), single.begin(), single.end());
+  return pairs;
+}
+
+/// The model on the scene's first strand; null where it cannot do it: a model without
+/// curls, say.
+std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& options,
+                                 const Scene& scene) {
+  Parameters parameters(model_table_parameters(model), std::string(model.id));
+  set_known(parameters, options);
+  try {
+    return model.on_strand(scene.strands.front(), parameters, make_effects(scene));
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+/// The integrator's best way to drive the system, if it has one.
+void add(const ModelEntry& model, const ModelSettings& options,
+         const IntegratorEntry& entry, System& system, std::vector<Method>& all) {
+  const auto usable = usable_formulations(entry, system);
+  if (usable.empty()) return;
+  all.push_back({&model, options, std::string(entry.id), usable.front()});
+}
+
+}  // namespace
+
+std::vector<Method> methods(const SceneText& text, const MethodChoice& choice) {
+  std::vector<Method> all;
+  for (const ModelEntry& model : models()) {
+    if (model.on_strand == nullptr || !wanted(choice.models, model.id)) continue;
+    for (const ModelSettings& options : option_sets(model, choice.options)) {
+      const auto system = on_scene(model, options, text.given());
+      if (system == nullptr) continue;
+      for (const IntegratorEntry& entry : integrators()) {
+        if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
+        add(model, options, entry, *system, all);
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<Method> with_other_words(const SceneText& text, const Method& method,
+                                     std::string_view choice) {
+  std::vector<Method> all;
+  for (const Parameter& p : method.model->parameters) {
+    if (p.name != choice) continue;
+    for (const std::string_view word : words_of(p.choices)) {
+      if (word == method.word(choice)) continue;
+      ModelSettings options = method.options;
+      std::erase_if(options, [choice](const auto& one) { return one.first == choice; });
+      if (word != words_of(p.choices).front()) options.emplace_back(choice, word);
+      const auto system = on_scene(*method.model, options, text.given());
+      if (system == nullptr) continue;
+      add(*method.model, options, find_integrator(method.integrator), *system, all);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string_view> choices_of(const ModelEntry& model) {
+  std::vector<std::string_view> all;
+  for (const Parameter& p : model_table_parameters(model)) {
+    if (!p.choices.empty() && p.name != "id") all.push_back(p.name);
+  }
+  return all;
+}
+
+bool same(const Method& a, const Method& b) {
+  return a.model == b.model && a.integrator == b.integrator &&
+         std::ranges::all_of(choices_of(*a.model), [&](std::string_view choice) {
+           return a.word(choice) == b.word(choice);
+         });
+}
+
+}  // namespace tress
