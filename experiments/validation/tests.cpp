@@ -3,6 +3,7 @@
 #include "experiments/validation/buckling.h"
 #include "experiments/validation/cantilever.h"
 #include "experiments/validation/curls.h"
+#include "experiments/validation/hanging.h"
 #include "experiments/validation/test.h"
 #include "experiments/validation/vibration.h"
 #include "models/input_error.h"
@@ -13,7 +14,8 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests, vibration_tests, buckling_tests, curl_tests}) {
+    for (auto* family :
+         {cantilever_tests, vibration_tests, buckling_tests, curl_tests, hanging_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;
