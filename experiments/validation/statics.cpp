@@ -16,14 +16,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int iterations = 100;
+constexpr int iterations = 200;
 constexpr double accuracy = 1e-11;  // of typical sizes: as good as it gets
 // Where stretch is stiff or a motion is soft rounding leaves corrections that shrink no
 // more; so small, and so often in vain, they may stay.
 constexpr double rounding = 1e-5;
 constexpr int in_vain = 3;
 constexpr double far = 1e-3;         // corrections that change a section's curvature
-constexpr double longest = 3;        // correction, in typical sizes
+constexpr double longest = 0.5;      // correction, in typical sizes
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
 
@@ -66,6 +66,11 @@ Statics::Statics(const ModelVariant& variant, const Strand& strand, const Vec& g
   system_->scale(q_typ_, v);
   lambda_ = VectorXd::Zero(layout.constraints);
   holding_ = VectorXd::Zero(conditions_->rows());
+}
+
+void Statics::start_at(const Statics& other) {
+  q_ = other.q_;
+  system_->recall(other.system_->memory());
 }
 
 Statics::Conditions Statics::conditions() {

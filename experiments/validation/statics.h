@@ -23,6 +23,10 @@ class Statics {
   Statics(const ModelVariant& variant, const Strand& strand, const Vec& gravity,
           End end = {}, Effects others = {});
 
+  /// Moves the place at which the end is held.
+  void hold_at(const Vec& place) { end_.place = place; }
+  /// Goes where another strand of the same model is.
+  void start_at(const Statics& other);
   /// The equilibrium at this load, from where the strand is. Throws std::runtime_error
   /// when the iteration does not converge; the strand is then where it was.
   void relax(double t);
