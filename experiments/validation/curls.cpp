@@ -28,7 +28,7 @@ double measure_roll_up(const Trial& trial) {
   TestRod rod;
   const double curvature = 2 * pi * trial.parameter / rod.length;
   rod.natural = uniform_shape({0, curvature, 0});
-  rod.initial = uniform_shape({0, 0.8 * curvature, 0});
+  rod.initial = uniform_shape({0, 0.95 * curvature, 0});
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {});
   statics.relax(1);
   return 1 + distance(statics.tip(), {}) / rod.length;

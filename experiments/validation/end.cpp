@@ -1,7 +1,11 @@
 #include "experiments/validation/end.h"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
+
+#include "models/math/quaternion.h"
+#include "models/strand/geometry.h"
 
 namespace tress {
 namespace {
@@ -12,6 +16,13 @@ Vec tip(MaterialPoints& points, double t, In q) {
   std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
   points.positions(t, q, x);
   return load3(&x[x.size() - 3]);
+}
+
+/// Axis times angle, below pi, of a rotation.
+Vec rotation_vector(const Frame& frame) {
+  const Quaternion q = nearer({1, {}}, quaternion_of(frame));
+  const double s = std::sqrt(dot(q.v, q.v));
+  return (s > 0 ? 2 * std::atan2(s, q.w) / s : 2) * q.v;
 }
 
 /// The last components of x, as many as there are rows.
@@ -47,10 +58,10 @@ EndConditions::EndConditions(System& system, const End& end)
 Eigen::VectorXd EndConditions::section(double t, In q) {
   std::array<double, 9> axes;
   points_.end_frame(t, q, axes);
-  const Frame now = load9(axes.data()), &held = end_.frame;
+  const Frame now = load9(axes.data()) * helix_turn(end_.rest, -1), &held = end_.frame;
   const Vec turned =
-      0.5 * (cross(held.e0, now.e0) + cross(held.e1, now.e1) + cross(held.e2, now.e2));
-  return last_of(held.back(turned), sections_);
+      rotation_vector({held.back(now.e0), held.back(now.e1), held.back(now.e2)});
+  return last_of(turned + end_.rest, sections_);
 }
 
 Eigen::VectorXd EndConditions::value(double t, In q) {

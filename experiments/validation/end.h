@@ -18,19 +18,20 @@ struct End {
   Vec place{};               // ... at this place, m
   Section section = Section::free;
   Frame frame{};  // to which the section is held
-  /// How far (rad/(N m)) about the axes of `frame` the section gives to the moment that
-  /// holds it: of models whose last half edge neither bends nor twists, that half edge.
-  Vec compliance{};
+  /// Of models whose last half edge neither bends nor twists, that half edge as a spring
+  /// between it and what holds it: how far (rad/(N m)) it gives to a moment, and how far
+  /// it turns (rad) at rest, about the axes of the section.
+  Vec compliance{}, rest{};
 
   /// Rows of the section: 0, 2 (about e1, e2) or 3 (about e0, e1, e2).
   int section_rows() const;
 };
 
 /// The conditions c = 0 that hold an end, as functions of q: along_i . (x - place), then
-/// the components about the axes of `frame` of the rotation from `frame` to the section's
-/// axes d, (1/2) sum_k frame_k x d_k, sin of the angle about its axis. Gradients of the
-/// place come from the velocities of the tip, exactly, those of the section by
-/// differences of order 4.
+/// the rotation vector from `frame` to the section, about the axes of `frame`; with a
+/// half edge, from `frame` to that edge, plus `rest` and compliance times the moment.
+/// Gradients of the place come from the velocities of the tip, exactly, those of the
+/// section by differences of order 4.
 class EndConditions {
  public:
   /// Throws std::runtime_error when the section is held and the model has no end_frame.

@@ -58,14 +58,18 @@ std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& str
   return variant.model->on_strand(strand, parameters, std::move(effects));
 }
 
-Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand) {
+End held_section(const ModelVariant& variant, const Strand& strand, End::Section section,
+                 const Frame& frame) {
   constexpr std::array<std::string_view, 5> framed_in_the_middle = {
       "articulated_chain", "force_transport", "der", "corde", "xpbd_cosserat"};
-  if (!among(framed_in_the_middle, variant)) return {};
+  End end{.section = section, .frame = frame};
+  if (!among(framed_in_the_middle, variant)) return end;
   const Segment& last = strand.segments.back();
   const Vec moduli = stiffness(strand.material, last.section);
-  return {last.length / 2 / moduli.x, last.length / 2 / moduli.y,
-          last.length / 2 / moduli.z};
+  const double half = last.length / 2;
+  end.compliance = {half / moduli.x, half / moduli.y, half / moduli.z};
+  end.rest = half * last.natural;
+  return end;
 }
 
 std::string no_section(const ModelVariant& variant) {

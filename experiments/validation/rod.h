@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/harness/model_variants.h"
+#include "experiments/validation/end.h"
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 
@@ -39,11 +40,12 @@ Frame standing_clamp();
 std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& strand,
                                   Effects effects);
 
-/// Compliance (rad/(N m)) about the axes of the section of the half of the last segment
-/// beyond the last joint, of models whose end section is fixed to their last edge or
-/// link; 0 of those that bend up to their tip. What holds the section of a tip must give
-/// that much, or half an edge of the rod would be missing.
-Vec half_edge_compliance(const ModelVariant& variant, const Strand& strand);
+/// An end whose section is held to `frame`, with the half of the last segment beyond the
+/// last joint, of models whose end section is fixed to their last edge or link: what
+/// holds it must give as much, or half an edge of the rod would be missing. Models that
+/// bend up to their tip have none.
+End held_section(const ModelVariant& variant, const Strand& strand, End::Section section,
+                 const Frame& frame);
 
 /// Why a test that holds the section of the tip does not suit a model; empty: it does.
 std::string no_section(const ModelVariant& variant);

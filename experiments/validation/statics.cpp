@@ -1,6 +1,7 @@
 #include "experiments/validation/statics.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,13 +16,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int iterations = 100;
+constexpr int iterations = 200;
 constexpr double accuracy = 1e-11;  // of typical sizes: as good as it gets
 // Where stretch is stiff or a motion is soft rounding leaves corrections that shrink no
 // more; so small, and so often in vain, they may stay.
 constexpr double rounding = 1e-5;
-constexpr int in_vain = 5;
-constexpr double longest = 3;        // correction, in typical sizes
+constexpr int in_vain = 3;
+constexpr double far = 1e-3;         // corrections that change a section's curvature
+constexpr double longest = 0.5;      // correction, in typical sizes
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
 
@@ -42,11 +44,11 @@ VectorXd residual(System& system, double t, In q) {
 
 }  // namespace
 
-/// Of r - G^T lambda - C^T e and of the conditions, with columns as they enter the
-/// residual and rows as they enter the conditions: the same for a residual that is the
-/// gradient of an energy, not for one that is an acceleration.
-struct Statics::Tangent {
-  MatrixXd stiffness, columns, rows;
+/// Columns as the forces of the conditions enter the residual, rows as displacements
+/// enter the conditions: the same for a residual that is the gradient of an energy, not
+/// for one that is an acceleration.
+struct Statics::Conditions {
+  MatrixXd columns, rows;
   VectorXd compliance;
 };
 
@@ -66,12 +68,16 @@ Statics::Statics(const ModelVariant& variant, const Strand& strand, const Vec& g
   holding_ = VectorXd::Zero(conditions_->rows());
 }
 
-Statics::Tangent Statics::tangent() {
+void Statics::start_at(const Statics& other) {
+  q_ = other.q_;
+  system_->recall(other.system_->memory());
+}
+
+Statics::Conditions Statics::conditions() {
   const auto n = static_cast<Index>(q_.size());
   const Index m = lambda_.size(), rows = m + conditions_->rows();
   const Index places = conditions_->places(), sections = conditions_->rows() - places;
-  Tangent all{dense_stiffness(*system_, t_, q_), MatrixXd(n, rows), MatrixXd(rows, n),
-              VectorXd::Zero(rows)};
+  Conditions all{MatrixXd(n, rows), MatrixXd(rows, n), VectorXd::Zero(rows)};
   all.columns.leftCols(m) = dense_gradient(*system_, t_, q_);
   const MatrixXd of_end = conditions_->gradient(t_, q_);
   all.rows << all.columns.leftCols(m).transpose(), of_end.transpose();
@@ -85,23 +91,57 @@ Statics::Tangent Statics::tangent() {
   }
   tip_force_->force = force;
   all.columns.rightCols(sections) = of_end.rightCols(sections);
-  if (m > 0) {
-    all.stiffness -=
-        dense_curvature(*system_, t_, q_, {lambda_.data(), static_cast<std::size_t>(m)});
-  }
-  all.stiffness -= conditions_->curvature(t_, q_, holding_.tail(sections));
   all.compliance.tail(conditions_->rows()) = conditions_->compliance();
   return all;
 }
 
-double Statics::newton_step() {
+/// Of r - G^T lambda - C^T e.
+MatrixXd Statics::stiffness() {
+  MatrixXd all = dense_stiffness(*system_, t_, q_);
+  if (const auto m = static_cast<std::size_t>(lambda_.size()); m > 0) {
+    all -= dense_curvature(*system_, t_, q_, {lambda_.data(), m});
+  }
+  return all - curvature_;
+}
+
+/// O(n^2) frames of the end: the dearest part of a step by far.
+void Statics::take_curvature() {
+  const Index sections = conditions_->rows() - conditions_->places();
+  curvature_ = conditions_->curvature(t_, q_, holding_.tail(sections));
+}
+
+/// The dead force and those that hold the place.
+void Statics::load_tip() {
   Vec force = t_ * end_.force;
   for (std::size_t i = 0; i < end_.along.size(); ++i) {
     force = force + holding_[static_cast<Index>(i)] * end_.along[i];
   }
   tip_force_->force = force;
-  const Tangent now = tangent();
-  const Index n = now.stiffness.rows(), m = lambda_.size(), rows = now.rows.rows();
+}
+
+/// lambda and e of the least residual where the strand is: with those of another load, or
+/// none, the first corrections of a strand under tension would be those of a slack one.
+void Statics::guess_forces() {
+  const Index m = lambda_.size(), rows = m + conditions_->rows();
+  if (rows == 0) return;
+  holding_.setZero();
+  lambda_.setZero();
+  load_tip();
+  const Eigen::Map<const VectorXd> size(q_typ_.data(), static_cast<Index>(q_.size()));
+  const MatrixXd columns = size.asDiagonal() * conditions().columns;
+  const VectorXd r = size.cwiseProduct(residual(*system_, t_, q_));
+  VectorXd unit(rows);
+  for (Index j = 0; j < rows; ++j) unit[j] = 1 / columns.col(j).norm();
+  const VectorXd forces =
+      unit.cwiseProduct((columns * unit.asDiagonal()).colPivHouseholderQr().solve(r));
+  lambda_ = forces.head(m);
+  holding_ = forces.tail(conditions_->rows());
+}
+
+double Statics::newton_step() {
+  load_tip();
+  const Conditions now = conditions();
+  const Index n = now.rows.cols(), m = lambda_.size(), rows = now.rows.rows();
   const Index sections = conditions_->rows() - conditions_->places();
 
   VectorXd right(n + rows);
@@ -118,7 +158,7 @@ double Statics::newton_step() {
       now.compliance.tail(sections).cwiseProduct(holding_.tail(sections));
 
   MatrixXd all(n + rows, n + rows);
-  all << now.stiffness, -now.columns, now.rows, MatrixXd(now.compliance.asDiagonal());
+  all << stiffness(), -now.columns, now.rows, MatrixXd(now.compliance.asDiagonal());
   // Sizes of rows and columns differ by the units of a dozen kinds of unknowns.
   VectorXd size(n + rows);
   for (Index j = 0; j < n; ++j) size[j] = q_typ_[static_cast<std::size_t>(j)];
@@ -146,6 +186,8 @@ void Statics::relax(double t) {
     throw std::runtime_error("no equilibrium at load " + std::to_string(t) + ": " + why);
   };
   t_ = t;
+  guess_forces();
+  take_curvature();
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0, worse = 0; i < iterations; ++i) {
     double correction = 0;
@@ -154,6 +196,7 @@ void Statics::relax(double t) {
     } catch (const std::runtime_error& error) {
       fail(error.what());
     }
+    if (correction > far) take_curvature();
     worse = correction < best / 2 ? 0 : worse + 1;
     best = std::min(best, correction);
     if (correction <= accuracy || (correction <= rounding && worse >= in_vain)) {
@@ -202,19 +245,20 @@ double Statics::energy() {
 }
 
 std::vector<SmallMotion> Statics::motions() {
-  Tangent now = tangent();
+  take_curvature();
+  const Conditions now = conditions();
+  MatrixXd k = stiffness();
   // What gives is a spring, the rest a constraint.
   std::vector<Index> rigid;
   for (Index i = 0; i < now.rows.rows(); ++i) {
     if (now.compliance[i] > 0) {
-      now.stiffness += now.columns.col(i) / now.compliance[i] * now.rows.row(i);
+      k += now.columns.col(i) / now.compliance[i] * now.rows.row(i);
     } else {
       rigid.push_back(i);
     }
   }
-  return small_motions(dense_mass(*system_, t_, q_), now.stiffness,
-                       now.columns(Eigen::all, rigid), now.rows(rigid, Eigen::all),
-                       q_typ_);
+  return small_motions(dense_mass(*system_, t_, q_), k, now.columns(Eigen::all, rigid),
+                       now.rows(rigid, Eigen::all), q_typ_);
 }
 
 std::vector<double> Statics::displacements(const SmallMotion& motion) {

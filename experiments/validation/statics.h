@@ -23,6 +23,10 @@ class Statics {
   Statics(const ModelVariant& variant, const Strand& strand, const Vec& gravity,
           End end = {}, Effects others = {});
 
+  /// Moves the place at which the end is held.
+  void hold_at(const Vec& place) { end_.place = place; }
+  /// Goes where another strand of the same model is.
+  void start_at(const Statics& other);
   /// The equilibrium at this load, from where the strand is. Throws std::runtime_error
   /// when the iteration does not converge; the strand is then where it was.
   void relax(double t);
@@ -49,8 +53,12 @@ class Statics {
   std::vector<double> displacements(const SmallMotion& motion);
 
  private:
-  struct Tangent;  // of the conditions at the present state
-  Tangent tangent();
+  struct Conditions;  // their slopes at the present state
+  Conditions conditions();
+  Eigen::MatrixXd stiffness();
+  void take_curvature();
+  void load_tip();
+  void guess_forces();
   double newton_step();  // the largest correction, over typical sizes
 
   End end_;
@@ -59,6 +67,7 @@ class Statics {
   std::unique_ptr<EndConditions> conditions_;
   std::vector<double> q_, q_typ_;
   Eigen::VectorXd lambda_, holding_;
+  Eigen::MatrixXd curvature_;  // of the held section, as last taken
   double t_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "experiments/validation/cantilever.h"
 #include "experiments/validation/chain.h"
 #include "experiments/validation/curls.h"
+#include "experiments/validation/hanging.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/plectoneme.h"
 #include "experiments/validation/ringing.h"
@@ -21,8 +22,8 @@ const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
     for (auto* family : {cantilever_tests, vibration_tests, buckling_tests, curl_tests,
-                         pendulum_tests, chain_tests, ringing_tests, spring_tests,
-                         stick_slip_tests, wisp_tests, plectoneme_tests}) {
+                         hanging_tests, pendulum_tests, chain_tests, ringing_tests,
+                         spring_tests, stick_slip_tests, wisp_tests, plectoneme_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;

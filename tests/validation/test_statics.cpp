@@ -28,30 +28,31 @@ std::string name(const testing::TestParamInfo<ModelVariant>& info) {
   return text;
 }
 
-/// A curl that hangs in its weight and is pulled aside.
-Statics pulled(const ModelVariant& of, End end) {
+/// A curl that hangs in its weight.
+Statics hanging(const ModelVariant& of, const End& end) {
   const TestRod rod = curl();
-  Statics statics(of, rod.strand(6, hanging_clamp()), -rod.gravity(5) * axis_z,
-                  std::move(end));
-  statics.follow(0.1, 1);
-  return statics;
+  return {of, rod.strand(6, hanging_clamp()), -rod.gravity(5) * axis_z, end};
 }
 
 // The force that holds a tip is the force that brings it there: the same equilibrium
-// twice, once with the force given and once with the place. Corrections of 1e-7 may be
-// the last of a model whose stretch is 2.5e7 times as stiff as its bending.
+// twice, once with the force given and once with the place, from a little beside it.
+// Rounding of stretch that is 2.5e7 times as stiff as bending leaves 1e-6 of the force.
 TEST_P(Rods, HoldAPlaceByTheForceThatLeadsThere) {
   const TestRod rod = curl();
   const Vec force = rod.force() * Vec{0.7, 0.4, -0.2};
-  Statics free = pulled(GetParam(), {.force = force});
-  const Vec x = free.tip();
-  Statics held = pulled(GetParam(), {.along = {axis_x, axis_y, axis_z}, .place = x});
-  const Vec there = held.tip();
-  EXPECT_LE(std::sqrt(dot(there - x, there - x)), 1e-9 * rod.length);
+  Statics free = hanging(GetParam(), {.force = force});
+  free.follow(0.1, 0.9);
+  Statics held = hanging(GetParam(), {.along = {axis_x, axis_y, axis_z}});
+  held.start_at(free);
+  free.relax(1);
+  held.hold_at(free.tip());
+  held.relax(1);
+  const Vec away = held.tip() - free.tip();
+  EXPECT_LE(std::sqrt(dot(away, away)), 1e-9 * rod.length);
   const std::vector<double> found = held.holding();
   const double wanted[3] = {force.x, force.y, force.z};
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(found[k], wanted[k], 2e-5 * rod.force());
+    EXPECT_NEAR(found[k], wanted[k], 1e-5 * rod.force());
   }
 }
 
@@ -59,11 +60,14 @@ TEST_P(Rods, HoldAPlaceByTheForceThatLeadsThere) {
 TEST_P(Rods, HoldTheirOwnSectionByNothing) {
   if (!no_section(GetParam()).empty()) GTEST_SKIP() << no_section(GetParam());
   const TestRod rod = curl();
-  Statics free = pulled(GetParam(), {});
+  Statics free = hanging(GetParam(), {});
+  free.follow(0.1, 1);
   std::array<double, 9> axes{};
   ASSERT_TRUE(free.system().material_points()->end_frame(1, free.q(), axes));
   Statics held =
-      pulled(GetParam(), {.section = End::Section::frame, .frame = load9(axes.data())});
+      hanging(GetParam(), {.section = End::Section::frame, .frame = load9(axes.data())});
+  held.start_at(free);
+  held.relax(1);
   for (const double moment : held.holding()) {
     EXPECT_LE(std::abs(moment), 1e-6 * rod.bending() / rod.length);
   }
@@ -108,7 +112,7 @@ TEST(EndConditions, DifferentiateTheSection) {
     const Eigen::Vector3d moment(0.3, -0.5, 0.8);
     const Eigen::MatrixXd curvature = conditions.curvature(0, q, moment);
     for (std::size_t j = 0; j < n; ++j) {
-      const double e = 2e-3 * q_typ[j];
+      const double e = 5e-4 * q_typ[j];
       const auto shifted = [&](double by) {
         std::vector<double> moved = q;
         moved[j] += by * e;

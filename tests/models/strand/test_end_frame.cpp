@@ -93,7 +93,7 @@ TEST_P(EndFrame, BeginsAtTheClamp) {
 INSTANTIATE_TEST_SUITE_P(Models, EndFrame,
                          testing::Values("super_helix", "articulated_chain", "der",
                                          "corde", "xpbd_cosserat", "dynamic_spline"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& model) { return std::string(model.param); });
 
 TEST(EndFrame, IsNoneOfPoints) {
   for (const std::string_view model : {"mass_spring", "inextensible_strand"}) {

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/validation/test.h"
+
+namespace tress {
+
+/// A strand so heavy that it does not feel its stiffness, held at both ends.
+std::vector<ValidationTest> hanging_tests();
+
+}  // namespace tress
