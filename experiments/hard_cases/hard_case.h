@@ -49,6 +49,9 @@ class Gauge {
 /// what can be seen of a moving one.
 inline constexpr double largest_error = 0.05;
 
+/// When a Tether of a case lets go, s.
+inline constexpr double never_off = 1e6;
+
 /// One situation that a simulator of strands should survive. What is not set is a hair of
 /// 10 cm, 40 um radius and 20 elements (EI = 6e-9 N m^2, 6.5e-7 kg), and gravity.
 struct HardCase {

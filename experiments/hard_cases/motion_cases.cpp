@@ -23,8 +23,11 @@ constexpr double overload = 10;  // of buckling, times Euler's
 
 /// Pulled down at the tip, by a target so far away that its direction does not change.
 void press_down(const Strand& strand, Effects& effects) {
-  effects.push_back(std::make_shared<Tether>(Tether::Settings{
-      .pull = overload * euler_load(strand), .target = {0, 0, -1e3}, .ramp = 0.1}));
+  effects.push_back(
+      std::make_shared<Tether>(Tether::Settings{.pull = overload * euler_load(strand),
+                                                .target = {0, 0, -1e3},
+                                                .off = never_off,
+                                                .ramp = 0.1}));
 }
 
 /// The pull P gives at most P 2 L: u = sqrt(4 P L/m) is the strand's root mean square
