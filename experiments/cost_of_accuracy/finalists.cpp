@@ -7,7 +7,7 @@ namespace tress {
 namespace {
 
 /// So many of the cheapest are timed again before one of them wins.
-constexpr std::size_t contenders = 3;
+constexpr std::size_t contenders = 5;
 
 /// Where so few methods are asked for they are tried near the winner, with up to so many
 /// times its substeps.

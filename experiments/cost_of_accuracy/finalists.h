@@ -16,7 +16,7 @@ namespace tress {
 
 /// Of runs whose times are this near, over the shorter, the one stands for all that has
 /// the fewest options off their defaults: the rest is a toss-up.
-inline constexpr double toss_up = 1.05;
+inline constexpr double toss_up = 1.1;
 
 /// The answer for one wanted error.
 struct BestRuns {
