@@ -51,6 +51,7 @@ class Finalists {
 
   std::vector<Trial> runs() const;  // of the search, with the times of here
   void time(const Trial& run);
+  void time_simpler(const Trial& run);
   std::optional<Trial> settled(double target, const Accept& accept);
   std::optional<Trial> replaced(const Trial& winner, double target,
                                 const std::function<bool(const Method&)>& other);
