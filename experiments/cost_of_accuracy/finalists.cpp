@@ -7,7 +7,7 @@ namespace tress {
 namespace {
 
 /// So many of the cheapest are timed again before one of them wins.
-constexpr std::size_t contenders = 3;
+constexpr std::size_t contenders = 5;
 
 /// Where so few methods are asked for they are tried near the winner, with up to so many
 /// times its substeps.
@@ -38,6 +38,23 @@ void Finalists::time(const Trial& run) {
   wall_s_.emplace(place(run), std::min(run.wall_s, time_(run)));
 }
 
+/// The same cut by methods with some of the options only: one of them may do as well.
+void Finalists::time_simpler(const Trial& run) {
+  const Method& method = methods_[run.method];
+  for (std::size_t i = 0; i < methods_.size(); ++i) {
+    const Method& other = methods_[i];
+    if (other.model != method.model || other.integrator != method.integrator ||
+        other.options.size() >= method.options.size()) {
+      continue;
+    }
+    const bool part = std::ranges::all_of(other.options, [&method](const auto& one) {
+      return std::ranges::count(method.options, one) > 0;
+    });
+    if (!part) continue;
+    if (const Trial* found = search_.run(i, run.elements, run.substeps)) time(*found);
+  }
+}
+
 std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
   std::set<std::tuple<std::size_t, int, int>> tried;
   const std::vector<Trial> before = runs();
@@ -48,6 +65,7 @@ std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
     if (next == nullptr) break;
     time(*next);
     tried.insert(place(*next));
+    if (i == 0) time_simpler(*next);
   }
   const std::vector<Trial> after = runs();
   const Trial* best = cheapest(after, target, accept);
@@ -68,15 +86,15 @@ std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
 std::optional<Trial> Finalists::replaced(
     const Trial& winner, double target, const std::function<bool(const Method&)>& other) {
   const Accept accept = [&](const Trial& run) { return other(methods_[run.method]); };
-  if (cheapest(search_.runs(), target, accept) == nullptr &&
-      std::ranges::count_if(methods_, other) <= few_methods) {
-    for (std::size_t method = 0; method < methods_.size(); ++method) {
-      if (!other(methods_[method])) continue;
-      for (const int elements :
-           {winner.elements, winner.elements + winner.elements / 2}) {
-        search_.fewest_substeps(method, elements, target, winner.substeps,
-                                dearest * winner.substeps);
-      }
+  const bool few = std::ranges::count_if(methods_, other) <= few_methods;
+  for (std::size_t method = 0; few && method < methods_.size(); ++method) {
+    const auto own = [method](const Trial& run) { return run.method == method; };
+    if (!other(methods_[method]) || cheapest(search_.runs(), target, own) != nullptr) {
+      continue;
+    }
+    for (const int elements : {winner.elements, winner.elements + winner.elements / 2}) {
+      search_.fewest_substeps(method, elements, target, winner.substeps,
+                              dearest * winner.substeps);
     }
   }
   const Trial* first = cheapest(search_.runs(), target, accept);

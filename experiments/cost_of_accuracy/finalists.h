@@ -16,7 +16,7 @@ namespace tress {
 
 /// Of runs whose times are this near, over the shorter, the one stands for all that has
 /// the fewest options off their defaults: the rest is a toss-up.
-inline constexpr double toss_up = 1.05;
+inline constexpr double toss_up = 1.1;
 
 /// The answer for one wanted error.
 struct BestRuns {
@@ -51,6 +51,7 @@ class Finalists {
 
   std::vector<Trial> runs() const;  // of the search, with the times of here
   void time(const Trial& run);
+  void time_simpler(const Trial& run);
   std::optional<Trial> settled(double target, const Accept& accept);
   std::optional<Trial> replaced(const Trial& winner, double target,
                                 const std::function<bool(const Method&)>& other);

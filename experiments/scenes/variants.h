@@ -43,8 +43,9 @@ struct TipPaths {
 TipPaths tip_paths(const Scene& scene, int repeat,
                    double most_s = std::numeric_limits<double>::infinity());
 
-/// Least processor time of some runs to the end (s).
-double least_busy_s(const Scene& scene, int runs);
+/// Least processor time of some runs to the end (s): of `runs`, or more until they have
+/// taken `at_least_s` altogether.
+double least_busy_s(const Scene& scene, int runs, double at_least_s = 0);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);
