@@ -121,7 +121,7 @@ double measure_bathe(const Trial& trial) {
   const double load = bathe_force * length * length / bathe_bending;
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {},
                   {.force = load * rod.force() * Vec{0, 1, 0}});
-  statics.follow(0.05, 1);
+  statics.follow(0.01, 1);
   return statics.tip().y / rod.length * length;
 }
 
@@ -171,7 +171,7 @@ std::vector<ValidationTest> curl_tests() {
           .source = "Love 1927, section 271",
           .parameter = "F r_0^2/EI",
           .quantity = "rise per length over that at rest, in the middle third",
-          .quick = {{0.5}, {96}},
+          .quick = {{0.5}, {48}},
           .usual = {{0.1, 0.5, 1, 2}, {96, 192}},
           .full = {{0.1, 0.3, 0.5, 0.8, 1, 2}, {96, 192}},
           .tolerance = 0.02,

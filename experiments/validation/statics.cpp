@@ -23,7 +23,7 @@ constexpr double accuracy = 1e-11;  // of typical sizes: as good as it gets
 constexpr double rounding = 1e-5;
 constexpr int in_vain = 3;
 constexpr double far = 1e-3;         // corrections that change a section's curvature
-constexpr double longest = 0.5;      // correction, in typical sizes
+constexpr double longest = 1.5;      // correction, in typical sizes
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
 
@@ -210,8 +210,18 @@ void Statics::relax(double t) {
 
 void Statics::follow(double from, double to) {
   const auto cut = [](double ratio) { return std::sqrt(ratio); };
-  relax(from);
+  // A first load that is too large: less of it.
+  constexpr double less = 0.1, least_part = 1e-4;
   double at = from, ratio = largest_ratio;
+  for (;;) {
+    try {
+      relax(at);
+      break;
+    } catch (const std::runtime_error&) {
+      at *= less;
+      if (at < least_part * from) throw;
+    }
+  }
   while (at != to) {
     const double left = to / at;
     const double by = left > 1 ? std::min(left, ratio) : std::max(left, 1 / ratio);

@@ -30,8 +30,8 @@ class Statics {
   /// The equilibrium at this load, from where the strand is. Throws std::runtime_error
   /// when the iteration does not converge; the strand is then where it was.
   void relax(double t);
-  /// relax() from `from` to `to` (both > 0), loads as far apart by a factor as the
-  /// iteration bears.
+  /// relax() from `from`, or less of it where that is too much, to `to` (both > 0), loads
+  /// as far apart by a factor as the iteration bears.
   void follow(double from, double to);
 
   System& system() { return *system_; }

@@ -41,7 +41,7 @@ TEST_P(Rods, HoldAPlaceByTheForceThatLeadsThere) {
   const TestRod rod = curl();
   const Vec force = rod.force() * Vec{0.7, 0.4, -0.2};
   Statics free = hanging(GetParam(), {.force = force});
-  free.follow(0.1, 0.9);
+  free.follow(0.1, 0.99);
   Statics held = hanging(GetParam(), {.along = {axis_x, axis_y, axis_z}});
   held.start_at(free);
   free.relax(1);
