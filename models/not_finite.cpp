@@ -20,7 +20,7 @@ std::string not_finite_load(const Effects& effects, double t, const Points& p) {
   for (const auto& effect : effects) {
     std::ranges::fill(load, 0.0);
     effect->add_load(t, p, load);
-    const std::string words =
+    std::string words =
         not_finite_place(load, 3, std::string(effect->name()) + " at point");
     if (!words.empty()) return words;
   }

@@ -41,7 +41,7 @@ Reference References::get(std::size_t index, double patience_s,
   Slot& slot = slots_[index];
   int expected = unknown;
   if (slot.state.compare_exchange_strong(expected, in_work)) {
-    const Reference found = compute();
+    Reference found = compute();
     const std::size_t tips = std::min(found.tip.size(), std::size(slot.tip));
     std::copy_n(found.tip.begin(), tips, slot.tip);
     slot.tips = static_cast<int>(tips);
