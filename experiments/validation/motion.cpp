@@ -48,6 +48,17 @@ double lowest_point(const ModelVariant& variant, const Strand& strand) {
   return lowest->z();
 }
 
+std::string no_twist(const ModelVariant& variant) {
+  TestRod rod;
+  constexpr double twist = 1;  // 1/m
+  rod.initial = uniform_shape({twist, 0, 0});
+  const auto system = on_strand(variant, rod.strand(4, horizontal_clamp()), {});
+  const State start = initial_state(*system);
+  const double energy = system->energetics()->energy(0, start.q, start.v).potential;
+  const double expected = rod.twisting() * twist * twist * rod.length / 2;
+  return energy > expected / 2 ? "" : "no twist";
+}
+
 Track track(std::string_view integrator, System& system, double dt, double t_end,
             const Look& look, const std::function<bool(double value)>& enough) {
   const auto formulations = usable_formulations(find_integrator(integrator), system);

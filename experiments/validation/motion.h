@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,10 @@ Effects weight();                              // along -z
 /// touches a plane first. Models that integrate over segments have no such point at their
 /// very end.
 double lowest_point(const ModelVariant& variant, const Strand& strand);
+
+/// Why a test of twist does not suit a model: a twisted strand has no energy. Empty: it
+/// does.
+std::string no_twist(const ModelVariant& variant);
 
 /// What was seen at the start and after every step.
 struct Track {

@@ -1,9 +1,7 @@
 #include "experiments/validation/stick_slip.h"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -21,7 +19,7 @@ const double length = TestRod().length;  // m
 const double away = 0.05 * length;  // where a tip is that slipped, m
 
 /// The clamp goes down by eps L in the first 70 % of the time and then waits. The time is
-/// 16 periods of the strand, which drag damps critically.
+/// 56 periods of the strand, which drag damps to 0.7 of critical.
 bool slips(const ModelVariant& variant, const Strand& strand, double height,
            double friction) {
   const double t_end = 100 / TestRod().rate(), depth = 1e-4 * length;

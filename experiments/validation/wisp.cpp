@@ -16,7 +16,8 @@ namespace {
 
 const double length = TestRod().length;  // m
 
-/// A strand that is pressed together, slowly and damped critically.
+/// A strand that is pressed together slowly, in 40 of its periods a move, and damped to
+/// 0.7 of critical.
 struct Pressed {
   std::unique_ptr<System> system;
   double moving, waiting;  // s, of each of its moves
