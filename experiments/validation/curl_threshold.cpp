@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "experiments/validation/numerics.h"
 #include "models/input_error.h"
@@ -58,15 +59,21 @@ double curl_threshold(double phi, double poisson_ratio) {
   const auto determinant = [&](double ratio) {
     return Curl{phi, poisson_ratio, std::pow(ratio * phi, 3)}.determinant();
   };
-  if (!(phi > 0 && phi <= 8 * std::numbers::pi)) {
-    throw InputError("no such curl", "phi", "give an angle above 0, at most 8 pi");
+  if (!(phi > 0 && phi <= 6 * std::numbers::pi && poisson_ratio >= 0.3)) {
+    throw InputError(
+        "no such curl", "phi",
+        "give an angle above 0, at most 6 pi, and a Poisson ratio of 0.3 or more");
   }
   double above = highest, value = determinant(above);
-  while (above > lowest) {
-    const double below = above - step, next = determinant(below);
-    if (value * next <= 0) return find_root(determinant, below, above, 1e-10);
-    above = below;
-    value = next;
+  try {
+    while (above > lowest) {
+      const double below = above - step, next = determinant(below);
+      if (value * next <= 0) return find_root(determinant, below, above, 1e-10);
+      above = below;
+      value = next;
+    }
+  } catch (const std::runtime_error&) {
+    // The tip points up: strands that leave their plane have done so at more weight.
   }
   throw InputError("a strand of this phi stays in its plane at any weight", "phi",
                    "give an angle of 1.8 pi or more (nu = 0.5)");

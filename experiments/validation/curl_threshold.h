@@ -19,9 +19,9 @@ namespace tress {
 ///     Y = beta' + k alpha - M alpha,             Y' = -k X + beta F.t;
 ///
 /// the threshold has a solution with alpha = beta = 0 at the clamp, X = Y = 0 at the tip.
-/// 1e-6; agrees with values computed by another method (test_references.cpp). Throws
-/// InputError where strands of this phi are stable at any weight (below 1.8 pi at nu =
-/// 0.5) and beyond 8 pi.
+/// 1e-6. For nu in [0.3, 0.5] and phi up to 6 pi; below some 0.3 the tip points up at the
+/// threshold, which the shooting does not follow. Throws InputError on others, and where
+/// strands of this phi are stable at any weight (below 1.8 pi at nu = 0.5).
 double curl_threshold(double phi, double poisson_ratio);
 
 }  // namespace tress

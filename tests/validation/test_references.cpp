@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "experiments/validation/beam_modes.h"
+#include "experiments/validation/curl_threshold.h"
+#include "experiments/validation/helical_spring.h"
 #include "experiments/validation/master_curve.h"
 #include "models/input_error.h"
 
@@ -66,6 +68,34 @@ TEST(CurvedBeam, TendsToTheBeam) {
   for (int mode = 1; mode <= 3; ++mode) {
     const double beam = heavy_rod_mode(0, mode);
     EXPECT_NEAR(curved_beam_mode(1e-4, mode) / beam, 1, 1e-7) << mode;
+  }
+}
+
+// phi/pi, nu, Gamma^(1/3)/phi, to the 1e-6 of curl_threshold().
+TEST(Curl, LeavesItsPlaneWhereItsSecondVariationDoes) {
+  constexpr double thresholds[][3] = {{1.9, 0.5, 0.5563589817}, {2, 0.5, 0.5789202249},
+                                      {3, 0.5, 0.6202302602},   {4, 0.5, 0.6206878389},
+                                      {6, 0.5, 0.6206884527},   {2, 0.3, 0.5200728979},
+                                      {4, 0.4, 0.601042019}};
+  for (const auto& [half_turns, poisson_ratio, ratio] : thresholds) {
+    EXPECT_NEAR(curl_threshold(half_turns * std::numbers::pi, poisson_ratio), ratio, 1e-6)
+        << half_turns << " " << poisson_ratio;
+  }
+  EXPECT_THROW(curl_threshold(1.5 * std::numbers::pi, 0.5), InputError);
+}
+
+// nu, pitch angle (degrees), F, radius, pitch angle (rad).
+TEST(HelicalSpring, IsThatOfLove) {
+  constexpr double springs[][5] = {{0.5, 15, 0.01, 0.994617430849882, 0.276860850274938},
+                                   {0.5, 15, 0.5, 0.761449300423092, 0.77853677041431},
+                                   {0.5, 15, 2, 0.415173205615362, 1.34153992468928},
+                                   {0.3, 5, 0.3, 0.934553828911364, 0.445071332844688},
+                                   {0.3, 30, 1, 0.510479402744105, 1.18529311724342}};
+  for (const auto& [poisson_ratio, degrees, force, radius, pitch] : springs) {
+    const Helix helix =
+        pulled_helix(degrees * std::numbers::pi / 180, poisson_ratio, force);
+    EXPECT_NEAR(helix.radius, radius, 1e-12);
+    EXPECT_NEAR(helix.pitch_angle, pitch, 1e-12);
   }
 }
 
