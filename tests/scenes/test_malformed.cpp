@@ -52,7 +52,7 @@ TEST(MalformedScenes, TwoHundredAreEachRefusedWithPlaceAndRemedy) {
       simulate.write("mutant.toml", text);
       const Toy::Result run = simulate.run("mutant.toml --out out --progress none");
       EXPECT_EQ(run.code, 2) << run.err;
-      EXPECT_EQ(run.err, std::string("simulate: ") + error.what() + '\n');
+      EXPECT_EQ(run.err, std::string("simulate: error: ") + error.what() + '\n');
       EXPECT_FALSE(simulate.exists("out"));
     } catch (const std::exception& error) {
       ADD_FAILURE() << error.what() << "\n" << text;
