@@ -101,7 +101,7 @@ export function cost_findings(tables) {
 
 export const cost_of_accuracy = {
   id: 'cost_of_accuracy',
-  title: 'What does accuracy cost in time?',
+  title: 'Error and time, scene by scene',
   table: 'cost_of_accuracy',
   caption: `One panel per scene: the runs that nothing beats in both error and time. Down and to the
     left is better. Large marks are the winners at a wanted error, hollow ones the runners-up, which differ in model or

@@ -67,7 +67,7 @@ export function hard_findings(tables) {
 
 export const hard_cases = {
   id: 'hard_cases',
-  title: 'What survives a hard case?',
+  title: 'Case by case, at each step',
   table: 'hard_cases',
   caption: `One chart per integrator: hard cases downwards, models across. Each cell is split by time
     step, the shortest at the left. Dark green: stable and within the accepted error; light green: every bound of
@@ -88,7 +88,7 @@ export const hard_cases = {
     const room = Math.max(28, Math.min(58, Math.floor((width - 250) / models.length)));
     const chart = ([integrator, members]) => ({
       title: spaced(integrator),
-      width: { step: room },
+      width: { step: room, for: 'position' },
       height: { step: 19 },
       data: { values: members },
       mark: { type: 'rect', stroke: theme.background, strokeWidth: 1 },

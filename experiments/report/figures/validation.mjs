@@ -28,11 +28,11 @@ function cell(members) {
   const lost = missing.some((row) => is_set(row.judged) || row.elements === finest);
   return {
     ...shared,
-    outcome: within && !lost ? 'within' : 'outside',
+    outcome: within && !lost ? 'within' : judged.length > 0 ? 'outside' : 'not judged',
     error_pct: 100 * worst.error_rel,
     tolerance_pct: 100 * worst.tolerance,
     at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
-    label: format_number(100 * worst.error_rel, 2),
+    label: worst.error_rel < 1e-4 ? '<.01' : format_number(100 * worst.error_rel, 2),
     reason: lost ? reason : '',
   };
 }
@@ -46,6 +46,7 @@ export const validation_cells = (tables) =>
 const outcomes = {
   within: ['within the accepted error', '#009E73'],
   outside: ['outside', '#D55E00'],
+  'not judged': ['outside, with fewer elements than it is judged at', '#C79A1B'],
   'no answer': ['no answer found', '#B6407F'],
   'does not apply': ['does not apply to this model', '#9aa1aa'],
 };
@@ -53,7 +54,9 @@ const outcomes = {
 export function validation_findings(tables) {
   const cells = validation_cells(tables);
   const by_model = [...group_by(cells, (row) => row.name)].map(([name, members]) => {
-    const told = members.filter((row) => row.outcome !== 'does not apply');
+    const told = members.filter(
+      (row) => !['does not apply', 'not judged'].includes(row.outcome),
+    );
     return { name, told, within: told.filter((row) => row.outcome === 'within') };
   });
   const sentence = ({ name, told, within }) => {
@@ -78,7 +81,7 @@ export function validation_findings(tables) {
 
 export const validation = {
   id: 'validation',
-  title: 'Is the physics right?',
+  title: 'Every model against every test',
   table: 'validation',
   caption: `Each row is a strand model, each column a published test of slender rods. The number
     is the largest error in per cent of what the test measures, over the parameters of the test, at
@@ -94,7 +97,7 @@ export const validation = {
     const known = Object.entries(outcomes).filter(([id]) =>
       rows.some((row) => row.outcome === id),
     );
-    const step = Math.max(38, Math.min(64, Math.floor((width - 190) / tests.length)));
+    const step = Math.max(33, Math.min(64, Math.floor((width - 215) / tests.length)));
     const x = {
       field: 'test',
       type: 'nominal',
@@ -154,7 +157,7 @@ export const validation = {
           },
         },
         {
-          mark: { type: 'text', fontSize: 10.5, color: '#ffffff', fontWeight: 600 },
+          mark: { type: 'text', fontSize: 9.5, color: '#ffffff', fontWeight: 600 },
           encoding: { x, y, text: { field: 'label' } },
         },
       ],

@@ -30,10 +30,23 @@ const curve_rows = (tables) => {
     .map((row) => ({ ...row, error_pct: 100 * row.error_rel }));
 };
 
-// Log axes where the values span decades.
+// Log axes where the values span decades, also on both sides of zero; one value has a tick
+// of its own.
 function axis(field, title, values) {
   const low = Math.min(...values);
   const high = Math.max(...values);
+  if (low === high) {
+    const room = Math.max(1, Math.abs(low)) / 2;
+    return {
+      ...linear_channel(field, title, { values: [low] }),
+      scale: { domain: [low - room, low + room] },
+    };
+  }
+  if (low < 0 && high > 100)
+    return {
+      ...linear_channel(field, title, { values: distinct(values) }),
+      scale: { type: 'symlog' },
+    };
   return low > 0 && high / low > 20
     ? log_channel(field, title, log_extent(values, 5))
     : { ...linear_channel(field, title), scale: { zero: false, nice: true, padding: 12 } };
@@ -56,7 +69,7 @@ function test_panel(test, members, gloss, { panel_width, legend, style }) {
   ].map(([parameter, measured]) => ({ parameter, measured }));
   return {
     title: spaced(test),
-    width: panel_width,
+    width: panel_width - 34,
     height: 190,
     layer: [
       {
