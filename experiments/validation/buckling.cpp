@@ -192,7 +192,7 @@ std::vector<ValidationTest> buckling_tests() {
           .source = "Michell 1889; Zajac 1962",
           .parameter = "Poisson's ratio: EI/GJ - 1",
           .quantity = "total twist at which it buckles (rad)",
-          .quick = {{0.5}, {20}},
+          .quick = {{0.5}, {20, 40}},
           .usual = {{0, 0.3, 0.5}, {10, 20, 40}},
           .full = {{0, 0.15, 0.3, 0.4, 0.5}, {10, 20, 40}},
           .tolerance = 0.02,

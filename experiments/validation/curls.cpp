@@ -189,7 +189,7 @@ std::vector<ValidationTest> curl_tests() {
               "Romero et al. 2021; Miller et al. 2014; second variation by shooting",
           .parameter = "angle of the arc over pi",
           .quantity = "Gamma^(1/3)/phi at which the plane is left",
-          .quick = {{2}, {20}},
+          .quick = {{2}, {20, 40}},
           .usual = {{2, 3, 4}, {10, 20, 40, 80}},
           .full = {{1.9, 2, 2.5, 3, 4, 5}, {10, 20, 40, 80}},
           .tolerance = 0.03,
