@@ -33,6 +33,7 @@ function cell(members) {
     tolerance_pct: 100 * worst.tolerance,
     at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
     label: worst.error_rel < 1e-4 ? '<.01' : format_number(100 * worst.error_rel, 2),
+    lost: within && lost,
     reason: lost ? reason : '',
   };
 }
@@ -45,7 +46,7 @@ export const validation_cells = (tables) =>
 
 const outcomes = {
   within: ['within the accepted error', '#009E73'],
-  outside: ['outside', '#D55E00'],
+  outside: ['outside, or a run without an answer', '#D55E00'],
   'not judged': ['outside, with fewer elements than it is judged at', '#C79A1B'],
   'no answer': ['no answer found', '#B6407F'],
   'does not apply': ['does not apply to this model', '#9aa1aa'],
@@ -63,9 +64,9 @@ export function validation_findings(tables) {
     const wrong = told.filter((row) => row.outcome !== 'within');
     const list = wrong
       .map((row) =>
-        row.outcome === 'outside'
-          ? `${row.test} (${format_number(row.error_pct)} % off)`
-          : `${row.test} (no answer)`,
+        row.outcome === 'no answer' || row.lost
+          ? `${row.test} (${row.lost ? 'a run without an answer' : 'no answer'})`
+          : `${row.test} (${format_number(row.error_pct)} % off)`,
       )
       .join(', ');
     return (
