@@ -69,6 +69,7 @@ std::vector<ValidationTest> hanging_tests() {
       .source = "Joh. Bernoulli 1691",
       .parameter = "distance of the ends over the length",
       .quantity = "sag over the length",
+      .range = {0.05, 0.99},
       .quick = {{0.5, 0.9}, {20, 40}},
       .usual = {{0.2, 0.5, 0.8, 0.95}, {10, 20, 40, 80}},
       .full = {{0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98}, {10, 20, 40, 80}},

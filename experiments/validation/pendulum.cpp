@@ -102,6 +102,7 @@ std::vector<ValidationTest> pendulum_tests() {
           "angles 4 K(sin(a/2)); by quadrature of the energy",
       .parameter = "amplitude (rad)",
       .quantity = "period (s)",
+      .range = {1e-3, 2},
       .quick = {{0.05, 1}, {12}},
       .usual = {{0.05, 0.5, 1}, {12, 24}},
       .full = {{0.05, 0.25, 0.5, 0.75, 1}, {6, 12, 24, 48}},

@@ -180,6 +180,7 @@ std::vector<ValidationTest> plectoneme_tests() {
       .source = "Bertails-Descoubes 2010, plectoneme; Clauvelin, Audoly & Neukirch 2009",
       .parameter = "turns of the clamp",
       .quantity = "angle of the plies over that of the equilibrium",
+      .range = {4, 30},
       .quick = {},  // a quarter of a minute and more each
       .usual = {{12}, {125}},
       .full = {{11, 12, 13}, {125}},

@@ -85,6 +85,7 @@ std::vector<ValidationTest> spring_tests() {
           "a bar that stretches and turns, clamped above and free below",
       .parameter = "turns of the curl",
       .quantity = "lowest frequency along the axis (rad/s)",
+      .range = {4, 20},
       .quick = {{5}, {60}},
       .usual = {{4, 5}, {30, 60, 90}},
       .full = {{4, 5, 6}, {30, 60, 90, 120}},

@@ -84,6 +84,7 @@ std::vector<ValidationTest> stick_slip_tests() {
       .source = "Sano et al. 2017; Romero et al. 2021; the elastica by shooting",
       .parameter = "lowering of the clamp eps over L",
       .quantity = "least friction coefficient that holds",
+      .range = {1e-3, 0.3},
       .quick = {{0.1}, {10}},
       .usual = {{0.05, 0.1, 0.2}, {10, 20}},
       .full = {{0.05, 0.1, 0.15, 0.2}, {10, 20, 40}},

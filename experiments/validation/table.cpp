@@ -1,5 +1,7 @@
 #include "experiments/validation/table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -74,6 +76,13 @@ std::vector<const ValidationTest*> chosen_tests(const Settings& settings) {
   return chosen;
 }
 
+std::string range_text(const ValidationTest& test) {
+  const auto [low, high, whole] = test.range;
+  if (low == high) return fmt::format("{}: this test has no parameter", low);
+  return fmt::format("{} from {} to {}: {}", whole ? "a whole number" : "a number", low,
+                     high, test.parameter);
+}
+
 ValidationTest::Grid grid(const ValidationTest& test, const CommandLine& line,
                           const Settings& settings) {
   ValidationTest::Grid grid = line.quick  ? test.quick
@@ -82,6 +91,12 @@ ValidationTest::Grid grid(const ValidationTest& test, const CommandLine& line,
   if (!line.elements.empty()) grid.elements = line.elements;
   const auto parameters = settings.experiment().numbers("parameters");
   if (!parameters.empty()) grid.parameters.assign(parameters.begin(), parameters.end());
+  for (const double p : grid.parameters) {
+    const auto [low, high, whole] = test.range;
+    if (p >= low && p <= high && !(whole && p != std::floor(p))) continue;
+    throw InputError(fmt::format("{} has no parameter {}", test.name, p),
+                     "--set parameters", "give " + range_text(test));
+  }
   return grid;
 }
 
@@ -109,6 +124,7 @@ std::vector<Gloss> validation_glossary() {
   }
   return all;
 }
+
 std::span<const Parameter> validation_settings() { return settings_table; }
 
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {

@@ -28,6 +28,13 @@ struct ValidationTest {
   std::string_view parameter;  // what it is, with unit
   std::string_view quantity;   // what is measured, with unit
 
+  /// Values of the parameter for which the test is made; both ends belong to it.
+  struct Range {
+    double low, high;
+    bool whole = false;
+  };
+  Range range;
+
   /// What is tried; --elements and --set parameters=... replace them.
   struct Grid {
     std::vector<double> parameters;

@@ -48,6 +48,12 @@ TEST(ValidationTable, TakesTestsAndParametersAsAsked) {
   }
   EXPECT_EQ(parameters, (std::set<double>{0.2, 700}));
   EXPECT_THROW(cases(line({{"tests", "cantilver"}})), InputError);
+  for (const char* wrong : {"-1", "1e6", "nan"}) {
+    EXPECT_THROW(cases(line({{"tests", "cantilever"}, {"parameters", wrong}})),
+                 InputError);
+  }
+  EXPECT_THROW(cases(line({{"tests", "heavy_chain"}, {"parameters", "4"}})), InputError);
+  EXPECT_THROW(cases(line({{"tests", "beam_modes"}, {"parameters", "1.5"}})), InputError);
 }
 
 TEST(ValidationTable, FitsOrdersOverElements) {
