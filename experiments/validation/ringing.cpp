@@ -96,7 +96,6 @@ std::vector<ValidationTest> ringing_tests() {
               .claimed = {"super_helix", "articulated_chain", "der", "corde",
                           "xpbd_cosserat", "dynamic_spline", "kirchhoff_nodal"},
               .reference = decay,
-              .refusal = [](const ModelVariant&) { return std::string(); },
               .measure = measured_decay,
           },
           {

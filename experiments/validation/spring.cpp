@@ -97,7 +97,6 @@ std::vector<ValidationTest> spring_tests() {
       .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
                   "dynamic_spline", "kirchhoff_nodal"},
       .reference = [](double turns) { return spring_modes(turns).low; },
-      .refusal = [](const ModelVariant&) { return std::string(); },
       .measure = measured_rate,
   }};
 }

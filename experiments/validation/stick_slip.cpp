@@ -97,7 +97,6 @@ std::vector<ValidationTest> stick_slip_tests() {
       .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
                   "dynamic_spline", "mass_spring", "inextensible_strand"},
       .reference = least_friction,
-      .refusal = [](const ModelVariant&) { return std::string(); },
       .measure = measured_friction,
   }};
 }

@@ -134,7 +134,8 @@ std::vector<Case> validation_cases(const CommandLine& line, const Settings& sett
     for (const ModelVariant& variant : length_variants()) {
       if (!wanted(line.models, variant.model->id)) continue;
       const Row name = identity(*test, variant);
-      if (const std::string reason = test->refusal(variant); !reason.empty()) {
+      const std::string reason = test->refusal ? test->refusal(variant) : "";
+      if (!reason.empty()) {
         all.push_back({name, [reason](Row& row, const Deadline&) {
                          row.failed("refused", reason);
                        }});

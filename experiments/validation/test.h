@@ -53,7 +53,8 @@ struct ValidationTest {
   /// Of the continuous rod.
   std::function<double(double parameter)> reference;
   /// Why the test says nothing about a model, empty where it does: "planar", "no twist".
-  std::function<std::string(const ModelVariant&)> refusal;
+  /// None: it suits every model.
+  std::function<std::string(const ModelVariant&)> refusal = {};
   /// Throws InputError where the model refuses the rod (a row `refused`), and
   /// std::runtime_error where it finds no answer (a row `failed`).
   std::function<double(const Trial&)> measure;
