@@ -1,12 +1,5 @@
 # Every library, found once. SUNDIALS: `./tress setup` builds a Release copy and names it in
 # TRESS_SUNDIALS_ROOT, because Debian's package is compiled at -O0 (3 to 7 times slower).
-find_program(TRESS_CCACHE ccache)
-if(TRESS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Without these it passes by what includes a precompiled header.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-      CCACHE_SLOPPINESS=pch_defines,time_macros ${TRESS_CCACHE})
-endif()
-
 set(TRESS_SUNDIALS_ROOT "$ENV{TRESS_SUNDIALS_ROOT}" CACHE PATH "Release build of SUNDIALS")
 set(TRESS_SUNDIALS_COMPONENTS ida cvode arkode nvecserial)
 if(TRESS_SUNDIALS_ROOT AND NOT "${SUNDIALS_DIR}" MATCHES "^${TRESS_SUNDIALS_ROOT}/")

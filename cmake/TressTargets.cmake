@@ -8,9 +8,29 @@ function(tress_warnings target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
   endif()
+  # Its garbage collector, left to itself, takes a tenth of the time of a build.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE "SHELL:--param ggc-min-heapsize=1000000")
+  endif()
   if(TRESS_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+endfunction()
+
+# tress_headers(name header...): an object library that compiles these headers of others once
+# for the targets that reuse them, a third of the time of a build. Their options must be the
+# same as this one's; sources still include what they use.
+function(tress_headers name)
+  file(CONFIGURE OUTPUT ${name}.cpp CONTENT "// carries precompiled headers\n")
+  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <functional> <limits>
+    <memory> <numbers> <numeric> <optional> <span> <string> <string_view> <vector> ${ARGN})
+  tress_warnings(${name})
+endfunction()
+
+function(tress_optimise_less target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # tress_library(name source...): tress_<name>, also known as tress::<name>. Link Eigen as
@@ -20,31 +40,41 @@ function(tress_library name)
   add_library(tress::${name} ALIAS tress_${name})
   set_target_properties(tress_${name} PROPERTIES EXPORT_NAME ${name}
                         POSITION_INDEPENDENT_CODE ON)
+  if(NOT TARGET tress_library_headers)
+    tress_headers(tress_library_headers <Eigen/Dense>)
+    set_target_properties(tress_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(tress_library_headers PRIVATE Eigen3::Eigen)
+  endif()
+  target_precompile_headers(tress_${name} REUSE_FROM tress_library_headers)
   target_compile_features(tress_${name} PUBLIC cxx_std_20)
   target_include_directories(tress_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/tress>)
   tress_warnings(tress_${name})
 endfunction()
 
-# The headers of other libraries that most tests include, compiled once: half the time of a
-# test's compilation. Sources still include what they use.
-function(tress_test_headers)
-  file(WRITE ${PROJECT_BINARY_DIR}/test_headers.cpp "// carries precompiled headers\n")
-  add_library(tress_test_headers OBJECT ${PROJECT_BINARY_DIR}/test_headers.cpp)
-  target_link_libraries(tress_test_headers PRIVATE tress_harness GTest::gtest GTest::gmock
-                        Eigen3::Eigen)
-  target_compile_options(tress_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(tress_test_headers PRIVATE
-    <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <functional>
-    <limits> <memory> <numbers> <random> <sstream> <string> <vector>)
-  tress_warnings(tress_test_headers)
+# tress_program(target): what experiments are made of. Models and integrators do the work
+# and are optimised; programs and tests are not as much, which costs more than it brings.
+function(tress_program target)
+  if(NOT TARGET tress_program_headers)
+    tress_headers(tress_program_headers <Eigen/Dense> <chrono> <filesystem> <fmt/format.h>
+                  <map> <set> <stdexcept>)
+    target_link_libraries(tress_program_headers PRIVATE Eigen3::Eigen fmt::fmt
+                                                        Threads::Threads)
+    tress_optimise_less(tress_program_headers)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM tress_program_headers)
+  tress_optimise_less(${target})
+  tress_warnings(${target})
 endfunction()
 
 # tress_test(name source... [SHARDS n]): an executable whose GoogleTest cases ctest runs one
 # by one, or in n parts: thousands of cases that take a millisecond each are all start-up.
 function(tress_test name)
   if(NOT TARGET tress_test_headers)
-    tress_test_headers()
+    tress_headers(tress_test_headers <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <random>
+                  <sstream>)
+    target_link_libraries(tress_test_headers PRIVATE GTest::gtest GTest::gmock Eigen3::Eigen)
+    tress_optimise_less(tress_test_headers)
   endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "")
   add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
@@ -53,8 +83,7 @@ function(tress_test name)
   target_compile_definitions(test_${name} PRIVATE
                              TRESS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TRESS_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  # Tests run once: optimising them costs more than it brings.
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  tress_optimise_less(test_${name})
   target_precompile_headers(test_${name} REUSE_FROM tress_test_headers)
   tress_warnings(test_${name})
   if(NOT arg_SHARDS)

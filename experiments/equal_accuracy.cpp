@@ -261,6 +261,7 @@ int main(int argc, char** argv) {
           "what does each strand model cost at the same accuracy, and what does "
           "it lose?",
       .example = "--models der,super_helix --integrators implicit_midpoint",
+      .quick_timeout_s = 3,
       .columns = columns,
       .cases = cases,
       .checks = check_momentum,

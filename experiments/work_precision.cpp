@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
       .name = "work_precision",
       .question = "what does accuracy cost in time, per integrator?",
       .example = "--models beam --integrators cvode_bdf,arkode_dirk",
-      .quick_timeout_s = 3,
+      .quick_timeout_s = 2,
       .columns = columns,
       .cases = cases,
       .derive = add_series_columns,

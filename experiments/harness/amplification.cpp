@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/harness/eigenvalues.h"
+#include "experiments/harness/dense_algebra.h"
 
 namespace tress {
 namespace {

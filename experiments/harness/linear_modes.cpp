@@ -1,20 +1,19 @@
 #include "experiments/harness/linear_modes.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 
+#include "experiments/harness/dense_algebra.h"
 #include "experiments/harness/dense_form.h"
-#include "experiments/harness/eigenvalues.h"
 
 namespace tress {
 
 LinearModes linear_modes(System& system, In q) {
   const Eigen::MatrixXd mass = dense_mass(system, 0, q);
   const Eigen::MatrixXd stiffness = dense_stiffness(system, 0, q);
-  const Eigen::MatrixXd dynamics = mass.partialPivLu().solve(stiffness);
+  const Eigen::MatrixXd dynamics = solution(mass, stiffness);
   LinearModes modes;
   modes.slowest_rad_s = std::numeric_limits<double>::infinity();
   // A double real eigenvalue computes to a pair apart by sqrt(eps).

@@ -41,13 +41,15 @@ Timing time_it(int repeats, F&& f) {
   return time_calls(repeats, f);
 }
 
+/// A run that takes longer is timed once: one interruption is a small part of it.
+inline constexpr double long_run_s = 0.05;
+
 /// Median wall time (s) of whole runs: one if it takes long, `repeats` if it does not,
 /// after a first one that warms the caches and does not count.
 template <typename F>
 double time_run(int repeats, F&& f) {
-  constexpr double long_run = 0.05;  // s; beyond it one interruption is a small part
   const double first = time_calls(1, f).median_s;
-  return first > long_run ? first : time_calls(repeats, f).median_s;
+  return first > long_run_s ? first : time_calls(repeats, f).median_s;
 }
 
 }  // namespace tress

@@ -126,6 +126,10 @@ TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
     add_tips(world, paths.x);
   }
   if (repeat == 0) return paths;
+  if (paths.busy_s > long_run_s) {
+    paths.wall_s = paths.busy_s;
+    return paths;
+  }
   const Snapshot start = World(scene).snapshot();
   paths.wall_s = time_run(repeat, [&] {
     world.restore(start);

@@ -33,8 +33,8 @@ Scene refined(Scene scene);
 /// Tips of all strands at every frame, and how long the run took.
 struct TipPaths {
   std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
-  double wall_s = 0;      // median over the repeats, without reading the tips
   double busy_s = 0;      // processor time of stepping in the run that was read
+  double wall_s = 0;      // the same where that is long, else the median of repeats
 };
 
 /// Throws InputError where the scene cannot be built and std::runtime_error, with what

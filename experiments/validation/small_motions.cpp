@@ -1,23 +1,14 @@
 #include "experiments/validation/small_motions.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "experiments/harness/dense_algebra.h"
 
 namespace tress {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Orthonormal, of what is orthogonal to the columns.
-MatrixXd complement(const MatrixXd& columns) {
-  if (columns.cols() == 0) return MatrixXd::Identity(columns.rows(), columns.rows());
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return MatrixXd(qr.householderQ()).rightCols(columns.rows() - columns.cols());
-}
 
 bool symmetric(const MatrixXd& matrix) {
   // Differences of a residual make a symmetric matrix to 1e-9 of its largest entry.
@@ -32,14 +23,14 @@ std::vector<SmallMotion> of_symmetric(const MatrixXd& mass, const MatrixXd& stif
   const double first =
       1e-14 * stiffness.cwiseAbs().maxCoeff() / mass.cwiseAbs().maxCoeff();
   MatrixXd definite = stiffness;
-  while (Eigen::LLT<MatrixXd>(definite).info() != Eigen::Success) {
+  while (!is_definite(definite)) {
     shift = shift == 0 ? first : 4 * shift;
     definite = stiffness + shift * mass;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> motions(mass, definite);
+  const auto [values, vectors] = symmetric_eigenpairs(mass, definite);
   std::vector<SmallMotion> all;
-  for (auto k = motions.eigenvalues().size(); k-- > 0;) {
-    all.push_back({1 / motions.eigenvalues()[k] - shift, motions.eigenvectors().col(k)});
+  for (auto k = values.size(); k-- > 0;) {
+    all.push_back({1 / values[k] - shift, vectors.col(k)});
   }
   return all;
 }
@@ -60,10 +51,9 @@ std::vector<SmallMotion> small_motions(const MatrixXd& mass, const MatrixXd& sti
     all = of_symmetric((m + m.transpose()) / 2, (k + k.transpose()) / 2);
     for (SmallMotion& motion : all) motion.shape = right * motion.shape;
   } else {
-    const Eigen::EigenSolver<MatrixXd> motions(m.partialPivLu().solve(k));
+    const auto [values, vectors] = real_eigenpairs(solution(m, k));
     for (Eigen::Index j = 0; j < m.rows(); ++j) {
-      all.push_back({motions.eigenvalues()[j].real(),
-                     right * motions.eigenvectors().col(j).real()});
+      all.push_back({values[j], right * vectors.col(j)});
     }
     std::ranges::sort(all, {}, &SmallMotion::square);
   }

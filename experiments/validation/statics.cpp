@@ -1,11 +1,10 @@
 #include "experiments/validation/statics.h"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/harness/dense_algebra.h"
 #include "experiments/harness/dense_form.h"
 #include "experiments/validation/rod.h"
 
@@ -133,7 +132,7 @@ void Statics::guess_forces() {
   VectorXd unit(rows);
   for (Index j = 0; j < rows; ++j) unit[j] = 1 / columns.col(j).norm();
   const VectorXd forces =
-      unit.cwiseProduct((columns * unit.asDiagonal()).colPivHouseholderQr().solve(r));
+      unit.cwiseProduct(least_squares_solution(columns * unit.asDiagonal(), r));
   lambda_ = forces.head(m);
   holding_ = forces.tail(conditions_->rows());
 }
@@ -169,7 +168,7 @@ double Statics::newton_step() {
     all.row(i) /= entry;
     right[i] /= entry;
   }
-  const VectorXd correction = all.partialPivLu().solve(right);
+  const VectorXd correction = solution(all, right);
   if (!correction.allFinite()) throw std::runtime_error("no static correction");
   const double largest = correction.head(n).cwiseAbs().maxCoeff();
   const VectorXd moved = std::min(1.0, longest / largest) * size.cwiseProduct(correction);

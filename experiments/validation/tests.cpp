@@ -5,6 +5,7 @@
 #include "experiments/validation/chain.h"
 #include "experiments/validation/curls.h"
 #include "experiments/validation/hanging.h"
+#include "experiments/validation/localised_buckling.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/plectoneme.h"
 #include "experiments/validation/ringing.h"
@@ -21,9 +22,10 @@ namespace tress {
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family : {cantilever_tests, vibration_tests, buckling_tests, curl_tests,
-                         hanging_tests, pendulum_tests, chain_tests, ringing_tests,
-                         spring_tests, stick_slip_tests, wisp_tests, plectoneme_tests}) {
+    for (auto* family :
+         {cantilever_tests, vibration_tests, buckling_tests, localised_buckling_tests,
+          curl_tests, hanging_tests, pendulum_tests, chain_tests, ringing_tests,
+          spring_tests, stick_slip_tests, wisp_tests, plectoneme_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;

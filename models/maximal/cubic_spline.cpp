@@ -1,8 +1,9 @@
 #include "models/maximal/cubic_spline.h"
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseLU>
 #include <algorithm>
+#include <stdexcept>
+
+#include "models/math/banded_lu.h"
 
 namespace tress {
 
@@ -53,30 +54,32 @@ CubicSpline::Basis CubicSpline::at(std::size_t span, double along) const {
 }
 
 std::vector<Vec> CubicSpline::through(const std::vector<StrandPlace>& places) const {
-  const std::size_t n = spans();
-  const auto size = static_cast<Eigen::Index>(controls());
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixXd right(size, 3);
-  int row = 0;
+  const std::size_t n = spans(), size = controls();
+  // Row i has entries at i - 3 .. i + 3: functions of the span before it, or at the ends.
+  constexpr int reach = 3;
+  BandedLu matrix(static_cast<int>(size), reach, reach);
+  matrix.clear();
+  std::vector<double> right[3];
   const auto condition = [&](std::size_t first, const std::array<double, 4>& weight,
                              const Vec& value) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      entries.emplace_back(row, static_cast<int>(first + k), weight[k]);
+    const auto row = static_cast<int>(right[0].size());
+    for (int k = 0; k < 4; ++k) {
+      matrix.at(row, static_cast<int>(first) + k) = weight[static_cast<std::size_t>(k)];
     }
-    right.row(row++) << value.x, value.y, value.z;
+    right[0].push_back(value.x);
+    right[1].push_back(value.y);
+    right[2].push_back(value.z);
   };
   condition(0, at(0, 0).first, places.front().frame.e0);
   for (std::size_t i = 0; i < n; ++i) condition(i, at(i, 0).value, places[i].x);
   const Basis end = at(n - 1, length(n - 1));
   condition(n - 1, end.value, places.back().x);
   condition(n - 1, end.first, places.back().frame.e0);
-  Eigen::SparseMatrix<double> matrix(size, size);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::MatrixXd solved =
-      Eigen::SparseLU<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  if (!matrix.factor()) throw std::runtime_error("the spline's conditions are singular");
+  for (std::vector<double>& x : right) matrix.solve(x);
   std::vector<Vec> points;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    points.push_back({solved(k, 0), solved(k, 1), solved(k, 2)});
+  for (std::size_t k = 0; k < size; ++k) {
+    points.push_back({right[0][k], right[1][k], right[2][k]});
   }
   return points;
 }

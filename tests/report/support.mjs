@@ -18,6 +18,9 @@ export function run_report(...argv) {
   return { status, stderr };
 }
 
+// The page alone: drawing figures takes seconds.
+export const run_page = (...argv) => run_report(...argv, '--no-figures');
+
 export const empty_directory = () => mkdtempSync(join(tmpdir(), 'tress-report-'));
 export const remove = (directory) => rmSync(directory, { recursive: true, force: true });
 

@@ -10,6 +10,7 @@ import {
   fixture_directory,
   remove,
   report_root,
+  run_page,
   run_report,
 } from './support.mjs';
 
@@ -136,7 +137,7 @@ test('MissingTables_SayHowToProduceThem', () => {
 function refusal(file, text) {
   const other = empty_directory();
   writeFileSync(join(other, file), text);
-  const { status, stderr } = run_report(other);
+  const { status, stderr } = run_page(other);
   remove(other);
   assert.equal(status, 2);
   assert.equal(stderr.trim().split('\n').length, 1, stderr);
@@ -175,7 +176,7 @@ test('Findings_FollowTheTables', () => {
   const path = join(directory, 'constraint_drift.csv');
   const text = readFileSync(path, 'utf8');
   const answer = () => {
-    run_report(directory);
+    run_page(directory);
     const page = readFileSync(join(directory, 'report.html'), 'utf8');
     return /id="answer-drift">(.*?)<\/dd>/.exec(page)[1].replace(/<[^>]*>/g, '');
   };
@@ -213,10 +214,10 @@ const with_changed = (name, change, check) => {
   const changed = change(text);
   assert.notEqual(changed, text);
   writeFileSync(path, changed);
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
   check(page_text());
   writeFileSync(path, text);
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
 };
 
 test('StabilityFinding_CountsWhereTheSolversAgree', () => {
@@ -278,7 +279,7 @@ test('Swing_IsDrawnWithoutThePublishedRows', () => {
   assert.ok(mark_count(svg) > 10);
   assert.doesNotMatch(page_text(), /peers_swing\.csv is not there/);
   writeFileSync(path, text);
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
 });
 
 test('WorkPrecision_TellsSolversAndKindsOfErrorApart', () => {
@@ -309,10 +310,10 @@ test('Manifest_MustBeJson', () => {
   const path = join(directory, 'bdf_order.meta.json');
   const text = readFileSync(path, 'utf8');
   writeFileSync(path, '{');
-  const { status, stderr } = run_report(directory);
+  const { status, stderr } = run_page(directory);
   assert.equal(status, 2);
   assert.match(stderr, /bdf_order\.meta\.json: not valid JSON/);
   rmSync(path);
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
   writeFileSync(path, text);
 });

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
 import { Browser } from './browser.mjs';
-import { fixture_directory, remove, run_report } from './support.mjs';
+import { fixture_directory, remove, run_page } from './support.mjs';
 
 // What each tab draws; addresses that name a section open its tab.
 const opening = {
@@ -30,7 +30,7 @@ let directory, browser, page;
 
 before(async () => {
   directory = fixture_directory();
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
   page = `file://${join(directory, 'report.html')}`;
   browser = await Browser.start({
     driver: process.env.CHROMEDRIVER,
@@ -71,9 +71,26 @@ const settle = async (ready) => {
   return false;
 };
 
+// Drawing the figures takes seconds: tests that only read share a page, and those that
+// change a figure name it.
+const shown = { width: undefined, changed: new Set() };
+async function open_page(width = 1400) {
+  await browser.open(page, width);
+  shown.width = undefined;
+}
+
 // The tab of the measurements, all of its figures drawn.
-async function open_measurements(...size) {
-  await browser.open(page, ...size);
+async function open_measurements({ width = 1400, changes } = {}) {
+  if (shown.width !== width || shown.changed.has(changes)) {
+    await open_page(width);
+    await draw_measurements();
+    shown.width = width;
+    shown.changed.clear();
+  }
+  if (changes) shown.changed.add(changes);
+}
+
+async function draw_measurements() {
   await browser.click('#tab-measured');
   assert.ok(
     await settle(() =>
@@ -91,7 +108,7 @@ const marks_in = (figure) =>
 const least_marks = { validation: 8, cost_choices: 6 };
 
 test('Page_OpensWithTheThreeQuestions', async () => {
-  await browser.open(page);
+  await open_page();
   assert.deepEqual(
     await browser.run(
       `return [...document.querySelectorAll('[role="tab"]')].map((tab) => tab.textContent)`,
@@ -110,7 +127,7 @@ test('Page_OpensWithTheThreeQuestions', async () => {
 });
 
 test('Questions_SayWhatTestsAndCasesAre', async () => {
-  await browser.open(page);
+  await open_page();
   const text = (id) =>
     browser.run(`return document.getElementById('${id}').nextElementSibling.textContent`);
   assert.match(await text('validation-about'), /bent by its weight.*the <elastica>/);
@@ -118,7 +135,7 @@ test('Questions_SayWhatTestsAndCasesAre', async () => {
 });
 
 test('Page_DrawsEveryFigureWithoutErrorsOrRequests', async () => {
-  await browser.open(page);
+  await open_page();
   for (const [address, drawn] of [...Object.entries(opening), ['drift_cost', figures]]) {
     await browser.run(`location.hash = '#${address}'`);
     for (const figure of drawn) {
@@ -169,7 +186,7 @@ for (const [figure, entry] of [
   ['force_transport', 'corde'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
-    await open_measurements();
+    await open_measurements({ changes: figure });
     const dimmed = async () =>
       (await point_opacities(figure)).filter((o) => o < 0.2).length;
     assert.equal(await dimmed(), 0);
@@ -253,7 +270,7 @@ test('UnknownTable_IsShownAsText', async () => {
 
 for (const width of [390, 768, 1400]) {
   test(`Page_HasNoHorizontalScroll_${width}`, async () => {
-    await open_measurements(width);
+    await open_measurements({ width });
     await browser.run(
       `for (const d of document.querySelectorAll('details')) d.open = true`,
     );
@@ -286,7 +303,7 @@ const overlapping_texts = (figure) =>
 
 for (const width of [390, 1240]) {
   test(`StrandFigures_KeepTheirLabelsApart_${width}`, async () => {
-    await open_measurements(width);
+    await open_measurements({ width });
     for (const figure of ['stability_limit', 'scaling', 'swing', 'work_precision']) {
       assert.deepEqual(await overlapping_texts(figure), [], figure);
     }

@@ -4,13 +4,13 @@ import { join } from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
 import { after, before, test } from 'node:test';
 import { Browser } from './browser.mjs';
-import { fixture_directory, remove, run_report } from './support.mjs';
+import { fixture_directory, remove, run_page } from './support.mjs';
 
 let directory, browser, url;
 
 before(async () => {
   directory = fixture_directory();
-  assert.equal(run_report(directory).status, 0);
+  assert.equal(run_page(directory).status, 0);
   url = `file://${join(directory, 'report.html')}`;
   browser = await Browser.start({
     driver: process.env.CHROMEDRIVER,

@@ -6,7 +6,9 @@
 #include "experiments/validation/beam_modes.h"
 #include "experiments/validation/curl_threshold.h"
 #include "experiments/validation/helical_spring.h"
+#include "experiments/validation/localised_buckling.h"
 #include "experiments/validation/master_curve.h"
+#include "experiments/validation/numerics.h"
 #include "models/input_error.h"
 
 /// References against values computed independently of this code: boundary-value problems
@@ -97,6 +99,43 @@ TEST(HelicalSpring, IsThatOfLove) {
     EXPECT_NEAR(helix.radius, radius, 1e-12);
     EXPECT_NEAR(helix.pitch_angle, pitch, 1e-12);
   }
+}
+
+// B = 1.345, C = 0.789, 27 turns and a shortening of 3 %, as published benchmarks have
+// it: m = M L/B and t = T L^2/B solve d = sqrt((16/t)(1 - m^2/(4t))), R = m B/C + 4
+// acos(m/(2 sqrt(t))).
+TEST(LocalisedHelix, HasTheForcesOfThePublishedCase) {
+  constexpr double m = 98.54149617119074, t = 2900.993205792131;
+  const LocalisedHelix helix{2 * std::acos(m / (2 * std::sqrt(t))),
+                             std::sqrt(t - m * m / 4), 1.345 / 0.789};
+  EXPECT_NEAR(helix.tension() / t, 1, 1e-12);
+  EXPECT_NEAR(helix.moment() / m, 1, 1e-12);
+  EXPECT_NEAR(helix.shortening(), 0.03, 1e-12);
+  EXPECT_NEAR(helix.turning(), 27 * 2 * std::numbers::pi, 1e-9);
+}
+
+// Frames integrated along the Darboux vector. The rod is not endless: its clamp's frame
+// is off by the tilt there, 4 exp(-decay/2) sin(tilt/2) = 6.7e-4, and the other end's
+// tilt comes on top; cosines near 1 are off by half of the square of both.
+TEST(LocalisedHelix, CurvesAsItsForcesSay) {
+  const LocalisedHelix helix{std::numbers::pi / 3, 16, 1.5};
+  const Slope slope = [&](double s, const double* y, double* dy) {
+    const Vec e[] = {load3(y), load3(y + 3), load3(y + 6)};
+    const Vec k = helix.darboux(s);
+    const Vec omega = k.x * e[0] + k.y * e[1] + k.z * e[2];
+    for (int i = 0; i < 3; ++i) store3(cross(omega, e[i]), dy + 3 * i);
+    store3(e[0], dy + 9);
+  };
+  const double off = 4 * std::exp(-8) * std::sin(helix.largest_tilt / 2);
+  std::vector<double> y{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  y = integrate_scaled(slope, 0, 0.5, y);
+  EXPECT_NEAR(y[0], std::cos(helix.largest_tilt), 2 * off);
+  y = integrate_scaled(slope, 0.5, 1, y);
+  EXPECT_NEAR(y[9], 1 - helix.shortening(), 2 * off);
+  EXPECT_NEAR(std::hypot(y[10], y[11]), 0, 2 * off);
+  EXPECT_NEAR(y[0], 1, 2 * off * off);
+  EXPECT_NEAR(y[4], std::cos(helix.turning()), 2 * off);
+  EXPECT_NEAR(y[5], std::sin(helix.turning()), 2 * off);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// report.mjs RESULTS [--out FILE]: one self-contained page, one SVG per figure beside the
-// CSVs.
+// report.mjs RESULTS [--out FILE] [--no-figures]: one self-contained page, one SVG per
+// figure beside the CSVs.
 import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,20 +12,25 @@ import { scene_data_html } from './scenes_page.mjs';
 
 export const sources = TRESS_SOURCES;
 
-const usage = `usage: node report.mjs RESULTS [--out FILE]
-  RESULTS     directory that holds the CSV files; the SVG figures are written there
-  --out FILE  the page (default RESULTS/report.html)
+const usage = `usage: node report.mjs RESULTS [--out FILE] [--no-figures]
+  RESULTS       directory that holds the CSV files; the SVG figures are written there
+  --out FILE    the page (default RESULTS/report.html)
+  --no-figures  the page alone, which draws its own figures: no SVG
 example: node experiments/report/dist/report.mjs results/ --out results/report.html`;
 
 function options_of(argv) {
-  const options = { directory: undefined, out: undefined };
+  const options = { directory: undefined, out: undefined, figures: true };
   for (let i = 0; i < argv.length; ++i) {
     if (argv[i] === '--help' || argv[i] === '-h') return { help: true };
     if (argv[i] === '--out') {
       if (argv[i + 1] === undefined) throw new InputError('--out: no file given');
       options.out = argv[++i];
+    } else if (argv[i] === '--no-figures') {
+      options.figures = false;
     } else if (argv[i].startsWith('-')) {
-      throw new InputError(`${argv[i]}: unknown option; known are --out and --help`);
+      throw new InputError(
+        `${argv[i]}: unknown option; known are --out, --no-figures and --help`,
+      );
     } else if (options.directory === undefined) {
       options.directory = argv[i];
     } else {
@@ -78,7 +83,7 @@ export function page_html(template, tables, objects, scenes) {
 }
 
 async function main(argv) {
-  const { help, directory, out } = options_of(argv);
+  const { help, directory, out, figures } = options_of(argv);
   if (help) {
     console.log(usage);
     return;
@@ -90,8 +95,7 @@ async function main(argv) {
     fileURLToPath(new URL('./page.html', import.meta.url)),
     'utf8',
   );
-  const { render_figures } = await import('./render.mjs');
-  const drawn = await render_figures(objects);
+  const drawn = figures ? await (await import('./render.mjs')).render_figures(objects) : [];
   for (const { id, svg } of drawn) write(join(directory, `${id}.svg`), svg);
   write(out, page_html(template, tables, objects, scenes));
   console.error(

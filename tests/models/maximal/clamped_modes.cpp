@@ -1,32 +1,9 @@
 #include "tests/models/maximal/clamped_modes.h"
 
-// A source of its own: Eigen's decompositions take the compiler half a minute.
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "experiments/harness/dense_form.h"
+#include "experiments/validation/small_motions.h"
 
 namespace tress::testing_support {
-namespace {
-
-/// Gradients of the constraints, one a column (n x m).
-Eigen::MatrixXd dense_gradient(System& system, In q) {
-  const Layout layout = system.layout();
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(layout.coordinates, layout.constraints);
-  ConstraintForm* form = system.constraint_form();
-  if (form == nullptr) return g;
-  const Pattern& p = form->pattern();
-  std::vector<double> values(static_cast<std::size_t>(p.nonzeros()));
-  EXPECT_EQ(form->gradient(0, q, values), Status::ok);
-  for (int j = 0; j < p.cols; ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      g(p.row[at], j) = values[at];
-    }
-  }
-  return g;
-}
-
-}  // namespace
 
 Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
   SparseForm& form = *system.sparse_form();
@@ -45,30 +22,19 @@ Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
   return s;
 }
 
-Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
-      .eigenvalues();
-}
-
 std::vector<double> lowest_frequencies(std::string_view model,
                                        const ModelSettings& settings, int count) {
   const auto system = make_model(model, settings);
-  std::vector<double> q = zeros(*system), v = q;
+  std::vector<double> q = zeros(*system), v = q, typical = q;
   system->initial_state(q, v);
-  const Eigen::MatrixXd g = dense_gradient(*system, q);
-  const Eigen::MatrixXd basis =
-      Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(g).householderQ())
-          .rightCols(g.rows() - g.cols());
-  const Eigen::MatrixXd mass =
-      basis.transpose() * dense_tangent(*system, q, {1, 0, 0}) * basis;
-  const Eigen::MatrixXd stiffness =
-      basis.transpose() * dense_tangent(*system, q, {0, 0, 1}) * basis;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      mass, stiffness, Eigen::EigenvaluesOnly);
-  const Eigen::VectorXd& squares = modes.eigenvalues();  // ascending
+  system->scale(typical, v);
+  const Eigen::MatrixXd held = dense_gradient(*system, 0, q);
+  const std::vector<SmallMotion> motions =
+      small_motions(dense_mass(*system, 0, q), dense_stiffness(*system, 0, q), held,
+                    held.transpose(), typical);
   std::vector<double> frequencies;
-  for (int mode = 1; mode <= count; ++mode) {
-    frequencies.push_back(1 / std::sqrt(squares[squares.size() - mode]));
+  for (int mode = 0; mode < count; ++mode) {
+    frequencies.push_back(std::sqrt(motions[static_cast<std::size_t>(mode)].square));
   }
   return frequencies;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "experiments/harness/dense_algebra.h"
 #include "experiments/harness/fit.h"
 #include "models/input_error.h"
 #include "models/maximal/kirchhoff_nodal.h"
@@ -88,7 +89,8 @@ std::vector<double> squared_periods(int n) {
     }
   }
   EXPECT_LE((inverse - inverse.transpose()).norm(), 1e-8 * inverse.norm());
-  const Eigen::VectorXd ascending = eigenvalues((inverse + inverse.transpose()) / 2);
+  const Eigen::VectorXd ascending =
+      symmetric_eigenvalues((inverse + inverse.transpose()) / 2);
   return {ascending.data(), ascending.data() + n};
 }
 

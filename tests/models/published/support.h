@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <initializer_list>
 #include <memory>
@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "experiments/harness/dense_algebra.h"
 #include "models/catalogue.h"
 
 namespace tress {
@@ -105,7 +106,7 @@ inline Matrix tangent_of(System& system, const State& s, Weights w) {
     EXPECT_EQ(system.solve(in(unit), out(x)), Status::ok);
     inverse.col(j) = x;
   }
-  return inverse.inverse();
+  return solution(inverse, Matrix::Identity(n, n));
 }
 
 }  // namespace tress

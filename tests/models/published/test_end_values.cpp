@@ -54,8 +54,7 @@ class FirstOrder {
     kkt_.topRightCorner(n_, m_) = -gt;
     kkt_.bottomLeftCorner(m_, n_) = gt.transpose();
     right_ << -force_, -bias_;
-    lu_.compute(kkt_);
-    const Vector x = lu_.solve(right_);
+    const Vector x = solution(kkt_, right_);
     std::copy_n(x.data(), n_, a.data());
     lambda_ = x.tail(m_);
     return Status::ok;
@@ -67,7 +66,6 @@ class FirstOrder {
   Vector rest_, force_, mass_, gradient_, bias_, lambda_;
   Matrix kkt_;
   Vector right_;
-  Eigen::PartialPivLU<Matrix> lu_;
 };
 
 int gsl_rhs(double t, const double* y, double* y_dot, void* problem) {

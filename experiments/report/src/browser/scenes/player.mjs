@@ -117,7 +117,7 @@ export class Player {
       if (this.scene) this.go_to(Math.round(this.moment));
       return;
     }
-    if (this.moment >= this.scene.frames - 1) this.moment = 0;
+    if (this.moment >= this.scene.frames - 1) this.go_to(0);
     requestAnimationFrame((now) => this.#tick(now));
   }
 
