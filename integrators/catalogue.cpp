@@ -146,10 +146,8 @@ const IntegratorEntry& find_integrator(std::string_view id) {
     if (entry.id == id) return entry;
     ids.push_back(entry.id);
   }
-  const std::string_view near = nearest(id, ids);
   throw InputError("unknown integrator '" + std::string(id) + "'", "--integrators",
-                   near.empty() ? "--list shows the integrators"
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(id, ids, "--list shows the integrators"));
 }
 
 std::string refusal(const IntegratorEntry& entry, System& system,

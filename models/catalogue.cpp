@@ -82,10 +82,8 @@ const ModelEntry& find_model(std::string_view id) {
     if (entry.id == id) return entry;
     ids.push_back(entry.id);
   }
-  const std::string_view near = nearest(id, ids);
   throw InputError("unknown model '" + std::string(id) + "'", "--models",
-                   near.empty() ? "--list shows the models"
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(id, ids, "--list shows the models"));
 }
 
 }  // namespace tress

@@ -112,6 +112,13 @@ std::string_view nearest(std::string_view word,
   return best;
 }
 
+std::string suggestion(std::string_view word,
+                       std::span<const std::string_view> candidates,
+                       const std::string& otherwise) {
+  const std::string_view near = nearest(word, candidates);
+  return near.empty() ? otherwise : "did you mean '" + std::string(near) + "'?";
+}
+
 std::string Parameter::default_text() const {
   if (!choices.empty()) return std::string(choices.substr(0, choices.find('|')));
   if (text || rows || components > 1) return std::string(fallback);
@@ -143,10 +150,8 @@ std::size_t Parameters::index(std::string_view key, const std::string& where) co
   }
   std::vector<std::string_view> names;
   for (const Parameter& p : declared_) names.push_back(p.name);
-  const std::string_view near = nearest(key, names);
   throw InputError("unknown key '" + std::string(key) + "'", where,
-                   near.empty() ? "use one of: " + join(names)
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(key, names, "use one of: " + join(names)));
 }
 
 void Parameters::set(std::string_view key, std::string_view value) {

@@ -74,4 +74,9 @@ std::vector<std::string_view> words_of(std::string_view choices);
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates);
 
+/// What to do about an unknown word: "did you mean" the nearest, or `otherwise`.
+std::string suggestion(std::string_view word,
+                       std::span<const std::string_view> candidates,
+                       const std::string& otherwise);
+
 }  // namespace tress

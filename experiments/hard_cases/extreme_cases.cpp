@@ -63,7 +63,7 @@ void vanishing_segment(Strand& strand) {
 /// Height of the coil, which the motion is compared with.
 double coil_height(const Situation& s) {
   const Vec& n = s.strand.segments.front().natural;
-  return s.length * std::abs(n.x) / std::sqrt(dot(n, n));
+  return s.length * std::abs(n.x) / norm(n);
 }
 
 }  // namespace

@@ -61,8 +61,6 @@ class StretchGauge final : public Gauge {
   DriftMonitor drift_;
 };
 
-double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
-
 class MomentumGauge final : public Gauge {
  public:
   explicit MomentumGauge(const Situation& s)
@@ -212,7 +210,7 @@ void OverlapGauge::see(double t, In q, In) {
       if (arc_[j] - arc_[i] < separation_) continue;
       const StraightPiece piece(load3(&x_[3 * j]), load3(&x_[3 * j + 3]));
       const Vec gap = x - piece.at(piece.nearest(x));
-      nearest_ = std::min(nearest_, std::sqrt(dot(gap, gap)));
+      nearest_ = std::min(nearest_, norm(gap));
     }
   }
 }

@@ -134,10 +134,8 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
     }
   }
   if (only != "all" && std::ranges::find(names, only) == names.end()) {
-    const std::string_view near = nearest(only, names);
     throw InputError("unknown case '" + std::string(only) + "'", "--set case",
-                     near.empty() ? "use one of experiments/hard_cases"
-                                  : "did you mean '" + std::string(near) + "'?");
+                     suggestion(only, names, "use one of experiments/hard_cases"));
   }
   return grid;
 }

@@ -85,9 +85,8 @@ std::string help_text(const CLI::App& app, std::string_view name,
         std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
     const bool option = word.starts_with("--") && word.size() > 2;
     if (!option || std::find(known.begin(), known.end(), word) != known.end()) continue;
-    const std::string_view near = nearest(word, known);
     throw InputError(fmt::format("unknown option '{}'", word), "command line",
-                     near.empty() ? help : fmt::format("did you mean '{}'?", near));
+                     suggestion(word, known, help));
   }
   throw InputError(error.what(), "command line", help);
 }

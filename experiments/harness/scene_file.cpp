@@ -105,10 +105,9 @@ constexpr std::pair<std::string_view, Reader> readers[] = {
 [[noreturn]] void unknown_key(std::string_view name, const std::string& where) {
   std::vector<std::string_view> known{"settings"};
   for (const auto& [key, read] : readers) known.push_back(key);
-  const std::string_view near = nearest(name, known);
-  throw InputError(fmt::format("unknown key '{}'", name), where,
-                   near.empty() ? fmt::format("use one of: {}", fmt::join(known, ", "))
-                                : fmt::format("did you mean '{}'?", near));
+  throw InputError(
+      fmt::format("unknown key '{}'", name), where,
+      suggestion(name, known, fmt::format("use one of: {}", fmt::join(known, ", "))));
 }
 
 }  // namespace

@@ -24,10 +24,8 @@ void check_ids(const std::vector<std::string>& ids, std::span<const Entry> catal
   for (const Entry& entry : catalogue) known.push_back(entry.id);
   for (const std::string& id : ids) {
     if (std::find(known.begin(), known.end(), id) != known.end()) continue;
-    const std::string_view near = nearest(id, known);
     throw InputError(fmt::format("unknown {} '{}'", kind, id), where,
-                     near.empty() ? fmt::format("--list shows the {}s", kind)
-                                  : fmt::format("did you mean '{}'?", near));
+                     suggestion(id, known, fmt::format("--list shows the {}s", kind)));
   }
 }
 
@@ -97,10 +95,8 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
     if (!selected(line_, model)) continue;
     for (const Parameter& p : model.parameters) known.push_back(p.name);
   }
-  const std::string_view near = nearest(key, known);
-  throw InputError(
-      fmt::format("unknown key '{}'", key), where,
-      near.empty() ? "--list shows the keys" : fmt::format("did you mean '{}'?", near));
+  throw InputError(fmt::format("unknown key '{}'", key), where,
+                   suggestion(key, known, "--list shows the keys"));
 }
 
 }  // namespace tress

@@ -122,10 +122,8 @@ const StrandScene& find_strand_scene(std::string_view name) {
     if (scene.name == name) return scene;
     names.push_back(scene.name);
   }
-  const std::string_view near = nearest(name, names);
   throw InputError("unknown scene '" + std::string(name) + "'", "strand scenes",
-                   near.empty() ? "--list shows the scenes"
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(name, names, "--list shows the scenes"));
 }
 
 State perturbed_start(System& system) {
@@ -154,7 +152,7 @@ double strand_speed_bound(const Parameters& parameters, double t_end) {
   const Strand made = strand(parameters);
   const double length = made.length();
   const Vec gravity{0, 0, -parameters.number("gravity_m_s2")};
-  const auto size = [](const Vec& x) { return std::sqrt(dot(x, x)); };
+  const auto size = [](const Vec& x) { return norm(x); };
   constexpr int samples = 20'000;  // of a smooth motion, midpoint rule
   const double dt = t_end / samples;
   double pushed = 0, turned = 0, omega_max = 0;

@@ -33,7 +33,7 @@ Vec Swing::gravity(double t) {
 double Swing::clamp(double t) { return amplitude * (1 - std::cos(omega * t)); }
 
 Vec rotation_vector(double w, const Vec& xyz) {
-  const double sine = std::sqrt(dot(xyz, xyz));
+  const double sine = norm(xyz);
   if (sine == 0) return {};
   const double angle = 2 * std::atan2(w < 0 ? -sine : sine, std::abs(w));
   return (angle / sine) * xyz;

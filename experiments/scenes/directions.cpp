@@ -8,6 +8,7 @@
 namespace tress {
 namespace {
 
+// Of any numbers that a user may write, 1e200 among them.
 double size(const Vec& x) { return std::hypot(x.x, x.y, x.z); }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "experiments/scenes/random.h"
@@ -13,8 +12,6 @@ namespace tress {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
 
 /// From 0 to 1 with flat ends, for y from 0 to 1.
 double smooth(double y) {
@@ -55,7 +52,7 @@ struct Nearest {
   Nearest(std::span<const Vec> guide_roots, const Vec& root) {
     distance.fill(infinity);
     for (std::size_t g = 0; g < guide_roots.size(); ++g) {
-      const double d = length(root - guide_roots[g]);
+      const double d = norm(root - guide_roots[g]);
       if (!(d < distance[n - 1])) continue;
       std::size_t k = n - 1;
       for (; k > 0 && d < distance[k - 1]; --k) {
@@ -98,7 +95,7 @@ void carry(std::span<const Vec> guide, const Frame& head, std::span<Frame> carri
   Vec before;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec along = guide[std::min(i + 1, n - 1)] - guide[i > 0 ? i - 1 : 0];
-    const double size = length(along);
+    const double size = norm(along);
     carried[i] = i > 0 ? carried[i - 1] : head;
     if (!(size > 0)) continue;
     const Vec tangent = (1 / size) * along;
@@ -206,8 +203,7 @@ void GuideHair::grow(std::span<const Vec> guides, const Frame& head,
     std::array<double, 3> weight{};
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double apart =
-          length(guides[near.guide[k] * n + n - 1] - guides[own + n - 1]);
+      const double apart = norm(guides[near.guide[k] * n + n - 1] - guides[own + n - 1]);
       sum += weight[k] =
           near.weight[k] * (1 - smooth(2 * apart / options_.tip_limit - 1));
     }

@@ -35,8 +35,8 @@ ScaleNumbers scale_numbers(const Scene& scene) {
   for (const auto& effect : make_effects(scene)) {
     if (const auto g = effect->uniform_acceleration()) fall = fall + *g;
   }
-  return {std::sqrt(dot(fall, fall)) * scale,
-          rms_root_acceleration(scene, strand.root) * scale, moduli.x / bending};
+  return {norm(fall) * scale, rms_root_acceleration(scene, strand.root) * scale,
+          moduli.x / bending};
 }
 
 double load_over_weight(const Scene& scene, std::string_view effect) {

@@ -18,8 +18,6 @@ constexpr double least = 1e-9;        // m between two points
 constexpr std::size_t most = 10'000;  // points
 constexpr int fine = 16;  // steps of a numerical integral between two points or joints
 
-double size(const Vec& x) { return std::hypot(x.x, x.y, x.z); }
-
 /// Natural cubic splines of the three components over the length of the polyline.
 class Curve {
  public:
@@ -32,7 +30,7 @@ class Curve {
     std::array<std::vector<double>, 3> x;
     for (std::size_t i = 0; i < n; ++i) {
       const Vec step = i == 0 ? Vec{} : load3(&points[3 * i]) - load3(&points[3 * i - 3]);
-      u_.push_back(i == 0 ? 0 : u_.back() + size(step));
+      u_.push_back(i == 0 ? 0 : u_.back() + norm(step));
       if (i > 0 && !(u_[i] - u_[i - 1] >= least)) {
         throw InputError("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
                              " are less than 1 nm apart",
@@ -51,7 +49,7 @@ class Curve {
   Vec rate(double u) const { return by(gsl_spline_eval_deriv, u); }
   Vec tangent(double u) const {
     const Vec r = rate(u);
-    return 1 / size(r) * r;
+    return 1 / norm(r) * r;
   }
 
  private:
@@ -83,8 +81,8 @@ struct Lengths {
     }
     u.push_back(knots.back());
     for (std::size_t i = 1; i < u.size(); ++i) {
-      const double middle = size(curve.rate((u[i - 1] + u[i]) / 2));
-      const double ends = size(curve.rate(u[i - 1])) + size(curve.rate(u[i]));
+      const double middle = norm(curve.rate((u[i - 1] + u[i]) / 2));
+      const double ends = norm(curve.rate(u[i - 1])) + norm(curve.rate(u[i]));
       s.push_back(s.back() + (u[i] - u[i - 1]) * (ends + 4 * middle) / 6);
     }
   }
@@ -111,7 +109,7 @@ Vec carried(const Vec& e1, const Vec& step, const Vec& tangent, const Vec& next)
 Vec turn(const Frame& f, const Frame& g) {
   Quaternion q = quaternion_of({f.back(g.e0), f.back(g.e1), f.back(g.e2)});
   if (q.w < 0) q = -1.0 * q;
-  const double sine = size(q.v);
+  const double sine = norm(q.v);
   return sine > 0 ? 2 * std::atan2(sine, q.w) / sine * q.v : Vec{};
 }
 

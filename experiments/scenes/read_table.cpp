@@ -87,10 +87,9 @@ std::string value_text(const Parameter& p, const toml::node& node,
                               const std::string& where) {
   std::vector<std::string_view> known(nested.begin(), nested.end());
   for (const Parameter& p : declared) known.push_back(p.name);
-  const std::string_view near = nearest(key, known);
-  throw InputError(fmt::format("unknown key '{}' in {}", one_line(key), name), where,
-                   near.empty() ? fmt::format("use one of: {}", fmt::join(known, ", "))
-                                : fmt::format("did you mean '{}'?", near));
+  throw InputError(
+      fmt::format("unknown key '{}' in {}", one_line(key), name), where,
+      suggestion(key, known, fmt::format("use one of: {}", fmt::join(known, ", "))));
 }
 
 }  // namespace

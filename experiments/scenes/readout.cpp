@@ -22,12 +22,10 @@ void lump(const Strand& strand, std::vector<double>& mass, std::vector<double>& 
   }
 }
 
-double length_of(const Vec& x) { return std::sqrt(dot(x, x)); }
-
 /// Of the circle that turns from one chord into the next over half of each.
 double curvature(const Vec& a, const Vec& b) {
-  const double la = length_of(a), lb = length_of(b);
-  const double angle = std::atan2(length_of(cross(a, b)), dot(a, b));
+  const double la = norm(a), lb = norm(b);
+  const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
   return la + lb > 0 ? 2 * std::tan(angle / 2) / ((la + lb) / 2) : 0;
 }
 
@@ -168,7 +166,7 @@ void Readout::read_points(World& world, Frame3d& frame) {
       const double bent =
           points < 3 ? 0
                      : curvature(at(inner) - at(inner - 1), at(inner + 1) - at(inner));
-      const double speed = length_of(load3(&u[3 * drawn_[first + i]]));
+      const double speed = norm(load3(&u[3 * drawn_[first + i]]));
       frame.channels[first + i] = static_cast<float>(bent);
       frame.channels[drawn_.size() + first + i] = static_cast<float>(speed);
       frame.fastest = std::isfinite(speed) ? std::max(frame.fastest, speed) : speed;
@@ -198,7 +196,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
   for (std::size_t i = 0; i < points; ++i) {
     const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, points - 1);
     const Vec d = load3(&x[3 * to]) - load3(&x[3 * from]);
-    store3((1 / length_of(d)) * d, &tangent_[3 * i]);
+    store3((1 / norm(d)) * d, &tangent_[3 * i]);
   }
   const Points p{static_cast<int>(points), x, u, tangent_, mass_[k], length_[k]};
   std::vector<double> load(3 * points);
@@ -208,7 +206,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     effect.add_load(world.time(), p, load);
     for (std::size_t i = 0; i < points; ++i) {
       frame.channels[channel * count + first + i] =
-          static_cast<float>(length_of(load3(&load[3 * i])) / length_[k][i]);
+          static_cast<float>(norm(load3(&load[3 * i])) / length_[k][i]);
     }
     ++channel;
   };

@@ -1,6 +1,5 @@
 #include "experiments/scenes/strand_table.h"
 
-#include <cmath>
 #include <iterator>
 #include <numbers>
 #include <string>
@@ -93,7 +92,7 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
                               straight ? uniform_shape({}) : Shape{});
   for (const Segment& segment : strand.segments) {
     const Vec& darboux = segment.natural;
-    const double turns = std::sqrt(dot(darboux, darboux)) * segment.length / turn;
+    const double turns = norm(darboux) * segment.length / turn;
     if (turns <= most_turns) continue;
     throw InputError("an element winds by " + std::to_string(turns) + " turns",
                      table.place(),

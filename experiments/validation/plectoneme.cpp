@@ -144,7 +144,7 @@ Ply ply(std::span<const double> x, double apart, double separation, double reach
       const Vec from = load3(&x[3 * j]), edge = load3(&x[3 * j + 3]) - from;
       const double at = std::clamp(dot(here - from, edge) / dot(edge, edge), 0.0, 1.0);
       const Vec gap = from + at * edge - here;
-      const double distance = std::sqrt(dot(gap, gap));
+      const double distance = norm(gap);
       if (distance < nearest) {
         nearest = distance;
         edge_of_it = j;

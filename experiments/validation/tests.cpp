@@ -39,10 +39,8 @@ const ValidationTest& find_validation_test(std::string_view name) {
     if (test.name == name) return test;
     names.push_back(test.name);
   }
-  const std::string_view near = nearest(name, names);
   throw InputError("unknown test '" + std::string(name) + "'", "--set tests",
-                   near.empty() ? "leave it out to run all of them"
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(name, names, "leave it out to run all of them"));
 }
 
 }  // namespace tress

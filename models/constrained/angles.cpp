@@ -18,8 +18,8 @@ struct Cosine {
 };
 
 Cosine cosine_of(Vec u, Vec v) {
-  const double lu = std::sqrt(dot(u, u));
-  const double lv = std::sqrt(dot(v, v));
+  const double lu = norm(u);
+  const double lv = norm(v);
   double p[3], q[3];  // unit vectors
   store3((1 / lu) * u, p);
   store3((1 / lv) * v, q);

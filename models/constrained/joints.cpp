@@ -74,7 +74,7 @@ std::unique_ptr<Constraint> across(Node x, Node vertex, Node c, double length) {
 }
 
 std::unique_ptr<Constraint> point_on_plane(Node x, Node origin, Vec normal) {
-  const double size = std::sqrt(dot(normal, normal));
+  const double size = norm(normal);
   if (!std::isfinite(size) || size == 0) {
     throw InputError("normal has no direction", "constraint point_on_plane",
                      "give three finite numbers, not all zero");

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double alignment = 1e-9;  // relative error of a frame given by the caller
 
-double norm(Vec a) { return std::sqrt(dot(a, a)); }
-
 /// Unit axes along a, b and a x b. Throws unless a and b are orthogonal and not zero.
 std::array<Vec, 3> frame(Vec a, Vec b, const char* who) {
   const double size = norm(a) * norm(b);

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double consistency = 1e-9;  // relative error allowed in an initial state
 
-double norm(Vec a) { return std::sqrt(dot(a, a)); }
-
 /// Largest distance from the first particle, 1 m for a lone one.
 double extent_of(const ParticleScene& scene) {
   if (scene.particles.empty()) {

@@ -66,7 +66,7 @@ struct Builder {
   }
   double gap(Node a, Node b) const {
     const Vec d = place(a) - place(b);
-    return std::sqrt(dot(d, d));
+    return norm(d);
   }
   void bar(Node a, Node b) { scene.constraints.push_back(distance(a, b, gap(a, b))); }
 };

@@ -77,7 +77,7 @@ struct AnisotropicAirLaw {
     const Vec t = load3(&p.tangent[3 * i]);
     const double along = dot(u, t);
     const Vec across = u - along * t;
-    const double speed = std::sqrt(dot(across, across));
+    const double speed = norm(across);
     return -p.length[i] *
            (normal.value(speed) * across + (tangential * std::abs(along) * along) * t);
   }
@@ -85,7 +85,7 @@ struct AnisotropicAirLaw {
     const Vec t = load3(&p.tangent[3 * i]);
     const double along = dot(u, t);
     const Vec across = u - along * t;
-    const double speed = std::sqrt(dot(across, across));
+    const double speed = norm(across);
     const Mat3 tt = outer(t, t);
     Mat3 slope =
         normal.value(speed) * (identity() - tt) + (2 * tangential * std::abs(along)) * tt;

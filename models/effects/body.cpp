@@ -94,7 +94,7 @@ BodyShape make_shape(const Parameters& parameters) {
 }
 
 Frame turned_by(const Vec& turn) {
-  const double angle = std::sqrt(dot(turn, turn));
+  const double angle = norm(turn);
   return angle > 0 ? rotation((1 / angle) * turn, angle) : Frame{};
 }
 

@@ -89,7 +89,7 @@ struct BodyContact {
       cushion_slope = start;
       normal_load = law.stiffness * depth * steepness * cushion;
       slide = u - speed_away * n;
-      const double y = std::sqrt(dot(slide, slide));
+      const double y = norm(slide);
       if (y >= law.slip) {
         grip = 1 / y;
         grip_slope = -1 / (y * y * y);

@@ -9,7 +9,7 @@ namespace {
 
 /// The distance from a point, and upwards at the point itself.
 Distance from_point(const Vec& arm, double radius) {
-  const double r = std::sqrt(dot(arm, arm));
+  const double r = norm(arm);
   return {r - radius, r > 0 ? (1 / r) * arm : Vec{0, 0, 1}};
 }
 
@@ -78,13 +78,13 @@ Ellipsoid::Nearest Ellipsoid::nearest(const Vec& x) const {
   // stand above and below.
   if (s == 0) normal[least] = std::sqrt(std::max(0.0, -g)) / a[least];
   const Vec n{normal[0], normal[1], normal[2]};
-  const double length = std::sqrt(dot(n, n));
+  const double length = norm(n);
   return {(s - shift) * length, (1 / length) * n, length};
 }
 
 double Ellipsoid::at_least(const Vec& x) const {
   const Vec scaled{x.x / a_.x, x.y / a_.y, x.z / a_.z};
-  return std::min({a_.x, a_.y, a_.z}) * (std::sqrt(dot(scaled, scaled)) - 1);
+  return std::min({a_.x, a_.y, a_.z}) * (norm(scaled) - 1);
 }
 
 Distance Ellipsoid::distance(const Vec& x) const {

@@ -41,10 +41,8 @@ const EffectEntry& find_effect(std::string_view id, const std::string& where) {
   std::string all;
   for (const std::string_view one : ids)
     all += (all.empty() ? "" : ", ") + std::string(one);
-  const std::string_view near = nearest(id, ids);
-  throw InputError(
-      "unknown effect '" + std::string(id) + "'", where,
-      near.empty() ? "use one of: " + all : "did you mean '" + std::string(near) + "'?");
+  throw InputError("unknown effect '" + std::string(id) + "'", where,
+                   suggestion(id, ids, "use one of: " + all));
 }
 
 }  // namespace tress

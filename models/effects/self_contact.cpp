@@ -101,7 +101,7 @@ void SelfContact::each_contact(const Points& p, F of_contact) const noexcept {
   double stride = 0;
   for (Edge edge = first_edge(p); edge.j < p.length.size(); edge = edge_after(p, edge)) {
     const Vec e = load3(&p.x[3 * edge.j]) - load3(&p.x[3 * edge.i]);
-    stride = std::max(stride, std::sqrt(dot(e, e)));
+    stride = std::max(stride, norm(e));
   }
   for (Edge edge = first_edge(p); edge.j < p.length.size(); edge = edge_after(p, edge)) {
     const Vec start = load3(&p.x[3 * edge.i]), end = load3(&p.x[3 * edge.j]);

@@ -86,7 +86,7 @@ std::unique_ptr<const Effect> in_wind(const Law& law, const Parameters& paramete
 /// Of law = force, as a force per length and velocity.
 StandingAirLaw standing_law(const Parameters& parameters) {
   const Vec velocity = parameters.vec("velocity_m_s");
-  const double speed = std::sqrt(dot(velocity, velocity));
+  const double speed = norm(velocity);
   if (!(speed > 0)) {
     throw InputError("velocity_m_s is 0", "effect wind, law = force",
                      "give the direction of the force as a velocity that is not 0");

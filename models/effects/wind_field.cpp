@@ -25,7 +25,7 @@ class Dice {
   std::mt19937_64 bits_;
 };
 
-Vec unit(const Vec& a) { return (1 / std::sqrt(dot(a, a))) * a; }
+Vec unit(const Vec& a) { return (1 / norm(a)) * a; }
 
 /// A direction across k, all alike probable.
 Vec across(Dice& dice, const Vec& k) {

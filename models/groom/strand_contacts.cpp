@@ -15,7 +15,7 @@ StrandContacts::StrandContacts(const ContactLaw& law, std::vector<int> points, I
   grid_.update(x);
   for (int i = 0; i < static_cast<int>(grid_.segments()); ++i) {
     const Vec edge = grid_.piece(i).edge;
-    const double length = std::sqrt(dot(edge, edge));
+    const double length = norm(edge);
     const int count = std::max(1, static_cast<int>(std::ceil(2 * length / law.inner())));
     samples_.push_back({count, length / count});
   }

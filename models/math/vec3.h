@@ -38,6 +38,8 @@ struct Vec3 {
 
 using Vec = Vec3<double>;
 
+inline double norm(const Vec& a) { return std::sqrt(dot(a, a)); }
+
 inline bool is_finite(const Vec& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }

@@ -5,7 +5,7 @@ namespace tress {
 /// With t = e/|e|, dt/de = (1 - t t^T)/|e|.
 void CordeEdge::gradient(const double* x, double (&g)[strains][coordinates]) const {
   const Vec e = load3(x);
-  const double now = std::sqrt(dot(e, e));
+  const double now = norm(e);
   double t[3], slope[3][4];
   store3((1 / now) * e, t);
   axis_gradient(load_quaternion(x + 3), slope);
@@ -27,7 +27,7 @@ void CordeEdge::gradient(const double* x, double (&g)[strains][coordinates]) con
 void CordeEdge::add_second(const double* x, const double* stress,
                            double (&h)[coordinates][coordinates]) const {
   const Vec e = load3(x);
-  const double now = std::sqrt(dot(e, e));
+  const double now = norm(e);
   const Vec direction = (1 / now) * e, s = load3(stress + 1);
   const double along = dot(s, direction);
   double t[3], off[3];

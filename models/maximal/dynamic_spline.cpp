@@ -73,8 +73,8 @@ std::vector<SplineElasticity::Point> stretching(const Strand& strand,
          gauss_legendre(stretch_points(i, spline.spans()), spline.length(i))) {
       const CubicSpline::Basis basis = spline.at(i, along);
       const Vec first = of_controls(basis.first, &natural[3 * i]);
-      points.push_back({i, basis.first, basis.second, stiffness * weight, 0,
-                        std::sqrt(dot(first, first))});
+      points.push_back(
+          {i, basis.first, basis.second, stiffness * weight, 0, norm(first)});
     }
   }
   return points;

@@ -120,7 +120,7 @@ bool MaximalSystem::stretch(double t, In q, double& relative) {
   relative = strand_.elasticity->stretch(placement());
   for (std::size_t i = 0; i < strand_.edges.size(); ++i) {
     const Vec e = load3(&z_[3 * i + 3]) - load3(&z_[3 * i]);
-    relative = std::max(relative, std::abs(std::sqrt(dot(e, e)) / strand_.edges[i] - 1));
+    relative = std::max(relative, std::abs(norm(e) / strand_.edges[i] - 1));
   }
   return true;
 }

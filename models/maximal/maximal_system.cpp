@@ -1,7 +1,6 @@
 #include "models/maximal/maximal_system.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "integrators/linear/finite.h"
@@ -134,7 +133,7 @@ Points MaximalSystem::points(Needs wanted) noexcept {
       const std::size_t from = i == 0 ? 0 : i - 1;
       const std::size_t to = std::min(i + 1, mass_.size() - 1);
       const Vec d = load3(&x_[3 * to]) - load3(&x_[3 * from]);
-      store3((1 / std::sqrt(dot(d, d))) * d, &tangent_[3 * i]);
+      store3((1 / norm(d)) * d, &tangent_[3 * i]);
     }
     p.tangent = tangent_;
   }

@@ -32,7 +32,7 @@ struct EdgeTurn {
   EdgeTurn() = default;
   EdgeTurn(const Vec& reference_tangent, const Vec& e)
       : a(reference_tangent),
-        length(std::sqrt(dot(e, e))),
+        length(norm(e)),
         t((1 / length) * e),
         c((1 / (length * (1 + dot(a, t)))) * cross(t, a)) {}
 

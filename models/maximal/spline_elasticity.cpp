@@ -103,7 +103,7 @@ double SplineElasticity::stretch(const Placement& p) noexcept {
   double most = 0;
   for (const Point& point : points_) {
     const Vec a = of_controls(point.first, &p.z[3 * point.span]);
-    most = std::max(most, std::abs(std::sqrt(dot(a, a)) / point.length - 1));
+    most = std::max(most, std::abs(norm(a) / point.length - 1));
   }
   return most;
 }

@@ -186,7 +186,7 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   double winding = 0;
   for (const Segment& segment : strand.segments) {
     for (const Vec& shape : {segment.natural, segment.initial}) {
-      winding = std::max(winding, segment.length * std::sqrt(dot(shape, shape)));
+      winding = std::max(winding, segment.length * norm(shape));
     }
   }
   const int points = options.quadrature > 0 ? options.quadrature

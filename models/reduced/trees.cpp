@@ -21,7 +21,6 @@ constexpr Vec up{0, 0, 1};
 const double golden_angle = pi * (3 - std::sqrt(5.0));  // rad, between successive shoots
 
 constexpr double radians(double degrees) { return degrees * pi / 180; }
-double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
 
 /// exp([turn]x): turns by |turn| (rad) about its direction.
 Frame turned_by(const Vec& turn) {
@@ -278,10 +277,8 @@ const TreeEntry& find_tree(std::string_view name) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  const std::string_view near = nearest(name, names);
   throw InputError("unknown tree '" + std::string(name) + "'", "tree",
-                   near.empty() ? "use one of " + std::string(tree_choices)
-                                : "did you mean '" + std::string(near) + "'?");
+                   suggestion(name, names, "use one of " + std::string(tree_choices)));
 }
 
 }  // namespace

@@ -56,11 +56,11 @@ TEST(StrandScenes, LongestStepsMeetTheDrive) {
     double met = 0, most = 0;
     for (int i = 1; i * step < scene.t_end; ++i) {
       const Vec a = root.at(i * step).a;
-      met = std::max(met, std::sqrt(dot(a, a)));
+      met = std::max(met, norm(a));
     }
     for (double t = 0; t < scene.t_end; t += 1e-4) {
       const Vec a = root.at(t).a;
-      most = std::max(most, std::sqrt(dot(a, a)));
+      most = std::max(most, norm(a));
     }
     EXPECT_GE(met, 0.5 * most) << scene.name;
   }

@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-double size(const Vec& x) { return std::sqrt(dot(x, x)); }
-
 std::vector<Strand> groomed(const std::string& keys, int seed = 1) {
   const std::string text =
       "title = \"t\"\nseed = " + std::to_string(seed) + "\n[groom]\n" + keys;
@@ -35,7 +33,7 @@ TEST(Groom, PutsRootsOnTheHeadWithinTheHairline) {
   for (const Strand& strand : groomed("centre_m = [1, 2, 3]\ncount = 300\n")) {
     const Vec x = strand.root.position - Vec{1, 2, 3};
     const Vec u{x.x / 0.1, x.y / 0.08, x.z / 0.12};
-    EXPECT_NEAR(size(u), 1, 1e-13);
+    EXPECT_NEAR(norm(u), 1, 1e-13);
     EXPECT_GE(dot(u, Vec{-0.4, 0, 1}) / std::hypot(0.4, 1), std::cos(1.3) - 1e-12);
   }
 }
@@ -56,7 +54,7 @@ TEST(Groom, GivesEqualAreasEqualNumbersOfRoots) {
   for (std::size_t i = 0; i < strands.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       nearest =
-          std::min(nearest, size(strands[i].root.position - strands[j].root.position));
+          std::min(nearest, norm(strands[i].root.position - strands[j].root.position));
     }
   }
   // Side of the square that a root has to itself.
@@ -97,8 +95,8 @@ TEST(Groom, CombsDownAndAwayFromTheParting) {
   for (std::size_t i = 0; i < plain.size(); ++i) {
     const Vec x = plain[i].root.position;
     const Vec normal{x.x / 0.01, x.y / 0.0064, x.z / 0.0144};
-    EXPECT_NEAR(dot(plain[i].root.frame.e0, normal) / size(normal), 1, 1e-12);
-    EXPECT_NEAR(dot(down[i].root.frame.e0, normal) / size(normal), std::cos(1.0), 1e-12);
+    EXPECT_NEAR(dot(plain[i].root.frame.e0, normal) / norm(normal), 1, 1e-12);
+    EXPECT_NEAR(dot(down[i].root.frame.e0, normal) / norm(normal), std::cos(1.0), 1e-12);
     EXPECT_LT(down[i].root.frame.e0.z, plain[i].root.frame.e0.z);
     if (x.y == 0) continue;  // on the parting, combed straight down
     const double side = std::copysign(1.0, x.y);

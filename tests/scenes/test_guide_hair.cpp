@@ -15,8 +15,7 @@ namespace {
 constexpr std::size_t points = 11;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-double apart(const Vec& a, const Vec& b) { return length(a - b); }
+double apart(const Vec& a, const Vec& b) { return norm(a - b); }
 
 /// Guides that hang in curls from random places of a patch of 10 cm x 10 cm.
 struct Groom {
@@ -256,8 +255,8 @@ TEST(ScatterRoots, LieBetweenTheGuides) {
   std::vector<int> own(guides.size());
   const GuideHair hair(guides, roots, 2, {});
   for (std::size_t h = 0; h < roots.size(); ++h) {
-    EXPECT_LE(length(roots[h]), 0.1 * (1 + 2 * eps));
-    EXPECT_GE(length(roots[h]), 0.1 - edge * edge / 0.6);
+    EXPECT_LE(norm(roots[h]), 0.1 * (1 + 2 * eps));
+    EXPECT_GE(norm(roots[h]), 0.1 - edge * edge / 0.6);
     ++own[hair.neighbours(h).guide[0]];
   }
   EXPECT_THAT(own, testing::Each(testing::Gt(0)));
@@ -271,7 +270,7 @@ TEST(ScatterRoots, LieBetweenTheGuides) {
 TEST(ScatterRoots, OfOneGuideAreItsOwnAndOfTwoLieBetween) {
   const std::vector<Vec> two{{0, 0, 0}, {1, 0, 0}};
   for (const Vec& root : scatter_roots(std::span(two).first(1), 5, 1)) {
-    EXPECT_EQ(length(root), 0);
+    EXPECT_EQ(norm(root), 0);
   }
   for (const Vec& root : scatter_roots(two, 100, 1)) {
     EXPECT_GE(root.x, 0);

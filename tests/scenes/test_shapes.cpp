@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-double size(const Vec& x) { return std::sqrt(dot(x, x)); }
-
 Strand through(const std::vector<double>& points, int elements, PointCurve& curve) {
   curve = through_points(points, elements, 1, {0, 1, 0}, "test");
   return make_strand({}, {}, {elements, curve.length, 1}, curve.shape);
@@ -37,7 +35,7 @@ TEST(Points, OfACircleHaveItsCurvature) {
   const Strand strand = through(points, 10, curve);
   EXPECT_NEAR(curve.length, pi * radius, 1e-3 * curve.length);
   for (std::size_t i = 2; i < 8; ++i) {
-    EXPECT_NEAR(size(strand.segments[i].natural), 1 / radius, 1e-3 / radius);
+    EXPECT_NEAR(norm(strand.segments[i].natural), 1 / radius, 1e-3 / radius);
     EXPECT_NEAR(strand.segments[i].natural.y, -1 / radius, 1e-3 / radius);
   }
 }
@@ -53,7 +51,7 @@ double tip_error(int elements) {
   PointCurve curve;
   const Strand strand = through(points, elements, curve);
   const auto places = joints(strand, ShapeOf::natural, {curve.position, curve.frame});
-  return size(places.back().x - load3(&points[1200]));
+  return norm(places.back().x - load3(&points[1200]));
 }
 
 TEST(Points, AreMetToSecondOrderInTheElements) {
@@ -127,14 +125,14 @@ frequency_hz = 0.25
                                   "t.toml");
   const RootMotion& root = scene.strands.front().root;
   const RootPose start = root.at(0), end = root.at(1);  // a quarter of a turn
-  EXPECT_LE(size(start.x - Vec{0.1, 0, 0.2}), 1e-16);
-  EXPECT_LE(size(start.frame.e0 - Vec{0, 0, -1}), 1e-16);
-  EXPECT_LE(size(start.frame.e1 - Vec{1, 0, 0}), 1e-15);
-  EXPECT_LE(size(end.x - Vec{0, 0.1, 0.2}), 1e-15);
-  EXPECT_LE(size(end.frame.e1 - Vec{0, 1, 0}), 1e-15);
+  EXPECT_LE(norm(start.x - Vec{0.1, 0, 0.2}), 1e-16);
+  EXPECT_LE(norm(start.frame.e0 - Vec{0, 0, -1}), 1e-16);
+  EXPECT_LE(norm(start.frame.e1 - Vec{1, 0, 0}), 1e-15);
+  EXPECT_LE(norm(end.x - Vec{0, 0.1, 0.2}), 1e-15);
+  EXPECT_LE(norm(end.frame.e1 - Vec{0, 1, 0}), 1e-15);
   // head takes what is at rest at x to position + frame x.
   const RootPose head = scene.head.at(1);
-  EXPECT_LE(size(head.x + head.frame * Vec{0.1, 0, 0.2} - end.x), 1e-15);
+  EXPECT_LE(norm(head.x + head.frame * Vec{0.1, 0, 0.2} - end.x), 1e-15);
 }
 
 TEST(Roots, OfAHeadAreFreeAfterTheLastPeriod) {

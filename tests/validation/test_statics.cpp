@@ -48,7 +48,7 @@ TEST_P(Rods, HoldAPlaceByTheForceThatLeadsThere) {
   held.hold_at(free.tip());
   held.relax(1);
   const Vec away = held.tip() - free.tip();
-  EXPECT_LE(std::sqrt(dot(away, away)), 1e-9 * rod.length);
+  EXPECT_LE(norm(away), 1e-9 * rod.length);
   const std::vector<double> found = held.holding();
   const double wanted[3] = {force.x, force.y, force.z};
   for (std::size_t k = 0; k < 3; ++k) {

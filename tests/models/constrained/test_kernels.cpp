@@ -17,7 +17,7 @@ using testing::variable2;
 // operations on numbers of size `size`: 1e3 eps = 2e-13, kept at 1e-12.
 constexpr double rounding = 1e-12;
 
-Vec unit(Vec a) { return (1 / std::sqrt(dot(a, a))) * a; }
+Vec unit(Vec a) { return (1 / norm(a)) * a; }
 
 const Vec e1 = unit({1, 2, -1});
 const Vec e2 = unit(cross(e1, {0.3, -1, 2}));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -24,7 +23,7 @@ struct Cloud {
     for (std::size_t i = 0; i < count; ++i) {
       const double speed = i % 4 == 0 ? 0.1 : 3;
       const Vec t{draw(), draw(), draw()};
-      const Vec unit = (1 / std::sqrt(dot(t, t))) * t;
+      const Vec unit = (1 / norm(t)) * t;
       for (int k = 0; k < 3; ++k) {
         x.push_back(draw());
         v.push_back(i % 8 == 1 ? 0 : speed * draw());

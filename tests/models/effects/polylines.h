@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <random>
 #include <vector>
 
@@ -26,7 +25,7 @@ struct Polylines {
         append(at, x);
         append(drift + 0.3 * speed * random_vec(), v);
         along = along + 0.5 * random_vec();
-        at = at + (edge / std::sqrt(dot(along, along))) * along;
+        at = at + (edge / norm(along)) * along;
       }
     }
   }

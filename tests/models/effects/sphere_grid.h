@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -26,7 +25,7 @@ inline DistanceGrid::Samples sphere_samples(double radius, double edge, std::siz
     for (std::size_t j = 0; j < n; ++j) {
       for (std::size_t i = 0; i < n; ++i) {
         const Vec x{at(i), at(j), at(k)};
-        s.value.push_back(std::sqrt(dot(x, x)) - radius);
+        s.value.push_back(norm(x) - radius);
       }
     }
   }

@@ -195,7 +195,7 @@ TEST(Gusts, AreCarriedByTheWind) {
   const double t = 0.9;
   for (const Vec& x : {Vec{0, 0, 0}, Vec{0.1, 0.5, -0.3}}) {
     const Vec d = gusts.velocity(t, x + t * mean) - gusts.velocity(0, x);
-    EXPECT_LE(std::sqrt(dot(d, d)), most_speed * (10 * t / 1e9 + 4 * 150 * eps));
+    EXPECT_LE(norm(d), most_speed * (10 * t / 1e9 + 4 * 150 * eps));
   }
 }
 

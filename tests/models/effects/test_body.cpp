@@ -22,8 +22,6 @@ constexpr double per_length = 0.01;  // kg/m
 constexpr double stiffness = 1000;   // N/m^2
 constexpr double radius = 1e-3;      // m, of the strand
 
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-
 const Gravity gravity({0, 0, -g});
 
 // w^2 = k/(rho A), w = 316/s; critically damped, so that 0.2 s leave (1 + 63) exp(-63) of
@@ -124,16 +122,16 @@ TEST(Body, NeverPullsAndKeepsToTheFrictionCone) {
   int touching = 0;
   for (std::size_t i = 0; i < cloud.count(); ++i) {
     const Vec x = load3(&cloud.x[3 * i]), force = load3(&f[3 * i]);
-    const bool inside = length(x) < 0.8;
+    const bool inside = norm(x) < 0.8;
     if (!inside) {
-      EXPECT_EQ(length(force), 0);
+      EXPECT_EQ(norm(force), 0);
       continue;
     }
     ++touching;
-    const Vec n = (1 / length(x)) * x;
+    const Vec n = (1 / norm(x)) * x;
     const double normal = dot(n, force);
     EXPECT_GE(normal, 0);
-    EXPECT_LE(length(force - normal * n), mu * normal + 50 * 8 * eps);
+    EXPECT_LE(norm(force - normal * n), mu * normal + 50 * 8 * eps);
     EXPECT_LE(dot(force - normal * n, load3(&cloud.v[3 * i])), 50 * 8 * eps);
   }
   EXPECT_GT(touching, 50);
@@ -149,7 +147,7 @@ TEST(Body, LoadDoesNotDependOnTheNumberOfPoints) {
     for (std::size_t i = 0; i < n; ++i) sum = sum + load3(&f[3 * i]);
     return sum;
   };
-  EXPECT_LE(length(total(40) - total(5)), 40 * eps * length(total(5)));
+  EXPECT_LE(norm(total(40) - total(5)), 40 * eps * norm(total(5)));
   EXPECT_NEAR(total(5).z, stiffness * 2e-3 * 0.3, 8 * eps);
 }
 
@@ -170,18 +168,18 @@ TEST(Body, FollowsTheHead) {
   const StrandPlace place{{0.05, 0.1, 1.45}, rotation({0, 1, 0}, 0.3)};
   const Body body(Sphere{0.1}, place, {.stiffness = 1}, head);
   const double h = 1e-5, bound = h * h / 6 * 0.5 * 837 * 4 + 4 * eps / h;
-  EXPECT_LE(length(body.pose(0).x - place.x), 4 * eps);
-  EXPECT_LE(length(body.pose(0).frame.e1 - place.frame.e1), 8 * eps);
+  EXPECT_LE(norm(body.pose(0).x - place.x), 4 * eps);
+  EXPECT_LE(norm(body.pose(0).frame.e1 - place.frame.e1), 8 * eps);
   for (const double t : {0.1, 0.37, 2.0}) {
     const BodyPose before = body.pose(t - h), now = body.pose(t),
                    after = body.pose(t + h);
-    EXPECT_LE(length(1 / (2 * h) * (after.x - before.x) - now.v), bound);
+    EXPECT_LE(norm(1 / (2 * h) * (after.x - before.x) - now.v), bound);
     const Vec turns = 1 / (2 * h) * (after.frame.e2 - before.frame.e2);
-    EXPECT_LE(length(turns - cross(now.omega, now.frame.e2)), bound);
+    EXPECT_LE(norm(turns - cross(now.omega, now.frame.e2)), bound);
     // It keeps its place in the head.
     const RootPose there = head.at(t);
     const Vec arm = there.frame.back(now.x - there.x);
-    EXPECT_LE(length(arm - head.frame.back(place.x - head.position)), 16 * eps);
+    EXPECT_LE(norm(arm - head.frame.back(place.x - head.position)), 16 * eps);
   }
 }
 
@@ -197,7 +195,7 @@ TEST(Body, OnlyPushesWhatMovesWithIt) {
   store3(pose.surface_velocity(x), one.v.data());
   const Vec f = load3(load(body, t, one.points()).data());
   const double expected = 50 * 0.02 * one.length[0];
-  EXPECT_LE(length(f - expected * normal), 50 * 64 * eps);
+  EXPECT_LE(norm(f - expected * normal), 50 * 64 * eps);
   // The motion of the body does all of the work.
   EXPECT_NEAR(body.power(t, one.points()), dot(f, pose.surface_velocity(x)), 1e-12);
 }
@@ -220,8 +218,8 @@ TEST(Body, ASampledSphereActsAsASphere) {
   // k l times the error of d g: that of g is O(h^2 phi''') = 0.025^2 3/0.56^2 = 6e-3 of
   // the load, that of phi O(h^3 phi'''') = 0.025^3 15/0.56^3 = 1.3e-3 m, both with the
   // factors of the interpolation (1/6 and below) left out.
-  EXPECT_LE(length(a - b), 6e-3 * length(a) + 50 * one.length[0] * 1.3e-3);
-  EXPECT_GT(length(a), 0);
+  EXPECT_LE(norm(a - b), 6e-3 * norm(a) + 50 * one.length[0] * 1.3e-3);
+  EXPECT_GT(norm(a), 0);
 }
 
 TEST(Body, RefusesWhatHasNoMeaning) {

@@ -18,8 +18,6 @@ const Ellipsoid ellipsoid({0.5, 0.9, 0.7});
 const Ellipsoid flat({0.9, 0.9, 0.1});
 const Ellipsoid needle({0.05, 0.05, 1});
 
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-
 /// Gradient of length 1, and both derivatives against central differences at 300 points
 /// in and around the shape. The derivatives of phi grow as its radius of curvature
 /// shrinks, to no less than `apart` from centres and edges where they do not exist: third
@@ -36,7 +34,7 @@ void expect_consistent(const Shape& shape, double apart, auto far_from_edges) {
   for (std::size_t i = 0; i < cloud.count(); ++i) {
     const Vec x = load3(&cloud.x[3 * i]);
     const Distance at = shape.distance(x);
-    EXPECT_NEAR(length(at.gradient), 1, 8 * eps);
+    EXPECT_NEAR(norm(at.gradient), 1, 8 * eps);
     if (!far_from_edges(x)) continue;
     ++tested;
     const Mat3 curvature = shape.curvature(x);
@@ -44,14 +42,14 @@ void expect_consistent(const Shape& shape, double apart, auto far_from_edges) {
       const Distance above = shape.distance(x + h * e), below = shape.distance(x - h * e);
       EXPECT_NEAR(dot(at.gradient, e), (above.value - below.value) / (2 * h), of_value);
       const Vec difference = 1 / (2 * h) * (above.gradient - below.gradient);
-      EXPECT_LE(length(curvature * e - difference), of_gradient) << i;
+      EXPECT_LE(norm(curvature * e - difference), of_gradient) << i;
     }
   }
   EXPECT_GT(tested, 100);
 }
 
 TEST(BodyShapes, SphereIsConsistent) {
-  expect_consistent(sphere, 0.1, [](const Vec& x) { return length(x) > 0.1; });
+  expect_consistent(sphere, 0.1, [](const Vec& x) { return norm(x) > 0.1; });
 }
 
 TEST(BodyShapes, CapsuleIsConsistent) {
@@ -119,7 +117,7 @@ TEST(BodyShapes, NoPointOfAnEllipsoidIsNearerThanTheNearest) {
         EXPECT_LE(shape.at_least(x), to.value + 10 * eps);
       }
       double least = 1e9;
-      for (const Vec& p : points) least = std::min(least, length(p - x));
+      for (const Vec& p : points) least = std::min(least, norm(p - x));
       EXPECT_GE(least, std::abs(to.value) * (1 - 100 * eps) - 10 * eps) << i;
     }
   }
@@ -132,7 +130,7 @@ TEST(BodyShapes, ARoundEllipsoidIsASphere) {
     const Vec x = load3(&cloud.x[3 * i]);
     EXPECT_NEAR(round.distance(x).value, sphere.distance(x).value, 8 * eps);
     const Mat3 d = round.curvature(x) - sphere.curvature(x);
-    EXPECT_LE(length(d.r0) + length(d.r1) + length(d.r2), 400 * eps / length(x));
+    EXPECT_LE(norm(d.r0) + norm(d.r1) + norm(d.r2), 400 * eps / norm(x));
   }
 }
 

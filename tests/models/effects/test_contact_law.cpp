@@ -79,7 +79,7 @@ TEST(ContactLaw, SlopesAreDifferencesOfTheForce) {
                       Vec{1e-6, 2e-6, -1e-6}, Vec{5e-3, 5e-3, 5e-3}}) {
     const ContactLaw::Slopes slopes = law.slopes(d, u);
     // The law changes over |d|, and over its own rounding off near 0.
-    const double size = std::max(1e-3 * values.inner, std::sqrt(dot(d, d)));
+    const double size = std::max(1e-3 * values.inner, norm(d));
     const Vec axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (std::size_t j = 0; j < 3; ++j) {
       const auto by_gap = central_difference(difference_step * size, [&](double step) {

@@ -17,8 +17,6 @@ using testing_support::write_file;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-
 // Keys' convolution reproduces polynomials of degree 2 in each direction; 64 products of
 // values below 20 with weights whose sizes sum to 2; derivatives divide by the spacing
 // 0.2.
@@ -47,10 +45,9 @@ TEST(DistanceGrid, IsExactForPolynomialsOfDegreeTwo) {
     const Distance d = grid.distance(x);
     EXPECT_NEAR(d.value, value(x), round);
     const Vec gradient{2 + 2 * x.x + x.y, -1 - 3 * x.z + x.x, -3 * x.y + x.z};
-    EXPECT_LE(length(d.gradient - gradient), 2 * round / 0.2);
+    EXPECT_LE(norm(d.gradient - gradient), 2 * round / 0.2);
     const Mat3 error = grid.curvature(x) - Mat3{{2, 1, 0}, {1, 0, -3}, {0, -3, 1}};
-    EXPECT_LE(length(error.r0) + length(error.r1) + length(error.r2),
-              9 * 10 * round / 0.04);
+    EXPECT_LE(norm(error.r0) + norm(error.r1) + norm(error.r2), 9 * 10 * round / 0.04);
   }
 }
 
@@ -64,7 +61,7 @@ TEST(DistanceGrid, ConvergesToASphereWithTheThirdPower) {
     double error = 0;
     for (std::size_t i = 0; i < cloud.count(); ++i) {
       const Vec x = load3(&cloud.x[3 * i]);
-      const Vec on = (0.6 / length(x)) * x;
+      const Vec on = (0.6 / norm(x)) * x;
       error = std::max(error, std::abs(grid.distance(on).value));
     }
     return error;
@@ -84,7 +81,7 @@ TEST(DistanceGrid, GradientDoesNotJumpBetweenCells) {
          {Vec{face, 0.33, 0.27}, Vec{0.33, face, 0.51}, Vec{0.4, 0.1, face}}) {
       const Vec d{step, step, step};
       const Vec jump = grid.distance(x + d).gradient - grid.distance(x - d).gradient;
-      EXPECT_LE(length(jump), 2 * step * 4 / 0.3 + 64 * eps / 0.1);
+      EXPECT_LE(norm(jump), 2 * step * 4 / 0.3 + 64 * eps / 0.1);
     }
   }
 }
@@ -93,7 +90,7 @@ TEST(DistanceGrid, IsInfiniteOutside) {
   const DistanceGrid grid(sphere_samples(0.6, 1, 21), "test");
   for (const Vec& x : {Vec{0.95, 0, 0}, Vec{0, -5, 0}, Vec{0, 0, std::nan("")}}) {
     EXPECT_EQ(grid.distance(x).value, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(length(grid.distance(x).gradient), 0);
+    EXPECT_EQ(norm(grid.distance(x).gradient), 0);
   }
   EXPECT_TRUE(std::isfinite(grid.distance({0.9 - 1e-12, -0.9 + 1e-12, 0}).value));
   EXPECT_NEAR(grid.clearance(), 0.9 - 0.6, 4 * eps);

@@ -274,7 +274,7 @@ TEST_P(EffectContract, UniformAccelerationIsTheLoadPerMass) {
   const auto f = load(*effect, now, cloud.points());
   for (std::size_t i = 0; i < cloud.count(); ++i) {
     const Vec d = load3(&f[3 * i]) - cloud.mass[i] * *a;
-    EXPECT_LE(std::sqrt(dot(d, d)), 4 * eps * std::sqrt(dot(*a, *a)) * cloud.mass[i]);
+    EXPECT_LE(norm(d), 4 * eps * std::sqrt(dot(*a, *a)) * cloud.mass[i]);
   }
 }
 

@@ -51,7 +51,7 @@ TEST(SegmentGrid, MissesNoSegmentOfMovingStrands) {
   double fastest = 0;
   for (std::size_t i = 0; i < strands.v.size(); i += 3) {
     const Vec v = load3(&strands.v[i]);
-    fastest = std::max(fastest, std::sqrt(dot(v, v)));
+    fastest = std::max(fastest, norm(v));
   }
   const int stand = static_cast<int>(reach / 2 / (fastest * h)) + 1;
   EXPECT_GT(stand, 1);

@@ -59,7 +59,7 @@ TEST(SelfContact, ForcesWithinTheStrandSumToZero) {
   }
   EXPECT_GT(size, 1e-3);
   // Some 160 contacts, each rounded to eps of its part.
-  EXPECT_LE(std::sqrt(dot(sum, sum)), 160 * 2.3e-16 * size);
+  EXPECT_LE(norm(sum), 160 * 2.3e-16 * size);
 }
 
 TEST(SelfContact, LeavesAStraightStrandAlone) {

@@ -155,7 +155,7 @@ TEST(StrandInteraction, DoesNotDependOnHowStrandsAreCut) {
       interaction.update(joined(upper.x, lower.x), joined(upper.v, lower.v));
       const Vec sum = total(load(*interaction.effect(0), upper.own));
       // Places are rounded to eps of 6 cm, the law's slope K: 1e-17 of 1e-5 N.
-      const double rounding = 1e-14 * std::sqrt(dot(force, force));
+      const double rounding = 1e-14 * norm(force);
       EXPECT_NEAR(sum.x, force.x, rounding);
       EXPECT_NEAR(sum.y, force.y, rounding);
       EXPECT_NEAR(sum.z, force.z, rounding);
@@ -270,7 +270,7 @@ TEST(StrandInteraction, StaysFiniteOnTopOfItself) {
   interaction.update(joined(strand.x, strand.x), joined(strand.v, strand.v));
   const Vec sum = total(load(*interaction.effect(0), strand.own));
   // Gaps of eps of 6 cm times the law's largest slope, 1000 K, and the length.
-  EXPECT_LE(std::sqrt(dot(sum, sum)), 24 * 1e-17 * 0.2 * 0.06);
+  EXPECT_LE(norm(sum), 24 * 1e-17 * 0.2 * 0.06);
   std::vector<double> blocks(9 * 24);
   interaction.effect(0)->add_derivatives(0, strand.own.points(), 1, 1, blocks);
   for (const double entry : blocks) EXPECT_TRUE(std::isfinite(entry));

@@ -95,14 +95,14 @@ TEST_P(Coupled, ForcesOfContactsSumToZero) {
     for (std::size_t i = 0; i < 18; i += 3) {  // six nodes, then other coordinates
       const Vec f = load3(&r[first + i]) - load3(&own[i]);
       sum = sum + f;
-      size += std::sqrt(dot(f, f));
+      size += norm(f);
       rounding += 2.3e-16 * std::sqrt(dot(load3(&own[i]), load3(&own[i])));
     }
     first += n;
   }
   EXPECT_GT(size, 1e-3);
   // A node has a dozen contacts or two, each rounded, and the strands' own forces.
-  EXPECT_LE(std::sqrt(dot(sum, sum)), 24 * 2.3e-16 * size + 10 * rounding);
+  EXPECT_LE(norm(sum), 24 * 2.3e-16 * size + 10 * rounding);
 }
 
 TEST_P(Coupled, PowerIsWhatEnergyDoesNotAccountFor) {

@@ -24,10 +24,9 @@ TEST(Quaternion, HasTheAxesOfItsFrame) {
       // q v conj(q) for the second axis.
       const Quaternion e1 = q * (Quaternion{0, {0, 1, 0}} * Quaternion{q.w, -1.0 * q.v});
       const Vec off[] = {first_axis(q) - frame.e0, e1.v - frame.e1};
-      for (const Vec& d : off) EXPECT_LE(std::sqrt(dot(d, d)), 4e-16 * 4);
+      for (const Vec& d : off) EXPECT_LE(norm(d), 4e-16 * 4);
       const Vec turn = turn_between(quaternion_of({}), nearer({}, q));
-      EXPECT_NEAR(std::sqrt(dot(turn, turn)), 2 * std::sin(std::abs(angle) / 2),
-                  1e-15 * 4);
+      EXPECT_NEAR(norm(turn), 2 * std::sin(std::abs(angle) / 2), 1e-15 * 4);
     }
   }
 }

@@ -41,7 +41,7 @@ TEST(CubicSpline, HoldsCubicsOnUnevenSpans) {
       }
       const Vec off[] = {x - Vec{s, s * s, s * s * s}, first - Vec{1, 2 * s, 3 * s * s},
                          second - Vec{0, 2, 6 * s}};
-      for (const Vec& d : off) EXPECT_LE(std::sqrt(dot(d, d)), 1e-12);
+      for (const Vec& d : off) EXPECT_LE(norm(d), 1e-12);
     }
     start += spline.length(i);
   }
@@ -157,10 +157,10 @@ TEST(DynamicSpline, FollowsATurningClamp) {
   const RootPose clamp = root_motion(parameters_of("dynamic_spline", shaken)).at(t);
   const Vec off = load3(spline.data()) - clamp.x;
   const Vec first = load3(&q[3]) - load3(q.data());  // control points: along r'
-  const Vec turned = cross(clamp.frame.e0, (1 / std::sqrt(dot(first, first))) * first);
+  const Vec turned = cross(clamp.frame.e0, (1 / norm(first)) * first);
   EXPECT_GT(std::abs(clamp.frame.e0.y), 0.1);
-  EXPECT_LE(std::sqrt(dot(off, off)), 1e-10);
-  EXPECT_LE(std::sqrt(dot(turned, turned)), 1e-8);
+  EXPECT_LE(norm(off), 1e-10);
+  EXPECT_LE(norm(turned), 1e-8);
   // Helices are of order 2: from 20 and 40 of them to none between, on which one relies
   // as far as it moves the tip, 1e-4 L.
   const auto tip = [](const std::vector<double>& x) { return load3(&x[x.size() - 3]); };
@@ -170,8 +170,7 @@ TEST(DynamicSpline, FollowsATurningClamp) {
   };
   const Vec fine = helices("40"), moved = (1.0 / 3) * (fine - helices("20"));
   const Vec apart = tip(spline) - (fine + moved);
-  std::printf("tip off by %.2e m, extrapolated by %.2e m\n", std::sqrt(dot(apart, apart)),
-              std::sqrt(dot(moved, moved)));
+  std::printf("tip off by %.2e m, extrapolated by %.2e m\n", norm(apart), norm(moved));
   EXPECT_LE(dot(apart, apart), dot(moved, moved));
   EXPECT_LE(dot(moved, moved), 1e-5 * 1e-5);
 }

@@ -193,14 +193,13 @@ TEST(FramedSpline, CurlsOnAShakenRootMoveAsDiscreteRodsDo) {
       return load3(&x[x.size() - 3]);
     };
     const Vec fine = tip("40"), by = (1.0 / 3) * (fine - tip("20"));
-    moved += std::sqrt(dot(by, by));
+    moved += norm(by);
     return fine + by;
   };
   double moved = 0;
   const Vec apart = limit("dynamic_spline", moved) - limit("der", moved);
-  std::printf("tips apart by %.2e m, extrapolated by %.2e m\n",
-              std::sqrt(dot(apart, apart)), moved);
-  EXPECT_LE(std::sqrt(dot(apart, apart)), moved);
+  std::printf("tips apart by %.2e m, extrapolated by %.2e m\n", norm(apart), moved);
+  EXPECT_LE(norm(apart), moved);
   EXPECT_LE(moved, 2e-3 * 0.1);  // of the length
 }
 
@@ -221,7 +220,7 @@ TEST(FramedSpline, MidpointLosesNoMoreThanTheSpinOfSections) {
   const Drift off = drift(*system, 0.025e-3);
   std::printf("dynamic_spline: energy off by %.2e, momentum by %.2e\n", off.energy,
               off.momentum);
-  EXPECT_LE(off.momentum, 2 * of_sections / std::sqrt(dot(angular, angular)));
+  EXPECT_LE(off.momentum, 2 * of_sections / norm(angular));
   EXPECT_LE(off.energy,
             of_sections * spin / energetics.energy(0, start.q, start.v).kinetic + 1e-6);
 }

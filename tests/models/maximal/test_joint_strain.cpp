@@ -16,7 +16,7 @@ double uniform() { return std::uniform_real_distribution<double>(-1, 1)(source);
 Vec random_vector() { return {uniform(), uniform(), uniform()}; }
 Frame random_frame() {
   const Vec axis = random_vector();
-  return rotation((1 / std::sqrt(dot(axis, axis))) * axis, 3 * uniform());
+  return rotation((1 / norm(axis)) * axis, 3 * uniform());
 }
 
 using First = Dual<6>;
@@ -133,8 +133,8 @@ TEST(EdgeTurn, IsTheTurnOfTheMaterialFrame) {
                       exact[k].z.part[0].part[0]};
       const Vec off = rate - first, off2 = rate2 - second;
       // Spins up to 3, their squares up to 10.
-      EXPECT_LT(std::sqrt(dot(off, off)), 1e-13);
-      EXPECT_LT(std::sqrt(dot(off2, off2)), 1e-11);
+      EXPECT_LT(norm(off), 1e-13);
+      EXPECT_LT(norm(off2), 1e-11);
     }
   }
 }

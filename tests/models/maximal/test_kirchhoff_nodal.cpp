@@ -243,7 +243,7 @@ TEST(KirchhoffNodal, FallsAsHelicesDo) {
         released_tip("kirchhoff_nodal", n, hair, "linearly_implicit_midpoint", 2e-4);
     const Vec apart = tip - reference;
     sizes.push_back(1.0 / n);
-    errors.push_back(std::sqrt(dot(apart, apart)) / 0.1);
+    errors.push_back(norm(apart) / 0.1);
     std::printf("kirchhoff_nodal, N = %d: tip off by %.2e L after 0.1 s\n", n,
                 errors.back());
   }
@@ -260,7 +260,7 @@ TEST(KirchhoffNodal, FallsInThePlaneAsDerDoesOnTheSameGrid) {
     const Vec apart =
         released_tip("kirchhoff_nodal", 10, hair, "generalized_alpha", step) - der;
     steps.push_back(step);
-    errors.push_back(std::sqrt(dot(apart, apart)) / 0.1);
+    errors.push_back(norm(apart) / 0.1);
     std::printf("kirchhoff_nodal, step %g s: tip off der's by %.2e L\n", step,
                 errors.back());
   }

@@ -57,7 +57,7 @@ TEST(InextensibleStrand, HangsAsStiffSpringsDo) {
         return Vec{x[x.size() - 3], x[x.size() - 2], x[x.size() - 1]};
       };
       const Vec rigid = tip("inextensible_strand"), off = tip("mass_spring") - rigid;
-      const double apart = std::sqrt(dot(off, off));
+      const double apart = norm(off);
       std::printf("Gamma = %g, N = %d: W %.6f, H %.6f, apart %.2e\n", exact.gamma, n,
                   rigid.x, -rigid.z, apart);
       EXPECT_LE(apart, 4 * exact.gamma / 4e6);

@@ -10,7 +10,6 @@
 
 namespace tress {
 
-inline double norm(const Vec& x) { return std::sqrt(dot(x, x)); }
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Position and frame at s along a segment, from its start.

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Reduced, ZeroCurvature, testing::ValuesIn(straight_stra
 /// Where a helix of length l and Darboux vector kappa, |kappa| > 0, ends: the part along
 /// the axis goes on, the part across turns.
 Vec helix_tip(const Vec& kappa, double l) {
-  const double w = std::sqrt(dot(kappa, kappa));
+  const double w = norm(kappa);
   const Vec axis = 1 / w * kappa, tangent{1, 0, 0};
   const Vec along = dot(axis, tangent) * axis, across = tangent - along;
   return l * along + std::sin(w * l) / w * across +
@@ -110,7 +110,7 @@ TEST_P(ManyTurns, EndWhereHelicesEnd) {
       frame = frame * turn;
       const Vec off = load3(&x[3 * (i + 1)]) - tip;
       // Sines of up to 6 pi round by 6 pi eps; some ten such terms an element.
-      EXPECT_LE(std::sqrt(dot(off, off)), 10 * 6 * pi * eps * 3 * element_) << angle;
+      EXPECT_LE(norm(off), 10 * 6 * pi * eps * 3 * element_) << angle;
     }
   }
 }

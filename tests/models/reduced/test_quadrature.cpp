@@ -49,7 +49,7 @@ std::vector<Vec> directions() {
   std::uniform_real_distribution<double> uniform(-1, 1);
   while (all.size() < 32) {
     const Vec x{uniform(random), uniform(random), uniform(random)};
-    all.push_back(1 / std::sqrt(dot(x, x)) * x);
+    all.push_back(1 / norm(x) * x);
   }
   return all;
 }

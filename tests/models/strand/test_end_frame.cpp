@@ -19,7 +19,7 @@ Frame end_frame(System& system, In q) {
 double apart(const Frame& f, const Frame& g) {
   double most = 0;
   for (const Vec& d : {f.e0 - g.e0, f.e1 - g.e1, f.e2 - g.e2}) {
-    most = std::max(most, std::sqrt(dot(d, d)));
+    most = std::max(most, norm(d));
   }
   return most;
 }

@@ -127,7 +127,7 @@ TEST(RootMotion, CentreStaysAtItsDistanceAndDefaultsToTheRoot) {
   motion.translations.clear();
   const auto distance = [&motion](double t) {
     const Vec arm = motion.at(t).x - *motion.centre;
-    return std::sqrt(dot(arm, arm));
+    return norm(arm);
   };
   EXPECT_NEAR(distance(0.37), distance(0), 70 * eps * distance(0));
   EXPECT_GT(largest(motion.at(0.37).x - motion.at(0).x), 0.01);

@@ -137,7 +137,7 @@ TEST(Shape, OneWaveInOneSegmentAveragesOut) {
 /// derivative is |kappa|^4. One turn in 2000 steps h: (to/180) h^4 |kappa|^4 <= 4e-12 of
 /// one turn.
 Vec follow(const Vec& darboux, double to) {
-  const double w = std::sqrt(dot(darboux, darboux));
+  const double w = norm(darboux);
   const int steps = 2000;
   const double h = to / steps;
   Vec x;
@@ -154,14 +154,14 @@ TEST(Shape, HelixHasItsRadiusAndPitch) {
     const Strand strand = strand_of({1, 0.1, 1}, helix_shape(radius, pitch));
     const Vec darboux = strand.segments[0].natural;
     EXPECT_GT(darboux.y, 0);  // curvature about e1
-    const double w = std::sqrt(dot(darboux, darboux));
+    const double w = norm(darboux);
     const Vec axis = (1 / w) * darboux;  // the frame turns about it, positively
     const Vec turn = follow(darboux, 2 * pi / w), half = follow(darboux, pi / w);
     EXPECT_NEAR(dot(turn, axis), pitch, 1e-12);
     const Vec across = half - dot(half, axis) * axis;
-    EXPECT_NEAR(std::sqrt(dot(across, across)), 2 * radius, 1e-12);
+    EXPECT_NEAR(norm(across), 2 * radius, 1e-12);
     const Vec left = turn - dot(turn, axis) * axis;
-    EXPECT_LE(std::sqrt(dot(left, left)), 1e-12);
+    EXPECT_LE(norm(left), 1e-12);
   }
 }
 
