@@ -33,7 +33,11 @@ class DefiniteBand final : public LinearSolver {
   };
 
   bool gather(In values) noexcept;  // false: not symmetric
-  bool eliminate() noexcept;        // false: not positive definite
+  template <std::size_t known>
+  bool eliminate() noexcept;
+  bool eliminate() noexcept;  // false: not positive definite
+  template <std::size_t known>
+  void substitute() noexcept;  // work_ <- (L D L^T)^-1 work_
 
   BandedSolver general_;
   std::vector<int> position_;          // (n) unknown -> place in the band

@@ -2,32 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace tress {
 namespace {
 
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-/// h over (e, theta) of two neighbouring edges becomes a matrix over three nodes and two
-/// angles.
-void to_nodes(const double (&h)[8][8], double (&m)[11][11]) {
-  // Nodes at the ends have one edge, the one between both.
-  double half[8][11];
-  const auto row = [](const auto& from, auto&& to) {
-    for (int k = 0; k < 3; ++k) {
-      to(k, -from(k));
-      to(3 + k, from(k) - from(4 + k));
-      to(6 + k, from(4 + k));
+/// A matrix over (e, theta) of neighbouring edges, a row a pack for each edge, becomes
+/// one over (x, theta) of their nodes, the last of which has no angle: row 3 there stays
+/// as it is.
+template <int edges>
+void to_nodes(const Pack (&h)[4 * edges][edges], Pack (&m)[4 * (edges + 1)][edges + 1]) {
+  // An edge is the node at its end less the one at its start.
+  const Pack start(Pack::Vector{-1, -1, -1, 1}), end(Pack::Vector{1, 1, 1, 0});
+  Pack half[4 * edges][edges + 1];
+  for (int i = 0; i < 4 * edges; ++i) {
+    for (int node = 0; node <= edges; ++node) {
+      half[i][node] = Pack(0);
+      if (node < edges) half[i][node] += start * h[i][node];
+      if (node > 0) half[i][node] += end * h[i][node - 1];
     }
-    to(9, from(3));
-    to(10, from(7));
-  };
-  for (int i = 0; i < 8; ++i) {
-    row([&](int k) { return h[i][k]; }, [&](int k, double x) { half[i][k] = x; });
   }
-  for (int j = 0; j < 11; ++j) {
-    row([&](int k) { return half[k][j]; }, [&](int k, double x) { m[k][j] = x; });
+  for (int node = 0; node <= edges; ++node) {
+    for (int j = 0; j <= edges; ++j) {
+      for (int k = 0; k < 3; ++k) {
+        Pack& to = m[4 * node + k][j];
+        to = Pack(0);
+        if (node < edges) to -= half[4 * node + k][j];
+        if (node > 0) to += half[4 * (node - 1) + k][j];
+      }
+      if (node < edges) m[4 * node + 3][j] = half[4 * node + 3][j];
+    }
   }
 }
 
@@ -45,25 +50,50 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
           [](const RodJoint& j) { return dot(j.friction, j.friction) > 0; })),
       angles_(3 * (edge_data_.size() + 1)),
       edges_(edge_data_.size()),
-      joints_(joint_data_.size()) {}
+      joints_(joint_data_.size()),
+      placed_z_(4 * edge_data_.size() + 3),
+      placed_rate_(placed_z_.size()) {}
 
 std::vector<std::vector<int>> DerElasticity::groups() const {
   std::vector<std::vector<int>> all;
-  const auto nodes_and_angles = [&](std::size_t first, int nodes) {
-    std::vector<int> group(static_cast<std::size_t>(4 * nodes - 1));
-    const auto angle = group.begin() + 3 * nodes;
-    std::iota(group.begin(), angle, static_cast<int>(3 * first));
-    std::iota(angle, group.end(), static_cast<int>(angles_ + first));
-    return group;
+  // (x, theta) of nodes, the last without its angle.
+  const auto nodes_and_angles = [&](std::size_t first, std::size_t nodes) {
+    std::vector<int>& group = all.emplace_back();
+    for (std::size_t node = first; node < first + nodes; ++node) {
+      for (std::size_t k = 0; k < 3; ++k) group.push_back(static_cast<int>(3 * node + k));
+      if (node + 1 < first + nodes) group.push_back(static_cast<int>(angles_ + node));
+    }
   };
-  for (std::size_t i = 0; i < edges_.size(); ++i) all.push_back(nodes_and_angles(i, 2));
-  for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
-    all.push_back(nodes_and_angles(i, 3));
-  }
+  nodes_and_angles(0, 2);
+  for (std::size_t i = 0; i + 1 < edges_.size(); ++i) nodes_and_angles(i, 3);
   return all;
 }
 
+bool DerElasticity::placed_at(const Placement& p) noexcept {
+  const auto same = [](const Vec& a, const Vec& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  };
+  const Frame &now = p.root.frame, &then = placed_root_.frame;
+  if (placed_ && std::ranges::equal(p.z, placed_z_) &&
+      std::ranges::equal(p.rate, placed_rate_) &&
+      same(p.root.omega, placed_root_.omega) && same(now.e0, then.e0) &&
+      same(now.e1, then.e1) && same(now.e2, then.e2)) {
+    return true;
+  }
+  std::ranges::copy(p.z, placed_z_.begin());
+  std::ranges::copy(p.rate, placed_rate_.begin());
+  placed_root_ = p.root;
+  placed_ = true;
+  return false;
+}
+
+void DerElasticity::reset() {
+  edge_data_ = edges_at_start_;
+  placed_ = false;
+}
+
 void DerElasticity::place(const Placement& p) noexcept {
+  if (placed_at(p)) return;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const Vec e = load3(&p.z[3 * i + 3]) - load3(&p.z[3 * i]);
     const Vec rate = load3(&p.rate[3 * i + 3]) - load3(&p.rate[3 * i]);
@@ -104,127 +134,142 @@ void DerElasticity::add_force(const Placement& p, InOut f) noexcept {
   }
 }
 
-/// Over the coordinates (e, theta) before and behind the joint; of the clamp's joint only
-/// what is behind.
+/// With T the turns of the two sides by (e, theta) before and behind the joint, and F the
+/// second derivative by those turns: T^T F T. Of the clamp's joint only what is behind.
 void DerElasticity::joint_tangent(const Placement& p, std::size_t joint, double pos,
-                                  double vel, Square& s) const noexcept {
+                                  double vel, Matrix& s) const noexcept {
   const RodJoint& data = joint_data_[joint];
   const JointStrain& strain = joints_[joint].strain;
   const Frame& minus = frame_before(p, joint);
   const Edge& behind = edges_[after(joint)];
   const Edge* edges[2] = {clamp(joint) ? nullptr : &edges_[before(joint)], &behind};
+  const bool exact = tangent_ == Tangent::exact && pos != 0;
 
-  // turn[k]: spin of the side of coordinate k; a clamp does not follow from any.
-  Vec turn[8];
-  for (int k = 0; k < 8; ++k) {
-    if (edges[k / 4] != nullptr) turn[k] = edges[k / 4]->turn.column(k % 4);
-  }
+  TwoVectorForm f = exact
+                        ? strain.second(minus, behind.frame, pos * joints_[joint].stress)
+                        : TwoVectorForm{};
   const Vec slope[3] = {strain.twist, strain.curvature1, strain.curvature2};
-  const double stiffness[3] = {data.stiffness.x, data.stiffness.y, data.stiffness.z};
-  const double friction[3] = {data.friction.x, data.friction.y, data.friction.z};
-  double gradient[3][8];
-  for (int m = 0; m < 3; ++m) {
-    for (int k = 0; k < 8; ++k) {
-      gradient[m][k] = (k < 4 ? -1 : 1) * dot(slope[m], turn[k]);
-    }
-    const double weight = pos * stiffness[m] + vel * friction[m];
-    for (int k = 0; k < 8; ++k) {
-      for (int l = 0; l < 8; ++l) s[k][l] += weight * gradient[m][k] * gradient[m][l];
-    }
-  }
-  if (tangent_ == Tangent::stiff || pos == 0) return;
+  const Vec weight = pos * data.stiffness + vel * data.friction;
+  f.add_relative(weight.x, slope[0]);
+  f.add_relative(weight.y, slope[1]);
+  f.add_relative(weight.z, slope[2]);
 
-  // form . (turn of l), side by side.
-  const auto pulled = [&](const TwoVectorForm& form, int side, const Vec& w,
-                          Vec(&out)[2]) {
-    const double x[3] = {w.x, w.y, w.z};
-    double y[6] = {};
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 3; ++j) y[i] += form.m[i][3 * side + j] * x[j];
-    }
-    out[0] = {y[0], y[1], y[2]};
-    out[1] = {y[3], y[4], y[5]};
-  };
-  const TwoVectorForm form = strain.second(minus, behind.frame, joints_[joint].stress);
-  for (int l = 0; l < 8; ++l) {
-    Vec of[2];
-    pulled(form, l / 4, turn[l], of);
-    for (int k = 0; k < 8; ++k) s[k][l] += pos * dot(turn[k], of[k / 4]);
+  // A clamp does not follow from any coordinate.
+  std::array<Pack, 3> turn[2] = {};
+  for (int side = 0; side < 2; ++side) {
+    if (edges[side] != nullptr) turn[side] = edges[side]->turn.rows();
   }
-  if (!friction_) return;
-  // The rate of a strain changes with the place: second derivative along the motion.
-  const Vec spins[2] = {clamp(joint) ? p.root.omega : edges[0]->spin, behind.spin};
+  Pack turned[6][2];
+  for (int i = 0; i < 6; ++i) {
+    for (int side = 0; side < 2; ++side) {
+      const Pack& row = f.rows[i][side];
+      const auto& t = turn[side];
+      turned[i][side] = row[0] * t[0] + row[1] * t[1] + row[2] * t[2];
+    }
+  }
+  for (int i = 0; i < 8; ++i) {
+    const auto& t = turn[i / 4];
+    const Pack(*of_side)[2] = &turned[3 * (i / 4)];
+    for (int side = 0; side < 2; ++side) {
+      s[i][side] = t[0][i % 4] * of_side[0][side] + t[1][i % 4] * of_side[1][side] +
+                   t[2][i % 4] * of_side[2][side];
+    }
+  }
+  if (exact && friction_) add_slope_of_friction(p, joint, pos, s);
+}
+
+/// The rate of a strain changes with the place: second derivative along the motion.
+void DerElasticity::add_slope_of_friction(const Placement& p, std::size_t joint,
+                                          double pos, Matrix& s) const noexcept {
+  const JointStrain& strain = joints_[joint].strain;
+  const Frame& minus = frame_before(p, joint);
+  const Edge& behind = edges_[after(joint)];
+  const Edge* edges[2] = {clamp(joint) ? nullptr : &edges_[before(joint)], &behind};
+  const Vec slope[3] = {strain.twist, strain.curvature1, strain.curvature2};
+  const Vec& given = joint_data_[joint].friction;
+  const double friction[3] = {given.x, given.y, given.z};
+  const Vec before_spin = clamp(joint) ? p.root.omega : edges[0]->spin;
+  const double spins[6] = {before_spin.x, before_spin.y, before_spin.z,
+                           behind.spin.x, behind.spin.y, behind.spin.z};
   for (int m = 0; m < 3; ++m) {
     if (friction[m] == 0) continue;
     const TwoVectorForm own = strain.second(
         minus, behind.frame, {m == 0 ? 1.0 : 0, m == 1 ? 1.0 : 0, m == 2 ? 1.0 : 0});
-    Vec along[2] = {};
-    for (int side = 0; side < 2; ++side) {
-      Vec of[2];
-      pulled(own, side, spins[side], of);
-      along[0] = along[0] + of[0];
-      along[1] = along[1] + of[1];
+    Vec along[2];
+    for (int i = 0; i < 6; ++i) {
+      double sum = 0;
+      for (int j = 0; j < 6; ++j) sum += own.at(i, j) * spins[j];
+      double* of[3] = {&along[i / 3].x, &along[i / 3].y, &along[i / 3].z};
+      *of[i % 3] = sum;
     }
-    double slope_of_rate[8];
-    for (int k = 0; k < 8; ++k) slope_of_rate[k] = dot(turn[k], along[k / 4]);
+    double gradient[8] = {}, slope_of_rate[8] = {};
     for (int side = 0; side < 2; ++side) {
       if (edges[side] == nullptr) continue;
+      const EdgeTurn& turn = edges[side]->turn;
+      const double sign = side == 0 ? -1 : 1;
+      Pack h[4] = {};
+      turn.add_second(sign, slope[m], h);
       const std::size_t edge = side == 0 ? before(joint) : after(joint);
-      double h[4][4] = {};
-      edges[side]->turn.add_second(side == 0 ? -1 : 1, slope[m], h);
       const Vec de = load3(&p.rate[3 * edge + 3]) - load3(&p.rate[3 * edge]);
       const double y[4] = {de.x, de.y, de.z, theta(p.rate, edge)};
       for (int k = 0; k < 4; ++k) {
-        for (int l = 0; l < 4; ++l) slope_of_rate[4 * side + k] += h[k][l] * y[l];
+        const Vec column = turn.column(k);
+        gradient[4 * side + k] = sign * dot(slope[m], column);
+        double& rate = slope_of_rate[4 * side + k];
+        rate = dot(column, along[side]);
+        rate += sum(h[k] * Pack::load(y));
       }
     }
     for (int k = 0; k < 8; ++k) {
-      for (int l = 0; l < 8; ++l) {
-        s[k][l] += pos * friction[m] * gradient[m][k] * slope_of_rate[l];
+      for (int side = 0; side < 2; ++side) {
+        s[k][side] +=
+            pos * friction[m] * gradient[k] * Pack::load(&slope_of_rate[4 * side]);
       }
     }
   }
 }
 
 /// Stretching, and what the moments of its joints do on the second-order turn.
-void DerElasticity::edge_tangent(std::size_t i, double pos,
-                                 double (&h)[4][4]) const noexcept {
+void DerElasticity::add_edge_tangent(std::size_t i, double pos,
+                                     Pack (&h)[4]) const noexcept {
   const EdgeTurn& turn = edges_[i].turn;
   const EdgeData& data = edge_data_[i];
   const double tension = data.stretch * (turn.length - data.length) / turn.length;
   const bool exact = tangent_ == Tangent::exact;
   const double across = exact ? pos * tension : 0;
-  const double along = pos * data.stretch - across;
-  const double t[3] = {turn.t.x, turn.t.y, turn.t.z};
-  for (int k = 0; k < 3; ++k) {
-    for (int l = 0; l < 3; ++l) h[k][l] += along * t[k] * t[l] + (k == l ? across : 0);
-  }
+  const Vec along = (pos * data.stretch - across) * turn.t;
+  const Pack t(Pack::Vector{turn.t.x, turn.t.y, turn.t.z, 0});
+  h[0] += along.x * t + Pack(Pack::Vector{across, 0, 0, 0});
+  h[1] += along.y * t + Pack(Pack::Vector{0, across, 0, 0});
+  h[2] += along.z * t + Pack(Pack::Vector{0, 0, across, 0});
   if (exact) turn.add_second(pos, edges_[i].moment, h);
 }
 
+/// Each joint with the edge behind it; the first edge, with its clamp, alone.
 void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
                                 GroupSum& s) noexcept {
   place(p);
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    double h[4][4] = {};
-    edge_tangent(i, pos, h);
-    if (walled_ && i == 0) {
-      Square of_joint = {};
-      joint_tangent(p, 0, pos, vel, of_joint);
-      for (int k = 0; k < 4; ++k) {
-        for (int l = 0; l < 4; ++l) h[k][l] += of_joint[4 + k][4 + l];
-      }
-    }
-    double m[7][7];
-    to_nodes<1>(h, m);
-    s.add(i, &m[0][0]);
-  }
+  Matrix joint;
+  // The lower right quarter, of the edge behind.
+  const auto behind = [&](int k) -> Pack& { return joint[4 + k][1]; };
+  const auto add_edge = [&](std::size_t edge) {
+    Pack h[4] = {behind(0), behind(1), behind(2), behind(3)};
+    add_edge_tangent(edge, pos, h);
+    for (int k = 0; k < 4; ++k) behind(k) = h[k];
+  };
+  for (int k = 0; k < 4; ++k) behind(k) = Pack(0);
+  if (walled_) joint_tangent(p, 0, pos, vel, joint);
+  add_edge(0);
+  const Pack first[4][1] = {{behind(0)}, {behind(1)}, {behind(2)}, {behind(3)}};
+  Pack of_first[8][2];
+  to_nodes<1>(first, of_first);
+  s.add(0, of_first);
   for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {
-    Square h = {};
-    joint_tangent(p, j, pos, vel, h);
-    double m[11][11];
-    to_nodes(h, m);
-    s.add(edges_.size() + before(j), &m[0][0]);
+    joint_tangent(p, j, pos, vel, joint);
+    add_edge(after(j));
+    Pack m[12][3];
+    to_nodes<2>(joint, m);
+    s.add(1 + before(j), m);
   }
 }
 
@@ -274,6 +319,7 @@ bool DerElasticity::rebase(InOut z, InOut rate) {
     moved |= renew_reference(edge_data_[i].reference, e, de, z[angles_ + i],
                              rate[angles_ + i]);
   }
+  placed_ = placed_ && !moved;
   return moved;
 }
 
@@ -286,6 +332,7 @@ std::vector<double> DerElasticity::memory() const {
 }
 
 void DerElasticity::recall(In memory) {
+  placed_ = false;
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     edge_data_[i].reference = load9(&memory[9 * i]);
   }

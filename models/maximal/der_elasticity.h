@@ -1,5 +1,6 @@
 #pragma once
 
+#include "models/math/pack.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
@@ -28,7 +29,7 @@ class DerElasticity final : public Elasticity {
   double power(const Placement& p) noexcept override;
   bool end_frame(const Placement& p, Frame& frame) noexcept override;
   bool rebase(InOut z, InOut rate) override;
-  void reset() override { edge_data_ = edges_at_start_; }
+  void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
 
@@ -44,7 +45,8 @@ class DerElasticity final : public Elasticity {
     Vec rate;    // of the strains
     Vec stress;  // elastic and friction
   };
-  using Square = double[8][8];
+  /// Over (e, theta) of the edges before and behind a joint, a row a pack for each.
+  using Matrix = Pack[8][2];
 
   bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
   /// Edge before a joint; meaningless for the clamp's.
@@ -52,13 +54,18 @@ class DerElasticity final : public Elasticity {
   std::size_t after(std::size_t joint) const { return walled_ ? joint : joint + 1; }
   double theta(In z, std::size_t edge) const { return z[angles_ + edge]; }
 
+  /// Readies edges_ and joints_, unless they are those of this placement already: a step
+  /// asks for forces and tangent of the same one.
   void place(const Placement& p) noexcept;
+  bool placed_at(const Placement& p) noexcept;  // and remembers p
   const Frame& frame_before(const Placement& p, std::size_t joint) const {
     return clamp(joint) ? p.root.frame : edges_[before(joint)].frame;
   }
   void joint_tangent(const Placement& p, std::size_t joint, double pos, double vel,
-                     Square& s) const noexcept;
-  void edge_tangent(std::size_t edge, double pos, double (&h)[4][4]) const noexcept;
+                     Matrix& s) const noexcept;
+  void add_slope_of_friction(const Placement& p, std::size_t joint, double pos,
+                             Matrix& s) const noexcept;
+  void add_edge_tangent(std::size_t edge, double pos, Pack (&h)[4]) const noexcept;
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<RodJoint> joint_data_;
@@ -68,6 +75,9 @@ class DerElasticity final : public Elasticity {
   std::size_t angles_;  // first angle in z
   std::vector<Edge> edges_;
   std::vector<Joint> joints_;
+  std::vector<double> placed_z_, placed_rate_;
+  RootPose placed_root_;
+  bool placed_ = false;  // at these, with the present references
 };
 
 }  // namespace tress

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "models/math/pack.h"
 #include "models/system.h"
 
 namespace tress {
@@ -46,6 +47,20 @@ class GroupSum {
     const int* place = groups_.places(group);
     for (std::size_t k = 0; k < entries; ++k) {
       if (place[k] >= 0) values_[static_cast<std::size_t>(place[k])] += matrix[k];
+    }
+  }
+  /// The same of rows of packs, of a group with one coordinate less than there are rows;
+  /// the last row and column are left out.
+  template <std::size_t rows, std::size_t packs>
+  void add(std::size_t group, const Pack (&matrix)[rows][packs]) {
+    constexpr std::size_t size = rows - 1;
+    const int* place = groups_.places(group);
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j, ++place) {
+        if (*place < 0) continue;
+        values_[static_cast<std::size_t>(*place)] +=
+            matrix[i][j / Pack::lanes][static_cast<int>(j % Pack::lanes)];
+      }
     }
   }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "models/math/frame.h"
+#include "models/math/pack.h"
 
 namespace tress {
 
@@ -28,41 +29,59 @@ Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
 }
 
 /// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), all as the
-/// symmetric matrix of (u, w), row-major.
+/// symmetric matrix of (u, w): six rows of one pack for u and one for w, whose last lanes
+/// are 0.
 struct TwoVectorForm {
-  double m[6][6] = {};
+  Pack rows[6][2] = {};
+
+  double at(int i, int j) const { return rows[i][j / 3][j % 3]; }
 
   /// += factor ((w - u) . a) (x . b), x = u (side 0) or w (side 1).
   void add(double factor, const Vec& a, int side, const Vec& b) {
-    const double from[6] = {-a.x, -a.y, -a.z, a.x, a.y, a.z};
-    const double to[3] = {b.x, b.y, b.z};
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const double half = 0.5 * factor * from[i] * to[j];
-        m[i][3 * side + j] += half;
-        m[3 * side + j][i] += half;
-      }
+    const Vec half_a = 0.5 * factor * a, half_b = 0.5 * factor * b;
+    const Pack of_a = pack(a), of_b = pack(b);
+    const double from[3] = {half_a.x, half_a.y, half_a.z};
+    const double to[3] = {half_b.x, half_b.y, half_b.z};
+    for (int i = 0; i < 3; ++i) {
+      rows[i][side] -= from[i] * of_b;
+      rows[3 + i][side] += from[i] * of_b;
+      rows[3 * side + i][0] -= to[i] * of_a;
+      rows[3 * side + i][1] += to[i] * of_a;
     }
   }
   /// += factor |w - u|^2.
   void add_square(double factor) {
-    for (int i = 0; i < 3; ++i) {
-      m[i][i] += factor;
-      m[3 + i][3 + i] += factor;
-      m[i][3 + i] -= factor;
-      m[3 + i][i] -= factor;
-    }
+    add_both(0, pack({factor, 0, 0}));
+    add_both(1, pack({0, factor, 0}));
+    add_both(2, pack({0, 0, factor}));
+  }
+  /// += factor ((w - u) . a)^2.
+  void add_relative(double factor, const Vec& a) {
+    const Pack of_a = pack(a);
+    add_both(0, factor * a.x * of_a);
+    add_both(1, factor * a.y * of_a);
+    add_both(2, factor * a.z * of_a);
   }
   /// += factor w . (u x a).
   void add_triple(double factor, const Vec& a) {
     // u x a = -[a]x u
-    const double h[3][3] = {{0, a.z, -a.y}, {-a.z, 0, a.x}, {a.y, -a.x, 0}};
+    const Vec h = 0.5 * factor * a;
+    const Pack of_h[3] = {pack({0, h.z, -h.y}), pack({-h.z, 0, h.x}),
+                          pack({h.y, -h.x, 0})};
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        m[3 + i][j] += 0.5 * factor * h[i][j];
-        m[j][3 + i] += 0.5 * factor * h[i][j];
-      }
+      rows[3 + i][0] += of_h[i];
+      rows[i][1] -= of_h[i];
     }
+  }
+
+ private:
+  static Pack pack(const Vec& x) { return Pack(Pack::Vector{x.x, x.y, x.z, 0}); }
+  /// Row i of a matrix of w - u.
+  void add_both(int i, const Pack& row) {
+    rows[i][0] += row;
+    rows[3 + i][1] += row;
+    rows[i][1] -= row;
+    rows[3 + i][0] -= row;
   }
 };
 

@@ -199,11 +199,13 @@ void MaximalSystem::add_mass(Weights w, GroupSum& sum) noexcept {
 Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcept {
   place(t, q, v);
   std::ranges::fill(s, 0.0);
-  std::ranges::fill(blocks_, 0.0);
-  if (needs_.derivatives && (w.pos != 0 || w.vel != 0)) {
-    const Points p = points(needs_);
-    for (const auto& effect : strand_.effects) {
-      effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
+  if (needs_.derivatives) {  // else they are 0 for good
+    std::ranges::fill(blocks_, 0.0);
+    if (w.pos != 0 || w.vel != 0) {
+      const Points p = points(needs_);
+      for (const auto& effect : strand_.effects) {
+        effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
+      }
     }
   }
   GroupSum of_mass(massive_, s), of_others(inert_, s), elastic(elastic_, s);

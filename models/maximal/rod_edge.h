@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "models/math/frame.h"
+#include "models/math/pack.h"
 
 namespace tress {
 
@@ -51,26 +53,34 @@ struct EdgeTurn {
     const Vec axis{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
     return spin(axis, 0);
   }
-  /// h += factor moment . Q as a symmetric matrix (4 x 4).
-  void add_second(double factor, const Vec& moment, double (&h)[4][4]) const {
+  /// Its rows: a component of w by (e, theta).
+  std::array<Pack, 3> rows() const {
+    const Vec u = (1 / length) * t;  // t x de/L = [u]x de
+    return {Pack(Pack::Vector{t.x * c.x, t.x * c.y - u.z, t.x * c.z + u.y, t.x}),
+            Pack(Pack::Vector{t.y * c.x + u.z, t.y * c.y, t.y * c.z - u.x, t.y}),
+            Pack(Pack::Vector{t.z * c.x - u.y, t.z * c.y + u.x, t.z * c.z, t.z})};
+  }
+  /// h += factor moment . Q as a symmetric matrix (4 x 4), a row a pack.
+  void add_second(double factor, const Vec& moment, Pack (&h)[4]) const {
     const double along = dot(moment, t);
     const Vec across = (1 / length) * (moment - along * t);
     const double at = dot(a, t);
     const Vec stretch = (2 / length) * t + (1 / (length * (1 + at))) * (a - at * t);
     const auto add = [&](double f, const Vec& x, const Vec& y) {
-      const double u[3] = {x.x, x.y, x.z}, w[3] = {y.x, y.y, y.z};
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) h[i][j] += 0.5 * f * (u[i] * w[j] + u[j] * w[i]);
-      }
+      const Pack u(Pack::Vector{x.x, x.y, x.z, 0}), w(Pack::Vector{y.x, y.y, y.z, 0});
+      const Vec half_x = 0.5 * f * x, half_y = 0.5 * f * y;
+      h[0] += half_x.x * w + half_y.x * u;
+      h[1] += half_x.y * w + half_y.y * u;
+      h[2] += half_x.z * w + half_y.z * u;
     };
     add(-2 * factor / (length * length), t, cross(moment, t));
     add(factor, across, c);
     add(-factor * along, c, stretch);
-    const double turned[3] = {across.x, across.y, across.z};
-    for (int i = 0; i < 3; ++i) {
-      h[i][3] += 0.5 * factor * turned[i];
-      h[3][i] += 0.5 * factor * turned[i];
-    }
+    const Vec half = 0.5 * factor * across;
+    h[0] += Pack(Pack::Vector{0, 0, 0, half.x});
+    h[1] += Pack(Pack::Vector{0, 0, 0, half.y});
+    h[2] += Pack(Pack::Vector{0, 0, 0, half.z});
+    h[3] += Pack(Pack::Vector{half.x, half.y, half.z, 0});
   }
 
   Vec a;

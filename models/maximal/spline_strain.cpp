@@ -28,7 +28,7 @@ struct Knots {
 };
 
 template <int n>
-void add_block(const double (&block)[4][4], int at, double (&h)[n][n]) {
+void add_block(const Pack (&block)[4], int at, double (&h)[n][n]) {
   for (int k = 0; k < 4; ++k) {
     for (int l = 0; l < 4; ++l) h[at + k][at + l] += block[k][l];
   }
@@ -94,12 +94,12 @@ void SplineTwist::add_second(const double* x, const double* stress,
     store3(knots.column(l), w);
     double of[6] = {};
     for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 3; ++j) of[i] += form.m[i][3 * (l / 4) + j] * w[j];
+      for (int j = 0; j < 3; ++j) of[i] += form.at(i, 3 * (l / 4) + j) * w[j];
     }
     for (int k = 0; k < 8; ++k) h[k][l] += dot(knots.column(k), load3(of + 3 * (k / 4)));
   }
   for (int side = 0; side < 2; ++side) {
-    double block[4][4] = {};
+    Pack block[4] = {};
     knots.side[side].turn.add_second(side == 0 ? -stress[0] : stress[0], joint.twist,
                                      block);
     add_block(block, 4 * side, h);
@@ -134,15 +134,16 @@ void SplineBend::add_second(const double* x, const double* stress,
     const Vec e =
         (weight * stress[0]) * knot.frame.e1 + (weight * stress[1]) * knot.frame.e2;
     mixed = mixed + e;
-    double block[4][4] = {};
+    Pack block[4] = {};
     knot.turn.add_second(1, cross(e, kappa), block);
     Vec w[4];
     for (int k = 0; k < 4; ++k) w[k] = knot.turn.column(k);
     for (int k = 0; k < 4; ++k) {
       for (int l = 0; l < 4; ++l) {
-        block[k][l] +=
+        const double own =
             0.5 * (dot(w[k], e) * dot(w[l], kappa) + dot(w[l], e) * dot(w[k], kappa)) -
             dot(e, kappa) * dot(w[k], w[l]);
+        block[k].set(l, block[k][l] + own);
       }
       double slope[6];
       point.slope(cross(w[k], e), slope);

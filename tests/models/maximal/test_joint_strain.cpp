@@ -63,8 +63,9 @@ TEST(JointStrain, DerivativesAgreeWithDualNumbers) {
         // A dozen products of numbers up to |kappa|/c.
         EXPECT_NEAR(strains[m].value.part[k], gradient[k], 1e-13);
         for (std::size_t l = 0; l < 6; ++l) {
-          EXPECT_NEAR(strains[m].part[k].part[l], form.m[k][l], 1e-12) << m << k << l;
-          largest = std::max(largest, std::abs(form.m[k][l]));
+          const double entry = form.at(static_cast<int>(k), static_cast<int>(l));
+          EXPECT_NEAR(strains[m].part[k].part[l], entry, 1e-12) << m << k << l;
+          largest = std::max(largest, std::abs(entry));
         }
       }
       EXPECT_GT(largest, 1e-2);
@@ -107,11 +108,17 @@ TEST(EdgeTurn, IsTheTurnOfTheMaterialFrame) {
     const Frame frame = edge_frame(reference, e, theta);
     EXPECT_TRUE(is_rotation(frame));
     const Vec spin = turn.spin(de, dtheta);
+    for (int k = 0; k < 4; ++k) {
+      const Vec column = turn.column(k);
+      EXPECT_NEAR(turn.rows()[0][k], column.x, 1e-12);
+      EXPECT_NEAR(turn.rows()[1][k], column.y, 1e-12);
+      EXPECT_NEAR(turn.rows()[2][k], column.z, 1e-12);
+    }
     // y'' = w x (w x y) + Q x y for w(s) = spin s + Q s^2/2.
     Vec q;
     for (int k = 0; k < 3; ++k) {
       const Vec moment{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
-      double h[4][4] = {};
+      Pack h[4] = {};
       turn.add_second(1, moment, h);
       const double y[4] = {de.x, de.y, de.z, dtheta};
       double sum = 0;
