@@ -79,11 +79,12 @@ class Mutations {
   }
 
   std::string with_characters(std::string text) {
-    constexpr std::string_view some("\"'[]{}=,.#-+\n\\\0\x01\xff\xc3 0e_", 26);
+    // A zero among them: its length comes from the array.
+    static constexpr char some[] = "\"'[]{}=,.#-+\n\\\0\x01\xff\xc3 0e_";
     const std::size_t at = pick(text.size() + 1);
     for (std::size_t i = 0, n = 1 + pick(3); i < n; ++i) {
       text.insert(text.begin() + static_cast<std::ptrdiff_t>(at),
-                  some[pick(some.size())]);
+                  some[pick(sizeof some - 1)]);
     }
     return text;
   }
