@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
           "step?",
       .example = "--models super_helix,der --set case=violent_shake",
       .timed = false,
-      .quick_timeout_s = 3,
+      .quick_timeout_s = 5,
       .columns = columns,
       .settings = hard_case_settings(),
       .cases = cases,

@@ -45,7 +45,7 @@ constexpr Column columns[] = {
 
 double row_time(const CommandLine& line, const Parameters& rows) {
   if (rows.number("row_s") > 0) return rows.number("row_s");
-  return line.quick ? 0.7 : line.full ? 20 : 5;
+  return line.quick ? 1 : line.full ? 20 : 5;
 }
 
 StepSearch step_search(const Parameters& rows, const StrandScene& scene) {

@@ -39,7 +39,7 @@ constexpr Parameter settings_of_rows[] = {
      .number = 1.05,
      .min = 1.0001},
     {.name = "row_s",
-     .help = "time to search for one row (s), 0: 5, with --quick 0.7, with --full 20",
+     .help = "time to search for one row (s), 0: 5, with --quick 1, with --full 20",
      .number = 0,
      .min = 0},
 };

@@ -134,7 +134,7 @@ export const validation = {
               legend: {
                 orient: 'bottom',
                 direction: 'horizontal',
-                columns: width > 600 ? 4 : 2,
+                columns: width > 600 ? 3 : 1,
                 symbolType: 'square',
                 labelLimit: 0,
                 labelExpr: `{${known
