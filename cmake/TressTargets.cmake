@@ -6,7 +6,8 @@ function(tress_warnings target)
   target_compile_options(${target} PRIVATE -Wno-psabi)
   # GCC 12 sees uninitialised variables inside its own AVX-512 intrinsics (GCC bug 105593).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+    target_compile_options(${target} PRIVATE -Wno-uninitialized
+      -Wno-maybe-uninitialized)
   endif()
   # Its garbage collector, left to itself, takes a tenth of the time of a build.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

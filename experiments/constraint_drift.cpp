@@ -167,6 +167,7 @@ int main(int argc, char** argv) {
       .name = "constraint_drift",
       .question = "how far do constraints drift, and what does stopping the drift cost?",
       .example = "--integrators rk4,rattle --set step=5e-4",
+      .timed = false,
       .quick_timeout_s = 2,
       .columns = columns,
       .cases = cases,

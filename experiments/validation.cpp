@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
       .question = "is the physics right: what do published tests of rods say?",
       .example = "--models der,super_helix --set tests=cantilever",
       .timed = false,
-      .quick_timeout_s = 60,
+      .quick_timeout_s = 20,
       .columns = validation_columns(),
       .settings = validation_settings(),
       .cases = cases,

@@ -135,10 +135,10 @@ std::vector<Case> cases(const CommandLine& line) {
       for (const Formulation formulation : shown(entry, *system, line.full)) {
         for (const std::string_view solver : solvers(problem, entry.id)) {
           // The finest steps add nothing to a total error.
-          const int points = (line.full    ? 10
-                              : line.quick ? 6
-                                           : 7) -
-                             (problem.error_kind == "total" ? 2 : 0);
+          const bool total = problem.error_kind == "total";
+          const int points = line.full    ? (total ? 8 : 10)
+                             : line.quick ? (total ? 4 : 6)
+                                          : (total ? 5 : 7);
           for (int level = 0; level < points; ++level) {
             Work work{problem, entry.id, solver, base, line.repeat};
             work.options.formulation = formulation;

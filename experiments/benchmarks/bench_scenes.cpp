@@ -2,7 +2,6 @@
 // could know of effects the scene does not name. The requirement: at most 1 %.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -108,9 +107,7 @@ double cost_ratio(std::string_view model) {
   for (int i = 0; i < batches; ++i) {
     bool ok = true;
     const auto time = [&](auto& runner) {
-      const double start = thread_seconds();
-      ok = runner.advance(steps_per_batch) && ok;
-      return thread_seconds() - start;
+      return seconds_of([&] { ok = runner.advance(steps_per_batch) && ok; });
     };
     // Each comes first every other time.
     const double first = i % 2 == 0 ? time(as_scene) : time(by_hand);

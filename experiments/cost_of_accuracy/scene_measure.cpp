@@ -28,7 +28,7 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
     const Scene run = scene(method, elements, substeps);
     const TipPaths paths = tip_paths(run, 0, most_s);
     const double wall_s =
-        paths.busy_s < short_run ? least_busy_s(run, short_repeats) : paths.busy_s;
+        paths.once_s < short_run ? least_wall_s(run, short_repeats) : paths.once_s;
     return Trial{0, elements, substeps,
                  tip_error(paths.x, reference_, comparison_.length), wall_s};
   } catch (const InputError&) {  // refused at this number of elements
@@ -42,7 +42,7 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const 
   const Scene run = compared(given, comparison_);
   try {
     const double error = tip_error(tip_paths(run, 0).x, reference_, comparison_.length);
-    return Trial{0, 0, 0, error, least_busy_s(run, count, long_enough)};
+    return Trial{0, 0, 0, error, least_wall_s(run, count, long_enough)};
   } catch (const std::runtime_error&) {
     return {};
   }
@@ -50,7 +50,7 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const 
 
 double SceneMeasure::time(const Method& method, int elements, int substeps,
                           int count) const {
-  return least_busy_s(scene(method, elements, substeps), count, long_enough);
+  return least_wall_s(scene(method, elements, substeps), count, long_enough);
 }
 
 double SceneMeasure::error(const Method& method, int elements, int substeps,

@@ -8,10 +8,9 @@
 
 namespace tress {
 
-/// Runs a scene by any method and compares its tips with the reference. Times are those
-/// of stepping on one thread: its processor time, which is the wall time on a machine
-/// that does nothing else, and of that the least of several runs, for what else it does
-/// still takes caches away.
+/// Runs a scene by any method and compares its tips with the reference. Times are wall
+/// times of stepping on one thread, the least of several runs: what else the machine does
+/// only adds to them.
 class SceneMeasure {
  public:
   SceneMeasure(const SceneText& text, const Comparison& comparison,

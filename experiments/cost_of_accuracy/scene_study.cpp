@@ -12,7 +12,6 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_table.h"
-#include "experiments/harness/timing.h"
 #include "experiments/scenes/scene_tables.h"
 #include "models/input_error.h"
 
@@ -170,12 +169,13 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   rows.push_back(std::move(row));
 }
 
-/// Answers everything until nothing changes an answer before it.
-void settle(const Study& study, Finalists& finalists,
-            const std::vector<double>& targets) {
-  constexpr int most = 5;
+/// Answers everything until nothing changes an answer before it: what replaces a choice
+/// of a winner must not turn out cheaper than the winner. Every round but the last tries
+/// or times a run that none did before, so there are few.
+void settle(const Study& study, Finalists& finalists, const std::vector<double>& targets,
+            const Deadline& deadline) {
   std::size_t before = 0;
-  for (int i = 0; i < most && finalists.known() != before; ++i) {
+  while (finalists.known() != before && !deadline.passed()) {
     before = finalists.known();
     for (const double target : targets) static_cast<void>(finalists.of(target));
     static_cast<void>(finalists.front(study.floor(), study.plan.targets.front()));
@@ -202,13 +202,8 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
         fmt::format("all targets are < {} x gap {:.3g}", believed, study.gap())));
     return rows;
   }
-  const Deadline latest(0.6 * deadline.remaining_s());
-  const double start_s = thread_seconds();
-  const auto spent = [&](double share) {
-    return [&latest, end_s = start_s + share * plan.search_s] {
-      return thread_seconds() > end_s || latest.passed();
-    };
-  };
+  const double search_s = std::min(plan.search_s, 0.6 * deadline.remaining_s());
+  const Deadline coarse(coarse_share * search_s), whole(search_s);
   Search search(
       search_plan, study.methods.size(),
       [&](std::size_t method, int elements, int substeps, double most_s) {
@@ -216,12 +211,12 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
         if (run) run->method = method;
         return run;
       },
-      spent(coarse_share));
+      [&coarse] { return coarse.passed(); });
   search.coarse();
   std::string how =
       fmt::format("{}: {} of {} methods climbed", search.cut() ? "cut" : "whole",
                   search.tried(), study.methods.size());
-  search.go_on(spent(1));
+  search.go_on([&whole] { return whole.passed(); });
   search.refine();
   if (search.cut()) how += ", cut while refining";
   search.go_on([&deadline] { return deadline.passed(); });
@@ -229,7 +224,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });
-  settle(study, finalists, search_plan.targets);
+  settle(study, finalists, search_plan.targets, deadline);
   for (const double target : plan.targets) add_target(study, finalists, target, rows);
   add_budget(study, finalists, rows);
   for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {

@@ -19,7 +19,7 @@ struct StudyPlan {
   double rate = 60;            // frames per second
   double horizon = 0.5;        // s
   std::size_t strands = 1;     // of a groom
-  double search_s = 10;        // processor time of one scene's search
+  double search_s = 10;        // of one scene's search
   double longest_run_s = 0.5;  // of one run in it
   double budget_s = 0;         // wall time per frame; 0: not asked
   int repeat = 3;              // runs of what is timed again

@@ -42,7 +42,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
   if (!takes_place(own, "scene")) {
     app.add_option("--scene", raw.scene, "TOML file with any of these options");
   }
-  app.add_option("--set", raw.set, "key=value for the experiment, integrators or models")
+  app.add_option("--set", raw.set,
+                 "key=value for the experiment, integrators or models; again for another")
       ->allow_extra_args(false);
   app.add_option("--out", raw.out,
                  "result table (default results/<experiment>.csv), or -");

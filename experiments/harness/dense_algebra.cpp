@@ -2,8 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
+
+#include "integrators/linear/dense_lu.h"
 
 namespace tress {
 
@@ -11,7 +12,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 MatrixXd solution(const MatrixXd& a, const MatrixXd& b) {
-  return a.partialPivLu().solve(b);
+  DenseLu lu(a.rows());
+  lu.factor(a);
+  MatrixXd x = b;
+  for (Eigen::Index j = 0; j < x.cols(); ++j) lu.solve(x.col(j));
+  return x;
 }
 
 VectorXd least_squares_solution(const MatrixXd& a, const VectorXd& b) {

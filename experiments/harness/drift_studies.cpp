@@ -55,9 +55,12 @@ void add_formulations(const CommandLine& line, const Settings& user,
         if (!refusal(entry, *system, formulation).empty()) continue;
         // Redundant constraints are analysed anew at every factorisation: a tenth will
         // do. Of all methods on the chain 10 s take a minute.
-        const double t_end = scene.name == "truss"                       ? 1
-                             : scene.name == "chain of 10" && line.quick ? 3
-                                                                         : 10;
+        const auto shorter = [&line](double whole, double quick) {
+          return line.quick ? quick : whole;
+        };
+        const double t_end = scene.name == "truss"         ? shorter(1, 0.5)
+                             : scene.name == "chain of 10" ? shorter(10, 2)
+                                                           : 10;
         DriftStudy study{"formulation", scene.name, scene.model, scene.parameters,
                          entry.id,      base,       t_end};
         study.options.formulation = formulation;
@@ -174,7 +177,9 @@ void add_strands(const CommandLine& line, const Settings& user,
                            parameters,
                            id,
                            user.options(),
-                           line.full ? 10 * scene.t_end : scene.t_end};
+                           scene.t_end * (line.full    ? 10
+                                          : line.quick ? 0.5
+                                                       : 1)};
           study.variant = variant.words;
           study.options.formulation = formulation;
           study.options.step = step;

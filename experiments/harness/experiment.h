@@ -52,8 +52,8 @@ struct Gloss {
 struct Experiment {
   std::string_view name, question;
   std::string_view example;  // arguments only: "--models bead_on_wire --quick"
-  /// False: no time in the table is what is asked for, and as many rows run at once as
-  /// the machine has processors unless --jobs says otherwise. True: one at a time.
+  /// False: no time in the table is what is asked for first, and as many rows run at once
+  /// as the machine has processors unless --jobs says otherwise. True: one at a time.
   bool timed = true;
   double quick_timeout_s = 5;  // a row with --quick has, unless --timeout says otherwise
   std::span<const Column> columns;  // status, reason and run_id are added to them

@@ -98,7 +98,7 @@ constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "cu
                                              "whip"};
 /// Of models that are not the seed's: these scenes and numbers of elements.
 constexpr std::string_view quick_scenes_of_others[] = {"release", "shake"};
-constexpr int quick_elements_of_others[] = {5, 10, usual_elements, 40};
+constexpr int quick_elements_of_others[] = {5, usual_elements, 40};
 
 bool contains(std::span<const std::string_view> words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();

@@ -9,11 +9,18 @@ namespace tress {
 /// The middle value (mean of the two middle ones); 0 of none.
 double median(std::vector<double> values);
 
-/// Processor time of the calling thread so far (s). Of work on one thread it is the wall
-/// time that the work would take if the machine did nothing else.
-double thread_seconds();
+/// Wall time of one call (s). Not the processor time of the thread, which would not see
+/// what else the machine does: on a virtual machine that clock may stand still for some
+/// milliseconds, and no choice of the least or the middle of several times mends that.
+template <typename F>
+double seconds_of(F&& f) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  f();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-/// Wall time of repeated calls, in s. The median is what tables show: the smallest is an
+/// Times of repeated calls, in s. The median is what tables show: the smallest is an
 /// unusually lucky run, the mean is spoilt by one interruption.
 struct Timing {
   double median_s = 0, min_s = 0;
@@ -24,13 +31,8 @@ Timing summarize(const std::vector<double>& seconds);
 /// Calls f `repeats` times, once at least.
 template <typename F>
 Timing time_calls(int repeats, F&& f) {
-  using Clock = std::chrono::steady_clock;
   std::vector<double> seconds;
-  for (int i = 0; i < std::max(repeats, 1); ++i) {
-    const auto start = Clock::now();
-    f();
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-  }
+  for (int i = 0; i < std::max(repeats, 1); ++i) seconds.push_back(seconds_of(f));
   return summarize(seconds);
 }
 
@@ -48,7 +50,7 @@ inline constexpr double long_run_s = 0.05;
 /// after a first one that warms the caches and does not count.
 template <typename F>
 double time_run(int repeats, F&& f) {
-  const double first = time_calls(1, f).median_s;
+  const double first = seconds_of(f);
   return first > long_run_s ? first : time_calls(repeats, f).median_s;
 }
 

@@ -117,17 +117,13 @@ TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
   TipPaths paths;
   World world(scene);
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
-    if (f > 0) {
-      const double before = thread_seconds();
-      advance(world, scene.time_of(f));
-      paths.busy_s += thread_seconds() - before;
-    }
-    if (paths.busy_s > most_s) throw std::runtime_error("takes too long");
+    if (f > 0) paths.once_s += seconds_of([&] { advance(world, scene.time_of(f)); });
+    if (paths.once_s > most_s) throw std::runtime_error("takes too long");
     add_tips(world, paths.x);
   }
   if (repeat == 0) return paths;
-  if (paths.busy_s > long_run_s) {
-    paths.wall_s = paths.busy_s;
+  if (paths.once_s > long_run_s) {
+    paths.wall_s = paths.once_s;
     return paths;
   }
   const Snapshot start = World(scene).snapshot();
@@ -138,17 +134,15 @@ TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
   return paths;
 }
 
-double least_busy_s(const Scene& scene, int runs, double at_least_s) {
+double least_wall_s(const Scene& scene, int runs, double at_least_s) {
   World world(scene);
   const Snapshot start = world.snapshot();
   double least = std::numeric_limits<double>::infinity(), all = 0;
   for (int i = 0; i < runs || all < at_least_s; ++i) {
     world.restore(start);
-    const double before = thread_seconds();
-    advance(world, scene.duration);
-    const double busy = thread_seconds() - before;
-    least = std::min(least, busy);
-    all += busy;
+    const double once = seconds_of([&] { advance(world, scene.duration); });
+    least = std::min(least, once);
+    all += once;
   }
   return least;
 }

@@ -33,19 +33,18 @@ Scene refined(Scene scene);
 /// Tips of all strands at every frame, and how long the run took.
 struct TipPaths {
   std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
-  double busy_s = 0;      // processor time of stepping in the run that was read
+  double once_s = 0;      // wall time of stepping in the run that was read
   double wall_s = 0;      // the same where that is long, else the median of repeats
 };
 
 /// Throws InputError where the scene cannot be built and std::runtime_error, with what
-/// happened and when, where it does not run to its end or is not there after `most_s` of
-/// processor time.
+/// happened and when, where it does not run to its end or is not there after `most_s`.
 TipPaths tip_paths(const Scene& scene, int repeat,
                    double most_s = std::numeric_limits<double>::infinity());
 
-/// Least processor time of some runs to the end (s): of `runs`, or more until they have
+/// Least wall time of some runs to the end (s): of `runs`, or more until they have
 /// taken `at_least_s` altogether.
-double least_busy_s(const Scene& scene, int runs, double at_least_s = 0);
+double least_wall_s(const Scene& scene, int runs, double at_least_s = 0);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);

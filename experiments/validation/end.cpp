@@ -88,7 +88,13 @@ Eigen::MatrixXd EndConditions::gradient(double t, In q) {
       g(j, i) = dot(end_.along[static_cast<std::size_t>(i)], moved);
     }
   }
-  if (sections_ == 0) return g;
+  if (sections_ > 0) g.rightCols(sections_) = section_gradient(t, q);
+  return g;
+}
+
+Eigen::MatrixXd EndConditions::section_gradient(double t, In q) {
+  const auto n = static_cast<Index>(q.size());
+  Eigen::MatrixXd g(n, sections_);
   std::vector<double> moved(q.begin(), q.end());
   constexpr double step = 1e-3;  // error step^4 and eps/step: 1e-12
   for (Index j = 0; j < n; ++j) {
@@ -98,9 +104,8 @@ Eigen::MatrixXd EndConditions::gradient(double t, In q) {
       moved[at] = q[at] + by * e;
       return section(t, moved);
     };
-    g.row(j).tail(sections_) =
-        ((8 * (shifted(1) - shifted(-1)) - (shifted(2) - shifted(-2))) / (12 * e))
-            .transpose();
+    g.row(j) = ((8 * (shifted(1) - shifted(-1)) - (shifted(2) - shifted(-2))) / (12 * e))
+                   .transpose();
     moved[at] = q[at];
   }
   return g;
@@ -124,22 +129,36 @@ Eigen::MatrixXd EndConditions::curvature(double t, In q, const Eigen::VectorXd& 
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   if (sections_ == 0) return all;
   std::vector<double> moved(q.begin(), q.end());
-  constexpr double step = 1e-4;  // error step^2 and eps/step^2: 1e-8
+  // A step that turns the end by this: error step^2 and eps/step^2, 1e-7.
+  constexpr double step = 3e-4;
+  const Eigen::MatrixXd slope = section_gradient(t, q);
+  std::vector<double> steps(q.size());
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    constexpr double little = 1e-3;  // such an unknown turns it to second order only
+    const double turn = slope.row(static_cast<Index>(i)).norm();
+    steps[i] = step / (turn * q_typ_[i] > little ? turn : 1 / q_typ_[i]);
+  }
   const std::vector<std::size_t> active = turning(t, q);
+  const auto turned = [&](double by, std::size_t i, std::size_t j) {
+    moved[i] += by * steps[i];
+    if (j != i) moved[j] += by * steps[j];
+    const double w = moment.dot(section(t, moved));
+    moved[i] = q[i];
+    moved[j] = q[j];
+    return w;
+  };
+  // By one unknown both ways, less twice where it stands: f'' steps^2.
+  const double here = moment.dot(section(t, q));
+  std::vector<double> alone;
+  for (const std::size_t i : active) {
+    alone.push_back(turned(1, i, i) + turned(-1, i, i) - 2 * here);
+  }
   for (std::size_t k = 0; k < active.size(); ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
       const std::size_t i = active[k], j = active[l];
-      const double e = step * q_typ_[i], f = step * q_typ_[j];
-      const auto work = [&](double a, double b) {
-        moved[i] += a * e;
-        moved[j] += b * f;
-        const double w = moment.dot(section(t, moved));
-        moved[i] = q[i];
-        moved[j] = q[j];
-        return w;
-      };
+      const double mixed = turned(1, i, j) + turned(-1, i, j) - 2 * here;
       const double second =
-          (work(1, 1) - work(1, -1) - work(-1, 1) + work(-1, -1)) / (4 * e * f);
+          (k == l ? alone[k] : (mixed - alone[k] - alone[l]) / 2) / (steps[i] * steps[j]);
       all(static_cast<Index>(i), static_cast<Index>(j)) = second;
       all(static_cast<Index>(j), static_cast<Index>(i)) = second;
     }

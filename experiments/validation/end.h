@@ -49,6 +49,7 @@ class EndConditions {
  private:
   Eigen::VectorXd section(double t, In q);
   /// Coordinates that turn the section at all.
+  Eigen::MatrixXd section_gradient(double t, In q);  // (n, sections)
   std::vector<std::size_t> turning(double t, In q);
 
   System& system_;

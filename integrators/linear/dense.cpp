@@ -1,20 +1,17 @@
 #include "integrators/linear/dense.h"
 
-#include <Eigen/Dense>
+#include "integrators/linear/dense_lu.h"
 
 namespace tress {
 
 struct DenseSolver::Matrices {
+  explicit Matrices(Eigen::Index size) : a(size, size), lu(size) {}
   Eigen::MatrixXd a;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-  Eigen::VectorXd x;
+  DenseLu lu;
 };
 
 DenseSolver::DenseSolver(const Pattern& pattern)
-    : DirectSolver(pattern), dense_(std::make_unique<Matrices>()) {
-  dense_->a.resize(pattern.rows, pattern.cols);
-  dense_->x.resize(pattern.rows);
-}
+    : DirectSolver(pattern), dense_(std::make_unique<Matrices>(pattern.rows)) {}
 
 DenseSolver::~DenseSolver() = default;
 
@@ -28,16 +25,12 @@ double DenseSolver::factor_scaled(In values) noexcept {
       dense_->a(a.row[entry], j) = values[entry];
     }
   }
-  dense_->lu.compute(dense_->a);
-  return a.cols == 0 ? 1.0 : dense_->lu.matrixLU().diagonal().cwiseAbs().minCoeff();
+  return dense_->lu.factor(dense_->a);
 }
 
 void DenseSolver::solve_scaled(InOut b) const noexcept {
-  Eigen::Map<Eigen::VectorXd> x(b.data(), static_cast<Eigen::Index>(b.size()));
-  dense_->x.noalias() = dense_->lu.permutationP() * x;
-  dense_->lu.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(dense_->x);
-  dense_->lu.matrixLU().triangularView<Eigen::Upper>().solveInPlace(dense_->x);
-  x = dense_->x;
+  dense_->lu.solve(
+      Eigen::Map<Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size())));
 }
 
 }  // namespace tress

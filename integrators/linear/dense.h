@@ -7,9 +7,7 @@
 
 namespace tress {
 
-/// Dense LU with partial pivoting, 2/3 n^3 operations: for a few unknowns, and the
-/// reference of the others. Eigen's blocked kernel allocates packing buffers of its own
-/// from some 500 unknowns on; below, nothing allocates after the first factorisation.
+/// DenseLu: for a few unknowns, and the reference of the others.
 class DenseSolver final : public DirectSolver {
  public:
   explicit DenseSolver(const Pattern& pattern);

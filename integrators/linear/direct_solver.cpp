@@ -41,58 +41,58 @@ DirectSolver::DirectSolver(const Pattern& pattern, double singular_pivot)
       scaled_(static_cast<std::size_t>(pattern.nonzeros())),
       row_scale_(static_cast<std::size_t>(pattern.rows)),
       column_scale_(static_cast<std::size_t>(pattern.cols)),
-      row_factor_(static_cast<std::size_t>(pattern.rows)),
-      column_factor_(static_cast<std::size_t>(pattern.cols)),
       row_largest_(static_cast<std::size_t>(pattern.rows)),
+      column_largest_(static_cast<std::size_t>(pattern.cols)),
       probe_(static_cast<std::size_t>(pattern.rows)) {
   if (pattern.rows != pattern.cols) {
     throw std::invalid_argument("linear solver: the matrix must be square");
   }
 }
 
-/// Multiplies by row_factor_ and column_factor_ and leaves there the largest magnitude of
-/// each row and column of the result; norm_ is its 1-norm.
-void DirectSolver::sweep() noexcept {
+/// The largest magnitude in each row and column of R A C.
+void DirectSolver::measure(In values) noexcept {
   std::ranges::fill(row_largest_, 0.0);
-  norm_ = 0;
-  for (std::size_t j = 0; j < column_factor_.size(); ++j) {
+  for (std::size_t j = 0; j < column_scale_.size(); ++j) {
     double largest = 0;
-    double sum = 0;
     for (auto p = static_cast<std::size_t>(pattern_.start[j]);
          p < static_cast<std::size_t>(pattern_.start[j + 1]); ++p) {
       const auto i = static_cast<std::size_t>(pattern_.row[p]);
-      scaled_[p] *= row_factor_[i] * column_factor_[j];
-      const double size = std::abs(scaled_[p]);
+      const double size = std::abs(values[p]) * row_scale_[i] * column_scale_[j];
       row_largest_[i] = std::max(row_largest_[i], size);
       largest = std::max(largest, size);
-      sum += size;
     }
-    norm_ = std::max(norm_, sum);
-    row_scale_[j] *= row_factor_[j];
-    column_scale_[j] *= column_factor_[j];
-    column_factor_[j] = largest;
+    column_largest_[j] = largest;
   }
-  row_factor_.swap(row_largest_);
 }
 
 bool DirectSolver::scale(In values) noexcept {
   if (!all_finite(values)) return false;
-  std::ranges::copy(values, scaled_.begin());
-  for (auto* v : {&row_scale_, &column_scale_, &row_factor_, &column_factor_}) {
-    std::ranges::fill(*v, 1.0);
-  }
+  std::ranges::fill(row_scale_, 1.0);
+  std::ranges::fill(column_scale_, 1.0);
   const auto is_zero = [](double largest) { return largest == 0; };
-  for (int i = 0; i < symmetric_sweeps; ++i) {
-    sweep();
-    if (std::ranges::any_of(row_factor_, is_zero)) return false;
-    if (std::ranges::any_of(column_factor_, is_zero)) return false;
-    for (double& r : row_factor_) r = 1 / std::sqrt(r);
-    for (double& c : column_factor_) c = 1 / std::sqrt(c);
+  for (int k = 0; k < symmetric_sweeps; ++k) {
+    measure(values);
+    if (std::ranges::any_of(row_largest_, is_zero)) return false;
+    if (std::ranges::any_of(column_largest_, is_zero)) return false;
+    for (std::size_t i = 0; i < row_scale_.size(); ++i) {
+      row_scale_[i] /= std::sqrt(row_largest_[i]);
+      column_scale_[i] /= std::sqrt(column_largest_[i]);
+    }
   }
-  sweep();
-  std::ranges::fill(row_factor_, 1.0);
-  for (double& c : column_factor_) c = 1 / c;
-  sweep();
+  norm_ = 0;
+  for (std::size_t j = 0; j < column_scale_.size(); ++j) {
+    const auto first = static_cast<std::size_t>(pattern_.start[j]);
+    const auto last = static_cast<std::size_t>(pattern_.start[j + 1]);
+    double largest = 0, sum = 0;
+    for (std::size_t p = first; p < last; ++p) {
+      scaled_[p] = values[p] * row_scale_[static_cast<std::size_t>(pattern_.row[p])];
+      largest = std::max(largest, std::abs(scaled_[p]));
+      sum += std::abs(scaled_[p]);
+    }
+    column_scale_[j] = 1 / largest;
+    for (std::size_t p = first; p < last; ++p) scaled_[p] *= column_scale_[j];
+    norm_ = std::max(norm_, sum * column_scale_[j]);
+  }
   return true;
 }
 

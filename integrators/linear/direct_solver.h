@@ -42,7 +42,7 @@ class DirectSolver : public LinearSolver {
   virtual void solve_scaled(InOut b) const noexcept = 0;
 
   bool scale(In values) noexcept;
-  void sweep() noexcept;
+  void measure(In values) noexcept;
   double amplification(InOut x) const noexcept;
 
   Pattern pattern_;
@@ -50,7 +50,7 @@ class DirectSolver : public LinearSolver {
   std::vector<double> scaled_;
   std::vector<double> row_scale_;
   std::vector<double> column_scale_;
-  std::vector<double> row_factor_, column_factor_, row_largest_;  // of one sweep
+  std::vector<double> row_largest_, column_largest_;
   mutable std::vector<double> probe_;
   mutable double condition_ = 0;  // 0: not computed since the last factorisation
   double norm_ = 0;               // 1-norm of R A C

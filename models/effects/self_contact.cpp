@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -51,66 +50,81 @@ SelfContact::SelfContact(const ContactLaw& law, double separation)
 }
 
 /// Lengths at rest: each point's, half to either side, all of it at the strand's ends.
-SelfContact::Edge SelfContact::first_edge(const Points& p) {
+inline SelfContact::Edge SelfContact::first_edge(const Points& p) {
   const std::size_t i = p.length.empty() || p.length[0] > 0 ? 0 : next(p, 0);
-  Edge before{i, i, 0, 0, false};
-  if (i >= p.length.size()) return {i, i, 0, 0, true};
-  Edge edge = edge_after(p, before);
+  Edge edge{i, i, 0, 0};
+  if (i >= p.length.size()) return edge;
+  go_on(p, edge);
   if (edge.j < p.length.size()) edge.length += p.length[i] / 2;
   return edge;
 }
 
-SelfContact::Edge SelfContact::edge_after(const Points& p, const Edge& edge) {
-  const std::size_t i = edge.j, j = next(p, i);
-  Edge after{i, j, edge.from + edge.length, 0, true};
-  if (j >= p.length.size()) return after;
-  after.last = next(p, j) >= p.length.size();
-  after.length = p.length[i] / 2 + p.length[j] / (after.last ? 1 : 2);
-  return after;
+inline void SelfContact::go_on(const Points& p, Edge& edge) {
+  edge.from += edge.length;
+  edge.i = edge.j;
+  edge.j = next(p, edge.i);
+  if (edge.j >= p.length.size()) return;
+  const bool last = next(p, edge.j) >= p.length.size();
+  edge.length = p.length[edge.i] / 2 + p.length[edge.j] / (last ? 1 : 2);
 }
 
-/// The point nearest to x on edges that lie within [from, to] along the arc at rest;
-/// false when none is in reach. `stride`: no edge is longer.
-bool SelfContact::nearest(const Points& p, const Vec& x, double from, double to,
-                          double stride, Place& place) const noexcept {
-  const double reach = law_.reach();
+/// The point nearest to x on edges between points `first` and `last`; false when none is
+/// in reach. `stride`: no edge is longer.
+bool SelfContact::nearest(const Points& p, const Vec& x, std::size_t first,
+                          std::size_t last, double stride, Place& place) const noexcept {
+  const double reach = law_.reach(), clear = reach + stride;
   double least = reach * reach;
   bool found = false;
-  int skip = 0;
-  for (Edge edge = first_edge(p); edge.j < p.length.size(); edge = edge_after(p, edge)) {
-    if (edge.from + edge.length > to) break;
-    if (edge.from < from || skip-- > 0) continue;
-    const StraightPiece piece(load3(&p.x[3 * edge.i]), load3(&p.x[3 * edge.j]));
+  std::size_t skip = 0;
+  for (std::size_t i = first; i < last; i = next(p, i + skip)) {
+    const Vec start = load3(&p.x[3 * i]), lever = x - start;
+    const double apart = dot(lever, lever);
+    if (apart > clear * clear) {
+      // Beyond the reach, as are all edges until then: so many points or more are passed.
+      const double strides = (std::sqrt(apart) - clear) / stride;
+      skip = static_cast<std::size_t>(std::min(strides, static_cast<double>(last - i)));
+      continue;
+    }
+    skip = 0;
+    const std::size_t j = next(p, i);
+    if (j > last) break;
+    const StraightPiece piece(start, load3(&p.x[3 * j]));
     const double at = piece.nearest(x);
     const Vec gap = x - piece.at(at);
     const double square = dot(gap, gap);
     if (square < least) {
       least = square;
-      place = {edge.i, edge.j, at};
+      place = {i, j, at};
       found = true;
     }
-    // Edges until then are nearer to this one than the reach is short of the gap.
-    const double strides = (std::sqrt(square) - reach) / stride;
-    skip = strides > 1 ? static_cast<int>(std::min(strides, 1e6)) - 1 : 0;
   }
   return found;
 }
 
 template <class F>
 void SelfContact::each_contact(const Points& p, F of_contact) const noexcept {
+  const std::size_t count = p.length.size();
+  if (count == 0) return;
   double stride = 0;
-  for (Edge edge = first_edge(p); edge.j < p.length.size(); edge = edge_after(p, edge)) {
+  for (Edge edge = first_edge(p); edge.j < count; go_on(p, edge)) {
     const Vec e = load3(&p.x[3 * edge.j]) - load3(&p.x[3 * edge.i]);
     stride = std::max(stride, norm(e));
   }
-  for (Edge edge = first_edge(p); edge.j < p.length.size(); edge = edge_after(p, edge)) {
+  const std::size_t first = first_edge(p).i;
+  // They begin at the last point and the first that a sample may touch.
+  Edge before = first_edge(p), after = before;
+  for (Edge edge = first_edge(p); edge.j < count; go_on(p, edge)) {
     const Vec start = load3(&p.x[3 * edge.i]), end = load3(&p.x[3 * edge.j]);
     const double samples = std::ceil(2 * edge.length / law_.inner());
     for (double k = 0.5; k < samples; ++k) {
       const double sigma = k / samples, arc = edge.from + sigma * edge.length;
       const Vec x = (1 - sigma) * start + sigma * end;
-      Place place{};
-      const auto meet = [&](double from, double to) {
+      while (before.j < count && before.from + before.length <= arc - separation_) {
+        go_on(p, before);
+      }
+      while (after.j < count && after.from < arc + separation_) go_on(p, after);
+      const auto meet = [&](std::size_t from, std::size_t to) {
+        Place place{};
         if (!nearest(p, x, from, to, stride, place)) return;
         const std::array<std::size_t, 4> points{edge.i, edge.j, place.i, place.j};
         PieceContact::Points at, moving;
@@ -121,8 +135,8 @@ void SelfContact::each_contact(const Points& p, F of_contact) const noexcept {
         of_contact(points,
                    PieceContact(at, moving, sigma, place.at, edge.length / samples / 2));
       };
-      meet(0, arc - separation_);
-      meet(arc + separation_, std::numeric_limits<double>::infinity());
+      meet(first, before.i);
+      meet(after.i, count - 1);
     }
   }
 }

@@ -44,18 +44,17 @@ class SelfContact final : public Effect {
   struct Edge {
     std::size_t i, j;
     double from, length;  // m
-    bool last;
   };
   struct Place {
     std::size_t i, j;  // points of the edge
     double at;         // on it
   };
   static Edge first_edge(const Points& p);
-  static Edge edge_after(const Points& p, const Edge& edge);
+  static void go_on(const Points& p, Edge& edge);  // to the next edge
   template <class F>
   void each_contact(const Points& p, F of_contact) const noexcept;
-  bool nearest(const Points& p, const Vec& x, double from, double to, double stride,
-               Place& place) const noexcept;
+  bool nearest(const Points& p, const Vec& x, std::size_t first, std::size_t last,
+               double stride, Place& place) const noexcept;
 
   ContactLaw law_;
   double separation_;

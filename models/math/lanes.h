@@ -60,7 +60,7 @@ void set_lane(FrameOf<T>& to, int lane, const Frame& f) {
 /// Vectors of four points, `step` numbers from each to the next; and back.
 inline Vec3<Pack> gather3(const double* p, std::size_t step) {
   const auto entry = [=](std::size_t k) {
-    return Pack(Pack::Vector{p[k], p[k + step], p[k + 2 * step], p[k + 3 * step]});
+    return Pack(p[k], p[k + step], p[k + 2 * step], p[k + 3 * step]);
   };
   return {entry(0), entry(1), entry(2)};
 }

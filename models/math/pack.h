@@ -15,10 +15,11 @@ struct Pack {
   // Implicit, so that kernels mix numbers and packs.
   Pack(double x) : v(Vector{x, x, x, x}) {}  // NOLINT(google-explicit-constructor)
   explicit Pack(const Vector& x) : v(x) {}
+  Pack(double x0, double x1, double x2, double x3) : v(Vector{x0, x1, x2, x3}) {}
 
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double x) { v[lane] = x; }
-  static Pack load(const double* p) { return Pack(Vector{p[0], p[1], p[2], p[3]}); }
+  static Pack load(const double* p) { return {p[0], p[1], p[2], p[3]}; }
 
   Pack& operator+=(const Pack& y) { return *this = *this + y; }
   Pack& operator-=(const Pack& y) { return *this = *this - y; }

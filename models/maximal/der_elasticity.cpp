@@ -14,7 +14,7 @@ Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * 
 template <int edges>
 void to_nodes(const Pack (&h)[4 * edges][edges], Pack (&m)[4 * (edges + 1)][edges + 1]) {
   // An edge is the node at its end less the one at its start.
-  const Pack start(Pack::Vector{-1, -1, -1, 1}), end(Pack::Vector{1, 1, 1, 0});
+  const Pack start(-1, -1, -1, 1), end(1, 1, 1, 0);
   Pack half[4 * edges][edges + 1];
   for (int i = 0; i < 4 * edges; ++i) {
     for (int node = 0; node <= edges; ++node) {
@@ -238,10 +238,10 @@ void DerElasticity::add_edge_tangent(std::size_t i, double pos,
   const bool exact = tangent_ == Tangent::exact;
   const double across = exact ? pos * tension : 0;
   const Vec along = (pos * data.stretch - across) * turn.t;
-  const Pack t(Pack::Vector{turn.t.x, turn.t.y, turn.t.z, 0});
-  h[0] += along.x * t + Pack(Pack::Vector{across, 0, 0, 0});
-  h[1] += along.y * t + Pack(Pack::Vector{0, across, 0, 0});
-  h[2] += along.z * t + Pack(Pack::Vector{0, 0, across, 0});
+  const Pack t(turn.t.x, turn.t.y, turn.t.z, 0);
+  h[0] += along.x * t + Pack(across, 0, 0, 0);
+  h[1] += along.y * t + Pack(0, across, 0, 0);
+  h[2] += along.z * t + Pack(0, 0, across, 0);
   if (exact) turn.add_second(pos, edges_[i].moment, h);
 }
 

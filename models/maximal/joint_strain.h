@@ -75,7 +75,7 @@ struct TwoVectorForm {
   }
 
  private:
-  static Pack pack(const Vec& x) { return Pack(Pack::Vector{x.x, x.y, x.z, 0}); }
+  static Pack pack(const Vec& x) { return Pack(x.x, x.y, x.z, 0); }
   /// Row i of a matrix of w - u.
   void add_both(int i, const Pack& row) {
     rows[i][0] += row;

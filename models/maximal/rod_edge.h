@@ -56,9 +56,9 @@ struct EdgeTurn {
   /// Its rows: a component of w by (e, theta).
   std::array<Pack, 3> rows() const {
     const Vec u = (1 / length) * t;  // t x de/L = [u]x de
-    return {Pack(Pack::Vector{t.x * c.x, t.x * c.y - u.z, t.x * c.z + u.y, t.x}),
-            Pack(Pack::Vector{t.y * c.x + u.z, t.y * c.y, t.y * c.z - u.x, t.y}),
-            Pack(Pack::Vector{t.z * c.x - u.y, t.z * c.y + u.x, t.z * c.z, t.z})};
+    return {Pack(t.x * c.x, t.x * c.y - u.z, t.x * c.z + u.y, t.x),
+            Pack(t.y * c.x + u.z, t.y * c.y, t.y * c.z - u.x, t.y),
+            Pack(t.z * c.x - u.y, t.z * c.y + u.x, t.z * c.z, t.z)};
   }
   /// h += factor moment . Q as a symmetric matrix (4 x 4), a row a pack.
   void add_second(double factor, const Vec& moment, Pack (&h)[4]) const {
@@ -67,7 +67,7 @@ struct EdgeTurn {
     const double at = dot(a, t);
     const Vec stretch = (2 / length) * t + (1 / (length * (1 + at))) * (a - at * t);
     const auto add = [&](double f, const Vec& x, const Vec& y) {
-      const Pack u(Pack::Vector{x.x, x.y, x.z, 0}), w(Pack::Vector{y.x, y.y, y.z, 0});
+      const Pack u(x.x, x.y, x.z, 0), w(y.x, y.y, y.z, 0);
       const Vec half_x = 0.5 * f * x, half_y = 0.5 * f * y;
       h[0] += half_x.x * w + half_y.x * u;
       h[1] += half_x.y * w + half_y.y * u;
@@ -77,10 +77,10 @@ struct EdgeTurn {
     add(factor, across, c);
     add(-factor * along, c, stretch);
     const Vec half = 0.5 * factor * across;
-    h[0] += Pack(Pack::Vector{0, 0, 0, half.x});
-    h[1] += Pack(Pack::Vector{0, 0, 0, half.y});
-    h[2] += Pack(Pack::Vector{0, 0, 0, half.z});
-    h[3] += Pack(Pack::Vector{half.x, half.y, half.z, 0});
+    h[0] += Pack(0, 0, 0, half.x);
+    h[1] += Pack(0, 0, 0, half.y);
+    h[2] += Pack(0, 0, 0, half.z);
+    h[3] += Pack(half.x, half.y, half.z, 0);
   }
 
   Vec a;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
 
 #include "models/math/lanes.h"
 
@@ -43,28 +44,93 @@ template <int sign, bool onto, int rows, int inner, int columns, class T>
   }
 }
 
-/// The same for matrices or blocks of them; the smallest are Eigen's to unroll.
+/// The same unrolled completely: for the smallest.
+template <int sign, bool onto, int rows, int inner, int columns, class T>
+[[gnu::always_inline]] inline void multiply_small(const T* a, int a_stride, const T* b,
+                                                  int b_step, int b_stride, T* c,
+                                                  int c_stride) {
+#pragma GCC unroll 9
+  for (int j = 0; j < columns; ++j) {
+#pragma GCC unroll 9
+    for (int i = 0; i < rows; ++i) {
+      T sum = a[i] * b[b_stride * j];
+#pragma GCC unroll 9
+      for (int k = 1; k < inner; ++k) {
+        sum += a[i + a_stride * k] * b[b_step * k + b_stride * j];
+      }
+      T& to = c[i + c_stride * j];
+      if constexpr (onto) {
+        to += sign * sum;
+      } else {
+        to = sign * sum;
+      }
+    }
+  }
+}
+
+/// A block of a small column-major matrix, or its transpose: what Eigen's blocks are, but
+/// each of theirs takes the compiler as long as the whole product.
+template <class T, int rows, int columns>
+struct Part {
+  static constexpr int RowsAtCompileTime = rows, ColsAtCompileTime = columns;
+  T* first;
+  int row_stride, column_stride;
+
+  T* data() const { return first; }
+  int rowStride() const { return row_stride; }
+  int colStride() const { return column_stride; }
+  T& operator()(int i, int j) const { return first[row_stride * i + column_stride * j]; }
+  T& operator[](int i) const { return first[row_stride * i]; }  // of a column
+  Part<T, columns, rows> transpose() const { return {first, column_stride, row_stride}; }
+};
+
+/// The block of a matrix whose first entry is (row, column).
+template <int rows, int columns, class M>
+auto part(M& m, int row, int column) {
+  using T = std::remove_pointer_t<decltype(m.data())>;
+  const auto stride = static_cast<int>(m.outerStride());
+  return Part<T, rows, columns>{m.data() + row + stride * column, 1, stride};
+}
+/// One column, or all, of a matrix of fixed size.
+template <class M>
+auto column_of(M& m, int column) {
+  return part<M::RowsAtCompileTime, 1>(m, 0, column);
+}
+template <class M>
+auto part(M& m) {
+  return part<M::RowsAtCompileTime, M::ColsAtCompileTime>(m, 0, 0);
+}
+
+/// b = a; b += factor a
+template <class A, class B>
+inline void copy(const A& a, B&& b) {
+  for (int j = 0; j < A::ColsAtCompileTime; ++j) {
+    for (int i = 0; i < A::RowsAtCompileTime; ++i) b(i, j) = a(i, j);
+  }
+}
+template <class A, class B>
+inline void add(const A& a, B&& b, double factor = 1) {
+  for (int j = 0; j < A::ColsAtCompileTime; ++j) {
+    for (int i = 0; i < A::RowsAtCompileTime; ++i) b(i, j) += factor * a(i, j);
+  }
+}
+
+/// The same for matrices and parts of them, a column-major.
 template <int sign, bool onto, class A, class B, class C>
 inline void multiply(const A& a, const B& b, C&& c) {
   constexpr int rows = A::RowsAtCompileTime, inner = A::ColsAtCompileTime,
                 columns = B::ColsAtCompileTime;
   static_assert(inner == static_cast<int>(B::RowsAtCompileTime));
-  static_assert(!A::IsRowMajor || rows == 1 || inner == 1);
+  const auto a_stride = static_cast<int>(a.colStride());
+  const auto b_step = static_cast<int>(b.rowStride());
+  const auto b_stride = static_cast<int>(b.colStride());
+  const auto c_stride = static_cast<int>(c.colStride());
   if constexpr (rows * inner * columns <= 27) {
-    if constexpr (onto) {
-      if constexpr (sign > 0) {
-        c.noalias() += a.lazyProduct(b);
-      } else {
-        c.noalias() -= a.lazyProduct(b);
-      }
-    } else {
-      c.noalias() = a.lazyProduct(b);
-    }
+    multiply_small<sign, onto, rows, inner, columns>(a.data(), a_stride, b.data(), b_step,
+                                                     b_stride, c.data(), c_stride);
   } else {
-    multiply<sign, onto, rows, inner, columns>(a.data(), static_cast<int>(a.colStride()),
-                                               b.data(), static_cast<int>(b.rowStride()),
-                                               static_cast<int>(b.colStride()), c.data(),
-                                               static_cast<int>(c.colStride()));
+    multiply<sign, onto, rows, inner, columns>(a.data(), a_stride, b.data(), b_step,
+                                               b_stride, c.data(), c_stride);
   }
 }
 
@@ -83,7 +149,8 @@ inline void subtract_product(const A& a, const B& b, C&& c) {
 /// a b
 template <class A, class B>
 inline auto product(const A& a, const B& b) {
-  Eigen::Matrix<typename A::Scalar, A::RowsAtCompileTime, B::ColsAtCompileTime> c;
+  using T = std::remove_cvref_t<decltype(*a.data())>;
+  Eigen::Matrix<T, A::RowsAtCompileTime, B::ColsAtCompileTime> c;
   multiply<1, false>(a, b, c);
   return c;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "models/reduced/tree_tangent.h"
@@ -32,8 +33,6 @@ class CompositeMatrix {
   using Hanging = Eigen::Matrix<double, wrench, states>;
   using Full = Eigen::Matrix<double, Shape::rows, Shape::columns>;
   template <int columns>
-  using Motion = Eigen::Matrix<double, states, columns>;
-  template <int columns>
   using Load = Eigen::Matrix<double, wrench, columns>;
 
   /// full_[i] maps [s; x] of segment i to its [w; r] with all segments below held still.
@@ -43,59 +42,58 @@ class CompositeMatrix {
     for (std::size_t i = full_.size(); i-- > 0;) {
       full_[i] = with_hanging(tangent.segments[i], hanging_[i]);
       const int parent = tangent.parent[i];
-      (parent < 0 ? at_root_ : hanging_[static_cast<std::size_t>(parent)]) +=
-          full_[i].template topLeftCorner<wrench, states>();
+      add(part<wrench, states>(full_[i], 0, 0),
+          parent < 0 ? at_root_ : hanging_[static_cast<std::size_t>(parent)]);
     }
   }
 
   void fill(const TreeTangent<Shape>& tangent) {
     dense_.setZero();
-    const auto count = static_cast<Eigen::Index>(full_.size());
-    for (Eigen::Index i = 0; i < count; ++i) {
+    const auto count = static_cast<int>(full_.size());
+    for (int i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      dense_.template block<n, n>(n * i, n * i) =
-          full_[at].template bottomRightCorner<n, n>();
-      Load<n> load = full_[at].template topRightCorner<wrench, n>();
+      put<n, n>(n * i, n * i, part<n, n>(full_[at], wrench, states));
+      Load<n> load;
+      copy(part<wrench, n>(full_[at], 0, states), load);
       walk_up<n>(tangent, tangent.parent[at], n * i, load);
       if constexpr (!Shape::symmetric) {
-        walk_down<n>(tangent, at, tangent.segments[at].transfer.template rightCols<n>(),
-                     n * i);
+        walk_down<n>(tangent, at,
+                     part<states, n>(tangent.segments[at].transfer, 0, states), n * i);
       }
     }
     if (!tangent.free_root) return;
     Eigen::Matrix<double, 6, 6> root = tangent.root.local;
     add_product(tangent.root.lift, product(at_root_, tangent.root.transfer), root);
-    dense_.template block<6, 6>(n * count, n * count) = root;
+    put<6, 6>(n * count, n * count, root);
     if constexpr (!Shape::symmetric) {
-      walk_down<6>(tangent, full_.size(), tangent.root.transfer, n * count);
+      walk_down<6>(tangent, full_.size(), part(tangent.root.transfer), n * count);
     }
   }
 
   /// The load that column block `column` puts on the tip of `segment` meets the residuals
   /// from there to the root; a symmetric matrix gets the mirror image too.
   template <int columns>
-  void walk_up(const TreeTangent<Shape>& tangent, int segment, Eigen::Index column,
+  void walk_up(const TreeTangent<Shape>& tangent, int segment, int column,
                Load<columns>& load) {
     while (segment >= 0) {
       const SegmentTangent<Shape>& at =
           tangent.segments[static_cast<std::size_t>(segment)];
       const Eigen::Matrix<double, Shape::rows, columns> lifted = product(at.lift, load);
-      put<n, columns>(n * segment, column, lifted.template bottomRows<n>());
-      load = lifted.template topRows<wrench>();
+      put<n, columns>(n * segment, column, part<n, columns>(lifted, wrench, 0));
+      copy(part<wrench, columns>(lifted, 0, 0), load);
       segment = tangent.parent[static_cast<std::size_t>(segment)];
     }
     if (tangent.free_root) {
-      put<6, columns>(n * static_cast<Eigen::Index>(full_.size()), column,
+      put<6, columns>(n * static_cast<int>(full_.size()), column,
                       product(tangent.root.lift, load));
     }
   }
 
   template <int rows, int columns, class Block>
-  void put(Eigen::Index row, Eigen::Index column, const Block& block) {
-    dense_.template block<rows, columns>(row, column) = block;
+  void put(int row, int column, const Block& block) {
+    copy(block, part<rows, columns>(dense_, row, column));
     if constexpr (Shape::symmetric) {
-      dense_.template block<columns, rows>(column, row) =
-          dense_.template block<rows, columns>(row, column).transpose();
+      copy(block, part<columns, rows>(dense_, column, row).transpose());
     }
   }
 
@@ -103,31 +101,31 @@ class CompositeMatrix {
   /// `from` is the number of segments).
   template <int columns>
   void walk_down(const TreeTangent<Shape>& tangent, std::size_t from,
-                 const Motion<columns>& motion, Eigen::Index column) {
+                 Part<const double, states, columns> motion, int column) {
     const bool root = from == full_.size();
     moved_.assign(full_.size(), 0);
     if (!root) {
       moved_[from] = 1;
-      state_[from].template leftCols<columns>() = motion;
+      copy(motion, state_[from]);
     }
     for (std::size_t i = root ? 0 : from + 1; i < full_.size(); ++i) {
       const int parent = tangent.parent[i];
       if (parent < 0 ? !root : moved_[static_cast<std::size_t>(parent)] == 0) continue;
-      const Motion<columns> s =
-          parent < 0
-              ? motion
-              : state_[static_cast<std::size_t>(parent)].template leftCols<columns>();
+      const Part<const double, states, columns> s =
+          parent < 0 ? motion
+                     : part<states, columns>(
+                           std::as_const(state_[static_cast<std::size_t>(parent)]), 0, 0);
       moved_[i] = 1;
-      dense_.template block<n, columns>(n * static_cast<Eigen::Index>(i), column) =
-          product(full_[i].template bottomLeftCorner<n, states>(), s);
-      state_[i].template leftCols<columns>() =
-          product(tangent.segments[i].transfer.template leftCols<states>(), s);
+      multiply<1, false>(part<n, states>(full_[i], wrench, 0), s,
+                         part<n, columns>(dense_, n * static_cast<int>(i), column));
+      multiply<1, false>(part<states, states>(tangent.segments[i].transfer, 0, 0), s,
+                         part<states, columns>(state_[i], 0, 0));
     }
   }
 
   std::vector<Hanging> hanging_;
   std::vector<Full> full_;
-  std::vector<Motion<6>> state_;
+  std::vector<Eigen::Matrix<double, states, 6>> state_;
   std::vector<char> moved_;
   Hanging at_root_;
   Eigen::MatrixXd& dense_;

@@ -8,7 +8,6 @@ DenseFactor::DenseFactor(int size, bool symmetric)
     : matrix(size, size),
       symmetric_(symmetric),
       rhs_(size),
-      permuted_(size),
       scale_(size),
       cholesky_(size),
       lu_(size) {}
@@ -21,8 +20,7 @@ Status DenseFactor::factor() noexcept {
     cholesky_.compute(matrix);
     return cholesky_.info() == Eigen::Success ? Status::ok : Status::retry;
   }
-  lu_.compute(matrix);
-  const double least = lu_.matrixLU().diagonal().cwiseAbs().minCoeff();
+  const double least = lu_.factor(matrix);
   return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
 }
 
@@ -32,10 +30,7 @@ Status DenseFactor::solve(In b, Out x) noexcept {
   if (symmetric_) {
     cholesky_.solveInPlace(rhs_);
   } else {
-    permuted_.noalias() = lu_.permutationP() * rhs_;  // in place it would allocate
-    rhs_.swap(permuted_);
-    lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(rhs_);
-    lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(rhs_);
+    lu_.solve(rhs_);
   }
   Eigen::Map<Eigen::VectorXd>(x.data(), n) = scale_.cwiseProduct(rhs_);
   return Status::ok;

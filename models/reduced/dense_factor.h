@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
+#include "integrators/linear/dense_lu.h"
 #include "models/system.h"
 
 namespace tress {
@@ -20,9 +20,9 @@ class DenseFactor {
 
  private:
   bool symmetric_;
-  Eigen::VectorXd rhs_, permuted_, scale_;
+  Eigen::VectorXd rhs_, scale_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  DenseLu lu_;
 };
 
 }  // namespace tress

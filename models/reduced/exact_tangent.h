@@ -64,7 +64,7 @@ class ExactTangent {
       for (int c = 0; c < 3; ++c) {
         const Vec e = Frames::axis(c);
         const Vec back = free.frame().back(e);
-        auto x = root.transfer.col(c);
+        auto x = column_of(root.transfer, c);
         put(w.pos * back, {}, x, 0);
         put(w.vel * back, {}, x, 1);
         put(w.acc * back, {}, x, 2);
@@ -76,7 +76,7 @@ class ExactTangent {
         const Vec d_alpha = joint.dW(e, second).at(free.at()) +
                             joint.d2W(e, rate, rate).at(free.at()) + cross(alpha, turn);
         const Vec d_alpha_rate = turned + joint.dW(rate, e).at(free.at());
-        auto theta = root.transfer.col(3 + c);
+        auto theta = column_of(root.transfer, 3 + c);
         put({}, w.pos * phi, theta, 0);
         put(w.pos * cross(m.v, phi), w.pos * rotation.back(d_omega) + w.vel * phi, theta,
             1);
@@ -85,11 +85,11 @@ class ExactTangent {
                 w.acc * phi,
             theta, 2);
 
-        Frames::put(free.frame() * e, {}, root.lift.col(c));
-        Frames::put({}, turn, root.lift.col(3 + c));
+        Frames::put(free.frame() * e, {}, column_of(root.lift, c));
+        Frames::put({}, turn, column_of(root.lift, 3 + c));
         const Vec force = free.frame() * cross(phi, held.force);
         const Vec moment = joint.dW(e, held.moment).at(free.at());
-        Frames::put(w.pos * force, w.pos * moment, root.local.col(3 + c));
+        Frames::put(w.pos * force, w.pos * moment, column_of(root.local, 3 + c));
       }
       Eigen::Matrix<double, size, Shape::states> spin;
       spin.setZero();
@@ -107,7 +107,7 @@ class ExactTangent {
   template <class Column>
   static void put(const Vec& translation, const Vec& rotation, Column&& column,
                   int level) {
-    Frames::put(translation, rotation, column.template segment<size>(level * size));
+    Frames::put(translation, rotation, &column[level * size]);
   }
 
   /// Of the positions in a segment, with respect to its unknowns.
@@ -257,22 +257,22 @@ class ExactTangent {
     for (int c = 0; c < t; ++c) {
       const Vec e = Frames::axis(S::translation[c]);
       for (int level = 0; level < 3; ++level) {
-        back(e, {}, transfer.col(level * size + c), level);
+        back(e, {}, column_of(transfer, level * size + c), level);
       }
     }
     for (int c = 0; c < S::rotations; ++c) {
       const Vec e = Frames::axis(S::rotation[c]);
       const Vec lever = cross(e, g.position);
       for (int level = 0; level < 3; ++level) {
-        back(lever, e, transfer.col(level * size + t + c), level);
+        back(lever, e, column_of(transfer, level * size + t + c), level);
       }
       back(cross(e, cross(omega, g.position) + 2.0 * m.velocity) + cross(omega, lever),
-           cross(e, m.turning), transfer.col(size + t + c), 2);
+           cross(e, m.turning), column_of(transfer, size + t + c), 2);
       if constexpr (dofs == 1) {
         const Vec turned = in_plane(omega, e);
         back(cross(turned, cross(omega, g.position) + 2.0 * m.velocity) +
                  cross(omega, cross(turned, g.position)),
-             {}, transfer.col(t + c), 2);
+             {}, column_of(transfer, t + c), 2);
       }
     }
 
@@ -291,7 +291,7 @@ class ExactTangent {
                                derivatives.acceleration[index].at(at);
       const Vec spin = g.kernel.dW(e, m.acceleration).at(at) +
                        g.kernel.d2W(e, m.rate, m.rate).at(at) + cross(omega, turned);
-      auto column = transfer.col(3 * size + k);
+      auto column = column_of(transfer, 3 * size + k);
       back(w.pos * slope, w.pos * turn, column, 0);
       back(w.pos * (velocity + cross(m.tip_v, turn)) + w.vel * slope,
            w.pos * (turned + cross(tip_omega, turn)) + w.vel * turn, column, 1);
@@ -305,10 +305,10 @@ class ExactTangent {
       // The tip's wrench turns with the tip and acts on a lever that bends.
       const Vec d_force = cross(turn, force), d_moment = cross(turn, moment);
       const Vec at_start = cross(g.position, d_force) + cross(slope, force) + d_moment;
-      auto local = tangent.local.col(3 * size + k);
-      Eigen::Matrix<double, size, 1> wrench;
+      auto local = column_of(tangent.local, 3 * size + k);
+      double wrench[size];
       Frames::put(w.pos * d_force, w.pos * at_start, wrench);
-      local.template head<size>() += wrench;
+      for (int r = 0; r < size; ++r) local[r] += wrench[r];
       const Vec by_turn = g.kernel.dW_transposed(at, e, moment);
       for (std::size_t l = 0; l < dofs; ++l) {
         const Vec other = K::unit(static_cast<int>(l));
@@ -324,7 +324,7 @@ class ExactTangent {
       const bool is_force = c < t;
       const int component = is_force ? S::translation[c] : S::rotation[c - t];
       const Vec e = f * Frames::axis(component);
-      auto lift = tangent.lift.col(c);
+      auto lift = column_of(tangent.lift, c);
       if (is_force) {
         Frames::put(e, cross(g.position, e), lift);
       } else {

@@ -60,8 +60,7 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
  private:
   Status acceleration(double t, In q, In v, Out a) noexcept override {
     dynamics_.residual(t, q, v, zero_, scratch_);
-    sweeps_.compose(q);
-    const Status s = sweeps_.matrix().factor(1, zero_);
+    const Status s = sweeps_.factor(q, {1, 0, 0});
     if (s != Status::ok) return s;
     for (double& entry : scratch_) entry = -entry;
     sweeps_.solve(scratch_, a);

@@ -111,9 +111,29 @@ class Kinematics {
     if constexpr (may_be_free) {
       if (free_root_) free_root_->place(q.last(6));
     }
-    if (std::ranges::equal(q, shaped_)) return;
-    for (std::size_t i = 0; i < segments_.size(); ++i) shape_segment(i, q);
-    shaped_.assign(q.begin(), q.end());
+    const bool first = shaped_.size() != q.size();
+    if (first) shaped_.assign(q.begin(), q.end());
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const auto own = q.subspan(dofs * i, dofs);
+      const auto known = std::span(shaped_).subspan(dofs * i, dofs);
+      if (!first && std::ranges::equal(own, known)) continue;
+      shape_segment(i, q);
+      std::ranges::copy(own, known.begin());
+    }
+  }
+
+  /// The frame at the tip of the last segment, without anything else of move().
+  Frame last_frame(double t, In q) {
+    static_assert(may_be_free);
+    shape(q);
+    Frame frame;
+    for (int i = count() - 1; i >= 0;) {
+      const auto at = static_cast<std::size_t>(i);
+      frame = geometry_[at].rotation * frame;
+      if (segments_[at].mounted) frame = segments_[at].mount * frame;
+      i = segments_[at].parent;
+    }
+    return (free_root_ ? free_root_->frame() : root_motions_.front().at(t).frame) * frame;
   }
 
   /// Accelerations are from now on relative to a frame that falls with this one (m/s^2):

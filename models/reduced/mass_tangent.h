@@ -19,18 +19,25 @@ class SegmentFrames {
   /// local, rows of local and lift.
   static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
     static_assert(S::size == 6);
-    Eigen::Matrix<Real, 3, 3> m;
-    for (int j = 0; j < 3; ++j) {
-      const Vec axis = j == 0 ? mount.e0 : j == 1 ? mount.e1 : mount.e2;
-      m.col(j) << axis.x, axis.y, axis.z;
-    }
+    const auto turn = [&mount](Real& x, Real& y, Real& z) {
+      const Vec turned = mount * Vec{x, y, z};
+      x = turned.x;
+      y = turned.y;
+      z = turned.z;
+    };
+    const auto turn_columns = [&turn](auto& m, int k, int rows) {
+      for (int i = 0; i < rows; ++i) turn(m(i, k), m(i, k + 1), m(i, k + 2));
+    };
+    const auto turn_rows = [&turn](auto& m, int k, int columns) {
+      for (int j = 0; j < columns; ++j) turn(m(k, j), m(k + 1, j), m(k + 2, j));
+    };
     for (int k = 0; k < Shape::states; k += 3) {
-      tangent.transfer.template middleCols<3>(k) *= m.transpose();
-      tangent.local.template middleCols<3>(k) *= m.transpose();
+      turn_columns(tangent.transfer, k, Shape::states);
+      turn_columns(tangent.local, k, Shape::rows);
     }
     for (int k = 0; k < Shape::wrench; k += 3) {
-      tangent.local.template middleRows<3>(k).applyOnTheLeft(m);
-      tangent.lift.template middleRows<3>(k).applyOnTheLeft(m);
+      turn_rows(tangent.local, k, Shape::columns);
+      turn_rows(tangent.lift, k, Shape::wrench);
     }
   }
 
@@ -174,8 +181,8 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   for (std::size_t k = 0; k < dofs; ++k) {
     const auto column = size + static_cast<int>(k);
     Frames::put(acc * sum_over<Real>(momentum[k]), acc * sum_over<Real>(spin[k]),
-                local.col(column));
-    local.row(column).template head<size>() = local.col(column).template head<size>();
+                column_of(local, column));
+    for (int r = 0; r < size; ++r) local(column, r) = local(r, column);
     for (std::size_t l = k; l < dofs; ++l) {
       local(column, size + static_cast<int>(l)) =
           local(size + static_cast<int>(l), column) = acc * sum_over<Real>(inner[k][l]);
@@ -190,22 +197,22 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   auto& transfer = tangent.transfer;
   const auto& f = g.rotation;
   for (int c = 0; c < t; ++c) {
-    Frames::put(Frames::seen(f, S::translation[c]), {}, transfer.col(c));
+    Frames::put(Frames::seen(f, S::translation[c]), {}, column_of(transfer, c));
   }
   for (int c = 0; c < S::rotations; ++c) {
     const Vec3<Real> e = Frames::axis(S::rotation[c]);
     Frames::put(f.back(cross(e, g.position)), Frames::seen(f, S::rotation[c]),
-                transfer.col(t + c));
+                column_of(transfer, t + c));
   }
   for (std::size_t k = 0; k < dofs; ++k) {
     Frames::put(f.back(g.slope[k]), f.back(g.turn[k]),
-                transfer.col(size + static_cast<int>(k)));
+                column_of(transfer, size + static_cast<int>(k)));
   }
   if constexpr (dofs > 1) {
     tangent.tip(t, t) = acc * segment.rotor;
     if (segment.mounted) Frames::mount(segment.mount, tangent);
   }
-  tangent.lift = transfer.transpose();
+  copy(part(transfer).transpose(), tangent.lift);
 }
 
 /// The same of the free root of one strand.
@@ -217,14 +224,18 @@ void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
     using Frames = SegmentFrames<MassShape<dofs>>;
     for (int c = 0; c < 3; ++c) {
       const Vec e = Frames::axis(c);
-      Frames::put(free.frame().back(e), Vec{}, root.transfer.col(c));
+      Frames::put(free.frame().back(e), Vec{}, column_of(root.transfer, c));
       Frames::put(Vec{}, free.joint().W_transposed(free.at(), e),
-                  root.transfer.col(3 + c));
+                  column_of(root.transfer, 3 + c));
     }
-    root.lift = root.transfer.transpose();
+    copy(part(root.transfer).transpose(), root.lift);
     // The rotor at the root answers to the turning about its e0.
-    const auto spin = root.transfer.row(3);
-    root.local.noalias() = (w.acc * kinematics.root_rotor()) * spin.transpose() * spin;
+    for (int c = 0; c < 6; ++c) {
+      for (int r = 0; r < 6; ++r) {
+        root.local(r, c) =
+            (w.acc * kinematics.root_rotor()) * root.transfer(3, r) * root.transfer(3, c);
+      }
+    }
   }
 }
 

@@ -61,13 +61,14 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       Eliminated& e = eliminated_[i];
       const Eigen::Matrix<Real, Shape::rows, 1> lifted =
           product(tangent.segments[i].lift, hanging_[i].load);
-      const Dofs rest = dofs(b, i) - lifted.template tail<Shape::dofs>();
-      e.u.noalias() = e.inverse * rest;
-      Wrench handed_on = lifted.template head<Shape::wrench>();
-      add_product(e.response, rest, handed_on);
+      Dofs rest;
+      for (int k = 0; k < n; ++k) rest[k] = b[at(i, k)] - lifted[wrench + k];
+      multiply<1, false>(e.inverse, rest, e.u);
       const int parent = tangent.parent[i];
-      (parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load) +=
-          handed_on;
+      Wrench& onto =
+          parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load;
+      add(part<wrench, 1>(lifted, 0, 0), onto);
+      add_product(e.response, rest, onto);
     }
     State at_start = State::Zero();
     if constexpr (may_be_free) {
@@ -85,11 +86,11 @@ class RecursiveSolver final : public TreeSolver<Shape> {
           parent < 0 ? at_start : hanging_[static_cast<std::size_t>(parent)].state;
       const Eliminated& e = eliminated_[i];
       Eigen::Matrix<Real, Shape::columns, 1> moved;
-      moved.template head<Shape::states>() = s;
-      moved.template tail<Shape::dofs>() = e.u - product(e.z, s);
-      Eigen::Map<Dofs>(x.data() + Shape::dofs * i) = moved.template tail<Shape::dofs>();
-      hanging_[i].state.setZero();
-      add_product(tangent.segments[i].transfer, moved, hanging_[i].state);
+      copy(s, part<states, 1>(moved, 0, 0));
+      copy(e.u, part<n, 1>(moved, states, 0));
+      subtract_product(e.z, s, part<n, 1>(moved, states, 0));
+      for (int k = 0; k < n; ++k) x[at(i, k)] = moved[states + k];
+      multiply<1, false>(tangent.segments[i].transfer, moved, hanging_[i].state);
     }
     return Status::ok;
   }
@@ -116,9 +117,14 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     State state;  // of the tip
   };
 
-  static Dofs dofs(In b, std::size_t i) { return Eigen::Map<const Dofs>(&b[n * i]); }
+  static std::size_t at(std::size_t i, int k) {
+    return n * i + static_cast<std::size_t>(k);
+  }
 
-  static bool invert(const Square& h, Square& inverse) {
+  template <class Pivot>
+  static bool invert(const Pivot& pivot, Square& inverse) {
+    Square h;
+    copy(pivot, h);
     inverse = h.inverse();
     return is_finite(inverse.sum());
   }
@@ -137,25 +143,29 @@ class RecursiveSolver final : public TreeSolver<Shape> {
                                   const Articulated& hanging, Eliminated& e,
                                   Articulated& onto) {
     // Transposed: [s; x] to the tip, and in local s to x and x to x.
-    const auto tip_of_s = segment.lift.template topRows<states>();
-    const auto tip_of_x = segment.lift.template bottomRows<n>();
-    const auto local_of_x = segment.local.template rightCols<n>();
+    const auto tip_of_s = part<states, wrench>(segment.lift, 0, 0);
+    const auto tip_of_x = part<n, wrench>(segment.lift, states, 0);
+    const auto own_of_x = part<states, n>(segment.local, 0, states);
+    const auto inner = part<n, n>(segment.local, states, states);
     // The pivot and what couples it to s: columns x of local + transfer^T hanging
     // transfer.
-    Eigen::Matrix<Real, Shape::rows, n> of_x = local_of_x;
+    Eigen::Matrix<Real, Shape::rows, n> of_x;
+    copy(part<Shape::rows, n>(segment.local, 0, states), of_x);
     add_product(segment.lift, product(hanging, tip_of_x.transpose()), of_x);
-    if (!invert(of_x.template bottomRows<n>(), e.inverse)) return false;
-    e.response = product(of_x.template topRows<states>(), e.inverse);
-    e.z = e.response.transpose();
+    if (!invert(part<n, n>(of_x, states, 0), e.inverse)) return false;
+    multiply<1, false>(part<states, n>(of_x, 0, 0), e.inverse, e.response);
+    copy(part(e.response).transpose(), e.z);
     // V = [I; -Z]: M V = M_s - M_x Z.
-    Eigen::Matrix<Real, states, states> tip_motion = tip_of_s;
+    Eigen::Matrix<Real, states, states> tip_motion;
+    copy(tip_of_s, tip_motion);
     subtract_product(e.response, tip_of_x, tip_motion);
-    Eigen::Matrix<Real, states, n> own = local_of_x.template topRows<states>();
-    subtract_product(e.response, local_of_x.template bottomRows<n>(), own);
-    onto += segment.local.template topLeftCorner<states, states>();
-    subtract_product(local_of_x.template topRows<states>(), e.response.transpose(), onto);
-    subtract_product(e.response, own.transpose(), onto);
-    add_product(tip_motion, product(hanging, tip_motion.transpose()), onto);
+    Eigen::Matrix<Real, states, n> own;
+    copy(own_of_x, own);
+    subtract_product(e.response, inner, own);
+    add(part<states, states>(segment.local, 0, 0), onto);
+    subtract_product(own_of_x, part(e.response).transpose(), onto);
+    subtract_product(e.response, part(own).transpose(), onto);
+    add_product(tip_motion, product(hanging, part(tip_motion).transpose()), onto);
     for (int j = 0; j < states; ++j) {  // symmetric but for rounding: made so
       for (int i = 0; i < j; ++i) onto(j, i) = onto(i, j);
     }
@@ -166,29 +176,27 @@ class RecursiveSolver final : public TreeSolver<Shape> {
                                 const Articulated& hanging, Eliminated& e,
                                 Articulated& onto) {
     const auto full = with_hanging(segment, hanging);
-    const Square pivot = full.template bottomRightCorner<n, n>();
-    const auto r_of_s = full.template bottomLeftCorner<n, states>();
-    const auto w_of_x = full.template topRightCorner<wrench, n>();
+    const auto pivot = part<n, n>(full, wrench, states);
+    const auto r_of_s = part<n, states>(full, wrench, 0);
+    const auto w_of_x = part<wrench, n>(full, 0, states);
+    add(part<wrench, states>(full, 0, 0), onto);
     if (!invert(pivot, e.inverse)) return false;
-    e.z = product(e.inverse, r_of_s);
     if constexpr (method == TreeMethod::recursive_plain) {
-      const Eigen::Matrix<Real, wrench, n> y = w_of_x;
-      const Eigen::Matrix<Real, n, wrench> mirrored = y.transpose();
-      e.z = product(e.inverse, mirrored);
-      e.response = e.z.transpose();
-      onto += full.template topLeftCorner<wrench, states>();
-      subtract_product(y, e.z, onto);
+      multiply<1, false>(e.inverse, w_of_x.transpose(), e.z);
+      copy(part(e.z).transpose(), e.response);
+      subtract_product(w_of_x, e.z, onto);
       return true;
     }
+    multiply<1, false>(e.inverse, r_of_s, e.z);
     Square used = e.inverse;
     if constexpr (method == TreeMethod::less_implicit) {
       // Friction and stiffness of distal segments stay out of what is handed on.
-      Square bare = pivot;
-      bare.diagonal() -= segment.stiffness;
+      Square bare;
+      copy(pivot, bare);
+      for (int k = 0; k < n; ++k) bare(k, k) -= segment.stiffness[k];
       if (!invert(bare, used)) return false;
     }
-    e.response = product(w_of_x, used);
-    onto += full.template topLeftCorner<wrench, states>();
+    multiply<1, false>(w_of_x, used, e.response);
     subtract_product(e.response, r_of_s, onto);
     return true;
   }

@@ -103,7 +103,7 @@ class ReducedBatch final : public StrandBlock {
       from[lane] = &x[lane < strands() ? lane * n : 0];
     }
     for (std::size_t k = 0; k < n; ++k) {
-      packed[k] = Pack(Pack::Vector{from[0][k], from[1][k], from[2][k], from[3][k]});
+      packed[k] = Pack(from[0][k], from[1][k], from[2][k], from[3][k]);
     }
   }
   /// `retry` unless all of it is finite.

@@ -292,9 +292,7 @@ class ReducedSystem : public System,
 
   /// With several free ends, of the last segment's.
   bool end_frame(double t, In q, std::array<double, 9>& axes) override {
-    kinematics_.move(t, q, zero_, zero_);
-    const std::size_t last = kinematics_.segments().size() - 1;
-    store9(kinematics_.motion(last).tip.frame * to_tip_, axes.data());
+    store9(kinematics_.last_frame(t, q) * to_tip_, axes.data());
     return true;
   }
 

@@ -80,8 +80,8 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
 
   template <class Sink, class Block>
   static void put(Sink& sink, int row, int column, double factor, const Block& block) {
-    for (int j = 0; j < block.cols(); ++j) {
-      for (int i = 0; i < block.rows(); ++i) {
+    for (int j = 0; j < Block::ColsAtCompileTime; ++j) {
+      for (int i = 0; i < Block::RowsAtCompileTime; ++i) {
         sink(row + i, column + j, factor * block(i, j));
       }
     }
@@ -100,36 +100,35 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
       const SegmentTangent<Shape>& segment = tangent.segments[i];
       const int at = stride * static_cast<int>(i);
       const int parent = tangent.parent[i];
-      const auto lift_w = segment.lift.template topRows<wrench>();
-      const auto lift_r = segment.lift.template bottomRows<n>();
+      const auto lift_w = part<wrench, wrench>(segment.lift, 0, 0);
+      const auto lift_r = part<n, wrench>(segment.lift, wrench, 0);
 
-      put(sink, at, at, 1, segment.local.template bottomRightCorner<n, n>());
+      put(sink, at, at, 1, part<n, n>(segment.local, wrench, states));
       put(sink, at, at + of_state, 1, product(lift_r, segment.tip));
       put_identity(sink, at + of_state, at + of_state, states);
-      put(sink, at + of_state, at, -1, segment.transfer.template rightCols<n>());
+      put(sink, at + of_state, at, -1, part<states, n>(segment.transfer, 0, states));
       put_identity(sink, at + of_wrench, at + of_wrench, wrench);
-      put(sink, at + of_wrench, at, -1,
-          segment.local.template topRightCorner<wrench, n>());
+      put(sink, at + of_wrench, at, -1, part<wrench, n>(segment.local, 0, states));
       put(sink, at + of_wrench, at + of_state, -1, product(lift_w, segment.tip));
 
       // What the state at the start adds: of the parent's tip, or of a free root.
-      const auto from_start = [&](int column, const auto& start) {
-        put(sink, at, column, 1,
-            product(segment.local.template bottomLeftCorner<n, states>(), start));
-        put(sink, at + of_state, column, -1,
-            product(segment.transfer.template leftCols<states>(), start));
-        put(sink, at + of_wrench, column, -1,
-            product(segment.local.template topLeftCorner<wrench, states>(), start));
-      };
+      const auto r_of_s = part<n, states>(segment.local, wrench, 0);
+      const auto s_of_s = part<states, states>(segment.transfer, 0, 0);
+      const auto w_of_s = part<wrench, states>(segment.local, 0, 0);
       if (parent >= 0) {
-        from_start(stride * parent + of_state,
-                   Eigen::Matrix<double, states, states>::Identity().eval());
+        const int start = stride * parent;
+        put(sink, at, start + of_state, 1, r_of_s);
+        put(sink, at + of_state, start + of_state, -1, s_of_s);
+        put(sink, at + of_wrench, start + of_state, -1, w_of_s);
         const auto& below = tangent.segments[static_cast<std::size_t>(parent)].lift;
-        put(sink, stride * parent, at + of_wrench, 1, below.template bottomRows<n>());
-        put(sink, stride * parent + of_wrench, at + of_wrench, -1,
-            below.template topRows<wrench>());
+        put(sink, start, at + of_wrench, 1, part<n, wrench>(below, wrench, 0));
+        put(sink, start + of_wrench, at + of_wrench, -1,
+            part<wrench, wrench>(below, 0, 0));
       } else if (tangent.free_root) {
-        from_start(root, tangent.root.transfer);
+        const auto start = part(tangent.root.transfer);
+        put(sink, at, root, 1, product(r_of_s, start));
+        put(sink, at + of_state, root, -1, product(s_of_s, start));
+        put(sink, at + of_wrench, root, -1, product(w_of_s, start));
         put(sink, root, at + of_wrench, 1, tangent.root.lift);
       }
     }

@@ -36,7 +36,8 @@ class TransportMatrix {
     Inertia hanging;
     for (std::size_t i = full_.size(); i-- > 0;) {
       const SegmentTangent<Shape>& segment = mass.segments[i];
-      hanging = i + 1 < full_.size() ? inertia(i + 1) + segment.tip : segment.tip;
+      hanging = segment.tip;
+      if (i + 1 < full_.size()) add(inertia(i + 1), hanging);
       full_[i] = with_hanging(segment, hanging);
     }
   }
@@ -45,8 +46,9 @@ class TransportMatrix {
   void add_product(In a, Out r) {
     sweep(a);
     for (std::size_t i = 0; i < full_.size(); ++i) {
-      Eigen::Map<Dofs> equation(&r[dofs * i]);
-      equation += coupling(i) * start_[i] + own(i) * at(a, i);
+      const auto equation = at(r, i);
+      tress::add_product(coupling(i), start_[i], equation);
+      tress::add_product(own(i), at(a, i), equation);
     }
   }
 
@@ -54,8 +56,12 @@ class TransportMatrix {
   Status factor(double acc, In diagonal) {
     acc_ = acc;
     for (std::size_t i = 0; i < full_.size(); ++i) {
-      Square pivot = acc * own(i);
-      pivot.diagonal() += at(diagonal, i);
+      Square pivot;
+      copy(own(i), pivot);
+      for (int j = 0; j < dofs; ++j) {
+        for (int k = 0; k < dofs; ++k) pivot(k, j) = Real(acc) * pivot(k, j);
+        pivot(j, j) += at(diagonal, i)[j];
+      }
       inverse_[i] = pivot.inverse();
       if (!is_finite(inverse_[i].sum())) return Status::retry;
     }
@@ -65,18 +71,20 @@ class TransportMatrix {
   void solve(In b, Out x) {
     start_[0].setZero();
     for (std::size_t i = 0; i < full_.size(); ++i) {
-      const Dofs rest = at(b, i) - acc_ * (coupling(i) * start_[i]);
-      Eigen::Map<Dofs> unknowns(&x[dofs * i]);
-      unknowns = inverse_[i] * rest;
-      start_[i + 1] = moved(i, start_[i], unknowns);
+      const Dofs coupled = product(coupling(i), start_[i]);
+      Dofs rest;
+      for (int k = 0; k < dofs; ++k) rest[k] = at(b, i)[k] - acc_ * coupled[k];
+      const auto unknowns = at(x, i);
+      multiply<1, false>(inverse_[i], rest, unknowns);
+      move(i, start_[i], unknowns, start_[i + 1]);
     }
   }
 
   /// dense += factor M_ft
   void add_dense(double factor, Eigen::MatrixXd& dense) const {
     for (std::size_t m = 0; m < full_.size(); ++m) {
-      block(dense, m, m) += factor * own(m);
-      add_below(m, factor * from_axes(m), dense);
+      add(own(m), block(dense, m, m), factor);
+      add_below(m, scaled(factor, from_axes(m)), dense);
     }
   }
 
@@ -98,15 +106,18 @@ class TransportMatrix {
       for (int k = 0; k < dofs; ++k) turning = turning + component(second, k) * g.turn[k];
       State motion = start_[m];
       Frames::put(translation(motion), rotation(motion) + turning, motion);
-      const State wrench = inertia(m) * motion;
+      const State wrench = product(inertia(m), motion);
 
       Axes change;  // of the motion, by each unknown
       for (int l = 0; l < dofs; ++l) {
         const Vec e = Kinematics<Kernel, dofs>::unit(l);
         State turned;
         Frames::put({}, g.kernel.dW(e, second).at(g.tip), turned);
-        change.col(l) = turned - crossed(g.turn[l], motion);
-        const State load = inertia(m) * change.col(l) + crossed(g.turn[l], wrench);
+        const auto by_l = column_of(change, l);
+        copy(turned, by_l);
+        add(crossed(g.turn[l], motion), by_l, -1);
+        State load = crossed(g.turn[l], wrench);
+        tress::add_product(inertia(m), by_l, load);
         for (int k = 0; k < dofs; ++k) {
           const Vec axis = Kinematics<Kernel, dofs>::unit(k);
           block(dense, m, m)(k, l) +=
@@ -114,7 +125,7 @@ class TransportMatrix {
                         dot(g.kernel.dW(e, axis).at(g.tip), rotation(wrench)));
         }
       }
-      add_below(m, factor * product(rigid(m), change), dense);
+      add_below(m, scaled(factor, product(rigid(m), change)), dense);
       add_right(kinematics, m, factor, dense);
     }
   }
@@ -129,41 +140,47 @@ class TransportMatrix {
   using Axes = Eigen::Matrix<Real, size, dofs>;
   using Square = Eigen::Matrix<Real, dofs, dofs>;
 
-  static Dofs at(In x, std::size_t i) { return Eigen::Map<const Dofs>(&x[dofs * i]); }
+  template <class T>
+  static Part<T, dofs, 1> at(std::span<T> x, std::size_t i) {
+    return {&x[dofs * i], 1, dofs};
+  }
+  template <class A>
+  static Axes scaled(double factor, const A& a) {
+    Axes b = Axes::Zero();
+    add(a, b, factor);
+    return b;
+  }
   static Real component(const Vec& x, int k) {
     return dot(Kinematics<Kernel, dofs>::unit(k), x);
   }
 
   static auto block(Eigen::MatrixXd& dense, std::size_t row, std::size_t column) {
-    return dense.template block<dofs, dofs>(static_cast<Eigen::Index>(dofs * row),
-                                            static_cast<Eigen::Index>(dofs * column));
+    return part<dofs, dofs>(dense, dofs * static_cast<int>(row),
+                            dofs * static_cast<int>(column));
   }
 
   // Of joint i: its composite inertia, what links the start's motion to its equation, and
   // its own term; the motion its unknowns give to the tip, and the start's handed on.
-  auto inertia(std::size_t i) const {
-    return full_[i].template topLeftCorner<size, size>();
-  }
-  auto coupling(std::size_t i) const {
-    return full_[i].template bottomLeftCorner<dofs, size>();
-  }
-  auto own(std::size_t i) const {
-    return full_[i].template bottomRightCorner<dofs, dofs>();
-  }
+  auto inertia(std::size_t i) const { return part<size, size>(full_[i], 0, 0); }
+  auto coupling(std::size_t i) const { return part<dofs, size>(full_[i], size, 0); }
+  auto own(std::size_t i) const { return part<dofs, dofs>(full_[i], size, size); }
   auto from_axes(std::size_t i) const {
-    return mass_->segments[i].transfer.template rightCols<dofs>();
+    return part<size, dofs>(mass_->segments[i].transfer, 0, size);
   }
   auto rigid(std::size_t i) const {
-    return mass_->segments[i].transfer.template leftCols<size>();
+    return part<size, size>(mass_->segments[i].transfer, 0, 0);
   }
 
-  State moved(std::size_t i, const State& start, const Dofs& x) const {
-    return rigid(i) * start + from_axes(i) * x;
+  /// The motion of link i's tip from that of its start.
+  template <class X>
+  void move(std::size_t i, const State& start, const X& x, State& tip) const {
+    multiply<1, false>(rigid(i), start, tip);
+    tress::add_product(from_axes(i), x, tip);
   }
   void sweep(In a) {
     start_[0].setZero();
     for (std::size_t i = 0; i < full_.size(); ++i) {
-      start_[i + 1] = moved(i, start_[i], at(a, i));
+      move(i, start_[i], at(a, i), start_[i + 1]);
     }
   }
 
@@ -188,7 +205,7 @@ class TransportMatrix {
   /// Block column m below the diagonal, of motions of the tip of link m.
   void add_below(std::size_t m, Axes motion, Eigen::MatrixXd& dense) const {
     for (std::size_t j = m + 1; j < full_.size(); ++j) {
-      block(dense, j, m) += product(coupling(j), motion);
+      tress::add_product(coupling(j), motion, block(dense, j, m));
       motion = product(rigid(j), motion);
     }
   }
@@ -197,16 +214,19 @@ class TransportMatrix {
   void add_right(const Kinematics<Kernel, dofs>& kinematics, std::size_t j, double factor,
                  Eigen::MatrixXd& dense) const {
     State motion = start_[j + 1];
-    Axes axes = factor * from_axes(j);
+    Axes axes = scaled(factor, from_axes(j));
     for (std::size_t m = j + 1; m < full_.size(); ++m) {
-      const State wrench = inertia(m) * motion;
+      const State wrench = product(inertia(m), motion);
       Axes change;
       for (int l = 0; l < dofs; ++l) {
         const Vec& turn = kinematics.geometry(m).turn[l];
-        change.col(l) = crossed(turn, wrench) - inertia(m) * crossed(turn, motion);
+        const auto by_l = column_of(change, l);
+        copy(crossed(turn, wrench), by_l);
+        subtract_product(inertia(m), crossed(turn, motion), by_l);
       }
-      block(dense, j, m) += axes.transpose() * change;
-      motion = rigid(m) * motion;
+      const Eigen::Matrix<Real, dofs, size> onto = axes.transpose();
+      tress::add_product(onto, change, block(dense, j, m));
+      motion = product(rigid(m), motion);
       axes = product(rigid(m), axes);
     }
   }

@@ -2,15 +2,15 @@
 
 #include <Eigen/Core>
 
-/// Decompositions of dense matrices that tests compare with, compiled once: each takes
-/// the compiler ten seconds wherever it stands.
+/// Decompositions of dense matrices that tests compare with: GSL's, where the testbed
+/// itself has Eigen's.
 namespace tress::testing_support {
 
-/// X with A X = B by LU with full pivoting, A regular.
+/// X with A X = B by LU, A regular.
 Eigen::MatrixXd dense_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// The X of least norm that minimises |A X - B|; pivots below `threshold` of the largest
-/// count as zero, below rounding unless given.
+/// The X of least norm that minimises |A X - B|; singular values below `threshold` of
+/// the largest count as zero, below rounding unless given.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                               double threshold = 0);
 

@@ -41,6 +41,9 @@ Pair pair(const Modes& modes, int elements, const ModelSettings& more = {}) {
 
 /// Sums of some hundred terms.
 constexpr double rounding = 1e3 * eps;
+/// On the condition of a link's 3 x 3 mass matrix: its twist has the section's inertia
+/// alone when the link is straight, 1e5 times less than bending.
+constexpr double of_accelerations = 1e5 * rounding;
 
 void expect_equal(const std::vector<double>& x, const std::vector<double>& y) {
   ASSERT_GT(largest(y), 0);
@@ -61,9 +64,7 @@ TEST(ForceTransport, OfOneSegmentIsTheChain) {
               Status::ok);
     ASSERT_EQ(models.chain->explicit_form()->acceleration(t0, s.q, s.v, of_chain),
               Status::ok);
-    // Rounding on the condition of the 3 x 3 mass matrix: its twist has the section's
-    // inertia alone when the link is straight, 1e5 times less than bending.
-    EXPECT_LE(relative_difference(a, of_chain, s.v_typ), 1e5 * rounding);
+    EXPECT_LE(relative_difference(a, of_chain, s.v_typ), of_accelerations);
   }
 }
 
@@ -157,7 +158,7 @@ TEST(ForceTransport, IsTheFirstGaussSeidelSweepOfTheChain) {
       ASSERT_EQ(models.transport->solve(r, step), Status::ok);
       a = plus(a, -1, step);
       if (sweep > 0) continue;
-      EXPECT_LE(relative_difference(a, first, s.v_typ), rounding);
+      EXPECT_LE(relative_difference(a, first, s.v_typ), of_accelerations);
     }
   }
 }
