@@ -68,8 +68,7 @@ std::vector<HardCase> contact_cases() {
   all.push_back({.name = "coil_contact",
                  .why = "a coil is pulled together until its turns lie on each other: "
                         "contacts all along, which come and go, and couple points "
-                        "that the tangent of self_contact does not (its blocks are of "
-                        "one point each)",
+                        "that are far from each other along the strand",
                  .measure = "overlap_over_radius",
                  .criterion =
                      "turns overlap by less than their radius, half of the "

@@ -102,8 +102,7 @@ double measured_angle(const Trial& trial) {
     if (t >= t_end) points.positions(t, q, x);
     return t;
   };
-  // One linear solve a step: contacts have blocks of each point by itself in the tangent,
-  // and Newton's iteration does not converge on the snap.
+  // One linear solve a step: Newton's iteration does not converge on the snap.
   const Track run = track("semi_implicit_euler", *system, 2e-3, t_end, look,
                           [&](double) { return trial.deadline.passed(); });
   if (run.t.back() < t_end) throw std::runtime_error("the time for the row was over");

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/effects/coupling.h"
 #include "models/math/vec3.h"
 #include "models/system.h"
 
@@ -28,10 +29,12 @@ struct Needs {
   bool velocity = false;
   bool tangent = false;
   bool derivatives = false;  // add_derivatives does something
+  bool couplings = false;    // add_couplings too
 
   Needs operator|(Needs other) const {
     return {position || other.position, velocity || other.velocity,
-            tangent || other.tangent, derivatives || other.derivatives};
+            tangent || other.tangent, derivatives || other.derivatives,
+            couplings || other.couplings};
   }
 };
 
@@ -51,6 +54,11 @@ class Effect {
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;
+  /// Of an effect whose load on a point depends on where others are: the whole
+  /// derivative, of which add_derivatives has the blocks of each point by itself. A model
+  /// takes the one or the other.
+  virtual void add_couplings(double /*t*/, const Points& /*p*/,
+                             std::vector<Coupling>& /*all*/) const {}
   /// J; reads the positions of the points, for which needs() does not ask.
   virtual double potential(double t, const Points& p) const noexcept = 0;
   /// W done by the part of the load that `potential` does not account for.

@@ -19,29 +19,29 @@ PieceContact::PieceContact(const Points& x, const Points& v, double sigma, doubl
            inverse * (d_ - at * e)};
 }
 
-PieceContact::Slopes PieceContact::slopes(const ContactLaw& law) const {
-  Slopes at{law.slopes(d_, u_), law.force(d_, u_), {}};
-  const double* by_gap = at.law.by_gap.data();
-  at.by_s = Vec{dot(load3(by_gap), d_by_s_), dot(load3(by_gap + 3), d_by_s_),
-                dot(load3(by_gap + 6), d_by_s_)} +
-            at.law.by_velocity * u_by_s_;
-  return at;
-}
-
-void PieceContact::add_block(const Slopes& slopes, std::size_t a, std::size_t c,
-                             double pos, double vel, double* block) const {
+Coupling PieceContact::coupling(const ContactLaw& law,
+                                const std::array<std::size_t, 4>& points) const {
   constexpr std::array<double, 4> weight_by_s{0, 0, 1, -1};
-  // f_a = length W_a F: through d, and through s in d, u and W_a.
-  const Vec by_s = weight_[a] * slopes.by_s + weight_by_s[a] * slopes.force;
-  const double along[] = {by_s.x, by_s.y, by_s.z};
-  const double both = length_ * weight_[a] * weight_[c];
-  for (std::size_t row = 0; row < 3; ++row) {
-    double* to = block + 3 * row;
-    store3(load3(to) + (pos * both) * load3(&slopes.law.by_gap[3 * row]) +
-               (pos * length_ * along[row]) * s_by_[c],
-           to);
-    to[row] += vel * both * slopes.law.by_velocity;
+  const ContactLaw::Slopes slopes = law.slopes(d_, u_);
+  const Vec by_gap[3] = {load3(&slopes.by_gap[0]), load3(&slopes.by_gap[3]),
+                         load3(&slopes.by_gap[6])};
+  const double u_by_s[3] = {u_by_s_.x, u_by_s_.y, u_by_s_.z};
+  const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Vec along = length_ * law.force(d_, u_);
+  Coupling all;
+  for (std::size_t a = 0; a < 4; ++a) {
+    Coupling::End& end = all.ends[a];
+    end.point = points[a];
+    for (std::size_t r = 0; r < 3; ++r) {
+      const double by_s = dot(by_gap[r], d_by_s_) + slopes.by_velocity * u_by_s[r];
+      end.onto[r] = weight_[a] * axes[r];
+      end.by_place[r] = length_ * (weight_[a] * by_gap[r] + by_s * s_by_[a]);
+      end.by_velocity[r] = (length_ * weight_[a] * slopes.by_velocity) * axes[r];
+    }
+    end.onto[3] = weight_by_s[a] * along;
+    end.by_place[3] = s_by_[a];
   }
+  return all;
 }
 
 }  // namespace tress

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "models/effects/contact_law.h"
+#include "models/effects/coupling.h"
 #include "models/math/closest.h"
 
 namespace tress {
@@ -36,16 +37,10 @@ class PieceContact {
   }
   double potential(const ContactLaw& law) const { return length_ * law.potential(d_); }
 
-  /// The derivatives at hand, for block().
-  struct Slopes {
-    ContactLaw::Slopes law;
-    Vec force;  // F
-    Vec by_s;   // of F
-  };
-  Slopes slopes(const ContactLaw& law) const;
-  /// block += pos df_a/dx_c + vel df_a/dv_c, row-major.
-  void add_block(const Slopes& slopes, std::size_t a, std::size_t c, double pos,
-                 double vel, double* block) const;
+  /// Derivatives of all f_a, whose points have these numbers: y_0 to y_2 are dF, which
+  /// comes through d, u and s, and y_3 is ds, which moves F along the second piece.
+  Coupling coupling(const ContactLaw& law,
+                    const std::array<std::size_t, 4>& points) const;
 
  private:
   std::array<double, 4> weight_;

@@ -154,10 +154,17 @@ void SelfContact::add_load(double, const Points& p, InOut f) const noexcept {
 void SelfContact::add_derivatives(double, const Points& p, double pos, double vel,
                                   InOut blocks) const noexcept {
   each_contact(p, [&](const auto& points, const PieceContact& contact) {
-    const PieceContact::Slopes slopes = contact.slopes(law_);
+    const Coupling coupling = contact.coupling(law_, points);
     for (std::size_t a = 0; a < 4; ++a) {
-      contact.add_block(slopes, a, a, pos, vel, &blocks[9 * points[a]]);
+      coupling.add_block(a, a, pos, vel, &blocks[9 * points[a]]);
     }
+  });
+}
+
+void SelfContact::add_couplings(double, const Points& p,
+                                std::vector<Coupling>& all) const {
+  each_contact(p, [&](const auto& points, const PieceContact& contact) {
+    all.push_back(contact.coupling(law_, points));
   });
 }
 

@@ -19,10 +19,9 @@ std::span<const Parameter> self_contact_parameters();
 /// radius; each meets the nearest point of the part of the strand that begins
 /// `separation` (m, along the arc at rest) before it, and that of the part after it, with
 /// half of its length, since what it meets has samples too. Forces are distributed to the
-/// four points about a contact and sum to zero (PieceContact). Derivative blocks are
-/// diagonal, of each point by itself. The repulsion is in potential(). Samples march
-/// along the strand in strides that cannot reach a contact: O(n) for n points of a strand
-/// in the open, O(n^2) at worst.
+/// four points about a contact and sum to zero (PieceContact). The repulsion is in
+/// potential(). Samples march along the strand in strides that cannot reach a contact:
+/// O(n) for n points of a strand in the open, O(n^2) at worst.
 class SelfContact final : public Effect {
  public:
   /// Throws InputError unless `separation` is finite and exceeds the law's reach: a
@@ -31,11 +30,13 @@ class SelfContact final : public Effect {
 
   std::string_view name() const override { return "self_contact"; }
   Needs needs() const override {
-    return {.position = true, .velocity = true, .derivatives = true};
+    return {.position = true, .velocity = true, .derivatives = true, .couplings = true};
   }
   void add_load(double t, const Points& p, InOut f) const noexcept override;
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override;
+  void add_couplings(double t, const Points& p,
+                     std::vector<Coupling>& all) const override;
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
 

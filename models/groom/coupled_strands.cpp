@@ -5,7 +5,7 @@
 #include <string>
 
 #include "integrators/linear/finite.h"
-#include "integrators/linear/sparse_pattern.h"
+#include "models/effects/coupling_pattern.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -68,27 +68,16 @@ void CoupledStrands::check_and_join(System& strand, std::size_t k) {
 
 /// Couples the coordinates of all segments that may touch.
 void CoupledStrands::build_matrix() {
-  std::vector<std::vector<int>> columns(static_cast<std::size_t>(first_.back()));
+  const int n = first_.back();
+  CouplingColumns columns(n, means_);
   for (std::size_t i = 0; i < contacts_->segments(); ++i) {
     const std::size_t own = contacts_->point(static_cast<int>(i));
     for (const int partner : contacts_->partners(i)) {
       const std::size_t other = contacts_->point(partner);
-      std::vector<int> all;
-      for (const std::size_t point : {own, own + 1, other, other + 1}) {
-        const Mean& mean = means_[point];
-        for (int n = 0; n < mean.count; ++n) {
-          const int c = mean.coordinate[static_cast<std::size_t>(n)];
-          all.insert(all.end(), {c, c + 1, c + 2});
-        }
-      }
-      for (const int c : all) {
-        auto& column = columns[static_cast<std::size_t>(c)];
-        column.insert(column.end(), all.begin(), all.end());
-      }
+      columns.add({own, own + 1, other, other + 1});
     }
   }
-  const int n = first_.back();
-  coupling_ = pattern_of(n, std::move(columns));
+  coupling_ = std::move(columns).pattern();
   coupling_values_.resize(static_cast<std::size_t>(coupling_.nonzeros()));
   matrix_ = std::make_unique<BlockMatrix>(n, n);
   for (std::size_t k = 0; k < strands(); ++k) {
@@ -150,28 +139,9 @@ Status CoupledStrands::residual(double t, In q, In v, In a, Out r) noexcept {
 /// coupling_values_ = -w.pos P^T df/dx P - w.vel P^T df/dv P, at x_ and u_.
 void CoupledStrands::add_contacts(Weights w) noexcept {
   std::ranges::fill(coupling_values_, 0.0);
-  const auto add = [&](const Mean& row, const Mean& column, const double* block) {
-    for (std::size_t m = 0; m < static_cast<std::size_t>(row.count); ++m) {
-      for (std::size_t n = 0; n < static_cast<std::size_t>(column.count); ++n) {
-        const double weight = row.weight[m] * column.weight[n];
-        for (int j = 0; j < 3; ++j) {
-          const int place =
-              place_of(coupling_, row.coordinate[m], column.coordinate[n] + j);
-          double* at = &coupling_values_[static_cast<std::size_t>(place)];
-          for (int i = 0; i < 3; ++i) at[i] += weight * block[3 * i + j];
-        }
-      }
-    }
-  };
   contacts_->each_contact(x_, u_, [&](const auto& points, const PieceContact& contact) {
-    const PieceContact::Slopes slopes = contact.slopes(contacts_->law());
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        std::array<double, 9> block{};
-        contact.add_block(slopes, i, j, -w.pos, -w.vel, block.data());
-        add(means_[points[i]], means_[points[j]], block.data());
-      }
-    }
+    add_coupling(coupling_, means_, contact.coupling(contacts_->law(), points), -w.pos,
+                 -w.vel, coupling_values_);
   });
 }
 

@@ -30,6 +30,19 @@ std::vector<std::vector<int>> groups_of_others(const MaximalStrand& strand) {
   return groups;
 }
 
+/// Of the coordinates that are not prescribed, which are the first.
+MaterialPoints::Mean mean_of(const NodeMean& at, std::size_t held) {
+  MaterialPoints::Mean mean;
+  for (int k = 0; k < at.nodes; ++k) {
+    const int from = 3 * (at.first + k) - static_cast<int>(held);
+    if (from < 0) continue;
+    const auto n = static_cast<std::size_t>(mean.count++);
+    mean.coordinate[n] = from;
+    mean.weight[n] = at.weight[static_cast<std::size_t>(k)];
+  }
+  return mean;
+}
+
 void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
   for (int k = 0; k < at.nodes; ++k) {
     double* f = &onto_nodes[3 * static_cast<std::size_t>(at.first + k)];
@@ -69,6 +82,10 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   }
   blocks_.resize(9 * count);
   scratch_.resize(static_cast<std::size_t>(pattern_.rows));
+  if (!needs_.couplings) return;
+  std::vector<Mean> means;
+  for (const auto& point : strand_.mass) means.push_back(mean_of(point.at, held()));
+  coupled_solver_ = std::make_unique<CoupledSolver>(pattern_, std::move(means));
 }
 
 void MaximalSystem::build_pattern() {
@@ -196,7 +213,9 @@ void MaximalSystem::add_mass(Weights w, GroupSum& sum) noexcept {
   }
 }
 
-Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcept {
+/// `coupled_apart`: without the derivatives of effects that have couplings.
+Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
+                               bool coupled_apart) noexcept {
   place(t, q, v);
   std::ranges::fill(s, 0.0);
   if (needs_.derivatives) {  // else they are 0 for good
@@ -204,6 +223,7 @@ Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcep
     if (w.pos != 0 || w.vel != 0) {
       const Points p = points(needs_);
       for (const auto& effect : strand_.effects) {
+        if (coupled_apart && effect->needs().couplings) continue;
         effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
       }
     }
@@ -220,14 +240,21 @@ Status MaximalSystem::values(double t, In q, In v, In, Weights w, Out s) noexcep
   return all_finite(s) ? Status::ok : Status::retry;
 }
 
-Status MaximalSystem::linearize(double t, In q, In v, In a, Weights w) noexcept {
-  const Status s = values(t, q, v, a, w, values_);
-  return s == Status::ok ? solver_->factor(values_) : s;
+Status MaximalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
+  const Status s = assemble(t, q, v, w, values_, true);
+  if (s != Status::ok) return s;
+  contacts_.clear();
+  if (coupled_solver_) {
+    const Points p = points(needs_);
+    for (const auto& effect : strand_.effects) effect->add_couplings(t, p, contacts_);
+  }
+  return contacts_.empty() ? solver_->factor(values_)
+                           : coupled_solver_->factor(values_, contacts_, w);
 }
 
 Status MaximalSystem::solve(In b, Out x) noexcept {
   std::ranges::copy(b, x.begin());
-  return solver_->solve(x);
+  return contacts_.empty() ? solver_->solve(x) : coupled_solver_->solve(x);
 }
 
 bool MaximalSystem::accept(double t, InOut q, InOut v) {

@@ -9,6 +9,7 @@
 #include "integrators/linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
+#include "models/maximal/coupled_solver.h"
 #include "models/maximal/elasticity.h"
 
 namespace tress {
@@ -56,8 +57,10 @@ struct MaximalStrand {
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///
 /// M is constant. Loads of effects act on the mass points. linearize assembles S in a
-/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. Where mass
-/// points are nodes and the elasticity has strains, so does the system (ComplianceForm).
+/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. What couples
+/// distant points (Coupling) is in linearize and solve only; SparseForm has the blocks of
+/// each point by itself in its place. Where mass points are nodes and the elasticity has
+/// strains, so does the system (ComplianceForm).
 class MaximalSystem final : public System,
                             private SparseForm,
                             private ExplicitForm,
@@ -89,7 +92,9 @@ class MaximalSystem final : public System,
 
  private:
   const Pattern& pattern() const override { return pattern_; }
-  Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
+  Status values(double t, In q, In v, In, Weights w, Out s) noexcept override {
+    return assemble(t, q, v, w, s, false);
+  }
   Status acceleration(double t, In q, In v, Out a) noexcept override;
   const std::vector<Block>& blocks() const override { return compliant_; }
   void inverse_mass(Out w) const override;
@@ -113,6 +118,7 @@ class MaximalSystem final : public System,
   void place(double t, In q, In v) noexcept;
   Placement placement() const { return {pose_, z_, rate_}; }
   Points points(Needs wanted) noexcept;
+  Status assemble(double t, In q, In v, Weights w, Out s, bool coupled_apart) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;
   void loads(double t) noexcept;
   void forces(double t, In a) noexcept;
@@ -125,9 +131,11 @@ class MaximalSystem final : public System,
   Groups elastic_, massive_, inert_;  // of energies, of mass points, of other coordinates
   Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
-  std::unique_ptr<LinearSolver> mass_solver_;  // made when first asked for
-  std::unique_ptr<Kkt> kkt_;                   // the same
-  RootPose pose_;                              // at pose_time_
+  std::vector<Coupling> contacts_;
+  std::unique_ptr<CoupledSolver> coupled_solver_;  // where effects have couplings
+  std::unique_ptr<LinearSolver> mass_solver_;      // made when first asked for
+  std::unique_ptr<Kkt> kkt_;                       // the same
+  RootPose pose_;                                  // at pose_time_
   double pose_time_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> z_, rate_, force_;                        // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "models/reduced/coupled_matrix.h"
 #include "models/reduced/tree_tangent.h"
 
 namespace tress {
@@ -26,6 +27,7 @@ class CompositeMatrix {
   void assemble(const TreeTangent<Shape>& tangent) {
     compose(tangent);
     fill(tangent);
+    if constexpr (!Shape::symmetric) coupled_.add(tangent, dense_);
   }
 
  private:
@@ -128,6 +130,7 @@ class CompositeMatrix {
   std::vector<Eigen::Matrix<double, states, 6>> state_;
   std::vector<char> moved_;
   Hanging at_root_;
+  CoupledMatrix<Shape> coupled_;
   Eigen::MatrixXd& dense_;
 };
 

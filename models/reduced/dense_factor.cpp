@@ -36,4 +36,9 @@ Status DenseFactor::solve(In b, Out x) noexcept {
   return Status::ok;
 }
 
+void add_dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                       Eigen::MatrixXd& c) {
+  c.noalias() += a * b;
+}
+
 }  // namespace tress

@@ -25,4 +25,8 @@ class DenseFactor {
   DenseLu lu_;
 };
 
+/// c += a b, of any size.
+void add_dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                       Eigen::MatrixXd& c);
+
 }  // namespace tress

@@ -122,14 +122,18 @@ class InverseDynamics {
 
   /// blocks (9 a point) = pos df/dx + vel df/dv, of the points as placed.
   void derivatives(double t, double pos, double vel, InOut blocks) const {
-    std::ranges::fill(blocks, 0.0);
-    for (std::size_t strand = 0; strand < effects_.size(); ++strand) {
-      const Points p = points(strand, needs_of_[strand]);
-      const InOut own = blocks.subspan(9 * strand * count_, 9 * count_);
-      for (const auto& effect : effects_[strand]) {
-        effect->add_derivatives(t, p, pos, vel, own);
-      }
-    }
+    derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
+  }
+  /// The same of effects without couplings.
+  void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {
+    derivatives(t, pos, vel, blocks,
+                [](const Effect& effect) { return !effect.needs().couplings; });
+  }
+  /// Those of the other effects of the first strand.
+  void couplings(double t, std::vector<Coupling>& all) const {
+    all.clear();
+    const Points p = points(0, needs_of_[0]);
+    for (const auto& effect : effects_[0]) effect->add_couplings(t, p, all);
   }
 
   // Of the last residual(): the force on each point's inertia in the components of the
@@ -154,6 +158,18 @@ class InverseDynamics {
   static Vec rotor_moment(const Real& inertia, const FrameMotion& m) {
     const Vec& w = m.omega;
     return inertia * Vec{m.alpha.x, w.x * w.z, -1.0 * (w.x * w.y)};
+  }
+
+  template <class Accept>
+  void derivatives(double t, double pos, double vel, InOut blocks, Accept accept) const {
+    std::ranges::fill(blocks, 0.0);
+    for (std::size_t strand = 0; strand < effects_.size(); ++strand) {
+      const Points p = points(strand, needs_of_[strand]);
+      const InOut own = blocks.subspan(9 * strand * count_, 9 * count_);
+      for (const auto& effect : effects_[strand]) {
+        if (accept(*effect)) effect->add_derivatives(t, p, pos, vel, own);
+      }
+    }
   }
 
   void place(std::size_t i, std::size_t b, Needs wanted) {

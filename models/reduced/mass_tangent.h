@@ -18,26 +18,26 @@ class SegmentFrames {
   /// State of `states` 3-vectors seen from the mount instead: columns of transfer and
   /// local, rows of local and lift.
   static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
+    mount_states(mount, tangent.transfer);
+    mount_states(mount, tangent.local);
+    mount_wrench(mount, tangent.local);
+    mount_wrench(mount, tangent.lift);
+  }
+  template <class M>
+  static void mount_states(const Frame& mount, M& m) {
     static_assert(S::size == 6);
-    const auto turn = [&mount](Real& x, Real& y, Real& z) {
-      const Vec turned = mount * Vec{x, y, z};
-      x = turned.x;
-      y = turned.y;
-      z = turned.z;
-    };
-    const auto turn_columns = [&turn](auto& m, int k, int rows) {
-      for (int i = 0; i < rows; ++i) turn(m(i, k), m(i, k + 1), m(i, k + 2));
-    };
-    const auto turn_rows = [&turn](auto& m, int k, int columns) {
-      for (int j = 0; j < columns; ++j) turn(m(k, j), m(k + 1, j), m(k + 2, j));
-    };
     for (int k = 0; k < Shape::states; k += 3) {
-      turn_columns(tangent.transfer, k, Shape::states);
-      turn_columns(tangent.local, k, Shape::rows);
+      for (int i = 0; i < M::RowsAtCompileTime; ++i) {
+        turn(mount, m(i, k), m(i, k + 1), m(i, k + 2));
+      }
     }
+  }
+  template <class M>
+  static void mount_wrench(const Frame& mount, M& m) {
     for (int k = 0; k < Shape::wrench; k += 3) {
-      turn_rows(tangent.local, k, Shape::columns);
-      turn_rows(tangent.lift, k, Shape::wrench);
+      for (int j = 0; j < M::ColsAtCompileTime; ++j) {
+        turn(mount, m(k, j), m(k + 1, j), m(k + 2, j));
+      }
     }
   }
 
@@ -58,6 +58,14 @@ class SegmentFrames {
     return {f.e0.z, f.e1.z, f.e2.z};
   }
   static Vec axis(int component) { return S::axis(component); }
+
+ private:
+  static void turn(const Frame& frame, Real& x, Real& y, Real& z) {
+    const Vec turned = frame * Vec{x, y, z};
+    x = turned.x;
+    y = turned.y;
+    z = turned.z;
+  }
 };
 
 /// Elastic stiffness and friction of the unknowns, by component.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "models/not_finite.h"
+#include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
@@ -14,8 +15,9 @@ namespace tress {
 
 /// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
 /// BallLink), behind the contract of models/system.h. residual: Newton-Euler, O(N).
-/// linearize and solve: the mass tangent, or the exact one, by the chosen method. The
-/// acceleration of the explicit form comes from the recursion whatever the method.
+/// linearize and solve: the mass tangent, or the exact one, by the chosen method, or by
+/// `composite` where the strand touches itself. The acceleration of the explicit form
+/// comes from the recursion whatever the method.
 template <class Kernel, int dofs>
 class ReducedSystem : public System,
                       protected ExplicitForm,
@@ -52,6 +54,9 @@ class ReducedSystem : public System,
     }
     full_ = empty_tangent<Exact>(kinematics_);
     full_solver_ = make_tree_solver<Exact>(strand.method, full_);
+    if (dynamics_.effect_needs().couplings) {
+      coupled_solver_ = make_tree_solver<Exact>(TreeMethod::composite, full_);
+    }
   }
 
   Layout layout() const override { return {kinematics_.unknowns(), 0}; }
@@ -89,12 +94,13 @@ class ReducedSystem : public System,
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
     if (!full_in_use_) return factored_ = mass_solver_->factor(mass_.at(t, q, v, w));
     take_exact_tangent(t, q, v, a, w);
-    return factored_ = full_solver_->factor(full_);
+    return factored_ = exact_solver().factor(full_);
   }
 
   Status solve(In b, Out x) noexcept override {
     if (factored_ != Status::ok) return factored_;
-    const Status s = full_in_use_ ? full_solver_->solve(b, x) : mass_solver_->solve(b, x);
+    const Status s =
+        full_in_use_ ? exact_solver().solve(b, x) : mass_solver_->solve(b, x);
     return s == Status::ok ? finite(x) : s;
   }
 
@@ -157,17 +163,27 @@ class ReducedSystem : public System,
   void take_exact_tangent(double t, In q, In v, In a, Weights w) {
     dynamics_.residual(t, q, v, a, scratch_);
     const auto effects = effect_blocks(t);
+    dynamics_.couplings(t, contacts_);
+    full_.couplings.clear();
+    for (const Coupling& contact : contacts_) {
+      full_.couplings.push_back(ContactTangent(kinematics_).of(contact, w));
+    }
     for (std::size_t i = 0; i < full_.segments.size(); ++i) {
       exact_tangent_.segment(i, w, effects, full_.segments[i]);
     }
     if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
   }
 
+  /// Strands that touch themselves need all of their unknowns at once.
+  TreeSolver<Exact>& exact_solver() {
+    return full_.couplings.empty() ? *full_solver_ : *coupled_solver_;
+  }
+
   typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
     if (by_position_.empty()) return {};
     dynamics_.place(dynamics_.effect_needs());
-    dynamics_.derivatives(t, 1, 0, by_position_);
-    dynamics_.derivatives(t, 0, 1, by_velocity_);
+    dynamics_.uncoupled_derivatives(t, 1, 0, by_position_);
+    dynamics_.uncoupled_derivatives(t, 0, 1, by_velocity_);
     return {by_position_, by_velocity_};
   }
 
@@ -305,10 +321,11 @@ class ReducedSystem : public System,
   StiffTangent<Kernel, dofs> mass_, acceleration_;
   TreeTangent<Exact> full_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
-  std::unique_ptr<TreeSolver<Exact>> full_solver_;
+  std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
   bool full_in_use_ = false;
   Status factored_ = Status::retry;
   std::vector<double> zero_, scratch_, by_position_, by_velocity_;
+  std::vector<Coupling> contacts_;
 };
 
 /// `PlanarKernel` is that of one unknown a segment.

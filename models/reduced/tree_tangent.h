@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "models/reduced/block_product.h"
@@ -97,6 +98,19 @@ struct RootTangent {
   Matrix<6, Shape::wrench> lift;
 };
 
+/// What one contact adds between segments (Coupling): with y = sum by_a [s_a; x_a] over
+/// its ends, [w_a; r_a] += onto_a y.
+template <class Shape>
+struct TreeCoupling {
+  static constexpr int rank = 4;
+  struct End {
+    int segment;
+    typename Shape::template Matrix<rank, Shape::columns> by;
+    typename Shape::template Matrix<Shape::rows, rank> onto;
+  };
+  std::array<End, 4> ends;
+};
+
 /// Everything that a tree solver factors. Unknowns are ordered by segment, the root's
 /// last.
 template <class Shape>
@@ -105,6 +119,7 @@ struct TreeTangent {
   std::vector<SegmentTangent<Shape>> segments;
   RootTangent<Shape> root;  // read when free_root
   bool free_root = false;
+  std::vector<TreeCoupling<Shape>> couplings;  // for TreeMethod::composite only
 
   int unknowns() const {
     return static_cast<int>(parent.size()) * Shape::dofs + (free_root ? 6 : 0);

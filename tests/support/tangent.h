@@ -33,10 +33,11 @@ inline double direction_length(const States& s, Weights w, const std::vector<dou
   return length;
 }
 
-/// S(w) x by central differences of the residual.
+/// S(w) x by central differences of the residual over so much of the system's scales.
 inline std::vector<double> tangent_product(System& system, const States& s, Weights w,
-                                           const std::vector<double>& x) {
-  const double e = difference_step / direction_length(s, w, x);
+                                           const std::vector<double>& x,
+                                           double over = difference_step) {
+  const double e = over / direction_length(s, w, x);
   return central_difference(e, [&](double step) {
     return residual(system, plus(s.q, step * w.pos, x), plus(s.v, step * w.vel, x),
                     plus(s.a, step * w.acc, x));
@@ -46,23 +47,24 @@ inline std::vector<double> tangent_product(System& system, const States& s, Weig
 /// What rounding of the residual makes of it, eps |r| over the step, ten times: forces of
 /// stiff springs may be a million times what the masses answer.
 inline double tangent_rounding(System& system, const States& s, Weights w,
-                               const std::vector<double>& x) {
-  const double e = difference_step / direction_length(s, w, x);
+                               const std::vector<double>& x,
+                               double over = difference_step) {
+  const double e = over / direction_length(s, w, x);
   return 10 * 2.2e-16 * largest(residual(system, s.q, s.v, s.a)) / e;
 }
 
 /// |S x - b| / |b| for x from linearize and solve, with b the image of a random vector;
 /// without what rounding explains.
-inline double tangent_error(System& tangent_of, System& residual_of, States& s,
-                            Weights w) {
+inline double tangent_error(System& tangent_of, System& residual_of, States& s, Weights w,
+                            double over = difference_step) {
   const std::vector<double> y = s.random(s.a_typ);
-  const std::vector<double> b = tangent_product(residual_of, s, w, y);
+  const std::vector<double> b = tangent_product(residual_of, s, w, y, over);
   EXPECT_EQ(tangent_of.linearize(t0, s.q, s.v, s.a, w), Status::ok);
   std::vector<double> x(s.n);
   EXPECT_EQ(tangent_of.solve(b, x), Status::ok);
-  const double off = largest(plus(tangent_product(residual_of, s, w, x), -1, b));
-  const double rounding =
-      tangent_rounding(residual_of, s, w, x) + tangent_rounding(residual_of, s, w, y);
+  const double off = largest(plus(tangent_product(residual_of, s, w, x, over), -1, b));
+  const double rounding = tangent_rounding(residual_of, s, w, x, over) +
+                          tangent_rounding(residual_of, s, w, y, over);
   return std::max(0.0, off - rounding) / largest(b);
 }
 

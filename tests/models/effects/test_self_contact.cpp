@@ -117,6 +117,49 @@ TEST(SelfContact, BlocksAreDifferencesOfTheLoad) {
   }
 }
 
+TEST(SelfContact, CouplingsAreTheWholeDerivativeOfTheLoad) {
+  const SelfContact effect(law(2), separation);
+  const Coil coil(37);
+  std::vector<Coupling> all;
+  effect.add_couplings(0, coil.points(), all);
+  ASSERT_GT(all.size(), 0u);
+  const std::size_t n = coil.x.size();
+  const double size = largest(load(effect, coil.points()));
+  std::size_t between = 0;  // derivatives by another point's place
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<double> by_x(n), by_v(n);
+    for (const Coupling& coupling : all) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          if (coupling.ends[c].point != j / 3) continue;
+          std::array<double, 9> of_x{}, of_v{};
+          coupling.add_block(a, c, 1, 0, of_x.data());
+          coupling.add_block(a, c, 0, 1, of_v.data());
+          for (std::size_t row = 0; row < 3; ++row) {
+            by_x[3 * coupling.ends[a].point + row] += of_x[3 * row + j % 3];
+            by_v[3 * coupling.ends[a].point + row] += of_v[3 * row + j % 3];
+          }
+        }
+      }
+    }
+    const auto moved = [&](std::vector<double> Coil::*of, double step) {
+      return central_difference(step, [&](double e) {
+        Coil other = coil;
+        (other.*of)[j] += e;
+        return load(effect, other.points());
+      });
+    };
+    // Steps and tolerances as of the blocks above.
+    const std::vector<double> dx = moved(&Coil::x, 1e-8), dv = moved(&Coil::v, 0.1);
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_NEAR(by_x[i], dx[i], 1e-7 * size / 1e-3);
+      EXPECT_NEAR(by_v[i], dv[i], 1e-12 * size);
+      if (i / 3 != j / 3 && std::abs(dx[i]) > 1e-3 * size / 1e-3) ++between;
+    }
+  }
+  EXPECT_GT(between, n);
+}
+
 TEST(SelfContact, ViscousWorkIsItsPower) {
   const SelfContact wet(law(2), separation), dry(law(0), separation);
   const Coil coil(37);

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "models/effects/coupling.h"
+#include "models/system.h"
+
+namespace tress {
+
+/// Numbers of the four points of a contact.
+using FourPoints = std::array<std::size_t, 4>;
+
+/// Where contacts between points that are means of coordinates (each P q) may have
+/// derivatives.
+class CouplingColumns {
+ public:
+  CouplingColumns(int coordinates, const std::vector<MaterialPoints::Mean>& means)
+      : means_(means), columns_(static_cast<std::size_t>(coordinates)) {}
+  void add(const FourPoints& contact);
+  Pattern pattern() &&;
+
+ private:
+  const std::vector<MaterialPoints::Mean>& means_;
+  std::vector<std::vector<int>> columns_;
+};
+
+/// values += P^T (pos df/dx + vel df/dv) P, on such a pattern.
+void add_coupling(const Pattern& pattern, const std::vector<MaterialPoints::Mean>& means,
+                  const Coupling& contact, double pos, double vel, InOut values) noexcept;
+
+}  // namespace tress

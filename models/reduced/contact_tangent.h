@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+
+#include "models/effects/coupling.h"
+#include "models/reduced/mass_tangent.h"
+
+namespace tress {
+
+/// What a contact adds to an exact tangent (ExactTangent): how the places and velocities
+/// of its points vary with their segments' states and unknowns, and what a force on them
+/// does, at the motion that Kinematics holds. O(1) a contact.
+template <class Kernel, int dofs>
+class ContactTangent {
+ public:
+  using Shape = ExactShape<dofs>;
+
+  explicit ContactTangent(const Kinematics<Kernel, dofs>& kinematics)
+      : kinematics_(kinematics) {}
+
+  TreeCoupling<Shape> of(const Coupling& contact, Weights w) const {
+    TreeCoupling<Shape> all;
+    for (std::size_t a = 0; a < all.ends.size(); ++a) {
+      all.ends[a] = end(contact.ends[a], w);
+    }
+    return all;
+  }
+
+ private:
+  using K = Kinematics<Kernel, dofs>;
+  using Frames = SegmentFrames<Shape>;
+  using End = typename TreeCoupling<Shape>::End;
+  static constexpr int size = Space<dofs>::size, rank = TreeCoupling<Shape>::rank;
+
+  std::size_t segment_of(std::size_t block) const {
+    const auto& all = kinematics_.segments();
+    const auto found =
+        std::ranges::upper_bound(all, block, {}, &ReducedSegment::last_block);
+    return static_cast<std::size_t>(found - all.begin());
+  }
+
+  End end(const Coupling::End& at, Weights w) const {
+    const std::size_t b = at.point / Pack::lanes, i = segment_of(b);
+    const auto lane = [at](const Vec3<Pack>& x) {
+      const int k = static_cast<int>(at.point % Pack::lanes);
+      return Vec{x.x[k], x.y[k], x.z[k]};
+    };
+    const FrameMotion& from = kinematics_.start(i);
+    const auto& m = kinematics_.motion(i);
+    const auto& block = kinematics_.block_geometry(b);
+    const Vec p = lane(block.position);
+    const Vec u = from.v + cross(from.omega, p) + lane(m.moving.at(block.at));
+    std::array<Vec, dofs> slope, turned;  // of the place and of u by an unknown
+    for (std::size_t k = 0; k < dofs; ++k) {
+      const Vec e = K::unit(static_cast<int>(k));
+      slope[k] = lane(block.slope[k]);
+      turned[k] = cross(from.omega, slope[k]) +
+                  lane(kinematics_.geometry(i).kernel.second(m.rate, e).at(block.at));
+    }
+
+    End end;
+    end.segment = static_cast<int>(i);
+    end.by.setZero();
+    for (int r = 0; r < rank; ++r) {
+      const auto row = static_cast<std::size_t>(r);
+      const Vec by_x = from.frame.back(at.by_place[row]);
+      const Vec by_v = from.frame.back(at.by_velocity[row]);
+      const Vec force = from.frame.back(-1.0 * at.onto[row]);
+      Frames::put(by_x, cross(p, by_x) + cross(u, by_v),
+                  part<1, size>(end.by, r, 0).transpose());
+      Frames::put(by_v, cross(p, by_v), part<1, size>(end.by, r, size).transpose());
+      Frames::put(force, cross(p, force), column_of(end.onto, r));
+      for (std::size_t k = 0; k < dofs; ++k) {
+        const auto unknown = static_cast<int>(k);
+        end.by(r, 3 * size + unknown) =
+            w.pos * (dot(by_x, slope[k]) + dot(by_v, turned[k])) +
+            w.vel * dot(by_v, slope[k]);
+        end.onto(size + unknown, r) = dot(slope[k], force);
+      }
+    }
+    if constexpr (dofs > 1) {
+      const ReducedSegment& segment = kinematics_.segments()[i];
+      if (segment.mounted) {
+        Frames::mount_states(segment.mount, end.by);
+        Frames::mount_wrench(segment.mount, end.onto);
+      }
+    }
+    return end;
+  }
+
+  const Kinematics<Kernel, dofs>& kinematics_;
+};
+
+}  // namespace tress
