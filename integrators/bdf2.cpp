@@ -14,7 +14,6 @@ class Bdf2 final : public FixedStep {
   Bdf2(System& system, const Options& options)
       : FixedStep(system, options),
         stage_(dynamics_, options),
-        a_(vector_n()),
         q_bar_(vector_n()),
         v_bar_(vector_n()),
         q_previous_(vector_n()),
@@ -45,7 +44,7 @@ class Bdf2 final : public FixedStep {
 
   Stage stage_;
   double h_previous_ = 0;
-  std::vector<double> a_, q_bar_, v_bar_, q_previous_, v_previous_;
+  std::vector<double> q_bar_, v_bar_, q_previous_, v_previous_;
 };
 
 }  // namespace

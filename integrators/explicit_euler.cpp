@@ -7,8 +7,7 @@ namespace {
 
 class ExplicitEuler final : public FixedStep {
  public:
-  ExplicitEuler(System& system, const Options& options)
-      : FixedStep(system, options), a_(vector_n()) {}
+  ExplicitEuler(System& system, const Options& options) : FixedStep(system, options) {}
 
  private:
   Status step(double t, double h) override {
@@ -18,8 +17,6 @@ class ExplicitEuler final : public FixedStep {
     add(v_, h, a_);
     return Status::ok;
   }
-
-  std::vector<double> a_;
 };
 
 }  // namespace

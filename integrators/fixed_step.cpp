@@ -19,6 +19,7 @@ FixedStep::FixedStep(System& system, const Options& options)
       dynamics_(system, options),
       q_(static_cast<std::size_t>(dynamics_.n())),
       v_(q_.size()),
+      a_(q_.size()),
       lambda_(static_cast<std::size_t>(dynamics_.m())) {
   if (options.formulation == Formulation::projection) projection_.emplace(dynamics_);
 }
@@ -30,12 +31,11 @@ void FixedStep::take(In q, In v) {
 
 Status FixedStep::start(double t, In q, In v) {
   take(q, v);
-  std::fill(lambda_.begin(), lambda_.end(), 0.0);
+  std::ranges::fill(a_, 0.0);
+  std::ranges::fill(lambda_, 0.0);
   t_ = t;
   failure_.clear();
-  dynamics_.forget();
-  const Stats fresh{.solver = dynamics_.stats.solver};
-  dynamics_.stats = fresh;
+  dynamics_.begin();
   const Status s = reset(t);
   return s == Status::ok ? s : fail(s, t, "no acceleration at the initial state");
 }

@@ -39,7 +39,9 @@ class FixedStep : public Integrator {
   Options options_;
   Dynamics dynamics_;
   std::vector<double> q_, v_;
-  std::vector<double> lambda_;  // (m) the last multipliers, a guess for the next ones
+  // (n), (m): the last acceleration and multipliers, guesses for the next ones; 0 at the
+  // start.
+  std::vector<double> a_, lambda_;
 
  private:
   /// Ends the run with `what` at time t as failure().

@@ -29,7 +29,6 @@ class GeneralizedAlpha final : public FixedStep {
         k_(coefficients),
         stage_(dynamics_, options),
         u_(vector_n()),
-        a_(vector_n()),
         a_known_(vector_n()),
         q_bar_(vector_n()),
         v_bar_(vector_n()) {}
@@ -58,7 +57,7 @@ class GeneralizedAlpha final : public FixedStep {
 
   Coefficients k_;
   Stage stage_;
-  std::vector<double> u_, a_, a_known_, q_bar_, v_bar_;
+  std::vector<double> u_, a_known_, q_bar_, v_bar_;
 };
 
 }  // namespace

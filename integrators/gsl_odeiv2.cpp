@@ -63,9 +63,8 @@ class GslOdeiv2 final : public Integrator {
     std::copy(v.begin(), v.end(), y_.begin() + static_cast<std::ptrdiff_t>(n_));
     t_ = t;
     h_ = first_step();
-    dynamics_.stats = Stats{.solver = dynamics_.stats.solver};
     failure_.clear();
-    dynamics_.forget();
+    dynamics_.begin();
     gsl_odeiv2_driver_reset(driver_.get());
     return Status::ok;
   }

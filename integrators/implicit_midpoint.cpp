@@ -10,10 +10,7 @@ namespace {
 class ImplicitMidpoint final : public FixedStep {
  public:
   ImplicitMidpoint(System& system, const Options& options)
-      : FixedStep(system, options),
-        stage_(dynamics_, options),
-        a_(vector_n()),
-        q_bar_(vector_n()) {}
+      : FixedStep(system, options), stage_(dynamics_, options), q_bar_(vector_n()) {}
 
  private:
   Status step(double t, double h) override {
@@ -26,7 +23,7 @@ class ImplicitMidpoint final : public FixedStep {
   }
 
   Stage stage_;
-  std::vector<double> a_, q_bar_;
+  std::vector<double> q_bar_;
 };
 
 }  // namespace

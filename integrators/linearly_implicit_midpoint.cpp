@@ -21,7 +21,6 @@ class LinearlyImplicitMidpoint final : public FixedStep {
   LinearlyImplicitMidpoint(System& system, const Options& options)
       : FixedStep(system, options),
         stage_(dynamics_, options),
-        a_(vector_n()),
         a_last_(vector_n()),
         q_bar_(vector_n()),
         lambda_last_(lambda_) {}
@@ -61,7 +60,7 @@ class LinearlyImplicitMidpoint final : public FixedStep {
 
   Stage stage_;
   double h_last_ = 0, h_before_ = 0;  // 0: no such step since the start
-  std::vector<double> a_, a_last_, q_bar_, lambda_last_;
+  std::vector<double> a_last_, q_bar_, lambda_last_;
 };
 
 }  // namespace

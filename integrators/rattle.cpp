@@ -16,7 +16,6 @@ class Rattle final : public FixedStep {
   Rattle(System& system, const Options& options)
       : FixedStep(system, options),
         projection_(dynamics_),
-        a_(vector_n()),
         moved_(vector_n()),
         predicted_(vector_n()) {}
 
@@ -37,7 +36,7 @@ class Rattle final : public FixedStep {
   }
 
   Projection projection_;
-  std::vector<double> a_, moved_, predicted_;
+  std::vector<double> moved_, predicted_;
 };
 
 }  // namespace

@@ -11,7 +11,6 @@ class Rk4 final : public FixedStep {
       : FixedStep(system, options),
         q_stage_(vector_n()),
         v_stage_(vector_n()),
-        a_(vector_n()),
         q_sum_(vector_n()),
         v_sum_(vector_n()) {}
 
@@ -40,7 +39,7 @@ class Rk4 final : public FixedStep {
     return Status::ok;
   }
 
-  std::vector<double> q_stage_, v_stage_, a_, q_sum_, v_sum_;
+  std::vector<double> q_stage_, v_stage_, q_sum_, v_sum_;
 };
 
 }  // namespace

@@ -63,6 +63,7 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
     const Status s = dynamics_.linearize(t, q_, v_, a, lambda, w);
     if (s != Status::ok) return s;
     factored_ = w;
+    matrix_ = dynamics_.matrix();
   }
   Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
   if (s != Status::ok) return s;
@@ -130,8 +131,9 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
   double previous = std::numeric_limits<double>::infinity();
   double rate = 1;
   int grown = 0;
+  const bool kept = factored_.acc != 0 && matrix_ == dynamics_.matrix();
   const bool same_matrix = factored_.vel == w.vel && factored_.pos == w.pos;
-  bool linearize = refresh_ != Refresh::when_slow || factored_.acc == 0 || !same_matrix;
+  bool linearize = refresh_ != Refresh::when_slow || !kept || !same_matrix;
   for (int i = 0; i < iterations_; ++i) {
     double correction = 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);

@@ -7,8 +7,7 @@ namespace {
 
 class SymplecticEuler final : public FixedStep {
  public:
-  SymplecticEuler(System& system, const Options& options)
-      : FixedStep(system, options), a_(vector_n()) {}
+  SymplecticEuler(System& system, const Options& options) : FixedStep(system, options) {}
 
  private:
   Status step(double t, double h) override {
@@ -18,8 +17,6 @@ class SymplecticEuler final : public FixedStep {
     add(q_, h, v_);
     return Status::ok;
   }
-
-  std::vector<double> a_;
 };
 
 }  // namespace

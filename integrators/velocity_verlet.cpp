@@ -8,7 +8,7 @@ namespace {
 class VelocityVerlet final : public FixedStep {
  public:
   VelocityVerlet(System& system, const Options& options)
-      : FixedStep(system, options), a_(vector_n()), predicted_(vector_n()) {}
+      : FixedStep(system, options), predicted_(vector_n()) {}
 
  private:
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
@@ -23,7 +23,7 @@ class VelocityVerlet final : public FixedStep {
     return s;
   }
 
-  std::vector<double> a_, predicted_;
+  std::vector<double> predicted_;
 };
 
 }  // namespace

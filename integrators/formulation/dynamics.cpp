@@ -96,6 +96,7 @@ Status Dynamics::constraint_row(double t, In q, In v, In a, Out c) noexcept {
 
 Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noexcept {
   ++stats.linearizations;
+  ++matrices_;
   weights_ = w;
   const Status answer =
       noted(constraints_ == nullptr ? system_.linearize(t, q, v, a, w)
@@ -171,6 +172,7 @@ Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv
 Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
   if (explicit_ != nullptr) {
     ++stats.residuals;
+    ++matrices_;  // the model may have factored its mass
     return noted(explicit_->acceleration(t, q, v, a), t, q, v);
   }
   const bool position_level = position_level_;

@@ -64,6 +64,15 @@ class Dynamics {
   /// After a step that went well. Nothing else is done while all is finite.
   void forget() { lost_ = Lost::nowhere; }
 
+  /// Before a run: counts nothing, knows nothing of the run before.
+  void begin() {
+    stats = Stats{.solver = stats.solver};
+    ++matrices_;
+    forget();
+  }
+  /// Which matrix solve() takes: changes with every linearize(), accelerate(), begin().
+  long matrix() const { return matrices_; }
+
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
   In q_typ() const { return q_typ_; }
   In v_typ() const { return v_typ_; }
@@ -90,6 +99,7 @@ class Dynamics {
   double alpha_ = 0, beta_ = 0;
   double start_step_ = 0;  // s, of accelerate() where the mass is singular
   Weights weights_;
+  long matrices_ = 0;
   std::optional<Kkt> kkt_;
   std::vector<double> q_typ_, v_typ_, g_typ_;
   std::vector<double> s_, gt_, ht_, rate_gt_;                         // matrix values

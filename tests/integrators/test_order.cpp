@@ -149,6 +149,37 @@ TEST(OrderTwoBdf, ErrorFallsAsTheToleranceToTheTwoThirds) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveTolerance, testing::ValuesIn(methods(true)),
                          [](const auto& test) { return test.param.name(); });
 
+class StartAgain : public testing::TestWithParam<Method> {};
+
+// What was a good guess for the last step of a run is none for the first of the next.
+TEST_P(StartAgain, RepeatsTheRunBitForBit) {
+  for (const Refresh refresh : {Refresh::every_iteration, Refresh::when_slow}) {
+    const auto system = bead(GetParam().formulation);
+    Options options;
+    options.formulation = GetParam().formulation;
+    options.alpha = 100;
+    options.beta = 20;
+    options.step = 0.01;
+    options.refresh = refresh;
+    const auto integrator = make_integrator(GetParam().entry->id, *system, options);
+    const auto n = static_cast<std::size_t>(system->layout().coordinates);
+    std::vector<double> q(n), v(n), ends[2];
+    system->initial_state(q, v);
+    for (std::vector<double>& end : ends) {
+      ASSERT_EQ(integrator->start(0, q, v), Status::ok) << integrator->failure();
+      ASSERT_EQ(integrator->advance(0.3), Status::ok) << integrator->failure();
+      end.assign(integrator->q().begin(), integrator->q().end());
+      end.insert(end.end(), integrator->v().begin(), integrator->v().end());
+    }
+    EXPECT_EQ(ends[0], ends[1]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FixedStep, StartAgain, testing::ValuesIn(methods(false)),
+                         [](const auto& test) { return test.param.name(); });
+INSTANTIATE_TEST_SUITE_P(Adaptive, StartAgain, testing::ValuesIn(methods(true)),
+                         [](const auto& test) { return test.param.name(); });
+
 class HeldConstraints : public testing::TestWithParam<Method> {};
 
 TEST_P(HeldConstraints, ViolationStaysAtRounding) {
