@@ -150,6 +150,7 @@ Eigen::MatrixXd EndConditions::curvature(double t, In q, const Eigen::VectorXd& 
   // By one unknown both ways, less twice where it stands: f'' steps^2.
   const double here = moment.dot(section(t, q));
   std::vector<double> alone;
+  alone.reserve(active.size());
   for (const std::size_t i : active) {
     alone.push_back(turned(1, i, i) + turned(-1, i, i) - 2 * here);
   }

@@ -25,7 +25,7 @@ using std::numbers::pi;
 // more than the thread is thick: fewer segments follow its turns.
 constexpr double length = 0.5, radius = 5e-4;  // m
 constexpr double ply_radius = 4e-3;            // m, R
-constexpr double separation = 0.03;            // m
+constexpr double thread_separation = 0.03;     // m
 // Twice as slow, or at half the step, the angle is the same to 0.3 %.
 constexpr double turning = 2, waiting = 3;  // s
 constexpr Material material{
@@ -92,7 +92,7 @@ double measured_angle(const Trial& trial) {
                         .outer = 2.5 * ply_radius},
                        "plectoneme");
   Effects effects(hands.begin(), hands.end());
-  effects.push_back(std::make_shared<SelfContact>(law, separation));
+  effects.push_back(std::make_shared<SelfContact>(law, thread_separation));
   effects.push_back(std::make_shared<LinearDrag>(1e-3));
   const auto system = on_strand(trial.variant, strand, effects);
 
@@ -112,7 +112,7 @@ double measured_angle(const Trial& trial) {
     tension += stiffness * (hands[k]->target(t_end).x - x[nodes[k]]);
   }
   const Ply found = ply(std::span(x).first(nodes.front()), length / trial.elements,
-                        separation, 2.4 * ply_radius);
+                        thread_separation, 2.4 * ply_radius);
   if (found.pairs == 0 || !(tension > 0)) {
     throw std::runtime_error("it makes no plectoneme");
   }

@@ -15,8 +15,7 @@ Status CoupledSolver::factor(In values, const std::vector<Coupling>& contacts,
     touching_.push_back(points);
   }
   std::ranges::sort(touching_);
-  const auto rest = std::ranges::unique(touching_);
-  touching_.erase(rest.begin(), rest.end());
+  touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
   if (!solver_ || touching_ != touched_) build();
 
   std::ranges::fill(coupling_values_, 0.0);

@@ -53,12 +53,12 @@ class Kinematics {
 
   /// One root motion per strand: lanes<Real> of them.
   Kinematics(std::vector<Segment> segments, std::vector<PointBlock> blocks,
-             std::vector<RootMotion> roots, std::optional<FreeRootFrame> free_root,
+             std::vector<RootMotion> roots, const std::optional<FreeRootFrame>& free_root,
              double root_rotor)
       : segments_(std::move(segments)),
         blocks_(std::move(blocks)),
         root_motions_(std::move(roots)),
-        free_root_(std::move(free_root)),
+        free_root_(free_root),
         root_rotor_(root_rotor),
         geometry_(segments_.size()),
         block_geometry_(blocks_.size()),

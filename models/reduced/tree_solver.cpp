@@ -29,15 +29,17 @@ std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
   return std::make_unique<RecursiveSolver<Shape>>(structure);
 }
 
-#define TRESS_INSTANTIATE(Shape)                                       \
-  template std::unique_ptr<TreeSolver<Shape>> make_tree_solver<Shape>( \
-      TreeMethod, const TreeTangent<Shape>&)
-TRESS_INSTANTIATE(MassShape<3>);
-TRESS_INSTANTIATE(MassShape<2>);
-TRESS_INSTANTIATE(MassShape<1>);
-TRESS_INSTANTIATE(ExactShape<3>);
-TRESS_INSTANTIATE(ExactShape<2>);
-TRESS_INSTANTIATE(ExactShape<1>);
-#undef TRESS_INSTANTIATE
+template std::unique_ptr<TreeSolver<MassShape<3>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<3>>&);
+template std::unique_ptr<TreeSolver<MassShape<2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<2>>&);
+template std::unique_ptr<TreeSolver<MassShape<1>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<1>>&);
+template std::unique_ptr<TreeSolver<ExactShape<3>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<3>>&);
+template std::unique_ptr<TreeSolver<ExactShape<2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<2>>&);
+template std::unique_ptr<TreeSolver<ExactShape<1>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<1>>&);
 
 }  // namespace tress
