@@ -56,7 +56,7 @@ class ByHand {
   double step_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Integrator> integrator_;
-  long taken_ = 0;
+  double taken_ = 0;
   bool ok_;
 };
 
@@ -71,7 +71,7 @@ class AsScene {
  private:
   double step_;
   World world_;
-  long taken_ = 0;
+  double taken_ = 0;
 };
 
 template <class Runner>
