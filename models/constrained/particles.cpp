@@ -179,7 +179,7 @@ void ParticleSystem::scale(Out q_typ, Out v_typ) const {
 }
 
 Points ParticleSystem::points(In q, In v) const {
-  const auto size = static_cast<std::size_t>(3 * particles_);
+  const auto size = 3 * static_cast<std::size_t>(particles_);
   Points p;
   p.count = particles_;
   p.x = q.first(size);

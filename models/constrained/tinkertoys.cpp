@@ -75,6 +75,7 @@ struct Builder {
 void build_net(Builder& b, int size, double side) {
   const double cell = side / size;
   std::vector<Node> above;
+  above.reserve(static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) above.push_back(b.scene.add_anchor(Vec{i * cell, 0, 0}));
   for (int row = 1; row <= size; ++row) {
     std::vector<Node> here;

@@ -27,6 +27,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 TEST(LogLogSlope, OfAPowerLawIsItsExponent) {
   const std::vector<double> x{20, 50, 500};
   std::vector<double> y;
+  y.reserve(x.size());
   for (const double n : x) y.push_back(3e-7 * std::pow(n, 1.7));
   EXPECT_NEAR(log_log_slope(x, y), 1.7, 100 * eps);
 }
@@ -39,7 +40,7 @@ TEST(LogLogSlope, IsThatOfLeastSquares) {
 
 // ---- rows -------------------------------------------------------------------------
 
-std::vector<ScalingCase> cases(CommandLine line) {
+std::vector<ScalingCase> cases(const CommandLine& line) {
   return scaling_cases(line, Settings(line, scaling_settings()));
 }
 

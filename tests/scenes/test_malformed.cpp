@@ -22,6 +22,7 @@ std::vector<std::string> shipped_texts() {
   }
   std::ranges::sort(files);
   std::vector<std::string> texts;
+  texts.reserve(files.size());
   for (const auto& file : files) texts.push_back(read_file(file.string()));
   return texts;
 }

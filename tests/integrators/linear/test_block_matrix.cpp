@@ -12,7 +12,7 @@ using testing_matrices::Sparse;
 using testing_matrices::sparse;
 
 // Numbers are multiples of 1/4 below 100, so sums are exact.
-Eigen::MatrixXd exact(Eigen::MatrixXd a) {
+Eigen::MatrixXd exact(const Eigen::MatrixXd& a) {
   return a.unaryExpr([](double x) { return std::round(4 * x) / 4; });
 }
 

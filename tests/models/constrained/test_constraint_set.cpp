@@ -52,7 +52,7 @@ class Assembled {
         const int first = node.kind == Node::Kind::parameter ? 9 : 3 * node.index;
         z.push_back(node.kind == Node::Kind::anchor
                         ? placed[axis]
-                        : path[static_cast<std::size_t>(first + axis)]);
+                        : path[static_cast<std::size_t>(first) + axis]);
       }
     }
     rows_ = static_cast<std::size_t>(module->rows());

@@ -33,6 +33,7 @@ std::vector<double> lowest_frequencies(std::string_view model,
       small_motions(dense_mass(*system, 0, q), dense_stiffness(*system, 0, q), held,
                     held.transpose(), typical);
   std::vector<double> frequencies;
+  frequencies.reserve(static_cast<std::size_t>(count));
   for (int mode = 0; mode < count; ++mode) {
     frequencies.push_back(std::sqrt(motions[static_cast<std::size_t>(mode)].square));
   }
