@@ -59,7 +59,6 @@ double Stage::size_of(In correction, Weights w) const noexcept {
 Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
                       InOut lambda, double& correction) noexcept {
   if (linearize) {
-    factored_ = {};
     const Status s = dynamics_.linearize(t, q_, v_, a, lambda, w);
     if (s != Status::ok) return s;
     factored_ = w;
@@ -84,7 +83,6 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
   Status s = newton(t, q_bar, v_bar, w, a, lambda);
   // From the guess, from no acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
-    factored_ = {};
     for (std::size_t i = 0; i < a.size(); ++i) {
       a[i] = start == 0 ? a_guess_[i] : start == 1 ? 0 : -v_bar[i] / w.vel;
     }
@@ -108,7 +106,6 @@ Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, InOut a,
     std::ranges::copy(a, a_guess_.begin());
     std::ranges::copy(lambda, lambda_guess_.begin());
     for (double& entry : a) entry *= same_place;
-    factored_ = {};
     const Status s =
         damped(t, q_bar, v_bar, {w.acc, next * w.vel, next * next * w.pos}, a, lambda);
     if (s == Status::fatal) return s;
@@ -131,7 +128,7 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
   double previous = std::numeric_limits<double>::infinity();
   double rate = 1;
   int grown = 0;
-  const bool kept = factored_.acc != 0 && matrix_ == dynamics_.matrix();
+  const bool kept = matrix_ == dynamics_.matrix();
   const bool same_matrix = factored_.vel == w.vel && factored_.pos == w.pos;
   bool linearize = refresh_ != Refresh::when_slow || !kept || !same_matrix;
   for (int i = 0; i < iterations_; ++i) {
@@ -198,7 +195,6 @@ Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, doubl
 Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                           InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
-  factored_ = {};
   const Status s = dynamics_.linearize(t, q_, v_, a_matrix, lambda, w);
   if (s != Status::ok) return s;
   double correction = 0;

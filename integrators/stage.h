@@ -47,8 +47,8 @@ class Stage {
   double tolerance_;
   int iterations_;
   Refresh refresh_;
-  Weights factored_;  // of the matrix that was taken last; acc = 0: none
-  long matrix_ = 0;   // which of dynamics_'s it was
+  Weights factored_;  // of the matrix that newton() took last
+  long matrix_ = -1;  // which of dynamics_'s it was; others may have taken one since
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps

@@ -102,9 +102,8 @@ bool MaximalSystem::end_frame(double t, In q, std::array<double, 9>& axes) {
   return true;
 }
 
-bool MaximalSystem::mean(int point, Mean& mean) {
-  const NodeMean& at = strand_.shown[static_cast<std::size_t>(point)];
-  mean.count = 0;
+MaterialPoints::Mean MaximalSystem::mean_of(const NodeMean& at) const {
+  Mean mean;
   for (int k = 0; k < at.nodes; ++k) {
     const int coordinate = 3 * (at.first + k) - static_cast<int>(held());
     if (coordinate < 0) continue;  // of the clamp
@@ -112,6 +111,11 @@ bool MaximalSystem::mean(int point, Mean& mean) {
     mean.coordinate[entry] = coordinate;
     mean.weight[entry] = at.weight[static_cast<std::size_t>(k)];
   }
+  return mean;
+}
+
+bool MaximalSystem::mean(int point, Mean& mean) {
+  mean = mean_of(strand_.shown[static_cast<std::size_t>(point)]);
   return true;
 }
 

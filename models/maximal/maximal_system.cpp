@@ -30,19 +30,6 @@ std::vector<std::vector<int>> groups_of_others(const MaximalStrand& strand) {
   return groups;
 }
 
-/// Of the coordinates that are not prescribed, which are the first.
-MaterialPoints::Mean mean_of(const NodeMean& at, std::size_t held) {
-  MaterialPoints::Mean mean;
-  for (int k = 0; k < at.nodes; ++k) {
-    const int from = 3 * (at.first + k) - static_cast<int>(held);
-    if (from < 0) continue;
-    const auto n = static_cast<std::size_t>(mean.count++);
-    mean.coordinate[n] = from;
-    mean.weight[n] = at.weight[static_cast<std::size_t>(k)];
-  }
-  return mean;
-}
-
 void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
   for (int k = 0; k < at.nodes; ++k) {
     double* f = &onto_nodes[3 * static_cast<std::size_t>(at.first + k)];
@@ -84,7 +71,7 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   scratch_.resize(static_cast<std::size_t>(pattern_.rows));
   if (!needs_.couplings) return;
   std::vector<Mean> means;
-  for (const auto& point : strand_.mass) means.push_back(mean_of(point.at, held()));
+  for (const auto& point : strand_.mass) means.push_back(mean_of(point.at));
   coupled_solver_ = std::make_unique<CoupledSolver>(pattern_, std::move(means));
 }
 

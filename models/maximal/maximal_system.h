@@ -111,6 +111,7 @@ class MaximalSystem final : public System,
   bool end_frame(double t, In q, std::array<double, 9>& axes) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
+  Mean mean_of(const NodeMean& at) const;  // over the coordinates in q
   void build_pattern();
   bool diagonal_mass() const;
   void look_at(double t) noexcept;
