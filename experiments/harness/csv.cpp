@@ -109,9 +109,9 @@ std::string to_csv(std::span<const std::string> header, std::span<const Row> row
   return text;
 }
 
-Table parse_csv(std::string_view text, const std::string& file) {
+CsvTable parse_csv(std::string_view text, const std::string& file) {
   Reader reader(text, file);
-  Table table;
+  CsvTable table;
   if (!reader.done()) table.header = reader.line(table.places.emplace_back());
   for (std::size_t i = 0; i < table.header.size(); ++i) {
     const auto rest = table.header.begin() + static_cast<std::ptrdiff_t>(i) + 1;
@@ -134,6 +134,6 @@ Table parse_csv(std::string_view text, const std::string& file) {
   return table;
 }
 
-Table read_csv(const std::string& file) { return parse_csv(read_file(file), file); }
+CsvTable read_csv(const std::string& file) { return parse_csv(read_file(file), file); }
 
 }  // namespace tress

@@ -15,7 +15,7 @@ struct CellPlace {
 };
 
 /// A table as read: every line has as many cells as the header.
-struct Table {
+struct CsvTable {
   std::vector<std::string> header;
   std::vector<Row> rows;
   /// Of every cell, the header's first: those of rows[i] are places[i + 1].
@@ -31,8 +31,8 @@ std::string to_csv(std::span<const std::string> header, std::span<const Row> row
 
 /// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
 /// unclosed quote, a line of the wrong length and a repeated column name.
-Table parse_csv(std::string_view text, const std::string& file);
+CsvTable parse_csv(std::string_view text, const std::string& file);
 
-Table read_csv(const std::string& file);
+CsvTable read_csv(const std::string& file);
 
 }  // namespace tress

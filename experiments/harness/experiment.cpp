@@ -97,7 +97,7 @@ std::string journal_file(const CommandLine& line) { return line.out + ".journal"
 /// Rows of a complete table from an earlier run with the same settings.
 void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
   if (!std::filesystem::exists(line.out)) return;
-  const Table table = read_csv(line.out);
+  const CsvTable table = read_csv(line.out);
   check_header(table, experiment.columns, line.out);
   const std::string meta = beside(line.out, ".meta.json");
   if (std::filesystem::exists(meta)) {

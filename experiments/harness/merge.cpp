@@ -19,7 +19,7 @@ std::string_view difference(const Row& a, const Row& b, std::span<const Column> 
 
 }  // namespace
 
-void check_header(const Table& table, std::span<const Column> columns,
+void check_header(const CsvTable& table, std::span<const Column> columns,
                   const std::string& file) {
   const std::vector<std::string> expected = header(columns);
   if (table.header == expected) return;
@@ -38,7 +38,7 @@ Merged merge(std::span<const std::string> files, std::span<const Column> columns
   Merged merged;
   std::map<std::string, std::size_t, std::less<>> place;
   for (const std::string& file : files) {
-    const Table table = read_csv(file);
+    const CsvTable table = read_csv(file);
     check_header(table, columns, file);
     for (const Row& row : table.rows) {
       const std::string id(row.text("run_id"));

@@ -19,7 +19,7 @@ struct Merged {
 Merged merge(std::span<const std::string> files, std::span<const Column> columns);
 
 /// Throws InputError unless `table` has the columns that the experiment writes today.
-void check_header(const Table& table, std::span<const Column> columns,
+void check_header(const CsvTable& table, std::span<const Column> columns,
                   const std::string& file);
 
 }  // namespace tress

@@ -121,7 +121,7 @@ class Reader {
                      place(last + 1, 0), fmt::format("give at least {}", fewest_points));
   }
 
-  Table table_;
+  CsvTable table_;
   const std::string& file_;
   Observed observed_;
   std::size_t time_ = 0, amplitude_ = 0;

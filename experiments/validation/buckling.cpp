@@ -30,7 +30,7 @@ double threshold(const std::function<double(double)>& least_square, double low,
   return find_root(least_square, low, high, threshold_accuracy);
 }
 
-double measure_greenhill(const Trial& trial) {
+double measure_greenhill(const ModelTrial& trial) {
   const TestRod rod;
   const Strand strand = rod.strand(trial.elements, standing_clamp());
   return threshold(
@@ -62,7 +62,7 @@ double euler(double end) {
   }
 }
 
-double measure_euler(const Trial& trial) {
+double measure_euler(const ModelTrial& trial) {
   const TestRod rod;
   const Strand strand = rod.strand(trial.elements, horizontal_clamp());
   End end;
@@ -111,7 +111,7 @@ double zero_of_last(const std::vector<std::array<double, 2>>& points) {
 /// sections may roll while the ring turns about the tangent at the clamp, at no cost, a
 /// spring of 0.1 EI/L^3 holds its far point in place: modes that buckle are 1e3 times as
 /// stiff at 0.8 and 1.2 of the threshold, which this moves by 1e-4 or less.
-double measure_ring(const Trial& trial) {
+double measure_ring(const ModelTrial& trial) {
   // Least square beside that of the spring's.
   const auto least_square = [&](double twist) {
     TestRod rod{.poisson_ratio = trial.parameter};

@@ -18,7 +18,7 @@ double height_over_width(double gamma) {
   return exact.height / exact.width;
 }
 
-double bent_by_weight(const Trial& trial, double grading) {
+double bent_by_weight(const ModelTrial& trial, double grading) {
   const double gamma = trial.parameter;
   const TestRod rod{.grading = grading};
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()),
@@ -30,15 +30,15 @@ double bent_by_weight(const Trial& trial, double grading) {
 
 /// Where the weight is large the strand turns down within sqrt(1/(2 Gamma)) L of the
 /// clamp, and elements have to be short there.
-double bent_graded(const Trial& trial) {
+double bent_graded(const ModelTrial& trial) {
   return bent_by_weight(trial, std::max(1.0, std::sqrt(trial.parameter) / 4));
 }
 
-double bent_uniform(const Trial& trial) { return bent_by_weight(trial, 1); }
+double bent_uniform(const ModelTrial& trial) { return bent_by_weight(trial, 1); }
 
 double deflection(double alpha) { return cantilever(0, alpha).height; }
 
-double bent_by_force(const Trial& trial) {
+double bent_by_force(const ModelTrial& trial) {
   const double alpha = trial.parameter;
   const TestRod rod;
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {},

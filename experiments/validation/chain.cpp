@@ -56,7 +56,7 @@ int node_at(double from_tip, int elements) {
   return static_cast<int>(std::lround(node));
 }
 
-double measured_travel(const Trial& trial) {
+double measured_travel(const ModelTrial& trial) {
   constexpr double duration = 0.2, step = 5e-4;  // s
   Strand strand = chain(trial.elements, hanging_clamp());
   strand.root.translations.push_back({{1, 0, 0}, pulse(1e-3 * length, duration)});
@@ -75,7 +75,7 @@ double measured_travel(const Trial& trial) {
   return time_of_peak(second) - time_of_peak(first);
 }
 
-double measured_fall(const Trial& trial) {
+double measured_fall(const ModelTrial& trial) {
   const auto system =
       on_strand(trial.variant, chain(trial.elements, horizontal_clamp()), weight());
   const double t_end = trial.parameter * std::sqrt(length / earth_gravity);
@@ -87,7 +87,7 @@ double folded_speed(double fallen) {
   return std::sqrt(fallen * (2 - fallen) / (1 - fallen));
 }
 
-double measured_speed(const Trial& trial) {
+double measured_speed(const ModelTrial& trial) {
   // Two segments at least make the fold.
   const double fold = std::max(0.04, 2.0 / trial.elements) * length;
   const Shape folded = [fold](double s) {

@@ -22,7 +22,7 @@ double distance(const Vec& x, const Vec& y) { return std::sqrt(dot(x - y, x - y)
 double unity(double) { return 1; }
 
 /// From nearly straight; the strand closes on its clamp.
-double measure_roll_up(const Trial& trial) {
+double measure_roll_up(const ModelTrial& trial) {
   TestRod rod;
   const double curvature = 2 * pi * trial.parameter / rod.length;
   rod.natural = uniform_shape({0, curvature, 0});
@@ -39,7 +39,7 @@ constexpr double curly_curvature = 18.0361544841071, curly_twist = 3.58817892564
 constexpr double curly_gamma = 35.8678125;
 constexpr Vec curly_tip{0.1575486055087, 0.0070779385289, -0.2017219830847};
 
-double measure_curly_hair(const Trial& trial) {
+double measure_curly_hair(const ModelTrial& trial) {
   TestRod rod{.poisson_ratio = 0.4};
   rod.natural = uniform_shape((1 / rod.length) * Vec{curly_twist, 0, curly_curvature});
   Statics statics(trial.variant, rod.strand(trial.elements, hanging_clamp()),
@@ -51,13 +51,14 @@ double measure_curly_hair(const Trial& trial) {
 constexpr double spring_pitch_angle = 15 * pi / 180, spring_turns = 8;
 
 double spring_rise(double force) {
-  const Helix helix = pulled_helix(spring_pitch_angle, TestRod{}.poisson_ratio, force);
+  const PulledHelix helix =
+      pulled_helix(spring_pitch_angle, TestRod{}.poisson_ratio, force);
   return std::sin(helix.pitch_angle) / std::sin(spring_pitch_angle);
 }
 
 /// Ends disturb the helix within some sqrt(EI/F): the middle third of eight turns is
 /// uniform. Rise along the axis over arc length, over that at rest.
-double measure_spring(const Trial& trial) {
+double measure_spring(const ModelTrial& trial) {
   TestRod rod;
   const double c = std::cos(spring_pitch_angle), s = std::sin(spring_pitch_angle);
   const double radius = rod.length * c / (2 * pi * spring_turns);
@@ -80,7 +81,7 @@ double reference_curl(double half_turns) {
   return curl_threshold(half_turns * pi, TestRod{}.poisson_ratio);
 }
 
-double measure_curl(const Trial& trial) {
+double measure_curl(const ModelTrial& trial) {
   const double phi = trial.parameter * pi;
   constexpr double start = 2, lowest = 0.3, step = 0.97;  // of Gamma^(1/3)/phi
   TestRod rod;
@@ -111,7 +112,7 @@ double measure_curl(const Trial& trial) {
 constexpr double bathe_radius = 100, bathe_force = 600, bathe_bending = 1e7 / 12;
 constexpr double bathe_tip = 53.46859844;
 
-double measure_bathe(const Trial& trial) {
+double measure_bathe(const ModelTrial& trial) {
   const double arc = pi / 4;
   TestRod rod{.poisson_ratio = 0};
   rod.natural = uniform_shape({0, arc / rod.length, 0});

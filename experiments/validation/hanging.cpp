@@ -46,7 +46,7 @@ double rope_gamma(const Catenary& rope) {
 
 /// From the shape of the rope, hanging between its clamp and its tip, which is held in
 /// place. The lowest point is the middle one, of an even number of elements.
-double measure_sag(const Trial& trial) {
+double measure_sag(const ModelTrial& trial) {
   if (trial.elements % 2 != 0) {
     throw InputError("no node in the middle", "test catenary",
                      "give an even number of elements");

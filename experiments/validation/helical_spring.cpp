@@ -7,7 +7,7 @@
 
 namespace tress {
 
-Helix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force) {
+PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force) {
   const double c0 = std::cos(natural_pitch_angle), s0 = std::sin(natural_pitch_angle);
   const double twisting = 1 / (1 + poisson_ratio);
   // No couple about the axis: linear in 1/r.

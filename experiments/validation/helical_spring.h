@@ -8,9 +8,9 @@ namespace tress {
 ///
 ///     M_b = cos^2 a/r - cos^2 a_0,   M_t = (sin a cos a/r - sin a_0 cos a_0)/(1 + nu),
 ///     0 = M_t sin a + M_b cos a,     F = (M_t cos a - M_b sin a)/r.
-struct Helix {
+struct PulledHelix {
   double radius, pitch_angle;  // r, a (rad)
 };
-Helix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force);
+PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force);
 
 }  // namespace tress

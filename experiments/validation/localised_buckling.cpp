@@ -23,7 +23,7 @@ LocalisedHelix helix(const TestRod& rod, double degrees) {
   return all;
 }
 
-double measured_tension(const Trial& trial) {
+double measured_tension(const ModelTrial& trial) {
   TestRod rod;
   const LocalisedHelix expected = helix(rod, trial.parameter);
   rod.natural = uniform_shape({expected.natural_twist / rod.length, 0, 0});

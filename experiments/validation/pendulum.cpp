@@ -59,7 +59,7 @@ Strand strand(int elements, double amplitude) {
 /// Seen at the tip over three periods, by steps of 1/400 of one: (omega h)^2 = 2.5e-4.
 /// bdf2: what is stiff in a rigid rod is not resolved by such steps and has to be damped;
 /// implicit_midpoint does not, and its Newton iteration then fails for most models.
-double swinging_period(const Trial& trial) {
+double swinging_period(const ModelTrial& trial) {
   const auto system =
       on_strand(trial.variant, strand(trial.elements, trial.parameter), weight());
   const double expected = pendulum_period(trial.parameter);

@@ -71,7 +71,7 @@ std::vector<double> start_places(const ModelVariant& variant, const Strand& stra
 }
 
 /// Over the angle of the equilibrium: 1 where theory and model agree.
-double measured_angle(const Trial& trial) {
+double measured_angle(const ModelTrial& trial) {
   const Strand strand = thread(trial.elements, trial.parameter);
   const Held held = handle(trial.elements);
   std::vector<double> x = start_places(trial.variant, strand);

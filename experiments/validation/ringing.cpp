@@ -38,7 +38,7 @@ double mode_curvature(double s) {
 
 double decay(double damping_ratio) { return damping_ratio * bending_rate(); }
 
-double measured_decay(const Trial& trial) {
+double measured_decay(const ModelTrial& trial) {
   Strand strand = hair(trial.elements, [](double s) {
     return Vec{0, bent / length * mode_curvature(s), 0};
   });
@@ -56,7 +56,7 @@ double torsion_rate(double mode) {
   return (2 * mode - 1) * pi / 2 * speed / length;
 }
 
-double measured_torsion(const Trial& trial) {
+double measured_torsion(const ModelTrial& trial) {
   const double wave = (2 * trial.parameter - 1) * pi / (2 * length);
   const auto system =
       on_strand(trial.variant,

@@ -33,7 +33,7 @@ Look middle_height(System& system) {
   };
 }
 
-double measured_rate(const Trial& trial) {
+double measured_rate(const ModelTrial& trial) {
   const double sine = std::sin(pitch_angle), cosine = std::cos(pitch_angle);
   const double r = radius(trial.parameter);
   TestRod rod;

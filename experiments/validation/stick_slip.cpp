@@ -54,7 +54,7 @@ double least_friction(double eps) {
   return rod.lateral / rod.axial;
 }
 
-double measured_friction(const Trial& trial) {
+double measured_friction(const ModelTrial& trial) {
   // Tilted, so that it bows out to one side.
   Strand strand =
       TestRod().strand(trial.elements, rotation({0, 1, 0}, 5e-4) * hanging_clamp());

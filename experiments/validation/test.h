@@ -11,7 +11,7 @@
 namespace tress {
 
 /// One model of the catalogue put to one test.
-struct Trial {
+struct ModelTrial {
   const ModelVariant& variant;
   int elements;      // N
   double parameter;  // of the test
@@ -57,7 +57,7 @@ struct ValidationTest {
   std::function<std::string(const ModelVariant&)> refusal = {};
   /// Throws InputError where the model refuses the rod (a row `refused`), and
   /// std::runtime_error where it finds no answer (a row `failed`).
-  std::function<double(const Trial&)> measure;
+  std::function<double(const ModelTrial&)> measure;
 };
 
 /// All of them, in the order of the table.

@@ -18,14 +18,14 @@ double bending_mode(Statics& statics, int mode) {
   return std::sqrt(statics.motions().at(at).square);
 }
 
-double measure_beam(const Trial& trial) {
+double measure_beam(const ModelTrial& trial) {
   const TestRod rod;
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {});
   statics.relax(1);
   return bending_mode(statics, static_cast<int>(trial.parameter)) / rod.rate();
 }
 
-double measure_heavy_rod(const Trial& trial) {
+double measure_heavy_rod(const ModelTrial& trial) {
   const TestRod rod;
   const double gamma = trial.parameter;
   Statics statics(trial.variant, rod.strand(trial.elements, hanging_clamp()),
@@ -43,7 +43,7 @@ double chain_mode(double mode) {
   return zeros[static_cast<std::size_t>(mode) - 1] / 2;  // of J_0
 }
 
-double measure_chain(const Trial& trial) {
+double measure_chain(const ModelTrial& trial) {
   const TestRod rod{.length = chain_length};
   const double g = rod.gravity(chain_gamma);
   Statics statics(trial.variant, rod.strand(trial.elements, hanging_clamp()), {0, 0, -g});
@@ -53,7 +53,7 @@ double measure_chain(const Trial& trial) {
 }
 
 /// The first motion in the plane of the arc, x and z.
-double measure_curved_beam(const Trial& trial) {
+double measure_curved_beam(const ModelTrial& trial) {
   TestRod rod;
   rod.natural = uniform_shape({0, trial.parameter / rod.length, 0});
   Statics statics(trial.variant, rod.strand(trial.elements, horizontal_clamp()), {});

@@ -24,7 +24,7 @@ struct Pressed {
 };
 
 /// The clamp goes down by each of `moves` (m), one after the other.
-Pressed pressed(const Trial& trial, std::vector<double> moves) {
+Pressed pressed(const ModelTrial& trial, std::vector<double> moves) {
   // Tilted, so that it bows out to one side.
   Strand strand =
       TestRod().strand(trial.elements, rotation({0, 1, 0}, 1e-4) * hanging_clamp());
@@ -50,7 +50,7 @@ Track pressing(Pressed& strand, int moves, const Look& look) {
   return track("backward_euler", *strand.system, strand.moving / 700, t_end, look);
 }
 
-double measured_load(const Trial& trial) {
+double measured_load(const ModelTrial& trial) {
   const double before = 0.8 * trial.parameter * length,
                more = 0.4 * trial.parameter * length;
   Pressed strand = pressed(trial, {before, more});
@@ -61,7 +61,7 @@ double measured_load(const Trial& trial) {
          TestRod().force();
 }
 
-double measured_turns(const Trial& trial) {
+double measured_turns(const ModelTrial& trial) {
   Pressed strand = pressed(trial, {trial.parameter * length});
   MaterialPoints& points = *strand.system->material_points();
   std::vector<double> x(3 * static_cast<std::size_t>(points.count()));

@@ -85,7 +85,7 @@ void Triangle::gradient(const double* z, double* g) const {
     const int b = 3 * ((k + 1) % 3);
     double d[3], edge[3];
     store3(load3(z + a) - load3(z + b), d);
-    Distance{length[static_cast<std::size_t>(k)]}.gradient(d, edge);
+    FixedDistance{length[static_cast<std::size_t>(k)]}.gradient(d, edge);
     for (int i = 0; i < 3; ++i) {
       g[9 * k + a + i] = edge[i];
       g[9 * k + b + i] = -edge[i];

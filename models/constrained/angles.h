@@ -45,7 +45,7 @@ struct Triangle {
     for (int k = 0; k < 3; ++k) {
       T d[3];
       store3(load3(z + 3 * k) - load3(z + 3 * ((k + 1) % 3)), d);
-      Distance{length[static_cast<std::size_t>(k)]}.value(d, c + k);
+      FixedDistance{length[static_cast<std::size_t>(k)]}.value(d, c + k);
     }
   }
   void gradient(const double* z, double* g) const;

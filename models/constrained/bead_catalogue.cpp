@@ -80,7 +80,7 @@ Wire wire_of(const Parameters& p) {
   const double r = p.number("radius_m");
   if (p.word("curve") == "trefoil") return {trefoil(r), false, r};
   const Axes axes = axes_of(p);
-  return {helix({}, axes.a, axes.b, axes.rise), p.word("curve") != "ellipse", r};
+  return {helix_curve({}, axes.a, axes.b, axes.rise), p.word("curve") != "ellipse", r};
 }
 
 ParticleScene implicit_scene(const Parameters& p, const Wire& wire) {

@@ -25,10 +25,10 @@ CurvePoint FourierCurve::at(double s) const noexcept {
 }
 
 std::unique_ptr<FourierCurve> ellipse(Vec centre, Vec a, Vec b) {
-  return helix(centre, a, b, {});
+  return helix_curve(centre, a, b, {});
 }
 
-std::unique_ptr<FourierCurve> helix(Vec centre, Vec a, Vec b, Vec rise) {
+std::unique_ptr<FourierCurve> helix_curve(Vec centre, Vec a, Vec b, Vec rise) {
   FourierCurve::Shape shape;
   shape.origin = centre;
   shape.drift = rise;

@@ -61,7 +61,7 @@ class FourierCurve final : public Curve {
 /// length.
 std::unique_ptr<FourierCurve> ellipse(Vec centre, Vec a, Vec b);
 /// The same, rising by `rise` (m) per radian.
-std::unique_ptr<FourierCurve> helix(Vec centre, Vec a, Vec b, Vec rise);
+std::unique_ptr<FourierCurve> helix_curve(Vec centre, Vec a, Vec b, Vec rise);
 /// size/3 (sin s + 2 sin 2s, cos s - 2 cos 2s, -sin 3s): the trefoil knot, about `size`
 /// metres in radius.
 std::unique_ptr<FourierCurve> trefoil(double size);

@@ -16,11 +16,11 @@ void Coincidence::hessian(const double*, const double*, double* h) const {
   std::fill_n(h, 9, 0.0);
 }
 
-void Distance::gradient(const double* d, double* g) const {
+void FixedDistance::gradient(const double* d, double* g) const {
   for (int i = 0; i < 3; ++i) g[i] = d[i] / length;
 }
 
-void Distance::hessian(const double*, const double* w, double* h) const {
+void FixedDistance::hessian(const double*, const double* w, double* h) const {
   std::fill_n(h, 9, 0.0);
   h[0] = h[4] = h[8] = w[0] / length;
 }
@@ -61,7 +61,7 @@ std::unique_ptr<Constraint> distance(Node a, Node b, double length) {
     throw InputError("length is not a positive number", "constraint distance",
                      "give a length > 0 in m");
   }
-  using Kernel = Difference<Distance>;
+  using Kernel = Difference<FixedDistance>;
   return std::make_unique<Module<Kernel>>(std::array{a, b}, Kernel{{length}});
 }
 

@@ -20,7 +20,7 @@ struct Coincidence {
 };
 
 /// C = (|d|^2 - l^2) / (2 l) (m): the error of the length to first order, without a root.
-struct Distance {
+struct FixedDistance {
   static constexpr int rows = 1;
   static constexpr bool linear = false;
   double length;  // l, m

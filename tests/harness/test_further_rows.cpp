@@ -13,11 +13,11 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Table table(const Toy& toy, const std::string& file) {
+CsvTable table(const Toy& toy, const std::string& file) {
   return parse_csv(toy.read(file), file);
 }
 
-std::vector<std::string> cells(const Table& of, const std::string& column) {
+std::vector<std::string> cells(const CsvTable& of, const std::string& column) {
   std::vector<std::string> result;
   for (const Row& row : of.rows) result.emplace_back(row.text(column));
   return result;
@@ -26,7 +26,7 @@ std::vector<std::string> cells(const Table& of, const std::string& column) {
 TEST(FurtherRows, FollowTheRowOfTheirCase) {
   Toy toy;
   ASSERT_EQ(toy.run("--out toy.csv --jobs 3 --set particles=3 --set further=2").code, 0);
-  const Table rows = table(toy, "toy.csv");
+  const CsvTable rows = table(toy, "toy.csv");
   EXPECT_THAT(cells(rows, "square"),
               ElementsAre("0", "-1", "-2", "1", "-1", "-2", "4", "-1", "-2"));
   const std::string id(rows.rows[3].text("run_id"));

@@ -16,11 +16,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-Table table(const Toy& toy, const std::string& file) {
+CsvTable table(const Toy& toy, const std::string& file) {
   return parse_csv(toy.read(file), file);
 }
 
-std::vector<std::string> cells(const Table& of, const std::string& column) {
+std::vector<std::string> cells(const CsvTable& of, const std::string& column) {
   std::vector<std::string> result;
   for (const Row& row : of.rows) result.emplace_back(row.text(column));
   return result;
@@ -31,7 +31,7 @@ TEST(Sweep, WritesEveryRowInOrderWithManifestAndRemovesTheJournal) {
   const Toy::Result result = toy.run("--out toy.csv --jobs 3");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(toy.files(), ElementsAre("toy.csv", "toy.meta.json"));
-  const Table rows = table(toy, "toy.csv");
+  const CsvTable rows = table(toy, "toy.csv");
   EXPECT_THAT(rows.header, ElementsAre("index", "dt_s", "square", "wall_s", "status",
                                        "reason", "run_id"));
   EXPECT_THAT(cells(rows, "index"), ElementsAre("0", "1", "2", "3"));
@@ -77,7 +77,7 @@ TEST_P(OddRowTest, BecomesARowWithReasonBesideCompleteNeighbours) {
   // Not a timing: a hang that nobody ends would last for ever.
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
   EXPECT_EQ(result.code, 3);
-  const Table rows = table(toy, "toy.csv");
+  const CsvTable rows = table(toy, "toy.csv");
   EXPECT_THAT(cells(rows, "status"), ElementsAre("ok", "ok", odd.status, "ok"));
   EXPECT_THAT(cells(rows, "reason")[2], HasSubstr(odd.reason));
   EXPECT_THAT(cells(rows, "index"), ElementsAre("0", "1", "2", "3"));
@@ -295,7 +295,7 @@ TEST(Sweep, SceneFileSuppliesOptionsAndTheCommandLineWins) {
   toy.write("scene.toml",
             "title = \"two\"\nseed = 7\n[settings]\nparticles = 2\ndt = 0.25\n");
   ASSERT_EQ(toy.run("--scene scene.toml --set dt=0.5 --out toy.csv").code, 0);
-  const Table rows = table(toy, "toy.csv");
+  const CsvTable rows = table(toy, "toy.csv");
   EXPECT_THAT(cells(rows, "dt_s"), ElementsAre("0.5", "0.5"));
   EXPECT_EQ(nlohmann::json::parse(toy.read("toy.meta.json")).at("seed"), 7);
 }

@@ -63,7 +63,7 @@ TEST(Csv, RoundTripKeepsEveryCell) {
   row.set("plain", "a,b\"c\nd\r\n").set(header[1], 0.1);
   const std::vector<std::string> names{"plain", header[1], "status", "reason", "run_id"};
   const std::vector<Row> rows{row, Row().failed("diverged", "at t = 0.25 s")};
-  const Table back = parse_csv(to_csv(names, rows), "x");
+  const CsvTable back = parse_csv(to_csv(names, rows), "x");
   EXPECT_EQ(back.header, names);
   ASSERT_EQ(back.rows.size(), 2u);
   EXPECT_EQ(back.rows[0].text("plain"), "a,b\"c\nd\r\n");
@@ -74,7 +74,7 @@ TEST(Csv, RoundTripKeepsEveryCell) {
 }
 
 TEST(Csv, ReadsCarriageReturnsAndAMissingLastLineEnd) {
-  const Table table = parse_csv("a,b\r\n1,\r\n,2", "x");
+  const CsvTable table = parse_csv("a,b\r\n1,\r\n,2", "x");
   EXPECT_THAT(table.header, ElementsAre("a", "b"));
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(table.rows[0].text("a"), "1");

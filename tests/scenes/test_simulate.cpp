@@ -54,7 +54,7 @@ TEST(Simulate, WritesASeriesThatConservesEnergy) {
             "[root]\nmotion = \"fixed\"\n[effects.gravity]\n");
   const Toy::Result run = toy.run("fall.toml --out out --progress none");
   ASSERT_EQ(run.code, 0) << run.err;
-  const Table table = parse_csv(toy.read("out/fall.csv"), "fall.csv");
+  const CsvTable table = parse_csv(toy.read("out/fall.csv"), "fall.csv");
   ASSERT_EQ(table.rows.size(), 11U);
   // Released at rest: what gravity gives goes into motion and bending. Implicit midpoint
   // errs by O(h^2) of the fastest motion that has energy; a percent of what has fallen.

@@ -94,7 +94,7 @@ TEST(HelicalSpring, IsThatOfLove) {
                                    {0.3, 5, 0.3, 0.934553828911364, 0.445071332844688},
                                    {0.3, 30, 1, 0.510479402744105, 1.18529311724342}};
   for (const auto& [poisson_ratio, degrees, force, radius, pitch] : springs) {
-    const Helix helix =
+    const PulledHelix helix =
         pulled_helix(degrees * std::numbers::pi / 180, poisson_ratio, force);
     EXPECT_NEAR(helix.radius, radius, 1e-12);
     EXPECT_NEAR(helix.pitch_angle, pitch, 1e-12);

@@ -159,10 +159,10 @@ TEST(ConstraintSet, FixedPointOnMovingAnchorGivesAllDerivatives) {
   expect_assembled<Difference<Coincidence>>({particle1, anchor0}, {});
 }
 TEST(ConstraintSet, DistanceBetweenParticlesGivesAllDerivatives) {
-  expect_assembled<Difference<Distance>>({particle2, particle0}, {{0.7}});
+  expect_assembled<Difference<FixedDistance>>({particle2, particle0}, {{0.7}});
 }
 TEST(ConstraintSet, DistanceToMovingAnchorGivesAllDerivatives) {
-  expect_assembled<Difference<Distance>>({anchor0, particle2}, {{0.7}});
+  expect_assembled<Difference<FixedDistance>>({anchor0, particle2}, {{0.7}});
 }
 TEST(ConstraintSet, MovingPlaneGivesAllDerivatives) {
   expect_assembled<Difference<OnPlane>>({particle1, anchor0}, {{axis2}});

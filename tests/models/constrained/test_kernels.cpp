@@ -30,7 +30,7 @@ Difference<Coincidence> example() {
   return {};
 }
 template <>
-Difference<Distance> example() {
+Difference<FixedDistance> example() {
   return {{0.7}};
 }
 template <>
@@ -60,9 +60,9 @@ Triangle example() {
 
 template <class Kernel>
 struct KernelDerivatives : ::testing::Test {};
-using Kernels =
-    ::testing::Types<Difference<Coincidence>, Difference<Distance>, Difference<OnPlane>,
-                     Difference<OnEllipse>, Difference<OnHelix>, Across, Angle, Triangle>;
+using Kernels = ::testing::Types<Difference<Coincidence>, Difference<FixedDistance>,
+                                 Difference<OnPlane>, Difference<OnEllipse>,
+                                 Difference<OnHelix>, Across, Angle, Triangle>;
 TYPED_TEST_SUITE(KernelDerivatives, Kernels);
 
 TYPED_TEST(KernelDerivatives, AgreeWithNestedDualsAtRandomPlaces) {
@@ -117,7 +117,7 @@ struct NamedCurve {
 
 std::vector<NamedCurve> curves() {
   return {{"ellipse", ellipse({1, 2, 3}, {1, 0, 0}, {0, 0, 0.5})},
-          {"helix", helix({}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.2})},
+          {"helix", helix_curve({}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.2})},
           {"trefoil", trefoil(1.5)},
           {"shake", shake({0, 0, 1}, {0.05, 0, 0}, 3)},
           {"orbit", orbit({0, 0, 1}, {0.05, 0, 0}, {0, 0.1, 0}, 2)}};

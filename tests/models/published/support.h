@@ -34,26 +34,26 @@ inline std::unique_ptr<System> make_model(
   return entry.make(parameters);
 }
 
-struct State {
+struct DenseState {
   double t = 0;
   Vector q, v, a;
 };
 
-inline State start_of(const System& system) {
+inline DenseState start_of(const System& system) {
   const int n = system.layout().coordinates;
-  State s{0, Vector(n), Vector(n), Vector::Zero(n)};
+  DenseState s{0, Vector(n), Vector(n), Vector::Zero(n)};
   system.initial_state(out(s.q), out(s.v));
   return s;
 }
 
 /// A state away from the start by the model's typical sizes; t inside the load's pulse.
-inline State random_state(const System& system, unsigned seed) {
+inline DenseState random_state(const System& system, unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   const int n = system.layout().coordinates;
   Vector q_typ(n), v_typ(n);
   system.scale(out(q_typ), out(v_typ));
-  State s = start_of(system);
+  DenseState s = start_of(system);
   s.t = 0.7;
   for (int i = 0; i < n; ++i) {
     s.q[i] += 0.3 * std::min(1.0, q_typ[i]) * normal(engine);
@@ -89,14 +89,14 @@ Vector derivative(F f, double h) {
   return (4 * fine - coarse) / 3;
 }
 
-inline Vector residual_of(System& system, const State& s) {
+inline Vector residual_of(System& system, const DenseState& s) {
   Vector r(s.q.size());
   EXPECT_EQ(system.residual(s.t, in(s.q), in(s.v), in(s.a), out(r)), Status::ok);
   return r;
 }
 
 /// S(w) column by column, by solving for unit right-hand sides and inverting.
-inline Matrix tangent_of(System& system, const State& s, Weights w) {
+inline Matrix tangent_of(System& system, const DenseState& s, Weights w) {
   const Eigen::Index n = s.q.size();
   EXPECT_EQ(system.linearize(s.t, in(s.q), in(s.v), in(s.a), w), Status::ok);
   Matrix inverse(n, n);

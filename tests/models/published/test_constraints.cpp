@@ -45,7 +45,7 @@ constexpr double step = 1e-4;
 constexpr double tolerance = 1e-9;
 
 TEST_P(PublishedConstraints, StartIsConsistent) {
-  const State s = start_of(*system_);
+  const DenseState s = start_of(*system_);
   // Angles of the Test Set are printed to 30 digits; double keeps 1e-16 of 0.1 m. Rates:
   // rounding of 150 rad/s times 0.3 m.
   EXPECT_LE(value(0, s.q).lpNorm<Eigen::Infinity>(), 1e-15);
@@ -53,7 +53,7 @@ TEST_P(PublishedConstraints, StartIsConsistent) {
 }
 
 TEST_P(PublishedConstraints, GradientIsTheDerivativeOfTheValue) {
-  const State s = random_state(*system_, 1);
+  const DenseState s = random_state(*system_, 1);
   const Matrix gt = gradient(s.t, s.q);
   for (int i = 0; i < n_; ++i) {
     const Vector column = derivative(
@@ -63,7 +63,7 @@ TEST_P(PublishedConstraints, GradientIsTheDerivativeOfTheValue) {
 }
 
 TEST_P(PublishedConstraints, RateIsTheTimeDerivativeOfTheValue) {
-  const State s = random_state(*system_, 2);
+  const DenseState s = random_state(*system_, 2);
   const double h = step / s.v.norm();
   const Vector expected =
       derivative([&](double dt) { return value(s.t + dt, s.q + dt * s.v); }, h);
@@ -72,7 +72,7 @@ TEST_P(PublishedConstraints, RateIsTheTimeDerivativeOfTheValue) {
 }
 
 TEST_P(PublishedConstraints, BiasIsTheTimeDerivativeOfTheRateWithoutAcceleration) {
-  const State s = random_state(*system_, 3);
+  const DenseState s = random_state(*system_, 3);
   const double h = step / s.v.norm();
   const Vector expected =
       derivative([&](double dt) { return rate(s.t + dt, s.q + dt * s.v, s.v); }, h);
@@ -83,7 +83,7 @@ TEST_P(PublishedConstraints, BiasIsTheTimeDerivativeOfTheRateWithoutAcceleration
 }
 
 TEST_P(PublishedConstraints, RateGradientIsTheDerivativeOfTheRate) {
-  const State s = random_state(*system_, 4);
+  const DenseState s = random_state(*system_, 4);
   const Matrix actual = rate_gradient(s.t, s.q, s.v);
   for (int i = 0; i < n_; ++i) {
     const Vector column = derivative(
@@ -93,7 +93,7 @@ TEST_P(PublishedConstraints, RateGradientIsTheDerivativeOfTheRate) {
 }
 
 TEST_P(PublishedConstraints, CurvatureIsTheDerivativeOfTheConstraintForce) {
-  const State s = random_state(*system_, 5);
+  const DenseState s = random_state(*system_, 5);
   const Vector lambda = random_vector(m_, 6);
   const Pattern& pattern = system_->sparse_form()->pattern();
   Vector values = Vector::Ones(pattern.nonzeros());
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedConstraints,
 
 TEST(SliderCrank, RigidStartIsConsistent) {
   const auto system = make_model("slider_crank", {{"start", "rigid"}});
-  const State s = start_of(*system);
+  const DenseState s = start_of(*system);
   Vector g(3);
   ASSERT_EQ(system->constraint_form()->rate(0, in(s.q), in(s.v), out(g)), Status::ok);
   EXPECT_LE(g.norm(), 1e-13);

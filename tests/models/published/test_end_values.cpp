@@ -139,7 +139,7 @@ TEST_P(PublishedDae, PrintedAccelerationsAndMultipliersBalanceTheForces) {
   const auto system = make_model(GetParam());
   ConstraintForm& constraints = *system->constraint_form();
   SparseForm& sparse = *system->sparse_form();
-  const State s{end->t, vector_of(end->q), vector_of(end->v), vector_of(end->a)};
+  const DenseState s{end->t, vector_of(end->q), vector_of(end->v), vector_of(end->a)};
   Vector gradient(constraints.pattern().nonzeros()), mass(sparse.pattern().nonzeros());
   ASSERT_EQ(constraints.gradient(s.t, end->q, out(gradient)), Status::ok);
   ASSERT_EQ(sparse.values(s.t, end->q, end->v, end->a, {1, 0, 0}, out(mass)), Status::ok);
@@ -178,7 +178,7 @@ TEST(AndrewsSqueezer, PrintedStateIsLessAccurateThanAConvergedRun) {
     EXPECT_EQ(system->constraint_form()->rate(0, in(q), in(v), out(g_dot)), Status::ok);
     return g_dot.norm();
   };
-  const State s = start_of(*system);
+  const DenseState s = start_of(*system);
   const Vector y = end_state(*system, *end);
   const Vector q = y.head(n), v = y.tail(n);
   EXPECT_LE(std::abs(invariant(q, v) - invariant(s.q, s.v)), 1e-12);

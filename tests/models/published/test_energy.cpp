@@ -16,7 +16,7 @@ TEST_P(PublishedEnergy, GrowsByTheWorkOfResidualAndPower) {
   Energetics* energetics = system->energetics();
   ASSERT_NE(energetics, nullptr);
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const State s = random_state(*system, seed);
+    const DenseState s = random_state(*system, seed);
     const double h = 1e-3 / std::max(s.v.norm(), std::sqrt(s.a.norm()));
     const double growth = derivative(
         [&](double dt) -> Vector {
@@ -40,18 +40,18 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedEnergy,
 TEST(SliderCrank, InertiaForcesComeFromTheKineticEnergy) {
   const auto system = make_model("slider_crank", {{"tangent", "stiff"}});
   SparseForm& form = *system->sparse_form();
-  const auto matrix = [&](const State& s, Weights w) {
+  const auto matrix = [&](const DenseState& s, Weights w) {
     Vector values(form.pattern().nonzeros());
     EXPECT_EQ(form.values(s.t, in(s.q), in(s.v), in(s.a), w, out(values)), Status::ok);
     return dense(form.pattern(), in(values));
   };
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const State s = random_state(*system, seed);
+    const DenseState s = random_state(*system, seed);
     const double h = 1e-3 / std::max(s.v.norm(), std::sqrt(s.a.norm()));
     const double growth = derivative(
         [&](double dt) -> Vector {
-          const State moved{s.t, s.q + dt * s.v + 0.5 * dt * dt * s.a, s.v + dt * s.a,
-                            s.a};
+          const DenseState moved{s.t, s.q + dt * s.v + 0.5 * dt * dt * s.a,
+                                 s.v + dt * s.a, s.a};
           const double kinetic = moved.v.dot(matrix(moved, {1, 0, 0}) * moved.v);
           const double potential = moved.q.dot(matrix(moved, {0, 0, 1}) * moved.q);
           return Vector::Constant(1, 0.5 * (kinetic + potential));
@@ -66,7 +66,7 @@ TEST(Points, VelocitiesAreTheRatesOfPositionsAndCarryTheKineticEnergy) {
   for (const char* id : {"beam", "double_pendulum"}) {
     const auto system = make_model(id);
     MaterialPoints& points = *system->material_points();
-    const State s = random_state(*system, 1);
+    const DenseState s = random_state(*system, 1);
     const Eigen::Index size = 3 * points.count();
     Vector u(size);
     points.velocities(s.t, in(s.q), in(s.v), out(u));
@@ -99,7 +99,7 @@ TEST(DoublePendulum, SmallOscillationsHaveTheTextbookFrequencies) {
   // Equal masses and lengths: omega^2 = (2 -+ sqrt 2) g / l, Landau & Lifshitz
   // section 23.
   const auto system = make_model("double_pendulum", {{"angle_1", "0"}, {"angle_2", "0"}});
-  const State s = start_of(*system);
+  const DenseState s = start_of(*system);
   const Matrix mass = tangent_of(*system, s, {1, 0, 0});
   const Matrix both = tangent_of(*system, s, {1, 0, 1});
   const Vector squares = symmetric_eigenpairs(both - mass, mass).values;

@@ -18,7 +18,7 @@ constexpr Weights method_weights[] = {
 // |S x - b| / (|S| |x|) with x = solve(b) and S x the derivative of the residual along
 // (w.acc x, w.vel x, w.pos x), by differences. The step moves no argument by more than a
 // thousandth of its typical size: truncation 1e-12, rounding 1e-16 / 1e-3.
-double tangent_error(System& system, const State& s, Weights w, unsigned seed) {
+double tangent_error(System& system, const DenseState& s, Weights w, unsigned seed) {
   const int n = system.layout().coordinates;
   Vector q_typ(n), v_typ(n), x(n);
   system.scale(out(q_typ), out(v_typ));
@@ -44,7 +44,7 @@ class PublishedTangent : public testing::TestWithParam<const char*> {};
 TEST_P(PublishedTangent, SolveInvertsTheDerivativeOfTheResidual) {
   const auto system = make_model(GetParam());
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const State s = random_state(*system, seed);
+    const DenseState s = random_state(*system, seed);
     for (const Weights& w : method_weights) {
       EXPECT_LE(tangent_error(*system, s, w, seed), 1e-7)
           << "seed " << seed << " " << w.acc;
@@ -56,7 +56,7 @@ TEST_P(PublishedTangent, MassIsSymmetricAndPositive) {
   const auto system = make_model(GetParam());
   for (unsigned seed = 1; seed <= 5; ++seed) {
     // At the start only: far from it the crank's elastic modes are no small deflections.
-    State s = start_of(*system);
+    DenseState s = start_of(*system);
     s.v = random_state(*system, seed).v;
     const Matrix mass = tangent_of(*system, s, {1, 0, 0});
     // The tangent comes through an inverse: its rounding grows with the condition number.
@@ -71,7 +71,7 @@ TEST_P(PublishedTangent, SparseFormAgreesWithSolve) {
   const auto system = make_model(GetParam());
   SparseForm* form = system->sparse_form();
   if (form == nullptr) GTEST_SKIP() << "no sparse form";
-  const State s = random_state(*system, 3);
+  const DenseState s = random_state(*system, 3);
   const int n = system->layout().coordinates;
   Vector values(form->pattern().nonzeros()), x(n);
   for (const Weights& w : method_weights) {
@@ -90,7 +90,7 @@ TEST_P(PublishedTangent, SparseFormAgreesWithSolve) {
 TEST_P(PublishedTangent, DroppedTermsAreNoticed) {
   if (GetParam() == std::string_view("double_pendulum")) GTEST_SKIP() << "one tangent";
   const auto system = make_model(GetParam(), {{"tangent", "stiff"}});
-  const State s = random_state(*system, 1);
+  const DenseState s = random_state(*system, 1);
   EXPECT_GT(tangent_error(*system, s, {1, .5e-2, 2.5e-5}, 1), 1e-7);
 }
 
@@ -99,7 +99,7 @@ TEST_P(PublishedTangent, ExplicitAccelerationMakesTheResidualVanish) {
   ExplicitForm* form = system->explicit_form();
   if (form == nullptr) GTEST_SKIP() << "constrained";
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    State s = random_state(*system, seed);
+    DenseState s = random_state(*system, seed);
     s.a.setZero();
     const Vector force = residual_of(*system, s);
     ASSERT_EQ(form->acceleration(s.t, in(s.q), in(s.v), out(s.a)), Status::ok);
@@ -113,7 +113,7 @@ TEST_P(PublishedTangent, ExplicitAccelerationMakesTheResidualVanish) {
 
 TEST_P(PublishedTangent, ResidualIsPure) {
   const auto system = make_model(GetParam());
-  const State s = random_state(*system, 1), other = random_state(*system, 2);
+  const DenseState s = random_state(*system, 1), other = random_state(*system, 2);
   const Vector once = residual_of(*system, s);
   residual_of(*system, other);
   ASSERT_EQ(system->linearize(other.t, in(other.q), in(other.v), in(other.a), {1, 1, 1}),
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedTangent,
 TEST(Beam, ShortChainsKeepTheirTangent) {
   for (const char* segments : {"1", "2", "3"}) {
     const auto system = make_model("beam", {{"segments", segments}});
-    const State s = random_state(*system, 5);
+    const DenseState s = random_state(*system, 5);
     for (const Weights& w : method_weights) {
       EXPECT_LE(tangent_error(*system, s, w, 5), 1e-7) << segments;
     }
@@ -141,7 +141,7 @@ TEST(Beam, ResidualIsThePrintedEquation) {
   // Hairer & Wanner II, eqs. (IV.1.13)-(1.16), dense, times n^-3.
   const auto system = make_model("beam", {{"segments", "6"}});
   const int n = 6;
-  const State s = random_state(*system, 4);
+  const DenseState s = random_state(*system, 4);
   const double push = 1.5 * std::pow(std::sin(s.t), 2);
   Vector r(n);
   for (int l = 1; l <= n; ++l) {
