@@ -134,14 +134,22 @@ test('MissingTables_SayHowToProduceThem', () => {
   remove(other);
 });
 
+// The warning about one file; the page is written and says the same in its place.
 function refusal(file, text) {
   const other = empty_directory();
   writeFileSync(join(other, file), text);
+  writeFileSync(join(other, 'good.csv'), 'a\n1\n');
   const { status, stderr } = run_page(other);
+  const page = readFileSync(join(other, 'report.html'), 'utf8');
   remove(other);
-  assert.equal(status, 2);
-  assert.equal(stderr.trim().split('\n').length, 1, stderr);
-  return stderr;
+  assert.equal(status, 0, stderr);
+  const [warning, summary, ...rest] = stderr.trim().split('\n');
+  assert.match(summary, /1 tables, 0 figures, 0 scenes, 1 warnings$/);
+  assert.deepEqual(rest, []);
+  assert.match(warning, /^report: warning: .*; run the experiment again or remove the file$/);
+  assert.match(page, /Not everything could be used/);
+  if (file === 'bdf_order.csv') assert.match(page, /<strong>Left out\.<\/strong>[^<]*bdf_order\.csv/);
+  return warning;
 }
 
 test('MalformedTables_AreOneLineWithFileAndLine', () => {
@@ -306,13 +314,14 @@ test('Csv_ReadsQuotesAndSpecialNumbers', () => {
   ]);
 });
 
-test('Manifest_MustBeJson', () => {
+test('Manifest_ThatIsNoJsonIsLeftOut', () => {
   const path = join(directory, 'bdf_order.meta.json');
   const text = readFileSync(path, 'utf8');
   writeFileSync(path, '{');
   const { status, stderr } = run_page(directory);
-  assert.equal(status, 2);
-  assert.match(stderr, /bdf_order\.meta\.json: not valid JSON/);
+  assert.equal(status, 0);
+  assert.match(stderr, /warning: .*bdf_order\.meta\.json: not valid JSON/);
+  assert.match(page_text(), /Without a manifest: bdf_order\.csv/);
   rmSync(path);
   assert.equal(run_page(directory).status, 0);
   writeFileSync(path, text);

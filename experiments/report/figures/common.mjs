@@ -2,6 +2,9 @@
 // legends.
 import { is_positive } from '../src/tables.mjs';
 
+// Of a figure as a file, in pixels.
+export const paper_width = 1000;
+
 // The browser passes CSS variables, so light, dark and print need no redraw.
 export const paper_theme = {
   text: '#1d2127',
@@ -57,12 +60,16 @@ export const vega_config = (theme) => ({
   text: { color: theme.text, font },
 });
 
+// Powers of ten that a padded domain stays within, so that doubles hold its ends.
+const far_decades = 300;
+const within_far = (e) => Math.max(-far_decades, Math.min(far_decades, e));
+
 // Decade ticks (1-2-5 below one decade) and a padded domain for positive `values`.
 export function log_extent(values, max_ticks = 7) {
   const positive = values.filter(is_positive);
   if (positive.length === 0) return { domain: [0.1, 10], ticks: [0.1, 1, 10] };
-  const low = Math.log10(Math.min(...positive));
-  const high = Math.log10(Math.max(...positive));
+  const low = within_far(Math.log10(Math.min(...positive)));
+  const high = within_far(Math.log10(Math.max(...positive)));
   const pad = Math.max(0.06 * (high - low), 0.08);
   const domain = [10 ** (low - pad), 10 ** (high + pad)];
   const first = Math.ceil(low - pad);

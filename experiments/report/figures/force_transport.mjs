@@ -24,7 +24,10 @@ const rows_of = (tables) =>
   (tables.force_transport ?? [])
     .filter(
       (row) =>
-        row.comparison === 'dynamics' && succeeded(row) && is_positive(row.rod_difference_rel),
+        row.comparison === 'dynamics' &&
+        succeeded(row) &&
+        is_positive(row.rod_difference_rel) &&
+        (row.t_s === shown_time || row.elements === shown_elements),
     )
     .map((row) => ({ ...row, method: spaced(row.model) }));
 
@@ -129,20 +132,15 @@ export const force_transport = {
     });
     const time = linear_channel('t_s', 'time (s)');
     const shared = { panel_width, legend, style, y };
-    const list = scenes.flatMap(([scene, members]) => [
-      panel(
-        members.filter((row) => row.t_s === shown_time),
-        `${spaced(scene)}: at ${shown_time} s`,
-        elements,
-        shared,
-      ),
-      panel(
-        members.filter((row) => row.elements === shown_elements),
-        `${spaced(scene)}: ${shown_elements} elements`,
-        time,
-        shared,
-      ),
-    ]);
+    const list = scenes.flatMap(([scene, members]) =>
+      [
+        [(row) => row.t_s === shown_time, `at ${shown_time} s`, elements],
+        [(row) => row.elements === shown_elements, `${shown_elements} elements`, time],
+      ].flatMap(([is_shown, what, x]) => {
+        const drawn = members.filter(is_shown);
+        return drawn.length > 0 ? [panel(drawn, `${spaced(scene)}: ${what}`, x, shared)] : [];
+      }),
+    );
     return panels(
       with_parameters(list, [legend_selection('pick_method', 'method')]),
       columns,

@@ -1,10 +1,17 @@
 // CSV reader: RFC 4180 quotes, header row, '.' decimal. Every complaint names file and
-// line.
+// line, and what to do.
+import { InputError } from './input.mjs';
 
-export class InputError extends Error {}
+const remedy = 'run the experiment again or remove the file';
+
+// A field as a message quotes it: on one line, not longer than that.
+const shortened = (field) => {
+  const text = field.replace(/\s+/g, ' ');
+  return text.length > 40 ? `${text.slice(0, 37)}...` : text;
+};
 
 // Splits `text` into records of {line, fields}; blank lines are skipped.
-function records(text, file) {
+function records(text, refuse) {
   const out = [];
   let fields = [],
     field = '',
@@ -39,8 +46,7 @@ function records(text, file) {
       field += c;
     }
   }
-  if (quoted)
-    throw new InputError(`${file}:${start}: a quote is opened and never closed`);
+  if (quoted) throw refuse(start, 'a quote is opened and never closed');
   end_record();
   return out;
 }
@@ -60,60 +66,39 @@ export function parse_number(text) {
 }
 
 // {columns: [{name, numeric}], rows: [[...]]}. `required` columns must exist; columns in
-// `numeric` must hold numbers; any other column is numeric when all its fields are.
+// `numeric` must hold numbers; the other required ones are text, whatever they hold; any
+// other column is numeric when all its fields are.
 export function parse_csv(text, file, { required = [], numeric = [] } = {}) {
-  const all = records(text.replace(/^\uFEFF/, ''), file);
-  if (all.length === 0) throw new InputError(`${file}:1: empty, expected a header row`);
+  const refuse = (line, what) => new InputError(`${file}:${line}: ${what}; ${remedy}`);
+  const all = records(text.replace(/^\uFEFF/, ''), refuse);
+  if (all.length === 0) throw refuse(1, 'empty, expected a header row');
   const names = all[0].fields.map((name) => name.trim());
   const duplicate = names.find((name, i) => names.indexOf(name) !== i);
-  if (duplicate !== undefined) {
-    throw new InputError(`${file}:1: column '${duplicate}' appears twice`);
-  }
+  if (duplicate !== undefined) throw refuse(1, `column '${shortened(duplicate)}' appears twice`);
   const missing = required.filter((name) => !names.includes(name));
-  if (missing.length > 0) {
-    throw new InputError(`${file}:1: column '${missing[0]}' is missing from the header`);
-  }
+  if (missing.length > 0)
+    throw refuse(1, `column '${missing[0]}' is missing from the header`);
   const body = all.slice(1);
   for (const { line, fields } of body) {
-    if (fields.length !== names.length) {
-      throw new InputError(
-        `${file}:${line}: ${fields.length} fields where the header has ${names.length}`,
-      );
-    }
+    if (fields.length !== names.length)
+      throw refuse(line, `${fields.length} fields where the header has ${names.length}`);
   }
   const columns = names.map((name, i) => ({
     name,
     numeric:
       numeric.includes(name) ||
-      (body.some(({ fields }) => fields[i].trim() !== '') &&
+      (!required.includes(name) &&
+        body.some(({ fields }) => fields[i].trim() !== '') &&
         body.every(({ fields }) => parse_number(fields[i]) !== undefined)),
   }));
   const rows = body.map(({ line, fields }) =>
     fields.map((field, i) => {
       if (!columns[i].numeric) return field;
       const value = parse_number(field);
-      if (value === undefined) {
-        throw new InputError(
-          `${file}:${line}: '${field}' in column '${names[i]}' is not a number`,
-        );
-      }
+      if (value === undefined)
+        throw refuse(line, `'${shortened(field)}' in column '${names[i]}' is not a number`);
       return value;
     }),
   );
   return { columns, rows };
-}
-
-// Rows as objects, the form figures and findings work on; `glossary`: of every table what
-// values of a column mean.
-export const all_objects = (tables) => ({
-  ...Object.fromEntries(
-    Object.entries(tables).map(([name, table]) => [name, as_objects(table)]),
-  ),
-  glossary: Object.fromEntries(
-    Object.entries(tables).map(([name, { glossary }]) => [name, glossary ?? {}]),
-  ),
-});
-
-function as_objects({ columns, rows }) {
-  return rows.map((row) => Object.fromEntries(columns.map((c, i) => [c.name, row[i]])));
 }

@@ -1,26 +1,45 @@
-// Reads a results directory: every CSV with its manifest.
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+// Reads a results directory: every CSV with its manifest. What cannot be read is a
+// warning and left out.
+import { existsSync, readdirSync } from 'node:fs';
 import { basename, join } from 'node:path';
-import { InputError, parse_csv } from './csv.mjs';
-import { known_tables } from './tables.mjs';
+import { parse_csv } from './csv.mjs';
+import { InputError, read_json, read_or_warn, read_text } from './input.mjs';
+import { is_object } from './objects.mjs';
+import { table_rules } from './tables.mjs';
 
 function read_manifest(directory, name) {
   const path = [`${name}.meta.json`, `${name}.csv.meta.json`]
     .map((file) => join(directory, file))
     .find(existsSync);
   if (path === undefined) return undefined;
-  try {
-    return JSON.parse(readFileSync(path, 'utf8'));
-  } catch (error) {
-    throw new InputError(`${path}: not valid JSON (${error.message.split('\n')[0]})`);
-  }
+  const manifest = read_json(path);
+  if (!is_object(manifest))
+    throw new InputError(`${path}: must be a JSON object; run the experiment again`);
+  return manifest;
 }
 
-// {name: {columns, rows, manifest, glossary}} for every *.csv in `directory`.
-export function load_results(directory) {
-  let files;
+// Texts by column, value and key; whatever else stands there is left out.
+function glossary_of(manifest) {
+  const objects = (value) =>
+    is_object(value) ? Object.entries(value).filter(([, inner]) => is_object(inner)) : [];
+  return Object.fromEntries(
+    objects(manifest?.glossary).map(([column, values]) => [
+      column,
+      Object.fromEntries(
+        objects(values).map(([value, texts]) => [
+          value,
+          Object.fromEntries(
+            Object.entries(texts).filter(([, text]) => typeof text === 'string'),
+          ),
+        ]),
+      ),
+    ]),
+  );
+}
+
+function csv_files(directory) {
   try {
-    files = readdirSync(directory)
+    return readdirSync(directory)
       .filter((file) => file.endsWith('.csv'))
       .sort();
   } catch (error) {
@@ -29,13 +48,21 @@ export function load_results(directory) {
         'give the directory that holds the CSV files',
     );
   }
-  return Object.fromEntries(
-    files.map((file) => {
-      const name = basename(file, '.csv');
-      const path = join(directory, file);
-      const table = parse_csv(readFileSync(path, 'utf8'), path, known_tables[name]);
-      const manifest = read_manifest(directory, name);
-      return [name, { ...table, manifest, glossary: manifest?.glossary ?? {} }];
-    }),
-  );
+}
+
+// {name: {columns, rows, manifest, glossary}} for every readable *.csv in `directory`.
+export function load_results(directory, warn) {
+  const tables = csv_files(directory).flatMap((file) => {
+    const name = basename(file, '.csv');
+    const path = join(directory, file);
+    const table = read_or_warn(
+      () => parse_csv(read_text(path), path, table_rules(name)),
+      warn,
+      name,
+    );
+    if (table === undefined) return [];
+    const manifest = read_or_warn(() => read_manifest(directory, name), warn);
+    return [[name, { ...table, manifest, glossary: glossary_of(manifest) }]];
+  });
+  return Object.fromEntries(tables);
 }

@@ -6,7 +6,8 @@ import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
 import { nodal_limit_findings } from '../figures/nodal_limit.mjs';
 import { validation_findings } from '../figures/validation.mjs';
-import { figures } from '../figures/all.mjs';
+import { figures, figure_spec } from '../figures/all.mjs';
+import { paper_theme, paper_width } from '../figures/common.mjs';
 import { escape_html } from './format.mjs';
 import {
   boundary_sentences,
@@ -27,7 +28,7 @@ import {
   swing_summary,
   validation_summary,
 } from './summaries.mjs';
-import { known_tables } from './tables.mjs';
+import { is_known, known_tables } from './tables.mjs';
 
 // Each section: the question, its figure, what its findings are, its tables, and a table
 // of selected numbers where it has one.
@@ -141,8 +142,10 @@ const prose_html = (text) =>
 
 const one_line = (text) => text.replace(/\s+/g, ' ').trim();
 
-function missing_html(name) {
+function missing_html(name, problem) {
   const { command, program } = known_tables[name];
+  if (problem !== undefined)
+    return `<p class="missing"><strong>Left out.</strong> ${escape_html(problem)}</p>`;
   return (
     `<p class="missing"><strong>${name}.csv is not there yet.</strong> Produce it with ` +
     `<code>${command}</code>, or alone with <code>build/release/experiments/${program} --out ` +
@@ -173,30 +176,44 @@ function finding_html({ finding }, objects) {
   return text === '' ? '' : `<strong class="finding">${prose_html(text)}</strong> `;
 }
 
-function section_html(section, tables, objects) {
+const figure_html = (figure, objects, finding) => {
+  const caption_id = `${figure.id}-caption`;
+  return (
+    `<figure class="card"><div class="plot" id="plot-${figure.id}" data-figure="${figure.id}" ` +
+    `aria-describedby="${caption_id}"></div><figcaption id="${caption_id}">` +
+    `${finding}${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
+    '</span></figcaption></figure>'
+  );
+};
+
+function section_html(section, { tables, objects, warnings }) {
   const figure = figures.find(({ id }) => id === section.figure);
   const present = figure.table in tables;
-  const drawn = present && figure.rows(objects).length > 0;
-  const caption_id = `${figure.id}-caption`;
+  const guard = (what, make, otherwise) =>
+    warnings.guard(`${figure.table}.csv`, what, make, otherwise);
+  const look = { width: paper_width, theme: paper_theme };
+  const drawn =
+    present &&
+    guard(`figure ${figure.id}`, () => figure_spec(figure, objects, look), undefined);
+  const finding = guard('the caption', () => finding_html(figure, objects), '');
   const body = !present
-    ? missing_html(figure.table)
-    : !drawn
+    ? missing_html(figure.table, warnings.of(figure.table))
+    : drawn === undefined
       ? `<p class="missing">${figure.table}.csv holds no rows for this figure.</p>`
-      : `<figure class="card"><div class="plot" id="plot-${figure.id}" data-figure="${figure.id}" ` +
-        `aria-describedby="${caption_id}"></div><figcaption id="${caption_id}">` +
-        `${finding_html(figure, objects)}${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
-        '</span></figcaption></figure>';
+      : figure_html(figure, objects, finding);
   const listed = section.tables.flatMap((name) => {
     if (name in tables)
       return [table_html(name, known_tables[name].title, tables[name].rows.length)];
-    return name === figure.table || known_tables[name].optional
+    const problem = warnings.of(name);
+    return name === figure.table || (known_tables[name].optional && problem === undefined)
       ? []
-      : [missing_html(name)];
+      : [missing_html(name, problem)];
   });
   return (
     `<section id="${figure.id}"><h2>${escape_html(figure.title)}</h2>\n` +
-    `${list_html(section.findings(objects))}\n${body}\n` +
-    `${section.summary?.(objects) ?? ''}\n${listed.join('\n')}</section>`
+    `${list_html(guard('its findings', () => section.findings(objects), []))}\n${body}\n` +
+    `${guard('its summary', () => section.summary?.(objects), undefined) ?? ''}\n` +
+    `${listed.join('\n')}</section>`
   );
 }
 
@@ -206,35 +223,36 @@ const nav_html = (sections) =>
     .map(({ id, title }) => `<a href="#${id}">${escape_html(title)}</a>`)
     .join('')}<a href="#made">How this was made</a></nav>`;
 
-function question_html({ heading, intro, sections }, tables, objects) {
+function question_html({ heading, intro, sections }, contents) {
   const checked = sections
     .flatMap((section) => section.tables)
-    .map((name) => checks_html(name, tables[name]?.manifest ?? {}))
+    .map((name) => checks_html(name, contents.tables[name]?.manifest))
     .join('');
   return [
     `<header><h1>${heading}</h1>\n<p>${escape_html(one_line(intro))}</p>` +
       `${sections.length > 1 ? nav_html(sections) : ''}</header>`,
-    '<main>',
-    ...sections.map((section) => section_html(section, tables, objects)),
+    ...sections.map((section) => section_html(section, contents)),
     checked === '' ? '' : `<section><h2>What the run itself checked</h2>${checked}</section>`,
-    '</main>',
   ].join('\n');
 }
 
-function header_html(objects) {
-  const none = (name) =>
-    `No answer yet: ${name}.csv is missing or holds no finished runs.`;
+function header_html({ objects, warnings }) {
+  const answer = (name, make) =>
+    prose_html(
+      warnings.guard(`${name}.csv`, 'the answer', () => make(objects), undefined) ??
+        `No answer yet: ${name}.csv is missing or holds no finished runs.`,
+    );
   return `<header>
 <h1>Constraint drift, stable steps, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
-<dd id="answer-drift">${prose_html(drift_answer(objects) ?? none('constraint_drift'))}</dd>
+<dd id="answer-drift">${answer('constraint_drift', drift_answer)}</dd>
 <dt>What does accuracy cost in time, per integrator?</dt>
-<dd id="answer-work">${prose_html(work_answer(objects) ?? none('work_precision'))}</dd>
+<dd id="answer-work">${answer('work_precision', work_answer)}</dd>
 <dt>How large a time step does a strand bear?</dt>
-<dd id="answer-stability">${prose_html(stability_answer(objects) ?? none('stability_limit'))}</dd>
+<dd id="answer-stability">${answer('stability_limit', stability_answer)}</dd>
 <dt>How long does a strand take at a stated error, and how long do other simulators?</dt>
-<dd id="answer-swing">${prose_html(swing_answer(objects) ?? none('swing'))}</dd>
+<dd id="answer-swing">${answer('swing', swing_answer)}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 </header>
@@ -249,38 +267,50 @@ const panel_html = (name, content, attribute = '') =>
   `<div role="tabpanel" id="panel-${name}" aria-labelledby="tab-${name}"${attribute}>\n` +
   `${content}\n</div>`;
 
+// What was left out, above all tabs.
+function warnings_html({ list }) {
+  if (list.length === 0) return '';
+  return (
+    '<aside class="missing" aria-label="What is left out"><p>Not everything could be used:</p><ul>' +
+    `${list.map(({ text }) => `<li>${escape_html(text)}</li>`).join('')}</ul></aside>`
+  );
+}
+
 // `tables` as load_results returns them, `objects` the same rows as objects, `scenes` as
-// load_scenes returns them.
-export function body_html(tables, objects, scenes) {
+// load_scenes returns them, `warnings` what was left out so far, added to.
+export function body_html(tables, objects, scenes, warnings) {
+  const contents = { tables, objects, warnings };
   const panels = [
     ...questions.map((question) => ({
       ...question,
-      html: question_html(question, tables, objects),
+      html: question_html(question, contents),
     })),
-    { name: 'measured', tab: 'Measurements', html: measured_html(tables, objects) },
+    { name: 'measured', tab: 'Measurements', html: measured_html(contents) },
     { name: 'scenes', tab: 'Scenes', html: scenes_html(scenes) },
   ];
   return [
     '<div class="tabs"><span class="kicker">tress report</span><div role="tablist" ' +
       `aria-label="Parts of the report">` +
       `${panels.map(({ name, tab }, i) => tab_html(name, tab, i === 0)).join('')}</div></div>`,
+    '<main>',
+    warnings_html(warnings),
     ...panels.map(({ name, html }, i) => panel_html(name, html, i === 0 ? '' : ' hidden')),
+    '</main>',
   ].join('\n');
 }
 
-function measured_html(tables, objects) {
-  const extra = Object.keys(tables).filter((name) => !(name in known_tables));
+function measured_html(contents) {
+  const { tables, warnings } = contents;
+  const extra = Object.keys(tables).filter((name) => !is_known(name));
   return [
-    header_html(objects),
-    '<main>',
+    header_html(contents),
     '<noscript><p class="missing">Scripts are off: the text stands, figures lie beside this file ' +
       'as SVG, tables as CSV.</p></noscript>',
-    ...measurements.map((section) => section_html(section, tables, objects)),
+    ...measurements.map((section) => section_html(section, contents)),
     extra.length > 0
       ? '<section id="other"><h2>Other tables</h2>' +
         `${extra.map((name) => table_html(name, name, tables[name].rows.length)).join('\n')}</section>`
       : '',
-    '</main>',
-    `<footer id="made"><h2>How this was made</h2>\n${manifest_html(tables)}\n</footer>`,
+    `<footer id="made"><h2>How this was made</h2>\n${manifest_html(tables, warnings)}\n</footer>`,
   ].join('\n');
 }

@@ -1,12 +1,15 @@
 // Scenes as `simulate` writes them (format "tress-strands-1", described in README.md):
 // reads and checks every scenes/*.json of a results directory. Every complaint names the
-// file and the key.
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+// file and the key, and what to do.
+import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { InputError } from './csv.mjs';
+import { InputError, read_json, read_or_warn, size_limit } from './input.mjs';
+import { is_object } from './objects.mjs';
 
 export const scene_format = 'tress-strands-1';
 export const shapes = ['plane', 'sphere', 'ellipsoid', 'capsule'];
+
+const longest_m = 1e9; // a strand that flew away cannot be drawn
 
 const is_count = (value) => Number.isSafeInteger(value) && value >= 0;
 const is_text = (value) => typeof value === 'string' && value !== '';
@@ -22,10 +25,12 @@ function base64_bytes(text) {
   return (text.length / 4) * 3 - (text.match(/=*$/)[0].length);
 }
 
+const remedy = 'run simulate again or remove the file';
+
 // {need(holds, key, wish)}: throws unless `holds`.
 const checker = (file) => ({
   need(holds, key, wish) {
-    if (!holds) throw new InputError(`${file}: key '${key}': ${wish}`);
+    if (!holds) throw new InputError(`${file}: key '${key}': ${wish}; ${remedy}`);
   },
   bytes(text, key, wanted, what) {
     const found = base64_bytes(text);
@@ -63,7 +68,7 @@ function check_bodies(bodies, frames, { need }) {
 }
 
 function check_series(series, { need }) {
-  need(series !== null && typeof series === 'object', 'series', 'must be an object');
+  need(is_object(series), 'series', 'must be an object');
   const { columns, rows } = series;
   need(
     Array.isArray(columns) && columns.every(is_text) && columns[0] === 't_s',
@@ -94,11 +99,13 @@ function check_series(series, { need }) {
 export function check_scene(scene, file) {
   const check = checker(file);
   const { need } = check;
-  if (scene === null || typeof scene !== 'object' || Array.isArray(scene))
-    throw new InputError(`${file}: must be a JSON object`);
+  if (!is_object(scene))
+    throw new InputError(`${file}: must be a JSON object; ${remedy}`);
   need(scene.format === scene_format, 'format', `must be '${scene_format}'`);
-  for (const key of ['scene', 'title', 'source', 'model', 'integrator'])
-    need(is_text(scene[key]), key, 'must be a text');
+  for (const key of ['scene', 'model', 'integrator'])
+    need(is_text(scene[key]), key, 'must be a text that is not empty');
+  for (const key of ['title', 'source'])
+    need(typeof scene[key] === 'string', key, 'must be a text');
   need(
     scene.dt_s === null || (Number.isFinite(scene.dt_s) && scene.dt_s > 0),
     'dt_s',
@@ -126,9 +133,9 @@ export function check_scene(scene, file) {
   need(is_numbers(scene.low, 3), 'low', 'must hold three numbers');
   need(is_numbers(scene.high, 3), 'high', 'must hold three numbers');
   need(
-    scene.low.every((low, i) => low <= scene.high[i]),
+    scene.low.every((low, i) => low <= scene.high[i] && scene.high[i] - low < longest_m),
     'high',
-    "must not be less than 'low'",
+    `must not be less than 'low', nor ${longest_m} m more`,
   );
   const points = counts.reduce((sum, n) => sum + n, 0);
   const what = `${times.length} frames of ${points} points`;
@@ -149,29 +156,39 @@ export function check_scene(scene, file) {
   check_series(scene.series, check);
 }
 
-// [{name, scene}] of every scenes/*.json in `directory` but manifests; none when there is no scenes/.
-export function load_scenes(directory) {
-  const folder = join(directory, 'scenes');
+function scene_files(folder, warn) {
   if (!existsSync(folder)) return [];
-  return readdirSync(folder)
-    .filter((file) => file.endsWith('.json') && !file.endsWith('.meta.json'))
-    .sort()
-    .map((name) => {
-      const file = join(folder, name);
-      let scene;
-      try {
-        scene = JSON.parse(readFileSync(file, 'utf8'));
-      } catch (error) {
-        throw new InputError(`${file}: not valid JSON (${error.message.split('\n')[0]})`);
-      }
-      check_scene(scene, file);
-      return scene;
-    })
-    .map((scene, i, all) => {
-      if (all.findIndex((other) => other.scene === scene.scene) !== i)
-        throw new InputError(
-          `${folder}: two files hold the scene '${scene.scene}'; remove one`,
-        );
-      return scene;
-    });
+  try {
+    return readdirSync(folder)
+      .filter((file) => file.endsWith('.json') && !file.endsWith('.meta.json'))
+      .sort();
+  } catch (error) {
+    warn(`${folder}: not a readable folder (${error.code}); rename or remove it`);
+    return [];
+  }
+}
+
+// Every readable scenes/*.json in `directory` but manifests; the others are warnings.
+export function load_scenes(directory, warn) {
+  const folder = join(directory, 'scenes');
+  const scenes = new Map();
+  let room = size_limit;
+  const read = (file) => {
+    const scene = read_json(file, room);
+    check_scene(scene, file);
+    if (scenes.has(scene.scene))
+      throw new InputError(
+        `${file}: another file holds the scene '${scene.scene}'; remove one`,
+      );
+    room -= scene.channels.reduce(
+      (sum, { values }) => sum + values.length,
+      scene.positions.length,
+    );
+    return { ...scene, title: scene.title === '' ? scene.scene : scene.title };
+  };
+  for (const name of scene_files(folder, warn)) {
+    const scene = read_or_warn(() => read(join(folder, name)), warn);
+    if (scene !== undefined) scenes.set(scene.scene, scene);
+  }
+  return [...scenes.values()];
 }

@@ -10,7 +10,7 @@ export const spaced = (name) => String(name ?? '').replaceAll('_', ' ');
 
 // "der, inextensible": the model and the word of its choice.
 export const variant_name = ({ model, variant }) =>
-  variant ? `${spaced(model)}, ${variant.split('=').at(-1)}` : spaced(model);
+  variant ? `${spaced(model)}, ${String(variant).split('=').at(-1)}` : spaced(model);
 
 const papers_step = 'semi_implicit_euler';
 // Reduced coordinates: the models of the seed, whose solvers and tangents are compared.

@@ -278,6 +278,9 @@ export const known_tables = {
   },
 };
 
+export const is_known = (name) => Object.hasOwn(known_tables, name);
+export const table_rules = (name) => (is_known(name) ? known_tables[name] : {});
+
 // Row predicates shared by figures and findings.
 export const is_number = (value) => typeof value === 'number' && Number.isFinite(value);
 export const is_positive = (value) => is_number(value) && value > 0;

@@ -3,7 +3,7 @@ import embed from 'vega-embed';
 import { expressionInterpreter } from 'vega-interpreter';
 import { figures, figure_spec } from '../../figures/all.mjs';
 import { page_theme, vega_config } from '../../figures/common.mjs';
-import { all_objects } from '../csv.mjs';
+import { all_objects } from '../objects.mjs';
 import { Player } from './scenes/player.mjs';
 import { fill_table } from './table.mjs';
 import { start_tabs } from './tabs.mjs';
@@ -28,6 +28,14 @@ async function draw(place) {
   const width = Math.floor(place.clientWidth);
   if (width === 0 || drawn_width.get(place) === width) return;
   drawn_width.set(place, width);
+  try {
+    await draw_at(place, width);
+  } catch (error) {
+    place.textContent = `This figure cannot be drawn from its table: ${error.message}`;
+  }
+}
+
+async function draw_at(place, width) {
   const figure = figures.find(({ id }) => id === place.dataset.figure);
   const spec = figure_spec(figure, objects, { width, theme: page_theme });
   views.get(place)?.finalize();

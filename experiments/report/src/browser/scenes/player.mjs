@@ -17,7 +17,8 @@ function caption({ strand_points, guides, dt_s, model, integrator, source }) {
       : `${all} strand${all === 1 ? '' : 's'}`;
   const step =
     dt_s === null ? 'adaptive steps' : `dt = ${format_number(dt_s * 1e3)} ms`;
-  return `${strands}, ${model}, ${integrator}, ${step}. Source: ${source}`;
+  const origin = source === '' ? '' : ` Source: ${source}`;
+  return `${strands}, ${model}, ${integrator}, ${step}.${origin}`;
 }
 
 export class Player {

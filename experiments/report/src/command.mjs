@@ -1,0 +1,141 @@
+// report.mjs RESULTS [--out FILE] [--no-figures]: one self-contained page, one SVG per
+// figure beside the CSVs. A file that cannot be used is a warning on stderr and a gap on
+// the page.
+import { createHash } from 'node:crypto';
+import { existsSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { InputError } from './input.mjs';
+import { load_results } from './load.mjs';
+import { all_objects } from './objects.mjs';
+import { body_html } from './page.mjs';
+import { load_scenes } from './scene_file.mjs';
+import { scene_data_html } from './scenes_page.mjs';
+import { Warnings } from './warnings.mjs';
+
+const usage = `usage: node report.mjs RESULTS [--out FILE] [--no-figures]
+  RESULTS       directory that holds the CSV files; the SVG figures are written there
+  --out FILE    the page (default RESULTS/report.html)
+  --no-figures  the page alone, which draws its own figures: no SVG
+A file that cannot be read is a warning, and named on the page in its place.
+exit code: 0 the page was written, 2 a bad argument, or files and none of them usable
+example: node experiments/report/dist/report.mjs results/ --out results/report.html`;
+
+function options_of(argv) {
+  const options = { directory: undefined, out: undefined, figures: true };
+  for (let i = 0; i < argv.length; ++i) {
+    if (argv[i] === '--help' || argv[i] === '-h') return { help: true };
+    if (argv[i] === '--out') {
+      if (argv[i + 1] === undefined) throw new InputError('--out: no file given');
+      options.out = argv[++i];
+    } else if (argv[i] === '--no-figures') {
+      options.figures = false;
+    } else if (argv[i].startsWith('-')) {
+      throw new InputError(
+        `${argv[i]}: unknown option; known are --out, --no-figures and --help`,
+      );
+    } else if (options.directory === undefined) {
+      options.directory = argv[i];
+    } else {
+      throw new InputError(`${argv[i]}: a second directory; give one`);
+    }
+  }
+  if (options.directory === undefined)
+    throw new InputError('no results directory given; see --help');
+  return { ...options, out: options.out ?? join(options.directory, 'report.html') };
+}
+
+// The whole file or none: a regular file appears under its name when it is complete.
+function write(path, text, remedy) {
+  const direct = existsSync(path) && !statSync(path).isFile();
+  const place = direct ? path : `${path}.part`;
+  try {
+    writeFileSync(place, text);
+    if (!direct) renameSync(place, path);
+  } catch (error) {
+    if (!direct) rmSync(place, { force: true });
+    throw new InputError(`${path}: cannot write (${error.code}); ${remedy}`);
+  }
+}
+
+// '<' must not end the script element that carries the data.
+const embedded_json = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
+
+const script_hash = (text) =>
+  `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+
+// The page: the template with policy, text and data filled in.
+function page_html(template, tables, objects, scenes, warnings) {
+  const script = /<script id="program">([\s\S]*?)<\/script>/.exec(template)[1];
+  const policy =
+    "default-src 'none'; base-uri 'none'; form-action 'none'; " +
+    `img-src data:; style-src 'unsafe-inline'; script-src ${script_hash(script)}`;
+  const data = Object.fromEntries(
+    Object.entries(tables).map(([name, { columns, rows, glossary }]) => [
+      name,
+      { columns, rows, glossary },
+    ]),
+  );
+  const values = {
+    POLICY: policy,
+    BODY: body_html(tables, objects, scenes, warnings),
+    DATA: embedded_json(data),
+    SCENES: scene_data_html(scenes, embedded_json),
+  };
+  return template.replace(
+    /<!--TRESS_(POLICY|BODY|DATA|SCENES)-->|TRESS_(POLICY)_VALUE/g,
+    (_, slot, attribute) => values[slot ?? attribute],
+  );
+}
+
+// Writes one SVG for each; returns how many. What cannot be written is one warning.
+function write_figures(directory, drawn, warn) {
+  const failed = drawn.filter(({ id, svg }) => {
+    try {
+      write(join(directory, `${id}.svg`), svg);
+      return false;
+    } catch (error) {
+      if (!(error instanceof InputError)) throw error;
+      return true;
+    }
+  });
+  if (failed.length > 0)
+    warn(
+      `${directory}: cannot write ${failed.map(({ id }) => `${id}.svg`).join(', ')}; ` +
+        'make room for them there or give --no-figures',
+    );
+  return drawn.length - failed.length;
+}
+
+async function report({ directory, out, figures }, { template, render, say }) {
+  const warnings = new Warnings(say);
+  const warn = (text, table) => warnings.add(text, table);
+  const tables = load_results(directory, warn);
+  const scenes = load_scenes(directory, warn);
+  const count = Object.keys(tables).length;
+  if (warnings.list.length > 0 && count + scenes.length === 0)
+    throw new InputError(`${directory}: nothing to draw: no file in it could be used`);
+  const objects = all_objects(tables);
+  const html = page_html(template(), tables, objects, scenes, warnings);
+  const drawn = figures ? await render(objects, warnings) : [];
+  const written = write_figures(directory, drawn, warn);
+  write(out, html, 'choose another place with --out');
+  say(
+    `${out}: ${count} tables, ${written} figures, ${scenes.length} scenes` +
+      (warnings.list.length > 0 ? `, ${warnings.list.length} warnings` : ''),
+  );
+}
+
+// The exit code. `template()`: the page without its data; `render(objects, warnings)`: the
+// figures as [{id, svg}]; `say`: where lines go.
+export async function run(argv, { template, render, say = console.error }) {
+  try {
+    const options = options_of(argv);
+    if (options.help) console.log(usage);
+    else await report(options, { template, render, say });
+    return 0;
+  } catch (error) {
+    if (!(error instanceof InputError)) throw error;
+    say(`report: ${error.message}`);
+    return 2;
+  }
+}
