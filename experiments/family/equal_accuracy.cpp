@@ -1,0 +1,121 @@
+// What reduced and maximal coordinates cost at a tip error of 1 %, hair by hair, each
+// against what its own equations tend to: how far the two limits are apart is the gap.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "experiments/family/study.h"
+#include "experiments/harness/cheapest_run.h"
+#include "experiments/harness/strand_reference.h"
+#include "experiments/harness/timing.h"
+
+namespace tress::family {
+namespace {
+
+constexpr Claim claims[] = {
+    {"reduced_cheaper", "super_helix needs less time for 1 % than der",
+     "time of der over time of super_helix at a tip error of 1 %"}};
+
+constexpr double t_end = 0.2;  // s
+constexpr int samples = 12;
+constexpr double target = 0.01;
+constexpr std::array ladder{5, 10, 20, 40, 80};
+constexpr double coarsest = 1 / 60.0, finest = 1 / 480.0;  // s
+constexpr std::string_view integrator = "bdf2";  // solves the most of these hairs
+constexpr int pairs = 5;  // of timed runs, one of each model in turn
+constexpr int least_finest_elements = 60;
+constexpr double finest_step = 1 / 960.0;  // s
+
+Options options_at(double dt) {
+  Options options;
+  options.step = dt;
+  options.newton_tolerance = 1e-5;  // of the typical size
+  return options;
+}
+
+TipRun run_of(const Hair& hair, std::string_view model, int elements, double dt) {
+  const auto system = make_system(hair, model, elements);
+  return run_tip(integrator, *system, options_at(dt), t_end, samples);
+}
+
+/// The least work, elements times Newton iterations: a count, so that the choice is the
+/// same on every machine.
+std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In limit) {
+  return cheapest_run(
+      {target, ladder, coarsest, finest},
+      [&](int elements, double dt) -> std::optional<CheapRun> {
+        const TipRun run = run_of(hair, model, elements, dt);
+        if (run.status != Status::ok) return {};
+        const double error = tip_error(run.tip, limit, hair.length);
+        if (!std::isfinite(error)) return {};
+        const double work = elements * static_cast<double>(run.stats.newton_iterations);
+        return CheapRun{elements, dt, error, work};
+      },
+      [] { return false; });
+}
+
+/// Both models in turn, so that what else the machine does meets both; the median ratio.
+double time_ratio(const Hair& hair, const CheapRun& reduced, const CheapRun& maximal) {
+  std::vector<double> ratios;
+  for (int i = 0; i < pairs; ++i) {
+    const double one = seconds_of(
+        [&] { (void)run_of(hair, "super_helix", reduced.elements, reduced.dt); });
+    const double other =
+        seconds_of([&] { (void)run_of(hair, "der", maximal.elements, maximal.dt); });
+    ratios.push_back(other / one);
+  }
+  return median(ratios);
+}
+
+/// What the model tends to: two numbers of elements at two steps each, extrapolated at
+/// order 2 in both. Empty where one of the runs fails.
+std::optional<std::vector<double>> limit_of(const Hair& hair, std::string_view model) {
+  const int finest_elements =
+      std::max(least_finest_elements, 2 * static_cast<int>(std::ceil(hair.winding())));
+  std::vector<std::vector<double>> of_steps;
+  for (const int elements : {finest_elements / 2, finest_elements}) {
+    const TipRun coarse = run_of(hair, model, elements, 2 * finest_step);
+    if (coarse.status != Status::ok) return {};
+    const TipRun fine = run_of(hair, model, elements, finest_step);
+    if (fine.status != Status::ok) return {};
+    of_steps.push_back(extrapolated(coarse.tip, fine.tip, 2));
+  }
+  return extrapolated(of_steps[0], of_steps[1], 2);
+}
+
+/// The cheapest way to the model's own limit; empty where there is none.
+std::optional<CheapRun> way_of(const Hair& hair, std::string_view model,
+                               const std::optional<std::vector<double>>& limit) {
+  return limit ? cheapest(hair, model, *limit) : std::nullopt;
+}
+
+std::vector<Row> run(const Hair& hair, const Row& row) {
+  const Claim& claim = claims[0];
+  const auto reduced_limit = limit_of(hair, "super_helix");
+  const auto maximal_limit = limit_of(hair, "der");
+  const auto reduced = way_of(hair, "super_helix", reduced_limit);
+  const auto maximal = way_of(hair, "der", maximal_limit);
+  Row with = row;
+  if (reduced_limit && maximal_limit) {
+    with.set("gap", tip_error(*reduced_limit, *maximal_limit, hair.length));
+  }
+  if (reduced) with.set("reduced", reduced->elements);
+  if (maximal) with.set("maximal", maximal->elements);
+  if (!reduced && !maximal) {
+    return {no_answer(with, claim, "not_met", "neither comes within 1 % on this ladder")};
+  }
+  // One that never meets the target is dearer than any that does.
+  constexpr double most = 100;
+  if (!maximal) return {answer(with, claim, most, true)};
+  if (!reduced) return {answer(with, claim, 1 / most, false)};
+  const double ratio = time_ratio(hair, *reduced, *maximal);
+  return {answer(with, claim, ratio, ratio > 1)};
+}
+
+}  // namespace
+
+const Study equal_accuracy{"equal_accuracy", claims, run};
+
+}  // namespace tress::family

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "experiments/harness/row.h"
+#include "models/parameters.h"
+#include "models/system.h"
+
+namespace tress::family {
+
+/// What moves a hair. By `level` in [0, 1]: shake by 1 to 5 cm; a head that turns by 0.2
+/// to 0.8 rad, 10 cm behind the root; nothing (let go horizontally); a sideways wind of
+/// 0.5 to 5 m/s at its peak, a sine in time, with linear drag of 2e-5 kg/(m s).
+enum class Drive { shake, turning_head, release, wind };
+inline constexpr int drives = 4;
+std::string_view name(Drive drive);
+
+/// One member of the family. Its natural twist is 0.3 times its natural curvature.
+struct Hair {
+  int number;                // 1, 2, ...
+  double length;             // m
+  double radius;             // m
+  double youngs_modulus;     // Pa
+  double ellipticity;        // half-axis along e1 over half-axis along e2
+  double natural_curvature;  // 1/m
+  double internal_friction;  // kg m^3/s
+  Drive drive;
+  double level;      // of the drive, in [0, 1]
+  double frequency;  // of the drive, 1/s
+
+  /// rho A g L^3/(EI) of the round section: how far gravity bends the hair.
+  double gravito_bending() const;
+  /// Angle by which the natural shape turns from root to tip (rad).
+  double winding() const;
+
+  /// Sets the columns that describe the hair.
+  void describe(Row& row) const;
+};
+
+/// Columns that `describe` sets.
+std::vector<Column> hair_columns();
+
+/// A Latin hypercube [McKay, Beckman & Conover 1979]: every parameter's range is divided
+/// into `count` equal parts, and each part holds exactly one hair. Length 3 to 40 cm,
+/// radius 20 to 60 um, Young's modulus 1e6 to 4e9 Pa (logarithmic), ellipticity 1 to 1.6,
+/// natural curvature 0 to 300 1/m, internal friction 0 for a quarter of the hairs and
+/// 1e-13 to 1e-10 kg m^3/s (logarithmic) for the others, drives in equal shares,
+/// frequency 1 to 4 1/s. Equal seeds give equal hairs on every machine.
+std::vector<Hair> latin_hypercube(int count, std::uint64_t seed);
+
+/// The hair with its natural shape straightened, its section and material kept.
+Hair straightened(Hair hair);
+
+/// Parameters of `model` for this hair.
+Parameters parameters_of(const Hair& hair, std::string_view model, int elements);
+
+/// The model of the hair, under gravity and what drives it. `modes`: of the models that
+/// know the word (super_helix, articulated_chain): "bend_twist" or "bend".
+std::unique_ptr<System> make_system(const Hair& hair, std::string_view model,
+                                    int elements, std::string_view modes = "bend_twist");
+
+/// Peak of the wind (m/s) at this level.
+double wind_speed(const Hair& hair);
+inline constexpr double wind_drag = 2e-5;  // kg/(m s), linear drag per length
+
+}  // namespace tress::family

@@ -1,0 +1,99 @@
+// How long a step of backward_euler with the whole tangent is stable, hair by hair.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "experiments/family/study.h"
+#include "experiments/harness/stability.h"
+#include "experiments/harness/strand_scenes.h"
+
+namespace tress::family {
+namespace {
+
+constexpr Claim claims[] = {
+    {"exact_step_100ms",
+     "backward_euler with the exact tangent is stable at every step tried up to 100 ms",
+     "largest stable step of super_helix with twist (s)"},
+    {"exact_step_100ms_bend", "the same without twist (modes = bend)",
+     "largest stable step of super_helix without twist (s)"},
+    {"super_helix_step_longer", "super_helix is stable at steps at least as long as der",
+     "largest stable step of super_helix over that of der"}};
+
+constexpr double t_end = 0.5;  // s
+// Half a decade apart, longest first.
+constexpr std::array ladder{0.1, 0.1 / 3, 0.01, 0.01 / 3, 1e-3, 1e-3 / 3, 1e-4};
+// Stability is not monotone: all of these are tested, the shorter ones only where none
+// below was stable.
+constexpr double always_down_to = 1e-3;
+constexpr double nothing_stable = 5e-5;  // s, the place in ratios of "none of these"
+constexpr int least_elements = 20;
+constexpr double most_winding = 1.5;  // rad an element: der must stay below half a circle
+
+int elements_of(const Hair& hair) {
+  return std::max(least_elements,
+                  static_cast<int>(std::ceil(hair.winding() / most_winding)));
+}
+
+/// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass,
+/// u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2. Ten times that for the
+/// tip's share, sqrt(30) of the root mean square speed, is in the bound itself.
+double wind_speed_bound(const Hair& hair, const Parameters& p) {
+  const double area = std::numbers::pi * hair.radius * hair.radius;
+  const double c = wind_drag / (p.number("density_kg_m3") * area);
+  const double w = wind_speed(hair);
+  const double calm = strand_speed_bound(p, t_end);  // sqrt(30) sqrt(2 g L)
+  return std::sqrt(calm * calm + 30 * c * w * w * t_end / 2);
+}
+
+StabilityBounds bounds_of(const Hair& hair, const Parameters& p, System& system) {
+  const bool driven = hair.drive != Drive::release;
+  const StrandScene scene{"family", "", {}, t_end, StabilityBounds::none, driven};
+  StabilityBounds bounds = stability_bounds(scene, p, system);
+  if (hair.drive == Drive::wind) bounds.speed = wind_speed_bound(hair, p);
+  return bounds;
+}
+
+/// The longest step of the ladder such that it and all shorter ones tested were stable.
+double longest_stable(const Hair& hair, std::string_view model, std::string_view modes) {
+  const int elements = elements_of(hair);
+  const auto system = make_system(hair, model, elements, modes);
+  const StabilityBounds bounds =
+      bounds_of(hair, parameters_of(hair, model, elements), *system);
+  const State start = perturbed_start(*system);
+  double stable = 0;
+  for (const double dt : ladder) {
+    if (dt < always_down_to * 0.99 && stable > 0) break;
+    Options options;
+    options.step = dt;
+    const auto run = judge_run("backward_euler", *system, options, start, t_end, bounds);
+    if (!run->stable()) {
+      stable = 0;
+    } else if (stable == 0) {
+      stable = dt;
+    }
+  }
+  return stable;
+}
+
+std::vector<Row> run(const Hair& hair, const Row& row) {
+  const double twisting = longest_stable(hair, "super_helix", "bend_twist");
+  const double bending = longest_stable(hair, "super_helix", "bend");
+  const double der = longest_stable(hair, "der", "");
+  Row with = row;
+  with.set("elements", elements_of(hair));
+  const auto longest = [&](const Claim& claim, double dt) {
+    return answer(with, claim, std::max(dt, nothing_stable), dt >= ladder.front());
+  };
+  const Row both = Row(with).set("reduced", twisting).set("maximal", der);
+  const double ratio = std::max(twisting, nothing_stable) / std::max(der, nothing_stable);
+  return {longest(claims[0], twisting), longest(claims[1], bending),
+          answer(both, claims[2], ratio, twisting >= der)};
+}
+
+}  // namespace
+
+const Study stable_steps{"stable_steps", claims, run};
+
+}  // namespace tress::family

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "experiments/family/hair.h"
+#include "experiments/harness/row.h"
+
+namespace tress::family {
+
+/// A statement that the README makes about one hair, to be tested on all.
+struct Claim {
+  std::string_view id;
+  std::string_view statement;  // a sentence, true of a hair where the claim holds
+  std::string_view value;      // what the column `value` holds, with unit
+};
+
+/// One piece of work on one hair, which answers one or more claims. Its work is bounded
+/// by numbers of steps, never by time.
+struct Study {
+  std::string_view id;
+  std::span<const Claim> claims;
+  /// Rows in the order of `claims`. `row`: identity and hair are set.
+  std::vector<Row> (*run)(const Hair& hair, const Row& row);
+};
+
+std::span<const Study> studies();
+
+/// A row that answers `claim`: its value, and whether the claim holds for this hair.
+Row answer(Row row, const Claim& claim, double value, bool holds);
+
+/// A row that could not answer it, with the reason.
+Row no_answer(Row row, const Claim& claim, std::string_view status,
+              std::string_view reason);
+
+extern const Study stable_steps, twist, bdf_order, equal_accuracy;
+
+}  // namespace tress::family

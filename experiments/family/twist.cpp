@@ -1,0 +1,75 @@
+// What leaving twist out changes, for the hair straightened and as it is.
+#include <cmath>
+#include <optional>
+
+#include "experiments/family/study.h"
+#include "experiments/harness/tip_track.h"
+
+namespace tress::family {
+namespace {
+
+constexpr Claim claims[] = {
+    {"twist_straight_negligible",
+     "leaving twist out moves the tip of the straightened hair by less than 1 %",
+     "root mean square change of the tip over the length, straightened hair"},
+    {"twist_curly_matters", "leaving twist out moves the tip of the hair by over 1 %",
+     "root mean square change of the tip over the length, the hair as it is"}};
+
+constexpr double t_end = 0.4;  // s
+constexpr int samples = 24, elements = 20;
+constexpr double bar = 0.01;
+constexpr double coarsest = 1e-3;  // s
+constexpr int halvings = 3;        // of a step that finds no solution
+
+std::optional<std::vector<double>> tip(const Hair& hair, std::string_view modes,
+                                       double dt) {
+  const auto system = make_system(hair, "super_helix", elements, modes);
+  Options options;
+  options.step = dt;
+  options.newton_tolerance = 1e-6;  // of the typical size
+  TipRun run = run_tip("bdf2", *system, options, t_end, samples);
+  if (run.status != Status::ok) return {};
+  return std::move(run.tip);
+}
+
+/// The change by leaving twist out, and how much half the step changes the hair without.
+struct Change {
+  double value, gap;
+};
+
+std::optional<Change> change_of(const Hair& hair) {
+  double dt = coarsest;
+  for (int i = 0; i <= halvings; ++i, dt /= 2) {
+    const auto whole = tip(hair, "bend_twist", dt);
+    if (!whole) continue;
+    const auto part = tip(hair, "bend", dt), finer = tip(hair, "bend", dt / 2);
+    if (!part || !finer) continue;
+    return Change{tip_error(*part, *whole, hair.length),
+                  tip_error(*part, *finer, hair.length)};
+  }
+  return {};
+}
+
+Row judged(const Hair& hair, Row row, const Claim& claim, bool over) {
+  const auto change = change_of(hair);
+  if (!change)
+    return no_answer(row, claim, "solver_error", "no solution down to 0.125 ms");
+  row.set("elements", elements).set("gap", change->gap);
+  // Half the step must not carry the value across the bar.
+  if (std::abs(change->value - bar) <= change->gap) {
+    return no_answer(row.set("value", change->value), claim, "unresolved",
+                     "half the step changes the run by more than the distance to 1 %");
+  }
+  return answer(row, claim, change->value, (change->value > bar) == over);
+}
+
+std::vector<Row> run(const Hair& hair, const Row& row) {
+  return {judged(straightened(hair), row, claims[0], false),
+          judged(hair, row, claims[1], true)};
+}
+
+}  // namespace
+
+const Study twist{"twist", claims, run};
+
+}  // namespace tress::family
