@@ -59,8 +59,9 @@ constexpr Parameter own_settings[] = {
      .min = 1,
      .max = 1e4,
      .whole = true},
-    {.name = "search_s",
-     .help = "time of one scene's search (s), 0: 10 with --quick, else 90",
+    {.name = "search_work",
+     .help = "of one scene's search, million elements x steps of all runs; 0: 3 with "
+             "--quick, else 30",
      .number = 0,
      .min = 0,
      .max = 1e6},
@@ -129,9 +130,9 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.rate = own.number("fps");
   plan.horizon = own.number("horizon_s");
   plan.strands = static_cast<std::size_t>(own.whole("strands"));
-  plan.search_s = own.number("search_s");
-  if (plan.search_s == 0) plan.search_s = line.quick ? 10 : 90;
-  plan.longest_run_s = line.quick ? 0.3 : 2;
+  plan.search_work = 1e6 * own.number("search_work");
+  if (plan.search_work == 0) plan.search_work = line.quick ? 3e6 : 3e7;
+  plan.longest_run = line.quick ? 2048 : 8192;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;
   return plan;

@@ -1,6 +1,7 @@
 #include "experiments/cost_of_accuracy/finalists.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace tress {
@@ -14,10 +15,6 @@ constexpr std::size_t contenders = 5;
 constexpr std::ptrdiff_t few_methods = 6;
 constexpr int dearest = 16;
 
-std::tuple<std::size_t, int, int> place(const Trial& run) {
-  return {run.method, run.elements, run.substeps};
-}
-
 }  // namespace
 
 Finalists::Finalists(Search& search, const SceneText& text, std::vector<Method>& methods,
@@ -26,16 +23,26 @@ Finalists::Finalists(Search& search, const SceneText& text, std::vector<Method>&
 
 std::vector<Trial> Finalists::runs() const {
   std::vector<Trial> all = search_.runs();
+  if (search_.cut()) {
+    std::erase_if(all, [](const Trial& run) { return run.examined < neighbour_count; });
+  }
   for (Trial& run : all) {
-    const auto found = wall_s_.find(place(run));
-    if (found != wall_s_.end()) run.wall_s = found->second;
+    const auto found = times_.find(place(run));
+    if (found != times_.end()) run.wall_s = found->second.least_s;
   }
   return all;
 }
 
-void Finalists::time(const Trial& run) {
-  if (wall_s_.contains(place(run))) return;
-  wall_s_.emplace(place(run), std::min(run.wall_s, time_(run)));
+bool Finalists::time(const Trial& run) {
+  if (times_.contains(place(run))) return false;
+  WallTime measured = time_(run);
+  measured.least_s = std::min(run.wall_s, measured.least_s);
+  times_.emplace(place(run), measured);
+  return true;
+}
+
+bool Finalists::tied(const Trial& run, const Trial& best) const {
+  return run.wall_s <= std::max(toss_up, 1 + scatter(best)) * best.wall_s;
 }
 
 /// The same cut by methods with some of the options only: one of them may do as well.
@@ -51,34 +58,59 @@ void Finalists::time_simpler(const Trial& run) {
       return std::ranges::count(method.options, one) > 0;
     });
     if (!part) continue;
-    if (const Trial* found = search_.run(i, run.elements, run.substeps)) time(*found);
+    if (const Trial* found = search_.run(i, run.elements, run.substeps)) {
+      static_cast<void>(time(*found));
+    }
   }
 }
 
+/// As it is after its neighbours were examined.
+Trial Finalists::known(const Trial& run) {
+  Trial now = *search_.run(run.method, run.elements, run.substeps);
+  now.wall_s = run.wall_s;
+  return now;
+}
+
+/// The cheapest that counts.
+std::optional<Trial> Finalists::counting(double target, const Accept& accept) {
+  while (true) {
+    const std::vector<Trial> all = runs();
+    const Trial* next = cheapest(all, target, accept);
+    if (next == nullptr) return {};
+    if (search_.holds(*next, target)) return known(*next);
+  }
+}
+
+bool Finalists::simpler(const Trial& a, const Trial& b) const {
+  const auto key = [this](const Trial& run) {
+    return std::tuple(methods_[run.method].options.size(), run.elements * run.substeps,
+                      run.elements, run.method);
+  };
+  return key(a) < key(b);
+}
+
 std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
-  std::set<std::tuple<std::size_t, int, int>> tried;
-  const std::vector<Trial> before = runs();
+  std::set<Place> tried;
   for (std::size_t i = 0; i < contenders; ++i) {
-    const Trial* next = cheapest(before, target, [&](const Trial& run) {
+    const auto next = counting(target, [&](const Trial& run) {
       return !tried.contains(place(run)) && (!accept || accept(run));
     });
-    if (next == nullptr) break;
-    time(*next);
+    if (!next) break;
+    static_cast<void>(time(*next));
     tried.insert(place(*next));
     if (i == 0) time_simpler(*next);
   }
-  const std::vector<Trial> after = runs();
-  const Trial* best = cheapest(after, target, accept);
-  if (best == nullptr) return {};
-  const double most_s = toss_up * best->wall_s;
-  for (const Trial& run : after) {
-    if (run.error > target || run.wall_s > most_s || (accept && !accept(run))) continue;
-    const auto off = [&](const Trial& one) {
-      return std::pair(methods_[one.method].options.size(), one.wall_s);
-    };
-    if (off(run) < off(*best)) best = &run;
+  while (const auto best = counting(target, accept)) {
+    if (time(*best)) continue;
+    Trial simplest = *best;
+    for (const Trial& run : runs()) {
+      const bool meets = run.judged() <= target && (!accept || accept(run));
+      if (meets && tied(run, *best) && simpler(run, simplest)) simplest = run;
+    }
+    if (time(simplest)) continue;
+    if (search_.holds(simplest, target)) return known(simplest);
   }
-  return *best;
+  return {};
 }
 
 /// The search may have given up the methods that are asked for now: of few, one run that
@@ -93,11 +125,11 @@ std::optional<Trial> Finalists::replaced(
       continue;
     }
     for (const int elements : {winner.elements, winner.elements + winner.elements / 2}) {
-      search_.fewest_substeps(method, elements, target, winner.substeps,
-                              dearest * winner.substeps);
+      search_.fewest_that_hold(method, elements, target, winner.substeps,
+                               dearest * winner.substeps);
     }
   }
-  const Trial* first = cheapest(search_.runs(), target, accept);
+  const Trial* first = search_.robust(target, accept);
   if (first == nullptr) return {};
   search_.refine(first->method, target);
   return settled(target, accept);
@@ -116,8 +148,8 @@ bool Finalists::varied(const Method& method, std::string_view choice) {
 
 std::optional<Trial> Finalists::twice_the_elements(const Trial& winner, double target) {
   const Trial* found =
-      search_.fewest_substeps(winner.method, 2 * winner.elements, target, winner.substeps,
-                              dearest * winner.substeps);
+      search_.fewest_that_hold(winner.method, 2 * winner.elements, target,
+                               winner.substeps, dearest * winner.substeps);
   if (found == nullptr) return {};
   return settled(target, [place_of = place(*found)](const Trial& run) {
     return place(run) == place_of;
@@ -128,7 +160,7 @@ std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target
   const int substeps = 2 * winner.substeps;
   const auto meets = [&](int elements) {
     const Trial* found = search_.run(winner.method, elements, substeps);
-    return found != nullptr && found->error <= target;
+    return found != nullptr && search_.holds(*found, target);
   };
   int elements = winner.elements;
   // Errors of space and time may have cancelled each other: more elements then.
@@ -174,24 +206,35 @@ std::optional<BestRuns> Finalists::of(double target) {
 }
 
 std::optional<Trial> Finalists::within(double wall_s, double floor) {
-  for (std::size_t i = 0; i < contenders; ++i) {
-    const std::vector<Trial> before = runs();
-    const Trial* next = most_accurate(before, wall_s, floor);
+  while (true) {
+    const std::vector<Trial> all = runs();
+    const Trial* next = most_accurate(all, wall_s, floor);
     if (next == nullptr) return {};
-    time(*next);
+    if (time(*next)) continue;
+    if (search_.holds(*next, std::max(next->judged(), floor))) return known(*next);
   }
-  const std::vector<Trial> after = runs();
-  return *most_accurate(after, wall_s, floor);
+}
+
+std::optional<Trial> Finalists::nearest() {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const Trial* best = most_accurate(search_.runs(), any, 0);
+  if (best == nullptr) return {};
+  return *best;
 }
 
 std::vector<Trial> Finalists::front(double floor, double loosest) {
-  const auto now = [&] {
+  while (true) {
     std::vector<Trial> all = runs();
-    std::erase_if(all, [loosest](const Trial& run) { return run.error > loosest; });
-    return pareto_front(std::move(all), floor);
-  };
-  for (const Trial& run : now()) time(run);
-  return now();
+    std::erase_if(all, [loosest](const Trial& run) { return run.judged() > loosest; });
+    std::vector<Trial> shown = pareto_front(std::move(all), floor);
+    bool settled = true;
+    for (Trial& run : shown) {
+      const bool timed = !time(run);
+      settled = search_.holds(run, std::max(run.judged(), floor)) && timed && settled;
+      run = known(run);
+    }
+    if (settled) return shown;
+  }
 }
 
 }  // namespace tress

@@ -1,5 +1,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "experiments/harness/tip_track.h"
@@ -16,7 +18,20 @@ constexpr int short_repeats = 3;
 /// What is timed once more runs for so long altogether: caches and clock rates settle.
 constexpr double long_enough = 0.01;  // s
 
+/// Mean iterations of a step beyond which no run is the cheapest: an undisturbed one
+/// takes three or four, and half as long a step takes fewer.
+constexpr double most_iterations = 10;
+
 }  // namespace
+
+WallTime wall_time(const std::vector<double>& seconds) {
+  double least[] = {seconds.front(), seconds.back()};
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    least[i % 2] = std::min(least[i % 2], seconds[i]);
+  }
+  const auto [low, high] = std::minmax(least[0], least[1]);
+  return {low, high / low - 1};
+}
 
 Scene SceneMeasure::scene(const Method& method, int elements, int substeps) const {
   return compared(text_.scene(method, elements, substeps, comparison_.rate), comparison_);
@@ -26,9 +41,10 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
                                          double most_s) const {
   try {
     const Scene run = scene(method, elements, substeps);
-    const TipPaths paths = tip_paths(run, 0, most_s);
-    const double wall_s =
-        paths.once_s < short_run ? least_wall_s(run, short_repeats) : paths.once_s;
+    const TipPaths paths = tip_paths(run, 0, {most_iterations, most_s});
+    const double wall_s = paths.once_s < short_run
+                              ? wall_time(wall_times(run, short_repeats)).least_s
+                              : paths.once_s;
     return Trial{0, elements, substeps,
                  tip_error(paths.x, reference_, comparison_.length), wall_s};
   } catch (const InputError&) {  // refused at this number of elements
@@ -38,19 +54,32 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
   }
 }
 
+double SceneMeasure::changed_error(const Method& method, int elements, int substeps,
+                                   Change change, double most_s) const {
+  const std::vector<double>& reference =
+      change == Change::up ? changed_.up : changed_.down;
+  try {
+    const Scene run = changed(scene(method, elements, substeps), change);
+    return tip_error(tip_paths(run, 0, {most_iterations, most_s}).x, reference,
+                     comparison_.length);
+  } catch (const std::runtime_error&) {  // and what is refused: InputError is one
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
 std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const {
   const Scene run = compared(given, comparison_);
   try {
     const double error = tip_error(tip_paths(run, 0).x, reference_, comparison_.length);
-    return Trial{0, 0, 0, error, least_wall_s(run, count, long_enough)};
+    return Trial{0, 0, 0, error, wall_time(wall_times(run, count, long_enough)).least_s};
   } catch (const std::runtime_error&) {
     return {};
   }
 }
 
-double SceneMeasure::time(const Method& method, int elements, int substeps,
-                          int count) const {
-  return least_wall_s(scene(method, elements, substeps), count, long_enough);
+WallTime SceneMeasure::time(const Method& method, int elements, int substeps,
+                            int count) const {
+  return wall_time(wall_times(scene(method, elements, substeps), count, long_enough));
 }
 
 double SceneMeasure::error(const Method& method, int elements, int substeps,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -22,14 +23,19 @@ namespace {
 /// taken.
 constexpr int reference_version = 1;
 
-constexpr Column columns[] = {{"t_s", "time"},
-                              {"strand", "counted from 0"},
-                              {"x_m", "the tip by super_helix"},
-                              {"y_m", "the same"},
-                              {"z_m", "the same"},
-                              {"other_x_m", "the tip by der"},
-                              {"other_y_m", "the same"},
-                              {"other_z_m", "the same"}};
+constexpr std::string_view columns[] = {"t_s", "strand",    "x_m",       "y_m",
+                                        "z_m", "other_x_m", "other_y_m", "other_z_m"};
+
+const ReferenceSides rod_sides{
+    "tips of the rod: super_helix by implicit_midpoint, der by generalized_alpha, "
+    "extrapolated in step and element length",
+    "the tip by super_helix", "the tip by der"};
+
+/// Of `columns`.
+std::array<std::string, 8> help_of(const ReferenceSides& sides) {
+  return {"time",     "counted from 0", sides.one,  "the same",
+          "the same", sides.other,      "the same", "the same"};
+}
 
 std::string hash(const std::string& text) {
   Row row;
@@ -52,13 +58,12 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
     row.set("t_s", static_cast<double>(i / 3 / strands) / comparison.rate);
     row.set("strand", i / 3 % strands);
     for (std::size_t k = 0; k < 3; ++k) {
-      row.set(columns[2 + k].name, reference.tips.tip[i + k]);
-      row.set(columns[5 + k].name, reference.tips.other[i + k]);
+      row.set(columns[2 + k], reference.tips.tip[i + k]);
+      row.set(columns[5 + k], reference.tips.other[i + k]);
     }
     rows.push_back(std::move(row));
   }
-  std::vector<std::string> names;
-  for (const Column& column : columns) names.emplace_back(column.name);
+  std::vector<std::string> names(std::begin(columns), std::end(columns));
   names.emplace_back("status");
   return to_csv(names, rows);
 }
@@ -132,8 +137,8 @@ std::optional<SceneReference> load_reference(const std::string& folder,
     reference.tips.gap = meta.at("gap").get<double>();
     for (const Row& row : parse_csv(text, name).rows) {
       for (std::size_t k = 0; k < 3; ++k) {
-        reference.tips.tip.push_back(row.number(columns[2 + k].name));
-        reference.tips.other.push_back(row.number(columns[5 + k].name));
+        reference.tips.tip.push_back(row.number(columns[2 + k]));
+        reference.tips.other.push_back(row.number(columns[5 + k]));
       }
     }
     return reference;
@@ -145,24 +150,29 @@ std::optional<SceneReference> load_reference(const std::string& folder,
 void save_reference(const std::string& folder, const std::string& name,
                     const std::string& key, const SceneReference& reference,
                     const Comparison& comparison, const ReferenceCut& cut) {
+  save_reference(folder, name, key, reference, comparison, cut, rod_sides);
+}
+
+void save_reference(const std::string& folder, const std::string& name,
+                    const std::string& key, const SceneReference& reference,
+                    const Comparison& comparison, const ReferenceCut& cut,
+                    const ReferenceSides& sides) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const std::string text = text_of(reference, comparison);
-  nlohmann::ordered_json meta{
-      {"what",
-       "tips of the rod: super_helix by implicit_midpoint, der by "
-       "generalized_alpha, extrapolated in step and element length"},
-      {"key", key},
-      {"table", hash(text)},
-      {"version", reference_version},
-      {"gap", reference.tips.gap},
-      {"frames", reference.frames},
-      {"frames_1_s", comparison.rate},
-      {"length_m", comparison.length},
-      {"finest_elements", cut.elements},
-      {"finest_dt_s", 1 / (comparison.rate * cut.substeps)}};
+  nlohmann::ordered_json meta{{"what", sides.what},
+                              {"key", key},
+                              {"table", hash(text)},
+                              {"version", reference_version},
+                              {"gap", reference.tips.gap},
+                              {"frames", reference.frames},
+                              {"frames_1_s", comparison.rate},
+                              {"length_m", comparison.length},
+                              {"finest_elements", cut.elements},
+                              {"finest_dt_s", 1 / (comparison.rate * cut.substeps)}};
   nlohmann::ordered_json help;
-  for (const Column& column : columns) help[std::string(column.name)] = column.help;
+  const auto texts = help_of(sides);
+  for (std::size_t i = 0; i < texts.size(); ++i) help[std::string(columns[i])] = texts[i];
   meta["columns"] = help;
   replace_file(csv_file(folder, name), text);
   replace_file(meta_file(folder, name), meta.dump(2) + '\n');
@@ -175,15 +185,22 @@ std::string reference_key(const SceneText& text, const Comparison& comparison,
                           cut.substeps, text.physics()));
 }
 
-SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
-                              const ReferenceCut& cut, const std::string& folder,
-                              const std::string& name) {
+SceneReference kept_sides(const SceneText& text, const Comparison& comparison,
+                          const ReferenceCut& cut, const std::string& folder,
+                          const std::string& name, const ReferenceSides& sides,
+                          const MakeReference& make) {
   const std::string key = reference_key(text, comparison, cut);
   if (auto found = load_reference(folder, name, key)) return *found;
   tell("{}: computing the reference, {} elements\n", name, cut.elements);
-  const SceneReference made = scene_reference(text, comparison, cut);
-  save_reference(folder, name, key, made, comparison, cut);
+  const SceneReference made = make(text, comparison, cut);
+  save_reference(folder, name, key, made, comparison, cut, sides);
   return made;
+}
+
+SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
+                              const ReferenceCut& cut, const std::string& folder,
+                              const std::string& name) {
+  return kept_sides(text, comparison, cut, folder, name, rod_sides, scene_reference);
 }
 
 }  // namespace tress

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -34,6 +35,7 @@ struct SceneReference {
 struct ReferenceCut {
   int elements = 160, substeps = 64;
   ReferenceCut refined() const { return {2 * elements, 2 * substeps}; }
+  ReferenceCut halved() const { return {elements / 2, substeps / 2}; }
 };
 
 /// Computed anew. Throws std::runtime_error where one of the runs fails.
@@ -50,6 +52,11 @@ SceneReference agreed(const SceneReference& reference, const Comparison& compari
 SceneReference first_frames(const SceneReference& reference,
                             const Comparison& comparison);
 
+/// What the two sides of a kept reference are, in words for its manifest.
+struct ReferenceSides {
+  std::string what, one, other;
+};
+
 /// References kept as <folder>/<name>.csv, the places of both sides, with a manifest
 /// <name>.meta.json that says what they belong to. Nothing where there is no such file,
 /// it is damaged or belongs to another key.
@@ -59,12 +66,23 @@ std::optional<SceneReference> load_reference(const std::string& folder,
 void save_reference(const std::string& folder, const std::string& name,
                     const std::string& key, const SceneReference& reference,
                     const Comparison& comparison, const ReferenceCut& cut);
+void save_reference(const std::string& folder, const std::string& name,
+                    const std::string& key, const SceneReference& reference,
+                    const Comparison& comparison, const ReferenceCut& cut,
+                    const ReferenceSides& sides);
 
 /// 16 hexadecimal digits of all that the reference depends on but the code.
 std::string reference_key(const SceneText& text, const Comparison& comparison,
                           const ReferenceCut& cut);
 
-/// Loaded where it is there, else computed and saved.
+/// Loaded where it is there, else computed by `make` and saved.
+using MakeReference = std::function<SceneReference(
+    const SceneText& text, const Comparison& comparison, const ReferenceCut& cut)>;
+SceneReference kept_sides(const SceneText& text, const Comparison& comparison,
+                          const ReferenceCut& cut, const std::string& folder,
+                          const std::string& name, const ReferenceSides& sides,
+                          const MakeReference& make);
+/// The same of the rod's tips, by scene_reference.
 SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name);

@@ -21,8 +21,10 @@ namespace {
 /// How much longer than usual a run may take on a machine that does other things too.
 constexpr double noise = 1.5;
 
-/// Of the time of a search; what is left is for the best of what was found.
+/// Of the work of a search; what is left is for the best of what was found.
 constexpr double coarse_share = 0.6;
+/// As much again may go into what replaces each choice of the winners.
+constexpr double last_share = 2;
 
 /// What all rows of a scene are written from.
 struct Study {
@@ -31,7 +33,9 @@ struct Study {
   const Row& identity;
   Comparison comparison = {};  // cut where the references part
   bool cut = false;
-  SceneReference reference = {}, refined = {};
+  SceneReference reference = {};
+  std::optional<SceneReference> refined = {};
+  ChangedTips changed = {};
   std::vector<Method> methods = {};
 
   double gap() const { return reference.tips.gap; }
@@ -46,19 +50,42 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity)
     return kept_reference(study.text, study.comparison, cut, plan.references, as);
   };
   const SceneReference whole = kept(plan.reference, name);
-  const SceneReference fine = kept(plan.reference.refined(), name + ".refined");
+  std::optional<SceneReference> fine;
+  if (plan.refine) fine = kept(plan.reference.refined(), name + ".refined");
   study.reference = agreed(whole, study.comparison, parted);
+  study.changed = kept_changed_tips(study.text, study.comparison, study.reference,
+                                    plan.reference.halved(), plan.references, name);
   study.cut = study.reference.frames < study.comparison.frames;
   study.comparison.frames = study.reference.frames;
-  study.refined = first_frames(fine, study.comparison);
+  if (fine) study.refined = first_frames(*fine, study.comparison);
   study.methods = methods(study.text, plan.methods);
   return study;
 }
 
+/// Counts the work of a search.
+class Work {
+ public:
+  Work(const Study& study, const Deadline& deadline)
+      : most_(study.plan.search_work),
+        steps_(static_cast<double>(study.comparison.frames * study.comparison.strands)),
+        deadline_(deadline) {}
+
+  double done() const { return done_; }
+  void add(int elements, int substeps) { done_ += steps_ * elements * substeps; }
+  /// Tells when so much of the work was done, or time is over.
+  std::function<bool()> until(double share) const {
+    return [this, share] { return done_ >= share * most_ || deadline_.passed(); };
+  }
+
+ private:
+  double most_, steps_, done_ = 0;
+  const Deadline& deadline_;
+};
+
 Row begin(const Study& study, std::string_view kind) {
   Row row = study.identity;
   row.set("kind", kind).set("reference_gap", study.gap());
-  row.set("refined_gap", study.refined.tips.gap);
+  if (study.refined) row.set("refined_gap", study.refined->tips.gap);
   row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut);
   return row;
 }
@@ -74,12 +101,20 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   row.set("elements", run.elements);
   row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
   row.set("error_rel", run.error);
+  if (run.examined == neighbour_count) row.set("error_neighbours_rel", run.neighbours);
   set_wall(study, run.wall_s, row);
   return row;
 }
 
 SceneMeasure measure_of(const Study& study) {
-  return {study.text, study.comparison, study.reference.tips.tip};
+  return {study.text, study.comparison, study.reference.tips.tip, study.changed};
+}
+
+/// Why there is no winner.
+std::string not_met(bool cut) {
+  return cut ? "no run within the target with neighbours that hold, so far: the search "
+               "ended with its work"
+             : "no run within the target with neighbours that hold";
 }
 
 void add_target(const Study& study, Finalists& finalists, double target,
@@ -94,34 +129,37 @@ void add_target(const Study& study, Finalists& finalists, double target,
   }
   const auto met = finalists.of(target - study.gap());
   if (!met) {
-    Row row = begin(study, "winner");
+    const auto nearest = finalists.nearest();
+    Row row = nearest ? row_of(study, "winner", *nearest) : begin(study, "winner");
     row.set("target_error_rel", target);
-    rows.push_back(row.failed("not_met", "no run within the target"));
+    rows.push_back(row.failed("not_met", not_met(finalists.cut())));
     return;
   }
   const auto add = [&](std::string_view kind, const Trial& run) -> Row& {
     Row row = row_of(study, kind, run);
     row.set("target_error_rel", target);
+    row.set("margin", (run.neighbours + study.gap()) / target);
     row.set("cost_factor", run.wall_s / met->winner.wall_s);
+    row.set("time_scatter", finalists.scatter(run));
     rows.push_back(std::move(row));
     return rows.back();
   };
-  const SceneMeasure measure = measure_of(study);
-  const auto refined_error = [&](const Trial& run) {
-    return measure.error(study.methods[run.method], run.elements, run.substeps,
-                         study.refined.tips.tip);
+  const auto check_refined = [&](const Trial& run, Row& row) {
+    if (!study.refined) return;
+    row.set("error_refined_rel",
+            measure_of(study).error(study.methods[run.method], run.elements, run.substeps,
+                                    study.refined->tips.tip));
   };
-  add("winner", met->winner)
-      .set("rank", 1)
-      .set("error_refined_rel", refined_error(met->winner));
+  check_refined(met->winner, add("winner", met->winner).set("rank", 1));
   if (met->runner_up) {
-    add("runner_up", *met->runner_up)
-        .set("rank", 2)
-        .set("error_refined_rel", refined_error(*met->runner_up));
+    const bool tied = finalists.tied(*met->runner_up, met->winner);
+    Row& row = add("runner_up", *met->runner_up).set("rank", tied ? 1 : 2);
+    check_refined(*met->runner_up, row.set("tied", tied));
   }
   for (const auto& [choice, run] : met->without) {
     if (run) {
-      add("without", *run).set("choice", choice);
+      const bool tied = finalists.tied(*run, met->winner);
+      add("without", *run).set("choice", choice).set("tied", tied);
       continue;
     }
     Row row = begin(study, "without");
@@ -188,7 +226,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   SearchPlan search_plan{.targets = {},
                          .elements = plan.elements,
                          .substeps = plan.substeps,
-                         .longest_run_s = plan.longest_run_s,
+                         .longest_run = plan.longest_run,
                          .slack = 0};
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
@@ -202,24 +240,32 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
         fmt::format("all targets are < {} x gap {:.3g}", believed, study.gap())));
     return rows;
   }
-  const double search_s = std::min(plan.search_s, 0.6 * deadline.remaining_s());
-  const Deadline coarse(coarse_share * search_s), whole(search_s);
+  Work work(study, deadline);
   Search search(
       search_plan, study.methods.size(),
-      [&](std::size_t method, int elements, int substeps, double most_s) {
-        auto run = measure.quick(study.methods[method], elements, substeps, most_s);
+      [&](std::size_t method, int elements, int substeps) {
+        work.add(elements, substeps);
+        auto run = measure.quick(study.methods[method], elements, substeps,
+                                 deadline.remaining_s());
         if (run) run->method = method;
         return run;
       },
-      [&coarse] { return coarse.passed(); });
+      [&](const Trial& run, Neighbour change) {
+        work.add(run.elements, run.substeps);
+        return measure.changed_error(
+            study.methods[run.method], run.elements, run.substeps,
+            change == Neighbour::data_up ? Change::up : Change::down,
+            deadline.remaining_s());
+      },
+      work.until(coarse_share));
   search.coarse();
   std::string how =
       fmt::format("{}: {} of {} methods climbed", search.cut() ? "cut" : "whole",
                   search.tried(), study.methods.size());
-  search.go_on([&whole] { return whole.passed(); });
+  search.go_on(work.until(1));
   search.refine();
   if (search.cut()) how += ", cut while refining";
-  search.go_on([&deadline] { return deadline.passed(); });
+  search.go_on(work.until(last_share));
   Finalists finalists(search, study.text, study.methods, [&](const Trial& run) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
@@ -231,7 +277,12 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
     rows.push_back(row_of(study, "front", run));
   }
   add_given(study, rows);
-  for (Row& row : rows) row.set("runs", search.runs().size()).set("search", how);
+  if (search.cut()) how += ", cut while settling";
+  if (deadline.passed()) how += ", by the clock";
+  for (Row& row : rows) {
+    row.set("runs", search.runs().size()).set("passed_over", search.passed_over());
+    row.set("work", 1e-6 * work.done()).set("search", how);
+  }
   return rows;
 }
 

@@ -15,14 +15,18 @@ struct StudyPlan {
   std::vector<int> elements, substeps;  // coarse ladders
   MethodChoice methods;
   ReferenceCut reference;
-  std::string references;      // folder in which they are kept
-  double rate = 60;            // frames per second
-  double horizon = 0.5;        // s
-  std::size_t strands = 1;     // of a groom
-  double search_s = 10;        // of one scene's search
-  double longest_run_s = 0.5;  // of one run in it
-  double budget_s = 0;         // wall time per frame; 0: not asked
-  int repeat = 3;              // runs of what is timed again
+  std::string references;   // folder in which they are kept
+  double rate = 60;         // frames per second
+  double horizon = 0.5;     // s
+  std::size_t strands = 1;  // of a groom
+  /// Of one scene's search: elements x steps of all runs. A clock would make the answer
+  /// depend on what else the machine does; the deadline of a row is for emergencies.
+  double search_work = 3e6;
+  long longest_run = 4096;  // elements x steps of a frame, of one run in it
+  double budget_s = 0;      // wall time per frame; 0: not asked
+  int repeat = 3;           // runs of what is timed again
+  bool refine = true;       // winners are checked against a refined reference
+  bool report = false;      // says now and then how far it is and what is best so far
 };
 
 /// Errors are believed from this many gaps of the two sides of the reference on.
@@ -45,7 +49,9 @@ constexpr double parted = 0.01 / believed;
 ///     as_given   the scene as its file has it
 ///
 /// A run meets a target when it does so wherever the rod is within the gap of the two
-/// sides: error + gap <= target.
+/// sides, error + gap <= target, and its neighbours do so for 1.5 times the target (see
+/// Neighbour). Where none meets it the row of the winner is the nearest there is, with
+/// the status not_met.
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
                              const Row& identity, const Deadline& deadline);
 

@@ -12,14 +12,8 @@ constexpr double never = std::numeric_limits<double>::infinity();
 /// Steps half as long that gain less than a fifth: what is left is not of time.
 constexpr double little_gain = 0.8;
 
-/// Finer than this the bisection in substeps would save less than timing noise.
-constexpr double close_enough = 1.1;
-
 /// What looks so much dearer may not be: of one run beside others.
 constexpr double noise = 1.2;
-
-/// Of two runs on the front the cheaper stands for both when the other gains less.
-constexpr double front_gain = 0.9;
 
 /// Numbers of elements from two thirds of this to half as many more, a tenth apart, the
 /// nearest first.
@@ -45,50 +39,16 @@ double largest_ratio(const std::vector<int>& ladder) {
 
 }  // namespace
 
-const Trial* cheapest(const std::vector<Trial>& runs, double target,
-                      const std::function<bool(const Trial&)>& accept) {
-  const Trial* best = nullptr;
-  for (const Trial& run : runs) {
-    if (run.error > target || (accept && !accept(run))) continue;
-    if (best == nullptr || run.wall_s < best->wall_s) best = &run;
-  }
-  return best;
-}
-
-const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor) {
-  const Trial* best = nullptr;
-  for (const Trial& run : runs) {
-    if (run.wall_s > wall_s) continue;
-    const double error = std::max(run.error, floor);
-    const double least = best == nullptr ? never : std::max(best->error, floor);
-    if (error < least || (error == least && run.wall_s < best->wall_s)) best = &run;
-  }
-  return best;
-}
-
-std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor) {
-  std::ranges::sort(runs, {}, &Trial::wall_s);
-  std::vector<Trial> front;
-  double least = never;
-  for (const Trial& run : runs) {
-    const double error = std::max(run.error, floor);
-    if (!(error < front_gain * least)) continue;
-    least = error;
-    front.push_back(run);
-  }
-  std::ranges::reverse(front);
-  return front;
-}
-
 double ladder_slack(const SearchPlan& plan, double noise) {
   return largest_ratio(plan.elements) * largest_ratio(plan.substeps) * noise;
 }
 
-Search::Search(SearchPlan plan, std::size_t methods, Measure measure,
+Search::Search(SearchPlan plan, std::size_t methods, Measure measure, Changed changed,
                std::function<bool()> stop)
     : plan_(std::move(plan)),
       methods_(methods),
       measure_(std::move(measure)),
+      changed_(std::move(changed)),
       stop_(std::move(stop)) {
   // Pointers into runs_ are held across a few runs.
   runs_.reserve(1 << 16);
@@ -111,7 +71,7 @@ const Trial* Search::run(std::size_t method, int elements, int substeps) {
     return known->second ? &runs_[*known->second] : nullptr;
   }
   if (stopped()) return nullptr;
-  const auto found = measure_(method, elements, substeps, plan_.longest_run_s);
+  const auto found = measure_(method, elements, substeps);
   if (!found || !std::isfinite(found->error)) {
     seen_.emplace(place, std::nullopt);
     return nullptr;
@@ -119,6 +79,46 @@ const Trial* Search::run(std::size_t method, int elements, int substeps) {
   seen_.emplace(place, runs_.size());
   runs_.push_back(*found);
   return &runs_.back();
+}
+
+double Search::neighbour_error(const Trial& own, Neighbour which) {
+  const auto error = [](const Trial* run) { return run == nullptr ? never : run->error; };
+  switch (which) {
+    case Neighbour::one_more_element:
+      return error(run(own.method, own.elements + 1, own.substeps));
+    case Neighbour::two_more:
+      return error(run(own.method, own.elements + 2, own.substeps));
+    case Neighbour::shorter_steps:
+      return error(run(own.method, own.elements, (3 * own.substeps + 1) / 2));
+    case Neighbour::data_up:
+    case Neighbour::data_down:
+      break;
+  }
+  return stopped() ? never : changed_(own, which);
+}
+
+bool Search::holds(const Trial& given, double target) {
+  const auto index = seen_.at({given.method, given.elements, given.substeps});
+  Trial& own = runs_[*index];
+  while (own.judged() <= target && own.examined < neighbour_count) {
+    const double error = neighbour_error(own, static_cast<Neighbour>(own.examined));
+    if (cut_) return false;  // not known
+    own.neighbours = std::max(own.neighbours, error);
+    ++own.examined;
+  }
+  return own.judged() <= target;
+}
+
+const Trial* Search::robust(double target,
+                            const std::function<bool(const Trial&)>& accept) {
+  while (const Trial* next = cheapest(runs_, target, accept)) {
+    if (holds(*next, target)) return next;
+    if (cut_) break;
+    ++passed_over_;
+  }
+  return cheapest(runs_, target, [&accept](const Trial& run) {
+    return run.examined == neighbour_count && (!accept || accept(run));
+  });
 }
 
 /// From the method's run that is nearest in elements, then in substeps; 0 without one.
@@ -148,34 +148,39 @@ void Search::climb(std::size_t method) {
     int idle = 0;
     std::size_t at = begin;
     for (; at < ladder.size(); ++at) {
+      if (static_cast<long>(elements) * ladder[at] > plan_.longest_run) break;
       // Longer than any run that could still keep the method in.
-      const Trial* best = cheapest(runs_, tightest);
-      const double most = std::min(plan_.longest_run_s,
-                                   best == nullptr ? never : plan_.slack * best->wall_s);
-      if (expected_s(method, elements, ladder[at]) > most) break;
+      const Trial* best = robust(tightest);
+      const double most_s = best == nullptr ? never : plan_.slack * best->wall_s;
+      if (cut_ || expected_s(method, elements, ladder[at]) > most_s) break;
       const Trial* found = run(method, elements, ladder[at]);
       if (cut_) return;
       if (found == nullptr) continue;  // too long a step
-      if (found->error <= tightest) {
+      if (holds(*found, tightest)) {
         ++met;
         break;
       }
+      if (cut_) return;
       // A motion that is all damped away gains little as well, for a while.
-      idle = found->error > little_gain * last ? idle + 1 : 0;
-      if (idle > 0 && (found->error < loosest || idle > 2)) break;
-      last = found->error;
+      idle = found->judged() > little_gain * last ? idle + 1 : 0;
+      if (idle > 0 && (found->judged() < loosest || idle > 2)) break;
+      last = found->judged();
     }
     begin = std::max(begin, at < 3 ? 0 : at - 3);
   }
 }
 
+/// Prices to a factor of 2, then in the order of the catalogue: the same order whatever
+/// else the machine does.
 std::vector<std::size_t> Search::promising_first() {
   const int elements = plan_.elements[plan_.elements.size() / 2];
   const int substeps = plan_.substeps[plan_.substeps.size() / 3];
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t method = 0; method < methods_; ++method) {
     const Trial* probe = run(method, elements, substeps);
-    order.emplace_back(probe == nullptr ? never : probe->error * probe->wall_s, method);
+    order.emplace_back(
+        probe == nullptr ? never : std::round(std::log2(probe->error * probe->wall_s)),
+        method);
   }
   std::ranges::sort(order);
   std::vector<std::size_t> methods;
@@ -194,7 +199,7 @@ void Search::coarse() {
 const Trial* Search::fewest_substeps(std::size_t method, int elements, double target,
                                      int guess, int most) {
   const auto meets = [target](const Trial* run) {
-    return run != nullptr && run->error <= target;
+    return run != nullptr && run->judged() <= target;
   };
   // An interval: too few fail, enough do.
   int few = 0, enough = std::clamp(guess, 1, most);
@@ -205,7 +210,7 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
     enough = std::min(most, enough + std::max(1, enough / 2));
     best = run(method, elements, enough);
   }
-  while (enough > few + 1 && enough > close_enough * few) {
+  while (enough > few + 1 && enough > resolution * few) {
     const int middle = few == 0
                            ? enough / 2
                            : static_cast<int>(std::lround(std::sqrt(1.0 * few * enough)));
@@ -222,35 +227,48 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
   return best;
 }
 
+const Trial* Search::fewest_that_hold(std::size_t method, int elements, double target,
+                                      int guess, int most) {
+  while (const Trial* found = fewest_substeps(method, elements, target, guess, most)) {
+    if (holds(*found, target)) return found;
+    if (cut_) return nullptr;
+    ++passed_over_;
+  }
+  return nullptr;
+}
+
 void Search::refine(std::size_t method, double target) {
   if (!refined_.emplace(method, target).second) return;
   const auto own = [method](const Trial& run) { return run.method == method; };
-  for (int before = 0; !stopped();) {
-    const Trial start = *cheapest(runs_, target, own);
-    if (start.elements == before) return;
-    before = start.elements;
-    for (const int elements : around(start.elements)) {
+  for (const Trial* before = nullptr; !stopped();) {
+    const Trial* start = robust(target, own);
+    if (start == nullptr || start == before) return;
+    before = start;
+    for (const int elements : around(start->elements)) {
       if (stopped()) return;
       // More substeps than make it dearer than the best so far do not pay.
-      const double best_s = cheapest(runs_, target, own)->wall_s;
-      const double one_s = expected_s(method, elements, start.substeps) / start.substeps;
+      const Trial* best = robust(target, own);
+      if (best == nullptr) return;
+      const double one_s =
+          expected_s(method, elements, start->substeps) / start->substeps;
       const int most =
-          static_cast<int>(std::min(noise * best_s / one_s, 4.0 * start.substeps));
+          static_cast<int>(std::min({noise * best->wall_s / one_s, 4.0 * start->substeps,
+                                     static_cast<double>(plan_.longest_run) / elements}));
       if (most < 1) continue;
-      fewest_substeps(method, elements, target, start.substeps, most);
+      fewest_substeps(method, elements, target, start->substeps, most);
     }
   }
 }
 
 void Search::refine() {
   for (const double target : plan_.targets) {
-    const Trial* best = cheapest(runs_, target);
+    const Trial* best = robust(target);
     if (best == nullptr) continue;
-    const double most = plan_.slack * best->wall_s;
+    const double most_s = plan_.slack * best->wall_s;
     for (std::size_t method = 0; method < methods_; ++method) {
       const auto own = [method](const Trial& run) { return run.method == method; };
       const Trial* mine = cheapest(runs_, target, own);
-      if (mine != nullptr && mine->wall_s <= most) refine(method, target);
+      if (mine != nullptr && mine->wall_s <= most_s) refine(method, target);
     }
   }
 }

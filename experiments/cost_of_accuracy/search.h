@@ -8,37 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/trial.h"
+
 namespace tress {
-
-/// One run that was measured. A method is a model with its options and an integrator,
-/// known here by its number alone.
-struct Trial {
-  std::size_t method = 0;
-  int elements = 0;
-  int substeps = 0;  // steps per frame
-  double error = 0;
-  double wall_s = 0;
-};
-
-/// The cheapest run of those that `accept` takes whose error is at most `target`; null
-/// when there is none.
-const Trial* cheapest(const std::vector<Trial>& runs, double target,
-                      const std::function<bool(const Trial&)>& accept = {});
-
-/// The most accurate run that takes at most `wall_s`. Errors below `floor` cannot be told
-/// apart: of those the cheapest.
-const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor);
-
-/// Runs that no other beats in both error and time, from the dearest, most accurate one
-/// on, without those that gain less than a tenth of the error on a cheaper one.
-/// Errors below `floor` count as `floor`.
-std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor);
 
 struct SearchPlan {
   std::vector<double> targets;  // errors, descending
   std::vector<int> elements;    // coarse ladders, ascending
   std::vector<int> substeps;
-  double longest_run_s;  // a run that is expected to take longer is not tried
+  long longest_run;  // elements x substeps; longer runs are not tried
   /// How much the ladders may miss: a method whose cheapest run on them costs more than
   /// `slack` times the cheapest of all is given up (see ladder_slack).
   double slack;
@@ -62,14 +40,21 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///   refine   from a method's cheapest run so far numbers of elements around it, each
 ///            with the fewest substeps that meet the target, by bisection; again from the
 ///            cheapest of those until it stays
+///
+/// Wherever a best run decides what is tried next it is one whose neighbours hold: lucky
+/// ones are passed over. How far the search goes is for `stop` to say; nothing in here
+/// looks at a clock but to compare times of runs.
 class Search {
  public:
-  /// A run and its time; no value where it fails or takes longer than `most_s`.
-  using Measure = std::function<std::optional<Trial>(std::size_t method, int elements,
-                                                     int substeps, double most_s)>;
+  /// A run and its time; no value where it fails.
+  using Measure =
+      std::function<std::optional<Trial>(std::size_t method, int elements, int substeps)>;
+  /// The error of a run with the scene's data changed up or down, infinite where it
+  /// fails.
+  using Changed = std::function<double(const Trial& run, Neighbour change)>;
 
-  /// `stop`: true once time is over; what was measured until then stands.
-  Search(SearchPlan plan, std::size_t methods, Measure measure,
+  /// `stop`: true once the work is done; what was measured until then stands.
+  Search(SearchPlan plan, std::size_t methods, Measure measure, Changed changed,
          std::function<bool()> stop);
 
   void coarse();  // with the probe
@@ -81,14 +66,26 @@ class Search {
   const Trial* fewest_substeps(std::size_t method, int elements, double target, int guess,
                                int most);
 
+  /// The same with neighbours that hold.
+  const Trial* fewest_that_hold(std::size_t method, int elements, double target,
+                                int guess, int most);
+
   /// One run, measured unless it was before; null where it fails.
   const Trial* run(std::size_t method, int elements, int substeps);
+  /// Whether the run, one of runs(), counts for `target`: its neighbours are examined one
+  /// after the other until one does not hold. False also where the search is cut.
+  bool holds(const Trial& run, double target);
+  /// The cheapest run that counts for `target`, those before it being passed over; null
+  /// where there is none. Where the search is cut, of those that were examined.
+  const Trial* robust(double target,
+                      const std::function<bool(const Trial&)>& accept = {});
   /// More time, after a stage was cut.
   void go_on(std::function<bool()> stop);
 
   const std::vector<Trial>& runs() const { return runs_; }
   std::size_t tried() const { return tried_; }  // methods that the coarse stage came to
-  bool cut() const { return cut_; }             // `stop` ended a stage
+  std::size_t passed_over() const { return passed_over_; }  // runs that were lucky
+  bool cut() const { return cut_; }                         // `stop` ended a stage
 
  private:
   struct Place {
@@ -97,6 +94,7 @@ class Search {
     auto operator<=>(const Place&) const = default;
   };
   double expected_s(std::size_t method, int elements, int substeps) const;
+  double neighbour_error(const Trial& run, Neighbour which);
   bool stopped();
   std::vector<std::size_t> promising_first();
   void climb(std::size_t method);
@@ -104,11 +102,12 @@ class Search {
   SearchPlan plan_;
   std::size_t methods_;
   Measure measure_;
+  Changed changed_;
   std::function<bool()> stop_;
   std::vector<Trial> runs_;
   std::map<Place, std::optional<std::size_t>> seen_;  // of runs_; none: failed
   std::set<std::pair<std::size_t, double>> refined_;  // methods and targets
-  std::size_t tried_ = 0;
+  std::size_t tried_ = 0, passed_over_ = 0;
   bool cut_ = false;
 };
 

@@ -19,7 +19,7 @@ constexpr Column columns[] = {
     {"choice", "of kind without: what is replaced; elements: twice, dt_s: half"},
     {"target_error_rel", "wanted error"},
     {"budget_ms", "of kind budget: wall time per frame that there is"},
-    {"rank", "1 winner, 2 runner-up"},
+    {"rank", "1 winner, 2 runner-up; 1 as well where the two are tied"},
     {"model", "catalogue id"},
     {"integrator", "method"},
     {"formulation", "how constraints enter"},
@@ -32,6 +32,11 @@ constexpr Column columns[] = {
     {"error_rel",
      "tip against the continuous rod: rms over frames and strands, over the length"},
     {"error_refined_rel", "the same against the reference refined once more"},
+    {"error_neighbours_rel",
+     "largest error of its neighbours: 1 and 2 elements more, 1.5 times the steps, "
+     "moduli "
+     "and length 2 % up and down"},
+    {"margin", "the same and the gap over the wanted error; at most 1.5, or it is luck"},
     {"reference_gap", "how far super_helix and der, extrapolated, are apart"},
     {"refined_gap", "the same refined once more"},
     {"horizon_s", "compared time: what was asked for, or until the references part"},
@@ -40,8 +45,13 @@ constexpr Column columns[] = {
      "wall time per simulated second on one thread with nothing beside it", true},
     {"ms_per_frame", "the same per frame", true},
     {"cost_factor", "wall time over the winner's", true},
+    {"time_scatter", "how badly that time repeats: two halves of its repeats, less 1",
+     true},
+    {"tied", "whether the time cannot be told from the winner's", true},
     {"runs", "runs that the search took", true},
-    {"search", "whole, or how far it came in its time", true},
+    {"work", "million elements x steps of all of them", true},
+    {"passed_over", "cheaper runs whose neighbours miss a target: lucky", true},
+    {"search", "whole, or how far it came with its work", true},
 };
 
 constexpr std::string_view own_columns[] = {"modes", "tangent", "solver"};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "experiments/harness/timing.h"
@@ -119,12 +120,17 @@ Scene refined(Scene scene) {
   return scene;
 }
 
-TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
+TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
   TipPaths paths;
   World world(scene);
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
     if (f > 0) paths.once_s += seconds_of([&] { advance(world, scene.time_of(f)); });
-    if (paths.once_s > most_s) throw std::runtime_error("takes too long");
+    if (paths.once_s > limit.wall_s) throw std::runtime_error("takes too long");
+    const Stats stats = world.stats();
+    if (static_cast<double>(stats.newton_iterations) >
+        limit.iterations_per_step * static_cast<double>(stats.steps)) {
+      throw std::runtime_error("takes too many iterations");
+    }
     add_tips(world, paths.x);
   }
   if (repeat == 0) return paths;
@@ -140,17 +146,16 @@ TipPaths tip_paths(const Scene& scene, int repeat, double most_s) {
   return paths;
 }
 
-double least_wall_s(const Scene& scene, int runs, double at_least_s) {
+std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s) {
   World world(scene);
   const Snapshot start = world.snapshot();
-  double least = std::numeric_limits<double>::infinity(), all = 0;
-  for (int i = 0; i < runs || all < at_least_s; ++i) {
+  std::vector<double> times;
+  for (double all = 0; std::ssize(times) < runs || all < at_least_s;) {
     world.restore(start);
-    const double once = seconds_of([&] { advance_by_frames(world, scene); });
-    least = std::min(least, once);
-    all += once;
+    times.push_back(seconds_of([&] { advance_by_frames(world, scene); }));
+    all += times.back();
   }
-  return least;
+  return times;
 }
 
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene) {

@@ -37,14 +37,19 @@ struct TipPaths {
   double wall_s = 0;      // the same where that is long, else the median of repeats
 };
 
-/// Throws InputError where the scene cannot be built and std::runtime_error, with what
-/// happened and when, where it does not run to its end or is not there after `most_s`.
-TipPaths tip_paths(const Scene& scene, int repeat,
-                   double most_s = std::numeric_limits<double>::infinity());
+/// Where a run is given up, looked at after every frame.
+struct RunLimit {
+  double iterations_per_step = std::numeric_limits<double>::infinity();  // Newton's, mean
+  double wall_s = std::numeric_limits<double>::infinity();
+};
 
-/// Least wall time of some runs to the end (s): of `runs`, or more until they have
-/// taken `at_least_s` altogether.
-double least_wall_s(const Scene& scene, int runs, double at_least_s = 0);
+/// Throws InputError where the scene cannot be built and std::runtime_error, with what
+/// happened and when, where it does not run to its end or goes beyond `limit`.
+TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit = {});
+
+/// Wall times of some runs to the end (s): of `runs`, or more until they have taken
+/// `at_least_s` altogether.
+std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s = 0);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/changed_data.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
+#include "experiments/harness/tip_track.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress {
@@ -135,6 +138,53 @@ TEST(SceneReference, EndsWhereItsSidesPart) {
   EXPECT_EQ(agreed(reference, compare, 1).frames, 9u);
   reference.tips.other[3] = 50;
   EXPECT_EQ(agreed(reference, compare, 0.1).frames, 1u);  // one at least
+}
+
+const char* const elastic = R"(
+title = "a hair sags"
+duration_s = 0.2
+[model]
+id = "der"
+[material]
+name = "custom"
+radius_m = 40e-6
+youngs_modulus_pa = {}
+poisson_ratio = 0.4
+density_kg_m3 = 1300
+internal_friction_kg_m3_s = 1e-10
+[strand]
+elements = 5
+length_m = {}
+[effects.gravity]
+[effects.linear_drag]
+nu_kg_m_s = 5e-5
+)";
+
+// The change of a fine run stands for that of the rod: against a reference of a scene
+// written with moduli and length 2 % up or down.
+TEST(ChangedData, MoveTheTipAsTheRodItself) {
+  Scratch folder;
+  const auto text = [&](double factor) {
+    return SceneText(folder.write(
+        "s.toml", fmt::format(fmt::runtime(elastic), 3e9 * factor, 0.1 * factor)));
+  };
+  constexpr ReferenceCut cut{24, 16};
+  const SceneText scene = text(1);
+  const Comparison compare = comparison(scene, 60, 0.2, 1);
+  const SceneReference reference = scene_reference(scene, compare, cut);
+  const ChangedTips moved =
+      kept_changed_tips(scene, compare, reference, cut.halved(), folder.folder(), "s");
+  const std::vector<double> up = scene_reference(text(1.02), compare, cut).tips.tip;
+  const std::vector<double> down = scene_reference(text(0.98), compare, cut).tips.tip;
+  // A move of about the change itself; of it the fine run is wrong by its own relative
+  // error, of order (1/12)^2, times a few.
+  EXPECT_GT(tip_error(up, reference.tips.tip, compare.length), 0.5 * data_change);
+  EXPECT_GT(tip_error(down, reference.tips.tip, compare.length), 0.5 * data_change);
+  constexpr double bound = 4 * data_change / (12 * 12);
+  EXPECT_LT(tip_error(moved.up, up, compare.length), bound);
+  EXPECT_LT(tip_error(moved.down, down, compare.length), bound);
+  EXPECT_TRUE(load_reference(folder.folder(), "s.changed",
+                             reference_key(scene, compare, cut.halved())));
 }
 
 }  // namespace

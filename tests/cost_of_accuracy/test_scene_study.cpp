@@ -45,7 +45,6 @@ struct Small {
                     {"modes=bend"}};
     plan.reference = {20, 16};
     plan.references = folder.path("reference");
-    plan.search_s = 60;
     plan.repeat = 1;
   }
   std::vector<Row> rows() const {
@@ -82,6 +81,11 @@ TEST(SceneStudy, AnswersEveryTarget) {
     EXPECT_LE(row.number("error_rel") + row.number("reference_gap"),
               row.number("target_error_rel"));
     EXPECT_EQ(row.number("cost_factor"), 1);
+    EXPECT_LE(row.number("margin"), neighbour_allowance);
+    EXPECT_NEAR(row.number("margin"),
+                (row.number("error_neighbours_rel") + row.number("reference_gap")) /
+                    row.number("target_error_rel"),
+                1e-12);
     EXPECT_GT(row.number("wall_s_per_sim_s"), 0);
     EXPECT_EQ(row.number("horizon_s"), 0.2);
   }
@@ -129,6 +133,7 @@ TEST(SceneStudy, RowsAndAdvisedScenesRepeatTheirError) {
 
 TEST(SceneStudy, DoesNotJudgeBelowTheReference) {
   Small small;
+  small.plan.refine = false;
   small.plan.reference = {8, 16};
   const double gap = of_kind(small.rows(), "as_given").front().number("reference_gap");
   small.plan.targets = {20 * gap, 9.9 * gap};
@@ -146,6 +151,7 @@ TEST(SceneStudy, DoesNotJudgeBelowTheReference) {
 
 TEST(SceneStudy, BudgetBuysTheBestThatFits) {
   Small small;
+  small.plan.refine = false;
   small.plan.budget_s = 1;  // for a frame: all runs fit
   const auto rich = of_kind(small.rows(), "budget");
   ASSERT_EQ(rich.size(), 1u);
@@ -167,12 +173,41 @@ TEST(SceneStudy, AdviceIsThreeLines) {
   EXPECT_TRUE(lines[2].starts_with("not ")) << lines[2];
 }
 
+// The swing by super_helix bent in its plane, stiff tangent, one linear solve a step: 12
+// elements by 4 steps a frame have an error of 0.9 %, 13 elements 52 %. The references of
+// the table are not needed to see that.
+TEST(SceneStudy, LuckyRunOfTheSwingIsPassedOver) {
+  Scratch folder;
+  StudyPlan plan;
+  plan.targets = {0.01};
+  plan.elements = {9, 12, 19};
+  plan.substeps = {4, 6, 9};
+  plan.methods = {
+      {"super_helix"}, {"linearly_implicit_midpoint"}, {"modes=bend_planar", "tangent"}};
+  plan.reference = {40, 32};
+  plan.refine = false;
+  plan.references = folder.path("reference");
+  plan.repeat = 1;
+  const auto rows =
+      study_scene(TRESS_SCENES "/accuracy/swing.toml", plan, {}, Deadline(300));
+  const auto winners = of_kind(rows, "winner");
+  ASSERT_EQ(winners.size(), 1u);
+  const Row& row = winners.front();
+  ASSERT_TRUE(row.ok()) << row.text("reason");
+  EXPECT_GE(row.number("passed_over"), 1);
+  EXPECT_LE(row.number("margin"), neighbour_allowance);
+  const bool lucky = row.text("tangent") == "stiff" && row.text("elements") == "12" &&
+                     row.number("dt_s") > 0.004;
+  EXPECT_FALSE(lucky);
+}
+
 // ---- claims -----------------------------------------------------------------------
 
 Row shown(std::string_view kind, double error, double refined, double wall) {
   Row row;
   row.set("scene", "s").set("kind", kind).set("target_error_rel", 0.01);
   row.set("error_rel", error).set("error_refined_rel", refined).set("reference_gap", 0.);
+  row.set("error_neighbours_rel", error).set("margin", error / 0.01);
   return row.set("wall_s_per_sim_s", wall);
 }
 
@@ -192,6 +227,16 @@ TEST(AccuracyClaims, HoldForATrueWinner) {
 TEST(AccuracyClaims, FailWhereTheErrorDoesNotLast) {
   EXPECT_FALSE(hold({shown("winner", 0.009, 0.011, 1)}));
   EXPECT_FALSE(hold({shown("winner", 0.009, NAN, 1)}));
+}
+
+TEST(AccuracyClaims, FailWhereTheWinnerIsLuck) {
+  EXPECT_FALSE(hold({shown("winner", 0.009, 0.009, 1).set("margin", 51.7)}));
+  EXPECT_FALSE(hold({shown("winner", 0.009, 0.009, 1).set("margin", NAN)}));
+}
+
+TEST(AccuracyClaims, AskNothingOfWhatIsLuck) {
+  EXPECT_TRUE(hold({shown("winner", 0.009, 0.009, 1),
+                    shown("front", 0.0099, 0, 0.5).set("error_neighbours_rel", 0.1)}));
 }
 
 TEST(AccuracyClaims, FailWhereSomethingElseIsCheaper) {

@@ -1,0 +1,62 @@
+#include "experiments/cost_of_accuracy/changed_data.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "experiments/harness/tip_track.h"
+#include "experiments/scenes/variants.h"
+
+namespace tress {
+
+Scene changed(Scene scene, Change change) {
+  const double factor = change == Change::up ? 1 + data_change : 1 - data_change;
+  for (Strand& strand : scene.strands) {
+    strand.material.youngs_modulus *= factor;
+    strand.material.shear_modulus *= factor;
+    for (Segment& segment : strand.segments) segment.length *= factor;
+  }
+  return scene;
+}
+
+namespace {
+
+/// Tips up and down less those of the data as they are, as the two sides of a reference.
+SceneReference differences(const SceneText& text, const Comparison& comparison,
+                           const ReferenceCut& cut) {
+  const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};
+  const Scene scene = compared(
+      text.scene(method, cut.elements, cut.substeps, comparison.rate), comparison);
+  const std::vector<double> as_it_is = tip_paths(scene, 0).x;
+  const auto difference = [&](Change change) {
+    std::vector<double> x = tip_paths(changed(scene, change), 0).x;
+    std::ranges::transform(x, as_it_is, x.begin(), std::minus<>());
+    return x;
+  };
+  SceneReference made{{difference(Change::up), difference(Change::down)},
+                      comparison.frames};
+  made.tips.gap = tip_error(made.tips.other, made.tips.tip, comparison.length);
+  return made;
+}
+
+}  // namespace
+
+ChangedTips kept_changed_tips(const SceneText& text, const Comparison& comparison,
+                              const SceneReference& reference, const ReferenceCut& cut,
+                              const std::string& folder, const std::string& name) {
+  static const ReferenceSides sides{
+      "what a change of moduli and lengths by 2 % does to the tips: super_helix by "
+      "implicit_midpoint",
+      "up, less the tip as it is", "down, less the tip as it is"};
+  Comparison known = comparison;
+  known.frames = reference.frames;
+  const SceneReference moved = first_frames(
+      kept_sides(text, comparison, cut, folder, name + ".changed", sides, differences),
+      known);
+  const auto sum = [&reference](std::vector<double> x) {
+    std::ranges::transform(x, reference.tips.tip, x.begin(), std::plus<>());
+    return x;
+  };
+  return {sum(moved.tips.tip), sum(moved.tips.other)};
+}
+
+}  // namespace tress

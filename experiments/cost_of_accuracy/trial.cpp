@@ -1,0 +1,53 @@
+#include "experiments/cost_of_accuracy/trial.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tress {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Of two runs on the front the cheaper stands for both when the other gains less.
+constexpr double front_gain = 0.9;
+
+}  // namespace
+
+double Trial::judged() const { return std::max(error, neighbours / neighbour_allowance); }
+
+const Trial* cheapest(const std::vector<Trial>& runs, double target,
+                      const std::function<bool(const Trial&)>& accept) {
+  const Trial* best = nullptr;
+  for (const Trial& run : runs) {
+    if (run.judged() > target || (accept && !accept(run))) continue;
+    if (best == nullptr || run.wall_s < best->wall_s) best = &run;
+  }
+  return best;
+}
+
+const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor) {
+  const Trial* best = nullptr;
+  for (const Trial& run : runs) {
+    if (run.wall_s > wall_s) continue;
+    const double error = std::max(run.judged(), floor);
+    const double least = best == nullptr ? never : std::max(best->judged(), floor);
+    if (error < least || (error == least && run.wall_s < best->wall_s)) best = &run;
+  }
+  return best;
+}
+
+std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor) {
+  std::ranges::sort(runs, {}, &Trial::wall_s);
+  std::vector<Trial> front;
+  double least = never;
+  for (const Trial& run : runs) {
+    const double error = std::max(run.judged(), floor);
+    if (!(error < front_gain * least)) continue;
+    least = error;
+    front.push_back(run);
+  }
+  std::ranges::reverse(front);
+  return front;
+}
+
+}  // namespace tress
