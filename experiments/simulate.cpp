@@ -25,7 +25,7 @@ struct Arguments {
   int threads = 1;
   std::size_t hairs = 0;
   bool resume = false, vtk = false, usd = false, print_defaults = false,
-       print_schema = false, quick = false, full = false;
+       print_schema = false, no_guard = false, quick = false, full = false;
   std::string progress = "auto";
 };
 
@@ -47,6 +47,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
   app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
   app.add_flag("--resume", a.resume, "continue an interrupted run");
+  app.add_flag("--no-guard", a.no_guard,
+               "go on where a run does what physics rules out (as guard = false)");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));
   app.add_flag("--print-defaults", a.print_defaults,
@@ -94,7 +96,8 @@ const Experiment experiment{.name = "simulate",
 
 /// False: the scene did not run to its end.
 bool run_file(const std::string& file, const Arguments& a, const CommandLine& line) {
-  const Scene scene = read_scene(file);
+  Scene scene = read_scene(file);
+  if (a.no_guard) scene.guard = false;
   SceneRunOptions options;
   options.stem = a.out + "/" + scene.name;
   options.threads = a.threads;

@@ -41,7 +41,7 @@ FullHair::FullHair(const Animation& guides, std::size_t hairs, std::uint64_t see
   const std::size_t stride = (guides.frames.size() + 59) / 60;
   for (std::size_t f = 0; f < guides.frames.size(); f += stride) {
     const Frame3d& frame = guides.frames[f];
-    Frame3d full{frame.series, frame.positions, {}, frame.fastest};
+    Frame3d full{frame.series, frame.positions, {}};
     for (std::size_t i = 0; i < simulated; ++i) {
       of_guides[i] = load3(&frame.positions[3 * i]);
     }

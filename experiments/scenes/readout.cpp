@@ -8,20 +8,6 @@
 namespace tress {
 namespace {
 
-/// Half of each neighbouring segment, and what it weighs.
-void lump(const Strand& strand, std::vector<double>& mass, std::vector<double>& length) {
-  mass.assign(strand.segments.size() + 1, 0.0);
-  length = mass;
-  for (std::size_t i = 0; i < strand.segments.size(); ++i) {
-    const Segment& segment = strand.segments[i];
-    const std::size_t start = static_cast<std::size_t>(segment.parent + 1);
-    for (const std::size_t end : {start, i + 1}) {
-      length[end] += segment.length / 2;
-      mass[end] += strand.material.density * segment.section.area() * segment.length / 2;
-    }
-  }
-}
-
 /// Of the circle that turns from one chord into the next over half of each.
 double curvature(const Vec& a, const Vec& b) {
   const double la = norm(a), lb = norm(b);
@@ -60,9 +46,7 @@ Readout::Readout(const Scene& scene, const World& world)
   if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
 
   for (const Strand& strand : scene.strands) {
-    mass_.emplace_back();
-    length_.emplace_back();
-    lump(strand, mass_.back(), length_.back());
+    lumps_.push_back(lumps(strand));
     Twins twins;
     twins.bare = scene.model->on_strand(strand, scene.model_options, {});
     for (const auto& effect : effects_) {
@@ -169,7 +153,6 @@ void Readout::read_points(World& world, Frame3d& frame) {
       const double speed = norm(load3(&u[3 * drawn_[first + i]]));
       frame.channels[first + i] = static_cast<float>(bent);
       frame.channels[drawn_.size() + first + i] = static_cast<float>(speed);
-      frame.fastest = std::isfinite(speed) ? std::max(frame.fastest, speed) : speed;
     }
     first += points;
   }
@@ -198,7 +181,8 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     const Vec d = load3(&x[3 * to]) - load3(&x[3 * from]);
     store3((1 / norm(d)) * d, &tangent_[3 * i]);
   }
-  const Points p{static_cast<int>(points), x, u, tangent_, mass_[k], length_[k]};
+  const Points p{static_cast<int>(points), x, u, tangent_, lumps_[k].mass,
+                 lumps_[k].length};
   std::vector<double> load(3 * points);
   std::size_t channel = 2;
   const auto read = [&](const Effect& effect) {
@@ -206,7 +190,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     effect.add_load(world.time(), p, load);
     for (std::size_t i = 0; i < points; ++i) {
       frame.channels[channel * count + first + i] =
-          static_cast<float>(norm(load3(&load[3 * i])) / length_[k][i]);
+          static_cast<float>(norm(load3(&load[3 * i])) / lumps_[k].length[i]);
     }
     ++channel;
   };

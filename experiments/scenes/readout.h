@@ -18,7 +18,6 @@ struct Frame3d {
   std::vector<double> series;    // as Readout::series()
   std::vector<float> positions;  // (3 points) m, points as Readout::lines()
   std::vector<float> channels;   // (points) of the first channel, of the second ...
-  double fastest = 0;            // m/s
 };
 
 /// What is told of a scene: places and energies of its strands, what its effects do.
@@ -57,7 +56,7 @@ class Readout {
   std::vector<Reading> series_, channels_;
   std::vector<Twins> twins_;
   Effects effects_;
-  std::vector<std::vector<double>> mass_, length_;  // lumped at each strand's points
+  std::vector<Lumps> lumps_;  // of each strand
   std::vector<double> tangent_;
   Stats before_;
 };

@@ -63,6 +63,7 @@ std::string state_text(const std::string& key, std::size_t frames, const Snapsho
   for (const auto& strand : s.strands) {
     for (const auto* x : {&strand.q, &strand.v, &strand.memory}) bytes.put_sized(*x);
   }
+  bytes.put_sized(s.guards);
   return bytes.text();
 }
 
@@ -70,13 +71,15 @@ std::optional<Saved> parse_state(const std::string& text, const std::string& key
   Bytes bytes(text);
   std::vector<double> head;
   if (!bytes.skip(key) || !bytes.take(head, 3)) return {};
-  Saved saved{static_cast<std::size_t>(head[0]), {.t = head[1], .strands = {}}};
+  Saved saved{static_cast<std::size_t>(head[0]),
+              {.t = head[1], .strands = {}, .guards = {}}};
   saved.snapshot.strands.resize(static_cast<std::size_t>(head[2]));
   for (auto& strand : saved.snapshot.strands) {
     for (auto* x : {&strand.q, &strand.v, &strand.memory}) {
       if (!bytes.take_sized(*x)) return {};
     }
   }
+  if (!bytes.take_sized(saved.snapshot.guards)) return {};
   return saved;
 }
 

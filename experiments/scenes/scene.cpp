@@ -89,6 +89,7 @@ class Reader {
     scene_.duration = p.number("duration_s");
     scene_.frame_rate = p.number("frames_1_s");
     scene_.checkpoint = p.number("checkpoint_s");
+    scene_.guard = p.word("guard") == "true";
     scene_.seed = static_cast<std::uint64_t>(p.number("seed"));
     if (scene_.duration * scene_.frame_rate <= most_frames) return;
     throw InputError(

@@ -43,6 +43,7 @@ struct Scene {
   double frame_rate = 0;  // 1/s, of the series and the geometry
   double checkpoint = 0;  // s between saved states; 0: none
   std::uint64_t seed = 1;
+  bool guard = true;  // what physics rules out ends the run (harness/guard.h)
 
   std::size_t last_frame() const;  // the first is 0, at t = 0
   double time_of(std::size_t frame) const {

@@ -36,6 +36,10 @@ constexpr Parameter top[] = {
      .number = 0,
      .min = 0,
      .max = 1e6},
+    {.name = "guard",
+     .help = "end the run where it does what physics rules out: a piece stretched by "
+             "half, energy or speed from nowhere",
+     .choices = "true|false"},
     {.name = "seed",
      .help = "of everything random",
      .number = 1,

@@ -72,6 +72,7 @@ World::World(const Scene& scene, int threads)
     : step_(scene.options.step), crew_(threads) {
   if (scene.strands.empty()) {
     add(scene.model->make(scene.model_options), 1);
+    if (scene.guard) guard(guarded_strands(*scene.model, scene.model_options));
   } else if (scene.interaction && scene.interaction->word("coupling") == "monolithic") {
     build_coupled(scene);
   } else {
@@ -101,6 +102,25 @@ void World::add(std::unique_ptr<System> system, std::size_t strands) {
   body.system = std::move(system);
 }
 
+/// Of the last body.
+void World::guard(std::vector<GuardedStrand> strands) {
+  Body& body = bodies_.back();
+  body.guard.emplace(*body.system, std::move(strands), body.first);
+}
+
+/// None where the scene wants no guard.
+std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
+                                          std::size_t count,
+                                          const Effects& shared) const {
+  std::vector<GuardedStrand> all;
+  for (std::size_t k = first; k < first + count; ++k) {
+    Effects effects = shared;
+    if (interaction_) effects.push_back(interaction_->effect(k));
+    all.push_back(guarded_strand(scene.strands[k], std::move(effects)));
+  }
+  return all;
+}
+
 /// Each strand on its own, or up to four that are cut alike together.
 void World::build_strands(const Scene& scene) {
   const std::vector<Strand>& strands = scene.strands;
@@ -127,11 +147,13 @@ void World::build_strands(const Scene& scene) {
                                             scene.model_options, std::move(effects));
       if (system != nullptr) {
         add(std::move(system), end - k);
+        if (scene.guard) guard(guarded(scene, k, end - k, shared));
         k = end;
         continue;
       }
     }
     add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
+    if (scene.guard) guard(guarded(scene, k, 1, shared));
     ++k;
   }
 }
@@ -151,6 +173,7 @@ void World::build_coupled(const Scene& scene) {
   bodies_.front().coordinates = std::move(coordinates);
   bodies_.front().memory = std::move(memory);
   points_ = material_points(scene);
+  if (scene.guard) guard(guarded(scene, 0, scene.strands.size(), shared));
 }
 
 /// Integrators at the initial state.
@@ -162,6 +185,7 @@ void World::ready(const Scene& scene) {
     append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
   }
   const std::size_t points = bodies_.back().first_point + bodies_.back().points;
+  remedy_ = remedy(scene.integrator, scene.options);
   x_.values.resize(3 * points);
   u_.values.resize(3 * points);
   restore(begin);
@@ -169,6 +193,7 @@ void World::ready(const Scene& scene) {
 
 void World::restore(const Snapshot& snapshot) {
   t_ = snapshot.t;
+  In guards = snapshot.guards;
   for (Body& body : bodies_) {
     Snapshot::OfStrand all;
     for (std::size_t k = 0; k < body.coordinates.size(); ++k) {
@@ -185,13 +210,25 @@ void World::restore(const Snapshot& snapshot) {
   failure_.clear();
   x_.done = u_.done = false;
   exchange();
+  for (Body& body : bodies_) {
+    if (!body.guard) continue;
+    if (guards.empty()) {
+      body.guard->start(t_, body.integrator->q(), body.integrator->v());
+    } else {
+      body.guard->recall(guards.first(Guard::remembered));
+      guards = guards.subspan(Guard::remembered);
+    }
+  }
 }
 
 Snapshot World::snapshot() const {
-  Snapshot snapshot{.t = t_, .strands = {}};
+  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}};
   for (const Body& body : bodies_) {
     append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),
                    body.coordinates, body.memory, snapshot);
+    if (!body.guard) continue;
+    const auto gathered = body.guard->memory();
+    snapshot.guards.insert(snapshot.guards.end(), gathered.begin(), gathered.end());
   }
   return snapshot;
 }
@@ -205,23 +242,45 @@ Status World::advance(double t_end) {
     const double t = i == static_cast<long>(count)
                          ? t_end
                          : begin + static_cast<double>(i) * (span / count);
-    crew_.run(bodies_.size(), [&](std::size_t k) {
-      Body& body = bodies_[k];
-      if (body.status == Status::ok) body.status = body.integrator->advance(t);
-    });
+    const bool last = i == static_cast<long>(count);
+    crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
     t_ = t;
     x_.done = u_.done = false;
     for (const Body& body : bodies_) {
       if (body.status == Status::ok) continue;
-      const std::size_t last = body.first + body.coordinates.size() - 1;
-      failure_ = fmt::format("strand {}{}: {}", body.first,
-                             last > body.first ? fmt::format(" to {}", last) : "",
-                             body.integrator->failure());
+      failure_ = failure_of(body);
       return body.status;
     }
     exchange();
   }
   return Status::ok;
+}
+
+/// Its guard sees the last state of all, also where the method gave up there.
+void World::advance(Body& body, double t, bool last) {
+  if (body.status != Status::ok) return;
+  Integrator& method = *body.integrator;
+  if (!body.guard) {
+    body.status = method.advance(t);
+    return;
+  }
+  body.status = method.advance(
+      t, [&guard = *body.guard](double at, In q, In v) { return guard(at, q, v); });
+  if (body.guard->breach() || (body.status == Status::ok && !last)) return;
+  if (!body.guard->judge(method.time(), method.q(), method.v())) {
+    body.status = Status::fatal;
+  }
+}
+
+std::string World::failure_of(const Body& body) const {
+  if (body.guard && body.guard->breach()) {
+    return fmt::format("{}: {}; guard = false lets it go on",
+                       body.guard->breach()->message(), remedy_);
+  }
+  const std::size_t last = body.first + body.coordinates.size() - 1;
+  return fmt::format("strand {}{}: {}", body.first,
+                     last > body.first ? fmt::format(" to {}", last) : "",
+                     body.integrator->failure());
 }
 
 Stats World::stats() const {

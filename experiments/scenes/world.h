@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/guard.h"
 #include "experiments/scenes/crew.h"
 #include "experiments/scenes/scene.h"
 #include "models/effects/strand_interaction.h"
@@ -19,6 +20,7 @@ struct Snapshot {
   };
   double t = 0;  // s
   std::vector<OfStrand> strands;
+  std::vector<double> guards;  // what they have gathered; none: they start here
 };
 
 /// A scene built: systems and integrators of its strands, its effects, and what couples
@@ -66,13 +68,19 @@ class World {
     /// Sizes of each strand's coordinates and memory.
     std::vector<std::size_t> coordinates, memory;
     std::size_t first_point = 0, points = 0;
+    std::optional<Guard> guard;
     Status status = Status::ok;
   };
 
   void add(std::unique_ptr<System> system, std::size_t strands);
+  void guard(std::vector<GuardedStrand> strands);
+  std::vector<GuardedStrand> guarded(const Scene& scene, std::size_t first,
+                                     std::size_t count, const Effects& shared) const;
   void build_strands(const Scene& scene);
   void build_coupled(const Scene& scene);
   void ready(const Scene& scene);
+  void advance(Body& body, double t, bool last);
+  std::string failure_of(const Body& body) const;
   /// Coordinates of all points at the present state.
   struct Read {
     std::vector<double> values;  // (3 points)
@@ -87,7 +95,7 @@ class World {
   std::vector<int> points_, before_;
   Read x_, u_;
   double t_ = 0;
-  std::string failure_;
+  std::string failure_, remedy_;
   Crew crew_;
 };
 
