@@ -10,6 +10,7 @@
 #include "experiments/harness/pendulum_reference.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
+#include "tests/support/small_systems.h"
 
 namespace tress {
 namespace {
@@ -103,6 +104,75 @@ TEST_P(FixedStepOrder, ErrorFallsAtTheNominalOrder) {
   }
   EXPECT_NEAR(log_log_slope(steps, errors), GetParam().entry->order, 0.2)
       << "errors from " << errors.front() << " to " << errors.back();
+}
+
+/// Times whose steps change by `ratio` and back, `steps` of them to t = 1.
+std::vector<double> uneven_times(int steps, double ratio) {
+  std::vector<double> times{0};
+  for (int i = 0; i < steps; ++i)
+    times.push_back(times.back() + (i % 2 == 0 ? 1 : ratio));
+  for (double& t : times) t /= (1 + ratio) * steps / 2;
+  return times;
+}
+
+struct Instant {
+  double t, q, v;
+};
+/// bdf2 on the pendulum in its angle, one step to each time.
+std::vector<Instant> bdf2_at(const std::vector<double>& times) {
+  testing_support::AnglePendulum pendulum;
+  Options options;
+  options.step = 1;  // longer than any: each advance is one step
+  options.newton_tolerance = 1e-13;
+  const auto bdf2 = make_integrator("bdf2", pendulum, options);
+  double q = 0, v = 0;
+  pendulum.initial_state({&q, 1}, {&v, 1});
+  EXPECT_EQ(bdf2->start(0, {&q, 1}, {&v, 1}), Status::ok);
+  std::vector<Instant> all{{0, q, v}};
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    EXPECT_EQ(bdf2->advance(times[i]), Status::ok) << bdf2->failure();
+    all.push_back({times[i], bdf2->q()[0], bdf2->v()[0]});
+  }
+  return all;
+}
+
+// The method by its definition: the parabolas through the last three q, and v, have the
+// slopes v, and a, at the last of them, whatever the steps between. Differences of values
+// of size 3 over steps of 1e-2 or more, and Newton's 1e-13 of it over the shortest.
+TEST(Bdf2, ParabolasThroughUnevenTimesHaveTheSlopesOfTheSystem) {
+  for (const double ratio : {0.5, 1.0, 1.7, 2.3}) {
+    const std::vector<Instant> at = bdf2_at(uneven_times(30, ratio));
+    for (std::size_t i = 2; i < at.size(); ++i) {
+      const auto slope = [&](double Instant::*x) {
+        const auto rise = [&](std::size_t a, std::size_t b) {
+          return (at[b].*x - at[a].*x) / (at[b].t - at[a].t);
+        };
+        const double bend =
+            (rise(i - 1, i) - rise(i - 2, i - 1)) / (at[i].t - at[i - 2].t);
+        return rise(i - 1, i) + (at[i].t - at[i - 1].t) * bend;
+      };
+      EXPECT_NEAR(slope(&Instant::q), at[i].v, 1e-9) << ratio << " " << i;
+      EXPECT_NEAR(slope(&Instant::v), -testing_support::gravity * std::sin(at[i].q), 1e-9)
+          << ratio << " " << i;
+    }
+  }
+}
+
+// Zero-stable for ratios below 1 + sqrt 2 [Grigorieff 1983], so that order 2 stays.
+TEST(Bdf2, ErrorFallsAtOrder2AtUnevenSteps) {
+  const PendulumReference reference(std::sqrt(testing_support::gravity), {1, 0});
+  for (const double ratio : {0.5, 2.3}) {
+    std::vector<double> sizes, errors;
+    for (const int steps : {200, 400, 800, 1600}) {
+      double error = 0;
+      for (const Instant& at : bdf2_at(uneven_times(steps, ratio))) {
+        error = std::max(error, std::abs(at.q - reference.at(at.t).angle));
+      }
+      sizes.push_back(1.0 / steps);
+      errors.push_back(error);
+    }
+    EXPECT_NEAR(log_log_slope(sizes, errors), 2, 0.1) << ratio;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, FixedStepOrder, testing::ValuesIn(methods(false)),
