@@ -1,7 +1,6 @@
 #include "experiments/harness/friction_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,12 +170,7 @@ void Fit::describe(const LeastSquares& least, FrictionFit& fit) const {
   fit.nu.value = friction.nu;
   if (least.covariance.empty()) return;
 
-  const double variance = squares / fit.degrees;
-  const double t = gsl_cdf_tdist_Pinv((1 + how_.confidence) / 2, fit.degrees);
-  std::vector<double> half;
-  for (std::size_t j = 0; j < p; ++j) {
-    half.push_back(t * std::sqrt(variance * least.covariance[j * p + j]));
-  }
+  const std::vector<double> half = least.half_intervals(fit.degrees, how_.confidence);
   const auto spread = [](Estimate& estimate, double ratio) {
     estimate.low = estimate.value / std::exp(ratio);
     estimate.high = estimate.value * std::exp(ratio);

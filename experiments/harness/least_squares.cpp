@@ -1,5 +1,6 @@
 #include "experiments/harness/least_squares.h"
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -9,6 +10,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 namespace tress {
 namespace {
@@ -116,6 +118,19 @@ std::vector<double> LeastSquares::step(In r) const {
     for (std::size_t j = 0; j < p; ++j) move[i] -= covariance[i * p + j] * gradient[j];
   }
   return move;
+}
+
+std::vector<double> LeastSquares::half_intervals(double degrees,
+                                                 double confidence) const {
+  const double variance =
+      std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0) /
+      degrees;
+  const double t = gsl_cdf_tdist_Pinv((1 + confidence) / 2, degrees);
+  std::vector<double> half(x.size());
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    half[j] = t * std::sqrt(variance * covariance[j * half.size() + j]);
+  }
+  return half;
 }
 
 LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,

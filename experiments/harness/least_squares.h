@@ -26,6 +26,11 @@ struct LeastSquares {
 
   /// x moves by -(J^T J)^-1 J^T r, the Gauss-Newton step, when the residuals become r.
   std::vector<double> step(In r) const;
+
+  /// Half of the interval around each x_j that holds the true one with this confidence
+  /// when residuals are normal, independent and of one unknown variance, `degrees` of
+  /// freedom: t sqrt(s^2 C_jj), s^2 = |r|^2/degrees, t Student's two-sided quantile.
+  std::vector<double> half_intervals(double degrees, double confidence) const;
 };
 
 /// Levenberg-Marquardt by GSL's gsl_multifit_nlinear from `start`; J by central

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -198,6 +199,53 @@ TEST(TipSignal, EnvelopeIsEmptyWithoutSwings) {
 }
 
 // ---- least squares ----------------------------------------------------------------
+
+/// y = 2 - 3 t at ten even times, with normal errors of standard deviation 0.1.
+LeastSquares straight_line(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> error(0, 0.1);
+  std::vector<double> y;
+  for (int k = 0; k < 10; ++k) y.push_back(2 - 3 * (k - 4.5) + error(random));
+  const ResidualAt residual = [&](In x, Out r) {
+    for (std::size_t k = 0; k < 10; ++k) {
+      r[k] = y[k] - x[0] - x[1] * (static_cast<double>(k) - 4.5);
+    }
+    return true;
+  };
+  return least_squares(residual, std::vector<double>{0, 0}, 10, 1e-3, 1e-9);
+}
+
+// Of a straight line over t - mean(t): variances s^2/10 and s^2/sum (t - mean)^2 =
+// s^2/82.5.
+TEST(LeastSquares, HalfIntervalsAreStudentsOfAStraightLine) {
+  const LeastSquares fit = straight_line(1);
+  double squares = 0;
+  for (const double r : fit.residual) squares += r * r;
+  const double s = std::sqrt(squares / 8);
+  constexpr double two_sided_95 = 2.306004, two_sided_99 = 3.355387;  // 8 degrees
+  const std::vector<double> half = fit.half_intervals(8, 0.95);
+  EXPECT_NEAR(half[0], two_sided_95 * s / std::sqrt(10), 1e-6 * half[0]);
+  EXPECT_NEAR(half[1], two_sided_95 * s / std::sqrt(82.5), 1e-6 * half[1]);
+  EXPECT_NEAR(fit.half_intervals(8, 0.99)[0], two_sided_99 * s / std::sqrt(10),
+              1e-6 * fit.half_intervals(8, 0.99)[0]);
+}
+
+// The truth is inside as often as is said: of 2000 fits 1900 +- 9.7 (binomial), within
+// four of these. The quantile of one side only would have 1800, four times the variance
+// 1998.
+TEST(LeastSquares, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  int inside[2] = {0, 0};
+  constexpr int fits = 2000;
+  for (unsigned seed = 1; seed <= fits; ++seed) {
+    const LeastSquares fit = straight_line(seed);
+    const std::vector<double> half = fit.half_intervals(8, 0.95);
+    const double truth[2] = {2, -3};
+    for (std::size_t j = 0; j < 2; ++j) {
+      inside[j] += std::abs(fit.x[j] - truth[j]) <= half[j] ? 1 : 0;
+    }
+  }
+  for (const int held : inside) EXPECT_NEAR(held, 0.95 * fits, 4 * 9.75);
+}
 
 TEST(LeastSquares, AStraightLineIsTheTextbooks) {
   // y = a + b u at u = -1, 0, 1: (J^T J)^-1 = diag(1/3, 1/2).

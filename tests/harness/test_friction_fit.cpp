@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -157,6 +158,51 @@ TEST(FrictionFit, IntervalsGrowWithTheErrors) {
   const auto narrow = width(2.5e-5), wide = width(5e-5);
   EXPECT_NEAR(wide[0] / narrow[0], 2, 0.02);
   EXPECT_NEAR(wide[1] / narrow[1], 2, 0.02);
+}
+
+// Student's interval of the fit linearised at its optimum, made here from simulations by
+// themselves: derivatives by ln gamma and ln nu as differences, off by e^2 times a third
+// derivative that is as large as the first, 1e-6, and by what each run carries, 1e-10/e.
+TEST(FrictionFit, IntervalsAreThoseOfTheLinearisedFit) {
+  const FitOptions how = quick_fit(Fitted::both);
+  Records records = released({0.06, 0.1}, how);
+  add_errors(records, 5e-5);
+  const FrictionFit found = fit(records, how);
+  const auto at = [&](double ln_gamma, double ln_nu) {
+    Parameters p = planar();
+    p.set("internal_friction_kg_m3_s",
+          fmt::format("{:.17g}", found.gamma.value * std::exp(ln_gamma)));
+    p.set("drag_kg_m_s", fmt::format("{:.17g}", found.nu.value * std::exp(ln_nu)));
+    std::vector<double> all;
+    for (const auto& one :
+         simulated(records, model(), strands_of(records, p, Fitted::both), how)) {
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  };
+  constexpr double e = 1e-3;
+  const auto now = at(0, 0), a = at(e, 0), b = at(-e, 0), c = at(0, e), d = at(0, -e);
+  double gg = 0, gn = 0, nn = 0, squares = 0;
+  std::size_t k = 0;
+  for (Record& record : records.all) {
+    centre(record, record.value);
+    for (const double y : record.value) {
+      const double by_gamma = (a[k] - b[k]) / (2 * e), by_nu = (c[k] - d[k]) / (2 * e);
+      gg += by_gamma * by_gamma;
+      gn += by_gamma * by_nu;
+      nn += by_nu * by_nu;
+      squares += (y - now[k]) * (y - now[k]);
+      ++k;
+    }
+  }
+  constexpr double student = 1.984984;  // two-sided 95 % of 96 degrees of freedom
+  const double factor = student * std::sqrt(squares / 96 / (gg * nn - gn * gn));
+  EXPECT_NEAR(std::log(found.gamma.high / found.gamma.value), factor * std::sqrt(nn),
+              1e-4 * factor * std::sqrt(nn));
+  EXPECT_NEAR(std::log(found.gamma.value / found.gamma.low), factor * std::sqrt(nn),
+              1e-4 * factor * std::sqrt(nn));
+  EXPECT_NEAR(std::log(found.nu.high / found.nu.value), factor * std::sqrt(gg),
+              1e-4 * factor * std::sqrt(gg));
 }
 
 TEST(FrictionFit, HalfTheStepMovesValuesAsPredictedAndFarLessThanTheInterval) {
