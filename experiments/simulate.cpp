@@ -1,10 +1,10 @@
 // Runs scenes and writes what they do, for people and for other programs.
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "experiments/harness/exit_code.h"
 #include "experiments/harness/files.h"
@@ -16,8 +16,6 @@
 
 namespace tress {
 namespace {
-
-volatile std::sig_atomic_t asked_to_stop = 0;
 
 struct Arguments {
   std::vector<std::string> scenes;
@@ -95,7 +93,8 @@ const Experiment experiment{.name = "simulate",
                             .cases = {}};
 
 /// False: the scene did not run to its end.
-bool run_file(const std::string& file, const Arguments& a, const CommandLine& line) {
+bool run_file(const std::string& file, const Arguments& a, const CommandLine& line,
+              Interruption& interruption) {
   Scene scene = read_scene(file);
   if (a.no_guard) scene.guard = false;
   SceneRunOptions options;
@@ -106,11 +105,11 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   options.vtk = a.vtk;
   options.usd = a.usd;
   options.progress = line.progress;
-  Row identity;
-  identity.set("text", read_file(file));
-  const Manifest manifest(experiment, line);
-  const SceneRun run =
-      run_scene(scene, run_id("simulate", identity), options, asked_to_stop);
+  RunKey key;
+  key.add("scene", contents_checksum({file}));
+  Manifest manifest(experiment, line);
+  manifest.add_input(file, read_file(file));
+  const SceneRun run = run_scene(scene, key, options, interruption);
   Row row;
   row.set("scene", scene.name).set("frames", run.frames);
   row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
@@ -131,15 +130,17 @@ int run(const Arguments& a, CommandLine line) {
                   : a.progress == "json" ? ProgressMode::json
                                          : ProgressMode::automatic;
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
-  for (const std::string& file : files) static_cast<void>(read_scene(file));
+  std::set<std::string> names;
+  for (const std::string& file : files) {
+    if (names.insert(read_scene(file).name).second) continue;
+    throw InputError("two scenes of one name", file,
+                     "rename one of them, or run it with another --out");
+  }
   ready_folder(a.out);
+  Interruption interruption("simulate");
   bool complete = true;
   for (const std::string& file : files) {
-    complete = run_file(file, a, line) && complete;
-    if (asked_to_stop != 0) {
-      tell("simulate: interrupted: the same command with --resume continues\n");
-      return interrupted;
-    }
+    complete = run_file(file, a, line, interruption) && complete;
   }
   return complete ? done : rows_failed;
 }
@@ -165,8 +166,5 @@ int answer(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace tress;
-  for (const int signal : {SIGINT, SIGTERM}) {
-    ::signal(signal, [](int) { asked_to_stop = 1; });
-  }
   return exit_code("simulate", [&] { return answer(argc, argv); });
 }

@@ -1,6 +1,7 @@
 #include "experiments/harness/exit_code.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
@@ -14,6 +15,9 @@ namespace tress {
 
 int exit_code(std::string_view program, const std::function<int()>& run) {
   ::signal(SIGXFSZ, SIG_IGN);
+  for (const int stop : {SIGINT, SIGTERM}) {
+    ::signal(stop, [](int) { ::_exit(interrupted); });
+  }
   try {
     return run();
   } catch (const Answer& text) {

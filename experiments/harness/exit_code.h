@@ -16,7 +16,8 @@ enum ExitCode {
 
 /// The code of a whole main(): that of `run`, or where it throws, of what it throws, said
 /// in one line on standard error. An Answer is printed and is `done`. A file size limit
-/// becomes an error of write instead of a signal.
+/// becomes an error of write instead of a signal; SIGINT and SIGTERM end the program at
+/// once with `interrupted` where nothing else answers them (Interruption, sweep).
 int exit_code(std::string_view program, const std::function<int()>& run);
 
 }  // namespace tress

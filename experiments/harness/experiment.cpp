@@ -94,6 +94,26 @@ std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
 
 std::string journal_file(const CommandLine& line) { return line.out + ".journal"; }
 
+/// With the contents of the files that the settings name, by default or as chosen.
+RunKey run_key(const Experiment& experiment, const CommandLine& line) {
+  const Settings settings(line, experiment.settings);
+  std::vector<std::string> files{line.scene};
+  for (const Parameter& p : experiment.settings) {
+    if (!p.text || settings.experiment().word(p.name).empty()) continue;
+    for (std::string& file :
+         split(settings.experiment().word(p.name), ',', std::string(p.name))) {
+      files.push_back(std::move(file));
+    }
+  }
+  RunKey key;
+  key.add("experiment", std::string(experiment.name))
+      .add("schema", std::to_string(schema_version))
+      .add("settings", settings_text(line))
+      .add("columns", csv_line(header(experiment.columns)))
+      .add("files", contents_checksum(files));
+  return key;
+}
+
 /// Rows of a complete table from an earlier run with the same settings.
 void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
   if (!std::filesystem::exists(line.out)) return;
@@ -193,9 +213,7 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   std::optional<Journal> journal;
   if (line.resume) keep_table(experiment, line, rows);
   if (line.out != standard_output) {
-    const JournalKey key{std::string(experiment.name), settings_text(line),
-                         header(experiment.columns)};
-    journal.emplace(journal_file(line), key,
+    journal.emplace(journal_file(line), run_key(experiment, line),
                     line.resume ? Journal::Mode::resume : Journal::Mode::fresh);
     for (const Row& row : journal->rows()) rows.keep(row);
   }

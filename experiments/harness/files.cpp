@@ -60,9 +60,12 @@ void write_all(int descriptor, std::string_view text, const std::string& file) {
 }
 
 void replace_file(const std::string& file, std::string_view text) {
-  const std::string temporary = file + ".tmp";
+  // A name of this process alone; what a killed one of the same number has left goes.
+  const std::string temporary = file + ".tmp" + std::to_string(::getpid());
+  ::unlink(temporary.c_str());
   try {
-    const File output(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+    // Never what somebody else has put there, be it a link to another file.
+    const File output(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
     write_all(output.descriptor(), text, file);
     if (::fsync(output.descriptor()) != 0) cannot_write(file, errno);
     if (std::rename(temporary.c_str(), file.c_str()) != 0) cannot_write(file, errno);

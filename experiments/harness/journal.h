@@ -5,41 +5,33 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/harness/locked_file.h"
 #include "experiments/harness/row.h"
+#include "experiments/harness/run_key.h"
 
 namespace tress {
 
-/// What must agree between the run that wrote a journal and the one that resumes it.
-struct JournalKey {
-  std::string experiment;
-  std::string settings;  // --set, seed and the like, in canonical order
-  std::vector<std::string> header;
-  bool operator==(const JournalKey&) const = default;
-};
-
-/// Rows as they finish, one JSON line each, so that nothing finished is ever lost. One
-/// process at a time holds a journal; a last line torn by a kill is dropped on opening.
+/// Rows as they finish, one line of JSON each behind its checksum, so that nothing
+/// finished is ever lost. One process at a time holds a journal; a last line torn by a
+/// kill is dropped on opening.
 class Journal {
  public:
   enum class Mode { fresh, resume };
 
   /// Throws InputError when the file cannot be written, another process holds it, an
-  /// unfinished journal exists and the mode is `fresh`, or its key differs.
-  Journal(std::string file, const JournalKey& key, Mode mode);
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
+  /// unfinished journal exists and the mode is `fresh`, its key differs, or a line is not
+  /// as it was written.
+  Journal(std::string file, const RunKey& key, Mode mode);
 
   const std::vector<Row>& rows() const { return rows_; }  // found on opening
   void append(const Row& row);                            // written at once
   void remove();
 
  private:
-  void lock();
-  void load(const JournalKey& key, Mode mode);
+  void load(const RunKey& key, Mode mode);
 
-  std::string file_;
-  int descriptor_;
+  std::string name_;
+  LockedFile file_;
   std::vector<Row> rows_;
   std::chrono::steady_clock::time_point synced_;
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "experiments/harness/checksum.h"
 #include "experiments/harness/message.h"
 #include "experiments/harness/sundials_speed.h"
 
@@ -53,6 +54,10 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
   }
 }
 
+void Manifest::add_input(std::string file, std::string text) {
+  inputs_.emplace_back(std::move(file), std::move(text));
+}
+
 std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                                std::size_t kept_from_before) const {
   using nlohmann::ordered_json;
@@ -76,6 +81,10 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       for (const auto& [key, text] : texts) entry[std::string(key)] = text;
     }
   }
+  ordered_json inputs = ordered_json::array();
+  for (const auto& [file, text] : inputs_) {
+    inputs.push_back({{"file", file}, {"fnv1a_64", checksum(text)}, {"text", text}});
+  }
   const ordered_json manifest{
       {"experiment", experiment_.name},
       {"question", experiment_.question},
@@ -85,6 +94,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"merged_from", line_.merge},
       {"settings", settings_text(line_)},
       {"scene", line_.scene},
+      {"inputs", inputs},
       {"seed", line_.seed},
       {"jobs", line_.jobs},
       {"repeat", line_.repeat},

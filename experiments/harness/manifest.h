@@ -15,6 +15,9 @@ class Manifest {
   /// error when SUNDIALS is a slow build or the machine is busy.
   Manifest(const Experiment& experiment, const CommandLine& line);
 
+  /// A file that the work depends on, kept with its text and checksum.
+  void add_input(std::string file, std::string text);
+
   /// The JSON text, with end time, load and the counts of `rows`.
   std::string finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                        std::size_t kept_from_before) const;
@@ -26,6 +29,7 @@ class Manifest {
   std::array<double, 3> load_;
   double sundials_ratio_;
   std::string start_;
+  std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
 };
 
 /// "--set", seed, quick and the like in canonical order: what a resumed run must repeat.

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "experiments/harness/checksum.h"
+
 namespace tress {
 
 Row& Row::set(std::string_view column, std::string_view text) {
@@ -57,12 +59,9 @@ std::string_view Row::status() const {
 std::string run_id(std::string_view experiment, const Row& identity) {
   std::vector<Row::Cell> cells(identity.cells().begin(), identity.cells().end());
   std::sort(cells.begin(), cells.end());
-  std::uint64_t hash = 14695981039346656037u;  // FNV-1a, 64 bits
+  Checksum hash;
   const auto add = [&hash](std::string_view text) {
-    for (const char c : text) {
-      hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-    }
-    hash = (hash ^ 0x1f) * 1099511628211u;  // a separator no cell holds: ab|c is not a|bc
+    hash.add(text).add("\x1f");  // a separator no cell holds: ab|c is not a|bc
   };
   add(experiment);
   for (const auto& [column, text] : cells) {
@@ -70,7 +69,7 @@ std::string run_id(std::string_view experiment, const Row& identity) {
     add(text);
   }
   add(std::to_string(schema_version));
-  return fmt::format("{:016x}", hash);
+  return hash.text();
 }
 
 std::string joined(const Row& row, std::initializer_list<std::string_view> columns) {

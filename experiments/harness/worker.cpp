@@ -25,6 +25,7 @@ namespace {
 double grace_s(double timeout_s) { return std::clamp(0.1 * timeout_s, 0.05, 2.0); }
 
 void reset_signals() {
+  for (const int stop : {SIGINT, SIGTERM}) ::signal(stop, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

@@ -53,77 +53,108 @@ class Bytes {
 
 struct Saved {
   std::size_t frames;
+  std::uint64_t sum;  // of the frames
   Snapshot snapshot;
 };
 
-std::string state_text(const std::string& key, std::size_t frames, const Snapshot& s) {
+std::string state_text(const std::string& key, const Saved& saved) {
+  const Snapshot& s = saved.snapshot;
   Bytes bytes(key);
-  bytes.put(std::vector{static_cast<double>(frames), s.t,
-                        static_cast<double>(s.strands.size())});
+  bytes.put(std::vector<std::uint64_t>{saved.frames, saved.sum, s.strands.size()});
+  bytes.put(std::vector{s.t});
   for (const auto& strand : s.strands) {
     for (const auto* x : {&strand.q, &strand.v, &strand.memory}) bytes.put_sized(*x);
   }
   bytes.put_sized(s.guards);
-  return bytes.text();
+  return sealed(bytes.text());
 }
 
-std::optional<Saved> parse_state(const std::string& text, const std::string& key) {
-  Bytes bytes(text);
-  std::vector<double> head;
-  if (!bytes.skip(key) || !bytes.take(head, 3)) return {};
-  Saved saved{static_cast<std::size_t>(head[0]),
-              {.t = head[1], .strands = {}, .guards = {}}};
-  saved.snapshot.strands.resize(static_cast<std::size_t>(head[2]));
+/// Throws std::runtime_error when it is not as it was written, InputError when it is of
+/// another run.
+Saved parse_state(std::string_view text, const RunKey& key, const std::string& file) {
+  const std::string_view content = unsealed(text);
+  const std::string_view first = content.substr(0, content.find('\n'));
+  key.check(first, file);
+  Bytes bytes(std::string(content.substr(first.size() + 1)));
+  std::vector<std::uint64_t> head;
+  std::vector<double> t;
+  bool whole = bytes.take(head, 3) && bytes.take(t, 1);
+  Saved saved;
+  if (whole) {
+    saved = {head[0], head[1], {.t = t[0], .strands = {}, .guards = {}}};
+    saved.snapshot.strands.resize(head[2]);
+  }
   for (auto& strand : saved.snapshot.strands) {
     for (auto* x : {&strand.q, &strand.v, &strand.memory}) {
-      if (!bytes.take_sized(*x)) return {};
+      whole = whole && bytes.take_sized(*x);
     }
   }
-  if (!bytes.take_sized(saved.snapshot.guards)) return {};
+  if (!whole || !bytes.take_sized(saved.snapshot.guards)) {
+    throw std::runtime_error("it ends too early");
+  }
   return saved;
+}
+
+/// Before anything is made there.
+std::string checked(std::string stem) {
+  check_output(stem + ".csv");
+  return stem;
 }
 
 }  // namespace
 
-Recording::Recording(std::string stem, std::string key, const Readout& readout,
+Recording::Recording(std::string stem, const RunKey& key, const Readout& readout,
                      bool resume)
-    : stem_(std::move(stem)),
-      key_(std::move(key) + '\n'),
+    : stem_(checked(std::move(stem))),
+      key_(key.line() + '\n'),
+      binary_(stem_ + ".frames", "this scene"),
       columns_(readout.series()),
       points_(readout.points()),
       channels_(readout.channels().size()) {
-  check_output(stem_ + ".csv");
-  if (resume) this->resume();
-  std::string table = header(), records = key_;
+  if (resume && std::filesystem::exists(stem_ + ".state")) {
+    this->resume(key);
+  } else {
+    std::filesystem::remove(stem_ + ".state");
+  }
+  std::string table = header();
+  std::size_t bytes = 0;
   for (const Frame3d& frame : frames_) {
     table += series_line(frame);
-    records += record(frame);
+    bytes += record(frame).size();
   }
+  binary_.truncate(bytes);
   replace_file(stem_ + ".csv", table);
-  replace_file(stem_ + ".frames", records);
   csv_.emplace(stem_ + ".csv", O_WRONLY | O_APPEND | O_CLOEXEC);
-  binary_.emplace(stem_ + ".frames", O_WRONLY | O_APPEND | O_CLOEXEC);
 }
 
-void Recording::resume() {
+void Recording::resume(const RunKey& key) {
   const std::string state = stem_ + ".state", frames = stem_ + ".frames";
-  if (!std::filesystem::exists(state)) return;
-  const auto saved = parse_state(read_file(state), key_);
-  Bytes bytes(read_file(frames));
-  if (!saved || !bytes.skip(key_)) {
-    throw InputError("the run to resume is of another scene or another version", state,
-                     "leave out --resume, or choose another --out");
+  const std::string remedy = "leave out --resume to begin again";
+  Saved saved;
+  try {
+    saved = parse_state(read_file(state), key, state);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw InputError(std::string("the saved state is damaged: ") + error.what(), state,
+                     remedy);
   }
-  while (frames_.size() < saved->frames) {
+  Bytes bytes(binary_.read());
+  while (frames_.size() < saved.frames) {
     Frame3d frame;
     if (!bytes.take(frame.series, columns_.size()) ||
         !bytes.take(frame.positions, 3 * points_) ||
         !bytes.take(frame.channels, channels_ * points_)) {
-      throw InputError("frames are missing", frames, "leave out --resume");
+      throw InputError("frames are missing", frames, remedy);
     }
+    sum_.add(record(frame));
     frames_.push_back(std::move(frame));
   }
-  saved_ = saved->snapshot;
+  if (sum_.value() != saved.sum) {
+    throw InputError("the frames are damaged: their checksum does not fit", frames,
+                     remedy);
+  }
+  saved_ = std::move(saved.snapshot);
 }
 
 std::string Recording::header() const {
@@ -151,13 +182,16 @@ std::string Recording::record(const Frame3d& frame) {
 }
 
 void Recording::add(Frame3d frame) {
-  write_all(binary_->descriptor(), record(frame), stem_ + ".frames");
+  const std::string bytes = record(frame);
+  write_all(binary_.descriptor(), bytes, stem_ + ".frames");
   write_all(csv_->descriptor(), series_line(frame), stem_ + ".csv");
+  sum_.add(bytes);
   frames_.push_back(std::move(frame));
 }
 
 void Recording::save(const Snapshot& snapshot) {
-  replace_file(stem_ + ".state", state_text(key_, frames_.size(), snapshot));
+  replace_file(stem_ + ".state",
+               state_text(key_, {frames_.size(), sum_.value(), snapshot}));
 }
 
 void Recording::close() {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "experiments/harness/files.h"
 #include "experiments/harness/message.h"
@@ -13,6 +14,7 @@
 #include "experiments/scenes/export.h"
 #include "experiments/scenes/full_hair.h"
 #include "experiments/scenes/recording.h"
+#include "models/input_error.h"
 
 namespace tress {
 namespace {
@@ -38,8 +40,9 @@ class TimeBar {
     last_ = wall;
     const double left = wall * (scene_.duration - t) / t;
     if (mode_ == ProgressMode::json) {
-      tell("{{\"event\":\"frame\",\"scene\":\"{}\",\"t_s\":{},\"wall_s\":{}}}\n",
-           scene_.name, t, wall);
+      const nlohmann::json event{
+          {"event", "frame"}, {"scene", scene_.name}, {"t_s", t}, {"wall_s", wall}};
+      tell("{}\n", event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
       return;
     }
     constexpr int width = 30;
@@ -77,11 +80,26 @@ class VtkFiles {
   std::string name_, folder_;
 };
 
+/// Refuses a state that this program has not written, though its key says so.
+void restore(World& world, const Snapshot& saved) {
+  const auto sizes = [](const Snapshot& snapshot) {
+    std::vector<std::array<std::size_t, 3>> all;
+    for (const auto& one : snapshot.strands) {
+      all.push_back({one.q.size(), one.v.size(), one.memory.size()});
+    }
+    return all;
+  };
+  if (sizes(saved) != sizes(world.snapshot())) {
+    throw InputError("the saved state is of other strands", "--resume",
+                     "leave out --resume to begin again");
+  }
+  world.restore(saved);
+}
+
 }  // namespace
 
-SceneRun run_scene(const Scene& scene, const std::string& key,
-                   const SceneRunOptions& options,
-                   const volatile std::sig_atomic_t& stop) {
+SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
+                   Interruption& interruption) {
   const Clock::time_point begin = Clock::now();
   auto world = std::make_unique<World>(scene, options.threads);
   Readout readout(scene, *world);
@@ -92,26 +110,30 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
   };
   std::optional<VtkFiles> vtk;
   if (options.vtk) vtk.emplace(options.stem);
+  const auto between_saves =
+      static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
+  std::optional<Snapshot> latest;  // of the last frame, where nothing else is saved
+  const Interruption::Save save(interruption, [&] {
+    if (latest) recording.save(*latest);
+  });
   const auto add_frame = [&] {
-    recording.add(readout.read(*world));
+    Frame3d frame = readout.read(*world);
+    const auto whole = interruption.hold();
+    recording.add(std::move(frame));
+    if (between_saves == 0) latest = world->snapshot();
     if (vtk) vtk->add(animation(), recording.frames().size() - 1);
   };
   if (recording.saved()) {
-    world->restore(*recording.saved());
+    restore(*world, *recording.saved());
+    if (between_saves == 0) latest = recording.saved();
   } else {
     add_frame();
   }
 
   SceneRun run{SceneRun::End::complete, {}, 0, 0, 0};
-  const auto between_saves =
-      static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
   const std::size_t last = scene.last_frame();
   TimeBar bar(options.progress, scene);
   while (recording.frames().size() <= last) {
-    if (stop != 0) {
-      run.end = SceneRun::End::interrupted;
-      break;
-    }
     const std::size_t frame = recording.frames().size();
     if (world->advance(scene.time_of(frame)) != Status::ok) {
       run.end = SceneRun::End::failed;
@@ -122,7 +144,10 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
     bar.show(world->time());
     if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
     const Snapshot snapshot = world->snapshot();
-    recording.save(snapshot);
+    {
+      const auto whole = interruption.hold();
+      recording.save(snapshot);
+    }
     world = std::make_unique<World>(scene, options.threads);
     world->restore(snapshot);
     readout.restart();
@@ -138,7 +163,9 @@ SceneRun run_scene(const Scene& scene, const std::string& key,
     replace_file(options.stem + ".json", page_json(hair.animation()));
   }
   if (options.usd) replace_file(options.stem + ".usda", usda(hair.animation()));
-  if (run.end != SceneRun::End::interrupted) recording.close();
+  const auto whole = interruption.hold();
+  latest.reset();
+  recording.close();
   return run;
 }
 

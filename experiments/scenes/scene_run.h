@@ -1,10 +1,10 @@
 #pragma once
 
-#include <csignal>
-#include <functional>
 #include <string>
 
 #include "experiments/harness/command_line.h"
+#include "experiments/harness/interruption.h"
+#include "experiments/harness/run_key.h"
 #include "experiments/scenes/scene.h"
 
 namespace tress {
@@ -20,7 +20,7 @@ struct SceneRunOptions {
 };
 
 struct SceneRun {
-  enum class End { complete, failed, interrupted };
+  enum class End { complete, failed };
   End end;
   std::string reason;  // of a failure
   std::size_t frames;
@@ -28,13 +28,14 @@ struct SceneRun {
 };
 
 /// Runs a scene and writes what it does: series, pictures, and while it goes on what a
-/// later run continues from (see Recording). `key` names the run among others. Once
-/// `stop` is set it ends after the frame at hand with valid files.
+/// later run continues from (see Recording). `key` names the run among others. Pictures
+/// of all frames are written at the end.
 ///
-/// At every saved state the scene is built anew from it, in a run that goes through as in
-/// one that continues: both give the same numbers, bit by bit.
-SceneRun run_scene(const Scene& scene, const std::string& key,
-                   const SceneRunOptions& options,
-                   const volatile std::sig_atomic_t& stop);
+/// A scene with checkpoint_s is built anew from every state that it saves, in a run that
+/// goes through as in one that continues: both give the same numbers, bit by bit. Without
+/// checkpoint_s `interruption` saves the state of the last frame; integrators that use
+/// earlier steps begin anew there, so that both agree within their accuracy.
+SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
+                   Interruption& interruption);
 
 }  // namespace tress

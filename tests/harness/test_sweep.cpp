@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "experiments/harness/checksum.h"
 #include "experiments/harness/csv.h"
 #include "tests/harness/toy_process.h"
 
@@ -163,13 +165,50 @@ TEST(Sweep, ADamagedJournalAndOtherSettingsAreRefused) {
   static_cast<void>(toy.wait(process));
   const Toy::Result other = toy.run("--out toy.csv --set nap=0.1 --resume");
   EXPECT_EQ(other.code, 2);
-  EXPECT_THAT(other.err, HasSubstr("other settings"));
+  EXPECT_THAT(other.err, HasSubstr("other settings ('seed="));
   const std::string journal = toy.read("toy.csv.journal");
   const std::size_t second = journal.find('\n') + 1;
   toy.write("toy.csv.journal", std::string(journal).replace(second, 5, "x\nyz\n"));
   const Toy::Result damaged = toy.run("--out toy.csv --set nap=0.2 --resume");
   EXPECT_EQ(damaged.code, 2);
   EXPECT_THAT(damaged.err, HasSubstr("toy.csv.journal:2:1"));
+}
+
+/// A run that was interrupted after some rows, whose journal is then changed.
+std::string message_after(const std::function<std::string(std::string)>& change) {
+  Toy toy;
+  const std::string command = "--out toy.csv --set particles=8 --set nap=0.05";
+  const pid_t process = toy.start(command);
+  toy.await_executions(4);
+  kill(process, SIGKILL);
+  static_cast<void>(toy.wait(process));
+  toy.write("toy.csv.journal", change(toy.read("toy.csv.journal")));
+  const Toy::Result run = toy.run(command + " --resume");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_FALSE(toy.exists("toy.csv"));
+  return run.err;
+}
+
+TEST(Sweep, AJournalInWhichOneDigitHasChangedIsRefused) {
+  // The third row's square, 4: still a row, with another value.
+  const std::string error = message_after([](std::string journal) {
+    const std::string cell = R"(["square","4"])";
+    return journal.replace(journal.find(cell), cell.size(), R"(["square","5"])");
+  });
+  EXPECT_THAT(error, HasSubstr("toy.csv.journal:4:1"));
+  EXPECT_THAT(error, HasSubstr("checksum"));
+}
+
+TEST(Sweep, AJournalOfAnotherCommitOrVersionIsRefused) {
+  for (const std::string part : {"commit", "version"}) {
+    const std::string error = message_after([&](const std::string& journal) {
+      const std::size_t end = journal.find('\n');
+      std::string key(unsealed(journal.substr(0, end)));
+      key.insert(key.find(part) + part.size() + 3, "0");
+      return sealed(key) + journal.substr(end);
+    });
+    EXPECT_THAT(error, HasSubstr("it had other " + part)) << error;
+  }
 }
 
 TEST(Sweep, InterruptKeepsTheJournalAndTellsHowToGoOn) {

@@ -115,11 +115,7 @@ TEST_P(Continued, AStoppedRunEndsBitByBitLikeOneThatGoesThrough) {
       ASSERT_TRUE(wait_for(stopped, "out/scene.state"));
     }
     kill(process, signal);
-    const Toy::Result ended = stopped.wait(process);
-    if (ended.code == 130) {
-      const auto page = nlohmann::json::parse(stopped.read("out/scene.json"));
-      EXPECT_GE(page["times_s"].size(), 1U);
-    }
+    static_cast<void>(stopped.wait(process));
     // What is there is a table with whole lines.
     const std::string so_far = stopped.read("out/scene.csv");
     EXPECT_NO_THROW(
@@ -154,7 +150,7 @@ TEST(Simulate, AnotherSceneIsNotContinued) {
   toy.write("scene.toml", groom(20));
   const Toy::Result run = toy.run("scene.toml --out out --progress none --resume");
   EXPECT_EQ(run.code, 2);
-  EXPECT_NE(run.err.find("another scene"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("other scene"), std::string::npos) << run.err;
 }
 
 TEST(Simulate, ASceneThatBlowsUpIsSaidSo) {
@@ -203,6 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"no_scenes", "--out out", "scene"},
                     Wrong{"second_is_bad", "good.toml typo.toml --out out",
                           "linear_drag"},
+                    Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
                     Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });
 

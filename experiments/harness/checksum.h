@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tress {
+
+/// FNV-1a, 64 bits [Fowler, Noll, Vo]: tells texts and files apart, and that a file is no
+/// longer what was written. Every step is a bijection of the hash, so that one changed
+/// byte is always seen; of other damage 2^-64 is not. No protection against intent.
+class Checksum {
+ public:
+  Checksum& add(std::string_view bytes);
+  std::uint64_t value() const { return hash_; }
+  std::string text() const;  // 16 hexadecimal digits
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037u;
+};
+
+std::string checksum(std::string_view bytes);
+
+/// Bytes behind their checksum and a blank.
+std::string sealed(std::string_view bytes);
+/// The bytes of a sealed text; throws std::runtime_error when they are not as written.
+std::string_view unsealed(std::string_view text);
+
+}  // namespace tress
