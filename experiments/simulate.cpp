@@ -50,7 +50,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));
   app.add_flag("--print-defaults", a.print_defaults,
-               "print a complete scene with comments");
+               "print a short scene to start from (scenes/README.md: every key)");
   app.add_flag("--print-schema", a.print_schema, "print the page scenes/README.md");
   app.add_flag("--quick", a.quick, "no difference here: scenes say how long they are");
   app.add_flag("--full", a.full, "the same");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -54,7 +55,7 @@ constexpr std::string_view page_head =
 A scene is a TOML file: what moves (`[model]`, and `[strand]` or `[groom]`), how time advances
 (`[integrator]`), what drives it (`[root]`) and which effects act (`[effects.*]`). An effect that a
 scene does not name is not built and costs nothing. Everything else has the default of this page;
-`simulate --print-defaults` writes all of it as a scene to start from.
+`simulate --print-defaults` writes a short scene to start from.
 
 Numbers are in SI units, named at the end of the key. Vectors are lists, `[x, y, z]`; rows are lists of
 lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
@@ -124,28 +125,33 @@ void add_models(std::string& page) {
   }
 }
 
-// --- the scene of defaults
-// ----------------------------------------------------------------
+// --- the scene to start from
+// ------------------------------------------------------------------
 
-/// key = value, `off` behind a #; help and range as comments above.
+constexpr std::string_view defaults_head =
+    "# A hair, clamped at its root, falls from the horizontal and swings. All that this\n"
+    "# file does not name has its default: scenes/README.md lists every table and key.\n"
+    "title = \"a hair that swings\"\n"
+    "source = \"simulate --print-defaults\"\n";
+
+/// The keys that it shows, in the order of the page.
+struct Shown {
+  std::string_view table, keys;
+};
+constexpr Shown shown[] = {{"integrator", "id|dt_s"},
+                           {"material", "name"},
+                           {"strand", "length_m|elements|tangent"},
+                           {"root", "motion"},
+                           {"effects.gravity", "acceleration_m_s2"}};
+
+/// key = value with help and range above; `keys` as "a|b".
 void add_values(std::string& scene, std::span<const Parameter> parameters,
-                const TableEntry& entry, bool off) {
-  std::string_view word;
-  for (const Parameter& p : parameters) {
-    if (p.name == entry.choice) word = words_of(p.choices).front();
+                std::string_view keys) {
+  for (const std::string_view key : words_of(keys)) {
+    const auto p = std::ranges::find(parameters, key, &Parameter::name);
+    fmt::format_to(std::back_inserter(scene), "# {}; {}\n{} = {}\n", p->help, range(*p),
+                   p->name, default_value(*p));
   }
-  for (const Parameter& p : parameters) {
-    // An empty list of rows would be there and say nothing.
-    const bool idle = !used(entry.uses, word, p.name) || (p.rows && p.fallback.empty());
-    fmt::format_to(std::back_inserter(scene), "# {}; {}\n{}{} = {}\n", p.help, range(p),
-                   off || idle ? "#" : "", p.name, default_value(p));
-  }
-}
-
-void add_model_values(std::string& scene, const ModelEntry& model, bool off) {
-  fmt::format_to(std::back_inserter(scene), "\n# {} ({})\n{}[model]\n{}id = \"{}\"\n",
-                 model.summary, model.source, off ? "#" : "", off ? "#" : "", model.id);
-  add_values(scene, model_table_parameters(model).subspan(1), {}, off);
 }
 
 }  // namespace
@@ -174,22 +180,16 @@ std::string scene_schema() {
 }
 
 std::string scene_defaults() {
-  std::string scene =
-      "# Every key of a scene at its default. Lines that begin with # and no blank are\n"
-      "# what the defaults leave out: take the # away.\n\n";
-  for (const Parameter& p : top_parameters()) {
-    fmt::format_to(std::back_inserter(scene), "# {}; {}\n{} = {}\n", p.help, range(p),
-                   p.name, p.name == "title" ? "\"defaults\"" : default_value(p));
-  }
-  for (const ModelEntry& model : models()) {
-    add_model_values(scene, model, model.id != "super_helix");
-  }
+  std::string scene(defaults_head);
+  add_values(scene, top_parameters(), "duration_s|frames_1_s");
+  scene += "\n[model]\n";
+  add_values(scene, model_table_parameters(find_model("super_helix")), "id");
   for (const TableEntry& entry : table_entries()) {
-    const std::string_view off = entry.needed ? "" : "#";
-    const bool list = entry.many && !entry.needed;
-    fmt::format_to(std::back_inserter(scene), "\n# {}\n{}{}{}{}\n", entry.summary, off,
-                   list ? "[[" : "[", entry.name, list ? "]]" : "]");
-    add_values(scene, entry.parameters, entry, !entry.needed);
+    const auto of_table = std::ranges::find(shown, entry.name, &Shown::table);
+    if (of_table == std::end(shown)) continue;
+    fmt::format_to(std::back_inserter(scene), "\n# {}\n[{}]\n", entry.summary,
+                   entry.name);
+    add_values(scene, entry.parameters, of_table->keys);
   }
   return scene;
 }

@@ -11,9 +11,8 @@ namespace tress {
 /// of scenes/README.md.
 std::string scene_schema();
 
-/// A scene of one strand with every key at its default. What the defaults do not use
-/// stands behind a # that no blank follows: other models, a groom, the effects, keys of
-/// other shapes and motions.
+/// A short scene to start from: one strand that swings under gravity, the keys that are
+/// changed first with their ranges, all at their defaults.
 std::string scene_defaults();
 
 /// The default as a value of TOML.
