@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "models/effects/body.h"
 #include "models/math/quaternion.h"
@@ -61,11 +59,6 @@ nlohmann::ordered_json number(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
 
-template <class T>
-std::string_view raw(const std::vector<T>& x) {
-  return {reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size()};
-}
-
 nlohmann::ordered_json pose_of(const BodyPose& pose) {
   const Quaternion q = quaternion_of(pose.frame);
   return {pose.x.x, pose.x.y, pose.x.z, q.w, q.v.x, q.v.y, q.v.z};
@@ -103,16 +96,30 @@ nlohmann::ordered_json bodies(const Scene& scene, const std::vector<double>& tim
   return all;
 }
 
-std::size_t point_count(const Animation& animation) {
-  return static_cast<std::size_t>(
-      std::accumulate(animation.strand_points.begin(), animation.strand_points.end(), 0));
-}
-
 }  // namespace
+
+std::vector<DrawnLine> drawn_lines(const Scene& scene, const World& world,
+                                   std::span<const int> lines) {
+  std::vector<DrawnLine> drawn;
+  std::size_t line = 0;
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    const auto& section = scene.strands[k].segments.front().section;
+    const DrawnLine of_strand{static_cast<int>(k), std::sqrt(section.a1 * section.a2)};
+    int left = world.points()[k] - lines[line++];
+    drawn.push_back(of_strand);
+    // Branches begin at a point of another line.
+    for (; left > 0; ++line) {
+      left -= lines[line] - 1;
+      drawn.push_back(of_strand);
+    }
+  }
+  return drawn;
+}
 
 std::string page_json(const Animation& animation, std::size_t most_bytes) {
   using nlohmann::ordered_json;
-  const std::size_t points = point_count(animation);
+  const SmoothLines& curves = animation.curves;
+  const std::size_t points = curves.points();
   // Base64 of 6 bytes of place and one of each channel.
   const std::size_t frame_bytes = points * (6 + animation.channels.size()) * 4 / 3 + 1;
   const std::size_t most = std::max<std::size_t>(most_bytes / frame_bytes, 24);
@@ -122,31 +129,32 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   Range box[3];
   // Channels are sizes of something: from nothing on.
   std::vector<Range> ranges(animation.channels.size(), Range{0, 0});
+  std::vector<std::vector<float>> positions, values;  // of the chosen frames
   for (const std::size_t f : chosen) {
-    const Frame3d& frame = animation.frames[f];
-    for (std::size_t i = 0; i < frame.positions.size(); ++i) {
-      box[i % 3].include(static_cast<double>(frame.positions[i]));
+    positions.push_back(curves.positions(animation.frames[f]));
+    values.push_back(curves.channels(animation.frames[f]));
+    for (std::size_t i = 0; i < positions.back().size(); ++i) {
+      box[i % 3].include(static_cast<double>(positions.back()[i]));
     }
-    for (std::size_t i = 0; i < frame.channels.size(); ++i) {
-      ranges[i / points].include(static_cast<double>(frame.channels[i]));
+    for (std::size_t i = 0; i < values.back().size(); ++i) {
+      ranges[i / points].include(static_cast<double>(values.back()[i]));
     }
   }
   std::string places;
   std::vector<std::string> colours(animation.channels.size());
   std::vector<double> times;
   ordered_json rows = ordered_json::array();
-  for (const std::size_t f : chosen) {
-    const Frame3d& frame = animation.frames[f];
-    times.push_back(frame.series[0]);
-    for (std::size_t i = 0; i < frame.positions.size(); ++i) {
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    times.push_back(animation.frames[chosen[c]].series[0]);
+    for (std::size_t i = 0; i < positions[c].size(); ++i) {
       const auto u = static_cast<std::uint16_t>(
-          box[i % 3].part(static_cast<double>(frame.positions[i]), 65535));
+          box[i % 3].part(static_cast<double>(positions[c][i]), 65535));
       places += static_cast<char>(u & 255);
       places += static_cast<char>(u >> 8);
     }
-    for (std::size_t i = 0; i < frame.channels.size(); ++i) {
+    for (std::size_t i = 0; i < values[c].size(); ++i) {
       colours[i / points] += static_cast<char>(static_cast<std::uint8_t>(
-          ranges[i / points].part(static_cast<double>(frame.channels[i]), 255)));
+          ranges[i / points].part(static_cast<double>(values[c][i]), 255)));
     }
   }
   for (const Frame3d& frame : animation.frames) {
@@ -172,7 +180,7 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
                     {"integrator", scene.integrator},
                     {"dt_s", scene.options.step},
                     {"times_s", times},
-                    {"strand_points", animation.strand_points},
+                    {"strand_points", curves.lines()},
                     {"low", {box[0].low, box[1].low, box[2].low}},
                     {"high", {box[0].high, box[1].high, box[2].high}},
                     {"positions", base64(places)},
@@ -180,93 +188,17 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
                     {"bodies", bodies(scene, times)},
                     {"series", {{"columns", columns}, {"rows", rows}}}};
   if (animation.guides > 0) page["guides"] = animation.guides;
-  return page.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-}
-
-std::string vtp(const Animation& animation, const Frame3d& frame) {
-  const std::size_t points = point_count(animation);
-  std::vector<std::int32_t> connectivity(points), offsets;
-  std::iota(connectivity.begin(), connectivity.end(), 0);
-  std::int32_t end = 0;
-  for (const int count : animation.strand_points) offsets.push_back(end += count);
-
-  std::string data;  // of every array: its size in bytes, then the bytes
-  const auto append = [&data](std::string_view bytes) {
-    const std::size_t at = data.size();
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    data.append(reinterpret_cast<const char*>(&size), sizeof size);
-    data.append(bytes);
-    return at;
-  };
-  std::string arrays;
-  for (std::size_t c = 0; c < animation.channels.size(); ++c) {
-    const std::vector<float> channel(
-        frame.channels.begin() + static_cast<std::ptrdiff_t>(c * points),
-        frame.channels.begin() + static_cast<std::ptrdiff_t>((c + 1) * points));
-    arrays += fmt::format(
-        "<DataArray type=\"Float32\" Name=\"{} [{}]\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        animation.channels[c].name, animation.channels[c].help, append(raw(channel)));
-  }
-  const std::size_t places = append(raw(frame.positions));
-  const std::size_t lines = append(raw(connectivity));
-  const std::size_t ends = append(raw(offsets));
-  return fmt::format(
-             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
-             "byte_order=\"LittleEndian\" header_type=\"UInt32\">\n<PolyData>\n"
-             "<Piece NumberOfPoints=\"{}\" NumberOfLines=\"{}\">\n<PointData>\n{}"
-             "</PointData>\n<Points>\n<DataArray type=\"Float32\" "
-             "NumberOfComponents=\"3\" format=\"appended\" offset=\"{}\"/>\n</Points>\n"
-             "<Lines>\n<DataArray type=\"Int32\" Name=\"connectivity\" "
-             "format=\"appended\" offset=\"{}\"/>\n<DataArray type=\"Int32\" "
-             "Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n</Lines>\n</Piece>\n"
-             "</PolyData>\n<AppendedData encoding=\"raw\">\n_",
-             points, offsets.size(), arrays, places, lines, ends) +
-         data + "\n</AppendedData>\n</VTKFile>\n";
-}
-
-std::string vtp_name(const std::string& stem, std::size_t frame) {
-  return fmt::format("{}_{:05}.vtp", stem, frame);
-}
-
-std::string pvd(const Animation& animation, const std::string& stem) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-      "byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
-    text += fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n",
-                        animation.frames[f].series[0], vtp_name(stem, f));
-  }
-  return text + "</Collection>\n</VTKFile>\n";
-}
-
-std::string usda(const Animation& animation) {
-  const Scene& scene = animation.scene;
-  std::string counts;
-  for (const int count : animation.strand_points) {
-    counts += (counts.empty() ? "" : ", ") + std::to_string(count);
-  }
-  std::string samples;
-  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
-    std::string points;
-    const std::vector<float>& x = animation.frames[f].positions;
-    for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
-      points +=
-          fmt::format("{}({}, {}, {})", i == 0 ? "" : ", ", x[i], x[i + 1], x[i + 2]);
+  if (!animation.lines.empty()) {
+    std::vector<int> ids;
+    std::vector<double> radii;
+    for (const DrawnLine& line : animation.lines) {
+      ids.push_back(line.strand);
+      radii.push_back(line.radius);
     }
-    samples += fmt::format("            {}: [{}],\n", f, points);
+    page["strand_ids"] = ids;
+    page["radius_m"] = radii;
   }
-  const double radius =
-      scene.strands.empty() ? 1e-3 : scene.strands.front().segments.front().section.a1;
-  return fmt::format(
-      "#usda 1.0\n(\n    defaultPrim = \"strands\"\n    upAxis = \"Z\"\n"
-      "    metersPerUnit = 1\n    startTimeCode = 0\n    endTimeCode = {}\n"
-      "    timeCodesPerSecond = {}\n)\n\ndef BasisCurves \"strands\"\n{{\n"
-      "    uniform token type = \"linear\"\n    int[] curveVertexCounts = [{}]\n"
-      "    float[] widths = [{}] (\n        interpolation = \"constant\"\n    )\n"
-      "    point3f[] points.timeSamples = {{\n{}    }}\n}}\n",
-      animation.frames.empty() ? 0 : animation.frames.size() - 1, scene.frame_rate,
-      counts, 2 * radius, samples);
+  return page.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace tress

@@ -1,26 +1,34 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "experiments/scenes/export.h"
+#include "experiments/scenes/guide_hair.h"
 
 namespace tress {
 
-/// An animation of simulated strands with hairs drawn between them (GuideHair), after
-/// them in every frame; of about 60 of its frames, evenly chosen. What a channel says of
-/// a hair is what it says of its own guide.
+/// Hairs drawn between simulated strands (GuideHair), after them in every frame; of about
+/// 60 frames of a recording, evenly chosen. What a channel says of a hair is what it says
+/// of its own guide.
 class FullHair {
  public:
-  /// Throws InputError when hairs > 0 and the strands have not all as many points, or the
-  /// scene has none. hairs = 0: the animation as it is.
-  FullHair(const Animation& guides, std::size_t hairs, std::uint64_t seed);
-  Animation animation() const;
+  /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
+  /// lines are not strands of equally many points, three at least. hairs = 0: draws none.
+  FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
+
+  std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }
+  std::vector<int> lines(std::span<const int> guides) const;
+  std::vector<DrawnLine> drawn(std::vector<DrawnLine> guides) const;
+  std::vector<Frame3d> frames(std::span<const Frame3d> guides) const;
 
  private:
-  Animation guides_;
-  std::vector<int> lines_;
-  std::vector<Frame3d> frames_;
+  Frame3d grown(const Frame3d& guides) const;
+
+  const RootMotion& head_;
+  std::size_t points_ = 0;  // of each line
+  std::optional<GuideHair> hair_;
 };
 
 }  // namespace tress

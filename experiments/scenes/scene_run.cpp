@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/harness/files.h"
 #include "experiments/harness/message.h"
 #include "experiments/harness/progress.h"
-#include "experiments/scenes/export.h"
-#include "experiments/scenes/full_hair.h"
+#include "experiments/scenes/pictures.h"
 #include "experiments/scenes/recording.h"
 #include "models/input_error.h"
 
@@ -61,25 +58,6 @@ class TimeBar {
   double last_ = 0;
 };
 
-class VtkFiles {
- public:
-  explicit VtkFiles(const std::string& stem)
-      : name_(std::filesystem::path(stem).filename()), folder_(stem + "_vtk/") {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-  }
-  void add(const Animation& animation, std::size_t frame) {
-    replace_file(folder_ + vtp_name(name_, frame),
-                 vtp(animation, animation.frames[frame]));
-  }
-  void list(const Animation& animation) {
-    replace_file(folder_ + name_ + ".pvd", pvd(animation, name_));
-  }
-
- private:
-  std::string name_, folder_;
-};
-
 /// Refuses a state that this program has not written, though its key says so.
 void restore(World& world, const Snapshot& saved) {
   const auto sizes = [](const Snapshot& snapshot) {
@@ -103,13 +81,8 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   const Clock::time_point begin = Clock::now();
   auto world = std::make_unique<World>(scene, options.threads);
   Readout readout(scene, *world);
+  const Pictures pictures(scene, *world, readout, options);
   Recording recording(options.stem, key, readout, options.resume);
-  const auto animation = [&] {
-    return Animation{scene, readout.series(), readout.channels(), readout.lines(),
-                     recording.frames()};
-  };
-  std::optional<VtkFiles> vtk;
-  if (options.vtk) vtk.emplace(options.stem);
   const auto between_saves =
       static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
   std::optional<Snapshot> latest;  // of the last frame, where nothing else is saved
@@ -121,7 +94,6 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     const auto whole = interruption.hold();
     recording.add(std::move(frame));
     if (between_saves == 0) latest = world->snapshot();
-    if (vtk) vtk->add(animation(), recording.frames().size() - 1);
   };
   if (recording.saved()) {
     restore(*world, *recording.saved());
@@ -155,14 +127,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   run.frames = recording.frames().size();
   run.simulated_s = world->time();
   run.wall_s = seconds_since(begin);
-  if (vtk) vtk->list(animation());
-  const FullHair hair(animation(), options.hairs, scene.seed);
-  // A single particle is no line to draw.
-  const auto& lines = readout.lines();
-  if (std::ranges::all_of(lines, [](int points) { return points > 1; })) {
-    replace_file(options.stem + ".json", page_json(hair.animation()));
-  }
-  if (options.usd) replace_file(options.stem + ".usda", usda(hair.animation()));
+  pictures.write(recording.frames());
   const auto whole = interruption.hold();
   latest.reset();
   recording.close();
