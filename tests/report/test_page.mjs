@@ -14,6 +14,7 @@ const opening = {
   cost_of_accuracy: ['cost_of_accuracy', 'cost_choices'],
 };
 const figures = [
+  'family',
   'drift_cost',
   'drift_heatmap',
   'drift_recovery',

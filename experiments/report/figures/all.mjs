@@ -9,6 +9,7 @@ import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
 import { equal_accuracy } from './equal_accuracy.mjs';
+import { family } from './family.mjs';
 import { force_transport } from './force_transport.mjs';
 import { model_steps } from './model_steps.mjs';
 import { nodal_limit } from './nodal_limit.mjs';
@@ -24,6 +25,7 @@ export const figures = [
   hard_cases,
   cost_of_accuracy,
   cost_choices,
+  family,
   drift_cost,
   drift_heatmap,
   drift_recovery,

@@ -1,6 +1,7 @@
 // The text of the page: tabs, sections, findings, places for figures and tables.
 import { cost_findings } from '../figures/cost_of_accuracy.mjs';
 import { equal_accuracy_findings } from '../figures/equal_accuracy.mjs';
+import { family_findings } from '../figures/family.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
@@ -34,6 +35,11 @@ import { is_known, known_tables } from './tables.mjs';
 // of selected numbers where it has one.
 const none = () => [];
 const measurements = [
+  {
+    figure: 'family',
+    findings: family_findings,
+    tables: ['family', 'family_summary'],
+  },
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {
     figure: 'drift_heatmap',

@@ -57,6 +57,21 @@ export const known_tables = {
     command: './tress run',
     program: 'cost_of_accuracy',
   },
+  family: {
+    title: 'Statements on a family of hairs',
+    required: ['study', 'claim', 'hair', 'gravito_bending', 'value', 'holds', 'status'],
+    numeric: ['hair', 'gravito_bending', 'value', 'reduced', 'maximal', 'gap'],
+    command: './tress run',
+    program: 'family',
+  },
+  family_summary: {
+    title: 'Statements on a family of hairs, distribution',
+    required: ['claim', 'statement', 'hairs', 'holds_share', 'median'],
+    numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
+    command: './tress run',
+    program: 'family',
+    optional: true,
+  },
   constraint_drift: {
     title: 'Constraint drift',
     required: [

@@ -1,0 +1,28 @@
+// Numbers that prose may name without computing them: definitions, inputs of the
+// experiments, names and citations. A result never belongs here.
+export const allowed = [
+  { text: /^ ?\d+\. /gm, why: 'a numbered list' },
+  { text: /\b(19|20)\d\d\b/g, why: 'a year' },
+  { text: /\bDebian 12\b/g, why: 'the platform' },
+  { text: /\bC\+\+20\b/g, why: 'the language' },
+  { text: /\b3D\b/g, why: 'three dimensions' },
+  { text: /\b(GPL-3\+|LGPL-2\.1\+|BSD 3-Clause)/g, why: 'names of licences' },
+  { text: /\bHyndman & Fan, type 7\b/g, why: 'a citation' },
+  { text: /\b10 cm\b/g, why: 'the length of the usual hair' },
+  { text: /\b60 frames\/s\b/g, why: 'the rate at which tips are compared' },
+  { text: /\b1\/(30|60|120|300|1200) s\b/g, why: 'steps that experiments are asked for' },
+  { text: /\b5 cm at 3 Hz\b/g, why: 'the drive of the shaken hair' },
+  { text: /\b(1|0\.1|10|3) %/g, why: 'accuracies that are asked for, and tolerances' },
+  { text: /\b20 elements\b/g, why: 'the usual number of elements' },
+  { text: /\b100 ms\b/g, why: 'the longest step that is tried' },
+  { text: /\b33 ms\b/g, why: 'one frame' },
+  { text: /\b3 to 40 cm\b/g, why: 'the range of lengths of the family' },
+  { text: /\b20 to 60 µm\b/g, why: 'the range of radii of the family' },
+  { text: /\b1 MPa to 4 GPa\b/g, why: "the range of Young's moduli of the family" },
+  { text: /\b1 to 1\.6\b/g, why: 'the range of ellipticities of the family' },
+  { text: /\b0 to 300 1\/m\b/g, why: 'the range of natural curvatures of the family' },
+  { text: /\b1e-10 kg m³\/s\b/g, why: "the source's internal friction" },
+  { text: /\b1e-13\b/g, why: 'a tolerance of references' },
+  { text: /\border[s]? (\d)( to \d| or \d)?\b/g, why: 'the order of a method' },
+  { text: /\bindex[- ][23]\b/gi, why: 'the index of a system of equations' },
+];

@@ -1,0 +1,35 @@
+// Queries by page: functions of the tables (rows as objects, by name) and the root of the
+// repository, each of which returns the Markdown that stands in for its slot.
+import * as catalogue from './catalogue.mjs';
+import * as cost from './cost.mjs';
+import * as drift from './drift.mjs';
+import * as effects from './effects.mjs';
+import * as equal from './equal.mjs';
+import * as family from './family.mjs';
+import * as findings from './findings.mjs';
+import * as flight from './flight.mjs';
+import * as friction from './friction.mjs';
+import * as hard from './hard.mjs';
+import * as machine from './machine.mjs';
+import * as scaling from './scaling.mjs';
+import * as stability from './stability.mjs';
+import * as swing from './swing.mjs';
+import * as validation from './validation.mjs';
+
+export const queries = {
+  catalogue,
+  cost,
+  drift,
+  effects,
+  equal,
+  family,
+  findings,
+  flight,
+  friction,
+  hard,
+  machine,
+  scaling,
+  stability,
+  swing,
+  validation,
+};

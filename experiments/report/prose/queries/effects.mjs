@@ -1,0 +1,26 @@
+// What each effect of a scene is worth.
+import { number, percent, rows_of, table } from '../markdown.mjs';
+
+const left_out = {
+  body: 'contact with the head',
+  'mode twist': 'twist',
+  'mode second_bending': 'the second bending plane',
+};
+
+export const audit_table = (tables) =>
+  table(
+    ['scene', 'left out', 'change', 'discretisation', 'load / weight', 'verdict'],
+    rows_of(tables, 'effect_audit')
+      .filter((row) => row.effect !== 'none' && row.verdict)
+      .map((row) => [
+        row.scene,
+        left_out[row.effect] ?? row.effect.replaceAll('_', ' '),
+        row.status === 'ok' ? percent(row.error_without_rel) : 'does not run without it',
+        percent(row.discretisation_rel),
+        number(row.load_over_weight),
+        row.verdict,
+      ]),
+  );
+
+export const scenes = (tables) =>
+  String(new Set(rows_of(tables, 'effect_audit').map((row) => row.scene)).size);

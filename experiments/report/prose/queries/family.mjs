@@ -1,0 +1,148 @@
+// Statements about one hair, tested on a family of hairs.
+import { is_number } from '../../src/tables.mjs';
+import { number, percent, range, row_of, rows_of, table } from '../markdown.mjs';
+
+const parameter = {
+  gravito_bending: 'the gravito-bending number ρ A g L³/(E I)',
+  winding_rad: 'the winding of the natural shape (rad)',
+  internal_friction_kg_m3_s: 'internal friction (kg m³/s)',
+  ellipticity: 'the ellipticity of the section',
+  length_m: 'the length (m)',
+  radius_m: 'the radius (m)',
+  youngs_modulus_pa: "Young's modulus (Pa)",
+  drive_level: 'the strength of the drive',
+  frequency_hz: 'the frequency of the drive (Hz)',
+  natural_curvature_1_m: 'natural curvature (1/m)',
+};
+const name_of = (column) => parameter[column] ?? column.replaceAll('_', ' ');
+
+const claim_row = (tables, claim) => row_of(tables, 'family_summary', { claim });
+
+export const hairs = (tables) =>
+  String(Math.max(...rows_of(tables, 'family').map((row) => row.hair)));
+
+const share = (row) => percent(row.holds_share, 2);
+
+// "holds for 31 % of 48 hairs"
+const held = (row) => {
+  const silent = row.no_answer > 0 ? `; ${row.no_answer} gave no answer` : '';
+  return `${share(row)} of ${row.hairs} hairs${silent}`;
+};
+
+const spread = (row, as = number) =>
+  `median ${as(row.median)}, deciles ${as(row.decile_1)} and ${as(row.decile_9)}`;
+
+// What decides, where a threshold tells more than saying the same of all.
+const rule = (row) => {
+  if (!row.decided_by) return '';
+  const above = row.share_above > row.share_below;
+  const [low, high] = [percent(row.share_below), percent(row.share_above)];
+  if (row.decided_by.startsWith('drive is ')) {
+    const drive = row.decided_by.slice('drive is '.length).replaceAll('_', ' ');
+    return `the drive: it holds for ${high} of the hairs under ${drive} and ${low} of the others`;
+  }
+  return (
+    `${name_of(row.decided_by)}: it holds for ${above ? high : low} of the hairs ` +
+    `${above ? 'above' : 'below'} ${number(row.threshold)} and ${above ? low : high} ` +
+    `${above ? 'below' : 'above'}`
+  );
+};
+
+const sentence = (text, row) => {
+  const decided = rule(row);
+  return `${text}${decided === '' ? '' : `. What tells best is ${decided}`}`;
+};
+
+// One row per claim.
+export const summary = (tables) =>
+  table(
+    ['statement', 'holds for', 'decile, median, decile', 'what the numbers are', 'ranks follow'],
+    rows_of(tables, 'family_summary').map((row) => [
+      row.statement,
+      held(row),
+      [row.decile_1, row.median, row.decile_9].map((x) => number(x)).join(', '),
+      row.value,
+      is_number(row.rank_correlation)
+        ? `${name_of(row.correlated_with)} (${number(row.rank_correlation)})`
+        : '',
+    ]),
+  );
+
+export const exact_step = (tables) => {
+  const twisted = claim_row(tables, 'exact_step_100ms');
+  const bent = claim_row(tables, 'exact_step_100ms_bend');
+  const ms = (x) => `${number(1e3 * x)} ms`;
+  return sentence(
+    `stable at every step tried up to 100 ms for ${held(twisted)} (${spread(twisted, ms)}), ` +
+      `and without twist for ${share(bent)} (median ${ms(bent.median)})`,
+    twisted,
+  );
+};
+
+export const model_steps = (tables) => {
+  const row = claim_row(tables, 'super_helix_step_longer');
+  return sentence(
+    `\`super_helix\` is stable at steps at least as long as \`der\` for ${held(row)} ` +
+      `(ratio of the largest steps: ${spread(row)})`,
+    row,
+  );
+};
+
+export const twist_straight = (tables) => {
+  const row = claim_row(tables, 'twist_straight_negligible');
+  return sentence(
+    `moves the tip of a straight hair by less than 1 % of its length for ${held(row)} ` +
+      `(${spread(row, percent)})`,
+    row,
+  );
+};
+
+export const twist_curly = (tables) => {
+  const row = claim_row(tables, 'twist_curly_matters');
+  return `by more than that for ${held(row)} with curls (${spread(row, percent)})`;
+};
+
+export const bdf = (tables) => {
+  const [two, three, four] = ['1e-2', '1e-3', '1e-4'].map((error) =>
+    claim_row(tables, `bdf_order2_at_${error}`),
+  );
+  return (
+    `order 2 at most is no dearer than order 5 for ${share(two)}, ${share(three)} and ` +
+    `${share(four)} of the hairs at tip errors of 1e-2, 1e-3 and 1e-4 of the length (work of ` +
+    `order 5 over that of order 2: median ${[two, three, four].map((row) => number(row.median)).join(', ')})`
+  );
+};
+
+export const esdirk = (tables) => {
+  const steps = claim_row(tables, 'esdirk_steps_at_1e-3');
+  const work = claim_row(tables, 'esdirk_work_at_1e-3');
+  return (
+    `ESDIRK takes no more steps than BDF for ${share(steps)} of the hairs at 1e-3, and no more ` +
+    `calls of the model for ${share(work)}`
+  );
+};
+
+export const equal = (tables) => {
+  const row = claim_row(tables, 'reduced_cheaper');
+  return sentence(
+    `\`super_helix\` needs less time for 1 % than \`der\` for ${held(row)} (time of \`der\` over ` +
+      `that of \`super_helix\`: ${spread(row)})`,
+    row,
+  );
+};
+
+const curly_1_m = 150; // half of the range
+
+// "on a curl in the wind it holds for 1 of 4"
+export const equal_curly_wind = (tables) => {
+  const rows = rows_of(tables, 'family', { claim: 'reduced_cheaper', drive: 'wind', status: 'ok' });
+  const curly = rows.filter((row) => row.natural_curvature_1_m > curly_1_m);
+  const held_of = curly.filter((row) => row.holds === 'true').length;
+  return (
+    `Of the ${curly.length} hairs with a natural curvature above ${curly_1_m} 1/m in the wind it ` +
+    `holds for ${held_of}`
+  );
+};
+
+export const gravito_bending = (tables) =>
+  range(rows_of(tables, 'family').map((row) => row.gravito_bending));

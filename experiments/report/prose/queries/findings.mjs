@@ -1,0 +1,38 @@
+// The sentences of the report page, as lists.
+import { cost_findings } from '../../figures/cost_of_accuracy.mjs';
+import { equal_accuracy_findings } from '../../figures/equal_accuracy.mjs';
+import { hard_findings } from '../../figures/hard_cases.mjs';
+import { model_step_findings } from '../../figures/model_steps.mjs';
+import { nodal_limit_findings } from '../../figures/nodal_limit.mjs';
+import { transport_findings } from '../../figures/force_transport.mjs';
+import { validation_findings } from '../../figures/validation.mjs';
+import { boundary_sentences, drift_findings, recovery_sentences } from '../../src/findings/drift.mjs';
+import { scaling_findings } from '../../src/findings/scaling.mjs';
+import { stability_findings } from '../../src/findings/stability.mjs';
+import { swing_findings } from '../../src/findings/swing.mjs';
+import { bdf_findings, work_findings } from '../../src/findings/work.mjs';
+import { bullets } from '../markdown.mjs';
+
+const most = 12; // the page has the rest
+
+const listed = (sentences) => (tables) => {
+  const all = sentences(tables);
+  if (all.length === 0) throw new Error('the tables hold no rows for these sentences');
+  return bullets(all.slice(0, most));
+};
+
+export const bdf = listed(bdf_findings);
+export const boundary = listed(({ baumgarte_limit }) => boundary_sentences(baumgarte_limit));
+export const cost = listed(cost_findings);
+export const drift = listed(drift_findings);
+export const equal = listed(equal_accuracy_findings);
+export const hard = listed(hard_findings);
+export const models = listed(model_step_findings);
+export const nodal = listed(nodal_limit_findings);
+export const recovery = listed(({ constraint_drift }) => recovery_sentences(constraint_drift));
+export const scaling = listed(scaling_findings);
+export const stability = listed(stability_findings);
+export const swing = listed(swing_findings);
+export const transport = listed(transport_findings);
+export const validation = listed(validation_findings);
+export const work = listed(work_findings);

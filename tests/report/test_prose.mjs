@@ -1,0 +1,83 @@
+// The pages made from templates and tables: `node --test tests/report/test_prose.mjs`.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { must, number, percent, range, row_of, table, time } from '../../experiments/report/prose/markdown.mjs';
+import { answers, written_pages } from '../../experiments/report/prose/pages.mjs';
+import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
+import { fill, untraced_numbers } from '../../experiments/report/prose/template.mjs';
+import { spawnSync } from 'node:child_process';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+
+test('every page says what templates and tables say', () => {
+  for (const { page, text } of written_pages(root)) {
+    assert.equal(readFileSync(join(root, page), 'utf8'), text, `${page}: run ./tress report`);
+  }
+});
+
+test('the README fits on three screens', () => {
+  const lines = readFileSync(join(root, 'README.md'), 'utf8').split('\n');
+  assert.ok(lines.length <= 151, `${lines.length} lines`);
+});
+
+test('a number that nobody computed is found, with its line', () => {
+  const found = untraced_numbers('one step\nholds 19 of 22 cases\n');
+  assert.deepEqual(found, [
+    { line: 2, text: '19' },
+    { line: 2, text: '22' },
+  ]);
+});
+
+test('slots, code, links and what is allowed are no such numbers', () => {
+  const template =
+    'a hair of 10 cm, {{ hard.cases }} cases, `--elements 5`, [page](a1.md)\n```\nrun 2\n```\n';
+  assert.deepEqual(untraced_numbers(template), []);
+});
+
+test('what is allowed does not hide a number beside it', () => {
+  assert.equal(untraced_numbers('a hair of 10 cm hangs 3 mm\n')[0].text, '3');
+  assert.equal(untraced_numbers('order 2 takes 258 steps\n')[0].text, '258');
+  assert.equal(untraced_numbers('21 % off\n').length, 1);
+});
+
+test('an unknown query and a broken one name file and line', () => {
+  const answer = answers({}, root);
+  assert.throws(() => fill('\n{{ hard.nothing }}', 'a.md', answer), /a\.md:2: .*no such query/);
+  assert.throws(() => fill('{{ hard.cases }}', 'a.md', answer), /a\.md:1: .*hard_cases\.csv/);
+});
+
+test('a sentence whose condition failed is not printed', () => {
+  assert.throws(() => must(false, 'A wins everywhere'), /"A wins everywhere"/);
+});
+
+test('rows are selected by value, and one row must be one', () => {
+  const tables = { t: [{ n: 0.1, x: 1 }, { n: 0.2, x: 2 }] };
+  assert.equal(row_of(tables, 't', { n: 0.1 + 1e-12 }).x, 1);
+  assert.throws(() => row_of(tables, 't', {}), /2 rows/);
+});
+
+test('values are written in few digits', () => {
+  assert.equal(number(0.012345), '0.012');
+  assert.equal(number(123.4), '123');
+  assert.equal(number(1.5e-7), '1.5e-7');
+  assert.equal(number(null), '');
+  assert.equal(percent(0.0137), '1.4 %');
+  assert.equal(time(0.0083), '8.3 ms');
+  assert.equal(time(6.04e-4), '604 µs');
+  assert.equal(range([3, 1, 2]), '1 to 3');
+  assert.equal(table(['a'], [['x|y']]), '| a |\n|---|\n| x\\|y |');
+});
+
+test('the catalogue page shows what the program lists', () => {
+  const program = process.env.TRESS_PROGRAM;
+  assert.ok(program, 'TRESS_PROGRAM names an experiment');
+  const { stdout } = spawnSync(program, ['--list'], { encoding: 'utf8' });
+  assert.equal(
+    readFileSync(join(root, snapshot), 'utf8'),
+    stdout,
+    `${snapshot}: write it anew: ${program} --list > ${snapshot}; then ./tress report`,
+  );
+});
