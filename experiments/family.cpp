@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
       .question = "for which hairs do the statements about one hair hold?",
       .example = "--set hairs=96 --set study=twist",
       .timed = false,
-      .quick_timeout_s = 120,
+      .quick_timeout_s = 600,  // for hangs only: steps bound the work
       .columns = columns,
       .settings = family::settings,
       .cases = family::cases,

@@ -1,7 +1,7 @@
 // The cheapest way to a wanted error.
-import { distinct, group_by, is_positive } from '../../src/tables.mjs';
+import { distinct, group_by, is_number, is_positive } from '../../src/tables.mjs';
 import { spaced } from '../../src/strand.mjs';
-import { median, number, percent, rows_of, table, time } from '../markdown.mjs';
+import { median, number, percent, range, rows_of, table, time } from '../markdown.mjs';
 
 const target = 0.01;
 
@@ -81,6 +81,14 @@ export function choices(tables) {
     .map(({ choice, factor }) => `${choice} ${number(factor)}`)
     .join(', ');
 }
+
+// Largest error of a winner's neighbours (more elements, shorter steps, changed data)
+// over the wanted error: what tells a robust winner from a lucky one.
+export const margins = (tables) => {
+  const known = of_kind(tables, 'winner').filter((row) => is_number(row.margin));
+  if (known.length === 0) return 'not known for this table';
+  return range(known.map((row) => row.margin));
+};
 
 // How far two references of the continuous rod are apart at most.
 export const gap = (tables) =>

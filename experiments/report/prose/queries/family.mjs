@@ -23,14 +23,15 @@ export const hairs = (tables) =>
 
 const share = (row) => percent(row.holds_share, 2);
 
-// "holds for 31 % of 48 hairs"
-const held = (row) => {
-  const silent = row.no_answer > 0 ? `; ${row.no_answer} gave no answer` : '';
-  return `${share(row)} of ${row.hairs} hairs${silent}`;
-};
+const held = (row) => `${share(row)} of ${row.hairs} hairs`;
+
+const silent = (row) => (row.no_answer > 0 ? `; ${row.no_answer} gave no answer` : '');
+
+// Nobody cares how much less than a thousandth of a per cent.
+const change = (x) => (x < 1e-5 ? 'less than 0.001 %' : percent(x));
 
 const spread = (row, as = number) =>
-  `median ${as(row.median)}, deciles ${as(row.decile_1)} and ${as(row.decile_9)}`;
+  `median ${as(row.median)}, deciles ${as(row.decile_1)} and ${as(row.decile_9)}${silent(row)}`;
 
 // What decides, where a threshold tells more than saying the same of all.
 const rule = (row) => {
@@ -59,7 +60,7 @@ export const summary = (tables) =>
     ['statement', 'holds for', 'decile, median, decile', 'what the numbers are', 'ranks follow'],
     rows_of(tables, 'family_summary').map((row) => [
       row.statement,
-      held(row),
+      `${held(row)}${silent(row)}`,
       [row.decile_1, row.median, row.decile_9].map((x) => number(x)).join(', '),
       row.value,
       is_number(row.rank_correlation)
@@ -92,14 +93,14 @@ export const twist_straight = (tables) => {
   const row = claim_row(tables, 'twist_straight_negligible');
   return sentence(
     `moves the tip of a straight hair by less than 1 % of its length for ${held(row)} ` +
-      `(${spread(row, percent)})`,
+      `(${spread(row, change)})`,
     row,
   );
 };
 
 export const twist_curly = (tables) => {
   const row = claim_row(tables, 'twist_curly_matters');
-  return `by more than that for ${held(row)} with curls (${spread(row, percent)})`;
+  return `with its curls, by more than that for ${held(row)} (${spread(row, change)})`;
 };
 
 export const bdf = (tables) => {
@@ -126,7 +127,7 @@ export const equal = (tables) => {
   const row = claim_row(tables, 'reduced_cheaper');
   return sentence(
     `\`super_helix\` needs less time for 1 % than \`der\` for ${held(row)} (time of \`der\` over ` +
-      `that of \`super_helix\`: ${spread(row)})`,
+      `that of \`super_helix\`: ${spread(row)}; 100 and 0.01 where one of them never gets there)`,
     row,
   );
 };

@@ -45,5 +45,5 @@ export function scores(tables) {
     })
     .sort((a, b) => b.share - a.share)
     .map(({ text }) => text)
-    .join(', ');
+    .join('; ');
 }
