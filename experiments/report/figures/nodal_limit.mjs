@@ -30,7 +30,9 @@ const rows_of = (tables) =>
     .map((row) => ({ ...row, method: method_of(row), dt_us: 1e6 * row.dt_max_s }));
 
 export function nodal_limit_findings(tables) {
-  const at = (tables.nodal_limit ?? []).filter((row) => row.elements === claimed_nodes);
+  const at = (tables.nodal_limit ?? []).filter(
+    (row) => row.elements === claimed_nodes && row.at_claim,
+  );
   return at.map((row) => {
     const outcome =
       row.at_claim === 'nothing'

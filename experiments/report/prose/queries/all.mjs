@@ -1,6 +1,7 @@
 // Queries by page: functions of the tables (rows as objects, by name) and the root of the
 // repository, each of which returns the Markdown that stands in for its slot.
 import * as catalogue from './catalogue.mjs';
+import * as claims from './claims.mjs';
 import * as cost from './cost.mjs';
 import * as drift from './drift.mjs';
 import * as effects from './effects.mjs';
@@ -18,6 +19,7 @@ import * as validation from './validation.mjs';
 
 export const queries = {
   catalogue,
+  claims,
   cost,
   drift,
   effects,

@@ -1,6 +1,5 @@
 // The sentences of the report page, as lists.
 import { cost_findings } from '../../figures/cost_of_accuracy.mjs';
-import { equal_accuracy_findings } from '../../figures/equal_accuracy.mjs';
 import { hard_findings } from '../../figures/hard_cases.mjs';
 import { model_step_findings } from '../../figures/model_steps.mjs';
 import { nodal_limit_findings } from '../../figures/nodal_limit.mjs';
@@ -25,7 +24,6 @@ export const bdf = listed(bdf_findings);
 export const boundary = listed(({ baumgarte_limit }) => boundary_sentences(baumgarte_limit));
 export const cost = listed(cost_findings);
 export const drift = listed(drift_findings);
-export const equal = listed(equal_accuracy_findings);
 export const hard = listed(hard_findings);
 export const models = listed(model_step_findings);
 export const nodal = listed(nodal_limit_findings);

@@ -2,9 +2,6 @@
 import { group_by } from '../../src/tables.mjs';
 import { number, percent, range, rows_of, table, time } from '../markdown.mjs';
 
-// Turning speed of the thrown hair: the spin that models of strands start with.
-const spin_rad_s = 10;
-
 const whole = (tables) =>
   rows_of(tables, 'free_flight', { status: 'ok' }).filter((row) => typeof row.dt_s === 'number');
 
@@ -13,11 +10,10 @@ const duration = (tables) => Math.max(...whole(tables).map((row) => row.t_end_s)
 // "0.5 s"; a last step may pass the end by its rounding.
 export const seconds = (tables) => `${number(duration(tables), 2)} s`;
 
-export const start_turn = (tables) => `${number(spin_rad_s * duration(tables))} rad`;
-
 const signed = (x) => `${x > 0 ? '+' : ''}${percent(x)}`;
 
-// Largest change of angular momentum as a vector, and change of energy, by integrator.
+// By integrator and model: change of the size of angular momentum, its largest error as a
+// vector, change of energy.
 export function change_table(tables) {
   const rows = whole(tables);
   const steps = [...new Set(rows.map((row) => row.dt_s))].sort((a, b) => b - a);
@@ -26,7 +22,8 @@ export function change_table(tables) {
     const models = group_by(members, (row) => row.model);
     return [...models].map(
       ([model, [row]]) =>
-        `${model} ${percent(row.angular_error_rel)}, ${signed(row.energy_change_rel)}`,
+        `${model} ${signed(row.angular_change_rel)}, ${percent(row.angular_error_rel)}, ` +
+        `${signed(row.energy_change_rel)}`,
     );
   };
   return table(
@@ -43,7 +40,7 @@ export const backward_euler_loss = (tables) => {
   const rows = whole(tables).filter((row) => row.integrator === 'backward_euler');
   const longest = Math.max(...rows.map((row) => row.dt_s));
   return range(
-    rows.filter((row) => row.dt_s === longest).map((row) => row.angular_error_rel),
+    rows.filter((row) => row.dt_s === longest).map((row) => row.angular_change_rel),
     percent,
   );
 };

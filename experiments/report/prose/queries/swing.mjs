@@ -15,8 +15,6 @@ const peers = (tables, column) => {
   return `${time(best[column])}, ${best.peer}`;
 };
 
-export const peers_count = (tables) => String(rows_of(tables, 'peers_swing').length);
-
 export function best_table(tables) {
   const [one, tenth] = swing_levels;
   return table(
@@ -29,7 +27,7 @@ export function best_table(tables) {
         ours(tables, 'total', one.error),
       ],
       [
-        `best of ${peers_count(tables)} others`,
+        `best of ${rows_of(tables, 'peers_swing').length} others`,
         peers(tables, one.peer),
         peers(tables, tenth.peer),
         '',

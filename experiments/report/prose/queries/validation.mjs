@@ -14,9 +14,6 @@ const shown = ({ outcome, error_pct, lost }) => {
 export const tests = (tables) =>
   String(distinct(validation_cells(tables).map((cell) => cell.test)).length);
 
-export const models = (tables) =>
-  String(distinct(validation_cells(tables).map((cell) => cell.name)).length);
-
 // Tests down, models across: largest error of the judged rows in per cent.
 export function matrix(tables) {
   const cells = validation_cells(tables);
