@@ -82,20 +82,24 @@ double BeadOnWire::tangent(double t, In q, In v, In a, Weights w) const noexcept
     s += w.pos * m * (2 * dot(d1, d2) * a[0] + (dot(d2, d2) + dot(d1, d3)) * v[0] * v[0]);
   }
   s -= w.pos * dot(d2, load(t, at));
-  if (!needs_.derivatives) return s;
-  // d(load)/ds' = D_v c',  d(load)/ds = D_x c' + D_v c'' s'
+  if (!needs_.derivatives && !needs_.directions) return s;
+  // d(load)/ds' = D_v c',  d(load)/ds = D_x c' + D_v c'' s' + D_t dt/ds, t = c'/|c'|
   const Points p = at.points(setup_, needs_);
   double by_place[9] = {};
   double by_velocity[9] = {};
+  double by_tangent[9] = {};
   for (const auto& effect : effects_) {
     effect->add_derivatives(t, p, 1, 0, by_place);
     effect->add_derivatives(t, p, 0, 1, by_velocity);
+    effect->add_direction_derivatives(t, p, 1, by_tangent);
   }
   const auto apply = [](const double* d, const Vec& u) {
     return Vec{dot(load3(d), u), dot(load3(d + 3), u), dot(load3(d + 6), u)};
   };
   s -= w.vel * dot(d1, apply(by_velocity, d1));
   s -= w.pos * dot(d1, apply(by_place, d1) + apply(by_velocity, v[0] * d2));
+  const Vec turned = (1 / norm(d1)) * (d2 - (dot(d1, d2) / dot(d1, d1)) * d1);
+  s -= w.pos * dot(d1, apply(by_tangent, turned));
   return s;
 }
 

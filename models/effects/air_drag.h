@@ -11,9 +11,9 @@
 namespace tress {
 
 /// Force of air that moves with w(t, x) on a strand, by any law of air_law.h in any field
-/// of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx (the tangent's
-/// share in df/dx is left out). All of its work is power; there is no potential. Law and
-/// field are types, so that still air costs nothing. O(points).
+/// of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All of its work is
+/// power; there is no potential. Law and field are types, so that still air costs
+/// nothing. O(points).
 template <class Law, class Wind>
 class AirDrag final : public Effect {
   static constexpr bool uniform = Wind::Flow::uniform;
@@ -27,7 +27,8 @@ class AirDrag final : public Effect {
     return {.position = !uniform,
             .velocity = true,
             .tangent = Law::tangent,
-            .derivatives = Law::relative || !uniform};
+            .derivatives = Law::relative || !uniform,
+            .directions = Law::tangent};
   }
   void add_load(double t, const Points& p, InOut f) const noexcept override {
     const auto flow = wind_.at(t);
@@ -46,6 +47,15 @@ class AirDrag final : public Effect {
         if constexpr (!uniform) {
           add9(-pos * (slope * flow.gradient(load3(&p.x[3 * i]))), &blocks[9 * i]);
         }
+      }
+    }
+  }
+  void add_direction_derivatives(double t, const Points& p, double factor,
+                                 InOut blocks) const noexcept override {
+    if constexpr (Law::tangent) {
+      const auto flow = wind_.at(t);
+      for (std::size_t i = 0; i < p.length.size(); ++i) {
+        add9(factor * law_.by_tangent(p, i, velocity(flow, p, i)), &blocks[9 * i]);
       }
     }
   }

@@ -6,8 +6,9 @@
 #include "models/math/mat3.h"
 
 /// Laws of the force that air exerts on point i of a strand moving at u (m/s) relative to
-/// it. `slope` is dforce/du at a fixed tangent. A law says whether it looks at the
-/// tangent and whether u counts the velocity of the point or only that of the air.
+/// it. `slope` is dforce/du at a fixed tangent, `by_tangent` dforce/dt at a fixed u. A
+/// law says whether it looks at the tangent and whether u counts the velocity of the
+/// point or only that of the air.
 namespace tress {
 
 /// -nu l u, nu in kg/(m s).
@@ -91,6 +92,19 @@ struct AnisotropicAirLaw {
         normal.value(speed) * (identity() - tt) + (2 * tangential * std::abs(along)) * tt;
     if (speed > 0) {
       slope = slope + (normal.slope(speed) / speed) * outer(across, across);
+    }
+    return -p.length[i] * slope;
+  }
+  /// With du_n = -(u.dt) t - (u.t) dt and d(u_t) = (u.dt) t + (u.t) dt, u.dt = u_n.dt.
+  Mat3 by_tangent(const Points& p, std::size_t i, const Vec& u) const {
+    const Vec t = load3(&p.tangent[3 * i]);
+    const double along = dot(u, t), friction = tangential * std::abs(along);
+    const Vec across = u - along * t;
+    const double speed = norm(across), drag = normal.value(speed);
+    Mat3 slope = (2 * friction - drag) * outer(t, across) +
+                 (along * (friction - drag)) * identity();
+    if (speed > 0) {
+      slope = slope - (along * normal.slope(speed) / speed) * outer(across, across);
     }
     return -p.length[i] * slope;
   }

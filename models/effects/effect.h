@@ -30,11 +30,12 @@ struct Needs {
   bool tangent = false;
   bool derivatives = false;  // add_derivatives does something
   bool couplings = false;    // add_couplings too
+  bool directions = false;   // add_direction_derivatives too
 
   Needs operator|(Needs other) const {
-    return {position || other.position, velocity || other.velocity,
-            tangent || other.tangent, derivatives || other.derivatives,
-            couplings || other.couplings};
+    return {position || other.position,   velocity || other.velocity,
+            tangent || other.tangent,     derivatives || other.derivatives,
+            couplings || other.couplings, directions || other.directions};
   }
 };
 
@@ -54,6 +55,12 @@ class Effect {
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;
+  /// blocks += factor df/dt with respect to the unit tangent t at fixed x and v, (9
+  /// count) as above: they meet turns of t, which are across t. How t follows from
+  /// coordinates is the model's to know.
+  virtual void add_direction_derivatives(double /*time*/, const Points& /*p*/,
+                                         double /*factor*/,
+                                         InOut /*blocks*/) const noexcept {}
   /// Of an effect whose load on a point depends on where others are: the whole
   /// derivative, of which add_derivatives has the blocks of each point by itself. A model
   /// takes the one or the other.

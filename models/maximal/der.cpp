@@ -40,6 +40,7 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
   if (options.inextensible) parts.constraints = inextensible(parts, strand);
   parts.effects = std::move(effects);
   parts.solver = options.solver;
+  parts.tangent = options.tangent;
   return std::make_unique<MaximalSystem>(std::move(parts));
 }
 

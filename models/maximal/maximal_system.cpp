@@ -21,6 +21,12 @@ std::vector<std::vector<int>> groups_of_mass(const MaximalStrand& strand) {
   return groups;
 }
 
+std::vector<NodeMean> places_of_mass(const MaximalStrand& strand) {
+  std::vector<NodeMean> places;
+  for (const auto& point : strand.mass) places.push_back(point.at);
+  return places;
+}
+
 std::vector<std::vector<int>> groups_of_others(const MaximalStrand& strand) {
   std::vector<std::vector<int>> groups;
   for (std::size_t i = 3 * static_cast<std::size_t>(strand.nodes); i < strand.z.size();
@@ -39,21 +45,13 @@ void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
 
 }  // namespace
 
-Vec NodeMean::of(In values) const {
-  Vec sum;
-  for (int k = 0; k < nodes; ++k) {
-    sum = sum + weight[static_cast<std::size_t>(k)] *
-                    load3(&values[3 * static_cast<std::size_t>(first + k)]);
-  }
-  return sum;
-}
-
 MaximalSystem::MaximalSystem(MaximalStrand strand)
     : strand_(std::move(strand)),
       needs_(needs(strand_.effects)),
       elastic_(strand_.elasticity->groups(), static_cast<int>(held())),
       massive_(groups_of_mass(strand_), static_cast<int>(held())),
       inert_(groups_of_others(strand_), static_cast<int>(held())),
+      directions_(places_of_mass(strand_), static_cast<int>(held())),
       z_(strand_.z),
       rate_(strand_.rate),
       force_(z_.size()) {
@@ -78,10 +76,12 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
 void MaximalSystem::build_pattern() {
   std::vector<std::vector<int>> columns(z_.size() - held());
   for (const Groups* groups : {&elastic_, &massive_, &inert_}) groups->couple(columns);
+  if (directed()) directions_.couple(columns);
   if (strand_.constraints) strand_.constraints->couple(columns);
   const auto rows = static_cast<int>(columns.size());
   pattern_ = pattern_of(rows, std::move(columns));
   for (Groups* groups : {&elastic_, &massive_, &inert_}) groups->bind(pattern_);
+  if (directed()) directions_.bind(pattern_);
   if (strand_.constraints) strand_.constraints->bind(pattern_);
   values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
 }
@@ -132,13 +132,8 @@ Points MaximalSystem::points(Needs wanted) noexcept {
   };
   if (wanted.position || wanted.tangent) p.x = fill(z_, x_);
   if (wanted.velocity) p.v = fill(rate_, v_);
-  if (wanted.tangent) {  // from neighbour to neighbour
-    for (std::size_t i = 0; i < mass_.size(); ++i) {
-      const std::size_t from = i == 0 ? 0 : i - 1;
-      const std::size_t to = std::min(i + 1, mass_.size() - 1);
-      const Vec d = load3(&x_[3 * to]) - load3(&x_[3 * from]);
-      store3((1 / norm(d)) * d, &tangent_[3 * i]);
-    }
+  if (wanted.tangent) {
+    directions_.tangents(x_, tangent_);
     p.tangent = tangent_;
   }
   return p;
@@ -200,12 +195,22 @@ void MaximalSystem::add_mass(Weights w, GroupSum& sum) noexcept {
   }
 }
 
+/// s += what turning the tangents of the points p does to the loads. Overwrites blocks_.
+void MaximalSystem::add_directions(double t, const Points& p, double pos,
+                                   Out s) noexcept {
+  std::ranges::fill(blocks_, 0.0);
+  for (const auto& effect : strand_.effects) {
+    effect->add_direction_derivatives(t, p, -pos, blocks_);
+  }
+  directions_.add_tangent(x_, tangent_, blocks_, s);
+}
+
 /// `coupled_apart`: without the derivatives of effects that have couplings.
 Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
                                bool coupled_apart) noexcept {
   place(t, q, v);
   std::ranges::fill(s, 0.0);
-  if (needs_.derivatives) {  // else they are 0 for good
+  if (needs_.derivatives || directed()) {  // else they are 0 for good
     std::ranges::fill(blocks_, 0.0);
     if (w.pos != 0 || w.vel != 0) {
       const Points p = points(needs_);
@@ -224,6 +229,7 @@ Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
   if (w.pos != 0 || w.vel != 0) {
     strand_.elasticity->add_tangent(placement(), w.pos, w.vel, elastic);
   }
+  if (directed() && w.pos != 0) add_directions(t, points(needs_), w.pos, s);
   return all_finite(s) ? Status::ok : Status::retry;
 }
 

@@ -11,17 +11,9 @@
 #include "models/effects/effect.h"
 #include "models/maximal/coupled_solver.h"
 #include "models/maximal/elasticity.h"
+#include "models/maximal/point_directions.h"
 
 namespace tress {
-
-/// A point of the strand as the weighted mean of up to four consecutive nodes.
-struct NodeMean {
-  int first = 0;  // node
-  int nodes = 1;
-  std::array<double, 4> weight{1};
-
-  Vec of(In values) const;  // (3 nodes)
-};
 
 /// What a strand of redundant coordinates is made of. All coordinates are
 /// z = (x_0, ..., x_n, others): nodes' positions (m), then what the model adds (angles,
@@ -50,6 +42,8 @@ struct MaximalStrand {
   /// coordinates.
   std::unique_ptr<ConstraintSet> constraints;
   LinearKind solver = LinearKind::automatic;
+  Tangent tangent =
+      Tangent::exact;  // stiff: loads as if the strand's tangent stood still
 };
 
 /// A strand of redundant coordinates behind the contract of models/system.h:
@@ -119,6 +113,8 @@ class MaximalSystem final : public System,
   void place(double t, In q, In v) noexcept;
   Placement placement() const { return {pose_, z_, rate_}; }
   Points points(Needs wanted) noexcept;
+  bool directed() const { return needs_.directions && strand_.tangent == Tangent::exact; }
+  void add_directions(double t, const Points& p, double pos, Out s) noexcept;
   Status assemble(double t, In q, In v, Weights w, Out s, bool coupled_apart) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;
   void loads(double t) noexcept;
@@ -130,6 +126,7 @@ class MaximalSystem final : public System,
   Needs needs_;
   bool regular_mass_ = true;
   Groups elastic_, massive_, inert_;  // of energies, of mass points, of other coordinates
+  PointDirections directions_;
   Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Coupling> contacts_;

@@ -38,6 +38,18 @@ Vec3<T> times(const double* block, const Vec3<T>& x) {
           block[6] * x.x + block[7] * x.y + block[8] * x.z};
 }
 
+/// The derivatives of x without its value.
+template <class Number>
+Vec3<Number> variation(Vec3<Number> x) {
+  for (Number* part : {&x.x, &x.y, &x.z}) part->value = 0;
+  return x;
+}
+
+/// The edge whose direction a node has.
+std::size_t edge_of(std::size_t node, std::size_t nodes) {
+  return std::min(node, nodes - 2);
+}
+
 }  // namespace
 
 NodalSystem::NodalSystem(NodalParts parts)
@@ -49,7 +61,7 @@ NodalSystem::NodalSystem(NodalParts parts)
   const std::size_t n = parts_.start.size(), nodes = motion_.x.size();
   for (auto* numbers : {&q_, &v_, &a_}) numbers->resize(n);
   for (auto* x : {&x_, &u_, &tangent_, &load_}) x->resize(3 * nodes);
-  for (auto* slopes : {&load_by_x_, &load_by_v_}) slopes->resize(9 * nodes);
+  for (auto* slopes : {&load_by_x_, &load_by_v_, &load_by_t_}) slopes->resize(9 * nodes);
   zero_.resize(n);
   values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
   const bool dense = parts_.tangent == Tangent::exact;
@@ -84,7 +96,7 @@ Points NodalSystem::points(Needs wanted) noexcept {
   if (wanted.velocity) p.v = fill(u_, [this](std::size_t i) { return motion_.v[i]; });
   if (wanted.tangent) {
     p.tangent = fill(tangent_, [this, nodes](std::size_t i) {
-      return motion_.tangent(std::min(i, nodes - 2));
+      return motion_.tangent(edge_of(i, nodes));
     });
   }
   return p;
@@ -102,13 +114,15 @@ void NodalSystem::load(double t) noexcept {
 }
 
 void NodalSystem::load_slopes(double t) noexcept {
-  if (!needs_.derivatives) return;
+  if (!needs_.derivatives && !needs_.directions) return;
   const Points p = points(needs_);
   std::ranges::fill(load_by_x_, 0.0);
   std::ranges::fill(load_by_v_, 0.0);
+  std::ranges::fill(load_by_t_, 0.0);
   for (const auto& effect : parts_.effects) {
     effect->add_derivatives(t, p, 1, 0, load_by_x_);
     effect->add_derivatives(t, p, 0, 1, load_by_v_);
+    effect->add_direction_derivatives(t, p, 1, load_by_t_);
   }
 }
 
@@ -129,12 +143,15 @@ Status NodalSystem::residual(double t, In q, In v, In a, Out r) noexcept {
 void NodalSystem::differentiate(const StaggeredRod& rod, const RootPose& root) noexcept {
   moved_.place(rod, root, std::span<const Number>(q_), std::span<const Number>(v_));
   for (std::size_t i = 0; i < moved_.load.size(); ++i) {
-    Vec3<Number> moved = moved_.x[i], faster = moved_.v[i];
-    for (Number* x : {&moved.x, &moved.y, &moved.z, &faster.x, &faster.y, &faster.z}) {
-      x->value = 0;
+    moved_.load[i] = Vec3<Number>(motion_.load[i]) +
+                     times(&load_by_x_[9 * i], variation(moved_.x[i])) +
+                     times(&load_by_v_[9 * i], variation(moved_.v[i]));
+  }
+  if (needs_.directions) {
+    for (std::size_t i = 0, nodes = moved_.load.size(); i < nodes; ++i) {
+      const Vec3<Number> turned = variation(moved_.tangent(edge_of(i, nodes)));
+      moved_.load[i] = moved_.load[i] + times(&load_by_t_[9 * i], turned);
     }
-    moved_.load[i] = Vec3<Number>(motion_.load[i]) + times(&load_by_x_[9 * i], moved) +
-                     times(&load_by_v_[9 * i], faster);
   }
   moved_.accelerate(rod, root, std::span(a_));
 }

@@ -75,7 +75,7 @@ class NodalSystem final : public System,
   StaggeredMotion<Number> moved_;
   std::vector<Number> q_, v_, a_;
   std::vector<double> x_, u_, tangent_, load_;  // of the nodes, as effects see them
-  std::vector<double> load_by_x_, load_by_v_;   // (9 nodes)
+  std::vector<double> load_by_x_, load_by_v_, load_by_t_;  // (9 nodes)
   std::vector<double> zero_;
   Pattern pattern_;
   std::vector<double> leading_by_q_,

@@ -83,7 +83,10 @@ class ArcOf {
   /// Turns about e1.
   struct Turn {
     R factor;
-    Vec at(const At<R>& p) const { return {R(0), factor * p.s, R(0)}; }
+    template <class T>
+    Vec3<T> at(const At<T>& p) const {
+      return {T(0), T(factor) * p.s, T(0)};
+    }
   };
   /// W does not depend on k.
   struct Nothing {

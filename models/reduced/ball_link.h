@@ -46,7 +46,10 @@ class BallLinkOf {
   // Rotation of the joint; it does not depend on where on the link.
   struct Turn {
     Vec value;
-    Vec at(const At<R>&) const { return value; }
+    template <class T>
+    Vec3<T> at(const At<T>&) const {
+      return Vec3<T>(value);
+    }
   };
   Turn W(const Vec& y) const { return {joint_.W(y).at(at_)}; }
   Turn dW(const Vec& x, const Vec& y) const { return {joint_.dW(x, y).at(at_)}; }

@@ -65,8 +65,12 @@ class ContactTangent {
       const auto row = static_cast<std::size_t>(r);
       const Vec by_x = from.frame.back(at.by_place[row]);
       const Vec by_v = from.frame.back(at.by_velocity[row]);
+      Vec by_start = by_x;
+      if constexpr (dofs == 1) {  // as in ExactTangent
+        by_start = by_start + by_v.y * Vec{from.omega.z, 0, -from.omega.x};
+      }
       const Vec force = from.frame.back(-1.0 * at.onto[row]);
-      Frames::put(by_x, cross(p, by_x) + cross(u, by_v),
+      Frames::put(by_start, cross(p, by_start) + cross(u, by_v),
                   part<1, size>(end.by, r, 0).transpose());
       Frames::put(by_v, cross(p, by_v), part<1, size>(end.by, r, size).transpose());
       Frames::put(force, cross(p, force), column_of(end.onto, r));

@@ -20,10 +20,10 @@ class ExactTangent {
  public:
   using Shape = ExactShape<dofs>;
 
-  /// df/dx and df/dv of the effects at the points, (9) row-major each; empty: no effect
-  /// has any.
+  /// df/dx, df/dv and df/dtangent of the effects at the points, (9) row-major each;
+  /// empty: no effect has any.
   struct EffectBlocks {
-    In position, velocity;
+    In position, velocity, direction;
   };
 
   ExactTangent(const Kinematics<Kernel, dofs>& kinematics,
@@ -42,8 +42,14 @@ class ExactTangent {
       tangent.stiffness[k] = dot(K::unit(k), restoring(segment, w));
       tangent.local(size + k, 3 * size + k) += tangent.stiffness[k];
     }
-    if constexpr (dofs > 1) {
-      rotor(segment.rotor, kinematics_.motion(i).tip.omega, tangent.tip);
+    const Vec& omega = kinematics_.motion(i).tip.omega;
+    if constexpr (dofs == 1) {
+      // The moment about e1 is I omega_x omega_z, by in_plane() I (omega_x^2 -
+      // omega_z^2).
+      const Vec turned = in_plane(omega, Frames::axis(S::rotation[0]));
+      tangent.tip(t, t) = segment.rotor * (turned.x * omega.z + omega.x * turned.z);
+    } else {
+      rotor(segment.rotor, omega, tangent.tip);
       if (segment.mounted) Frames::mount(segment.mount, tangent);
     }
   }
@@ -141,6 +147,7 @@ class ExactTangent {
     const FrameMotion& from = kinematics_.start(i);
     const Vec3<Pack> omega(from.omega), alpha(from.alpha);
     const bool blocks = !effects.velocity.empty();
+    const bool directions = !effects.direction.empty();
 
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
       const Pack& mass = kinematics_.blocks()[b].mass;
@@ -150,12 +157,23 @@ class ExactTangent {
       const Vec3<Pack>& load = dynamics_.load(b);
       const Vec3<Pack>& force = dynamics_.force(b);
       const Vec3<Pack> turning = cross(omega, p);
-      PointMatrix by_x, by_v;
-      Vec3<Pack> u;  // velocity of the point
+      PointMatrix by_x, by_v, by_t, by_start;
+      Vec3<Pack> u, along;  // velocity and tangent of the point
       if (blocks) {
         by_x = PointMatrix(&effects.position[9 * K::first_point(b)], 1, from.frame);
         by_v = PointMatrix(&effects.velocity[9 * K::first_point(b)], 1, from.frame);
         u = Vec3<Pack>(from.v) + turning + velocity;
+        by_start = by_x;
+        if constexpr (dofs == 1) {
+          // Velocity across the plane is not among the states: where the start moves by
+          // dx it is omega x dx.
+          by_start.column[0] = by_start.column[0] + omega.z * by_v.column[1];
+          by_start.column[2] = by_start.column[2] - omega.x * by_v.column[1];
+        }
+      }
+      if (directions) {
+        by_t = PointMatrix(&effects.direction[9 * K::first_point(b)], 1, from.frame);
+        along = kinematics_.geometry(i).kernel.rotated(block.at, Helix::tangent);
       }
       const auto add = [&](int column, const Vec3<Pack>& dF) {
         accumulate(block, dF, column, tangent);
@@ -163,7 +181,7 @@ class ExactTangent {
       for (int c = 0; c < t; ++c) {
         const Vec3<Pack> e(Frames::axis(S::translation[c]));
         if (blocks) {
-          add(c, Pack(-1) * (by_x * e));
+          add(c, Pack(-1) * (by_start * e));
           add(size + c, Pack(-1) * (by_v * e));
         }
         add(2 * size + c, mass * e);
@@ -175,9 +193,10 @@ class ExactTangent {
         Vec3<Pack> by_omega =
             mass * (cross(e, turning + Pack(2) * velocity) + cross(omega, lever));
         if (blocks) {
-          by_phi = by_phi - by_x * lever - by_v * cross(e, u);
+          by_phi = by_phi - by_start * lever - by_v * cross(e, u);
           by_omega = by_omega - by_v * lever;
         }
+        if (directions) by_phi = by_phi - by_t * cross(e, along);
         if constexpr (dofs == 1) {
           // omega within the plane is not among the states: it turns with the frame.
           const Vec3<Pack> turned(in_plane(from.omega, Frames::axis(S::rotation[c])));
@@ -201,6 +220,11 @@ class ExactTangent {
         if (blocks) {
           dF = dF - Pack(w.pos) * (by_x * slope) -
                by_v * (Pack(w.vel) * slope + Pack(w.pos) * (carried + bent));
+        }
+        if (directions) {
+          const Vec3<Pack> turn =
+              kinematics_.geometry(i).kernel.W(K::unit(k)).at(block.at);
+          dF = dF - Pack(w.pos) * (by_t * cross(turn, along));
         }
         add(3 * size + k, dF);
         // The lever arms move under the force that is there already.

@@ -129,7 +129,15 @@ class InverseDynamics {
     derivatives(t, pos, vel, blocks,
                 [](const Effect& effect) { return !effect.needs().couplings; });
   }
-  /// Those of the other effects of the first strand.
+  /// blocks = df/dt, t the tangents, of all effects that look at them.
+  void direction_derivatives(double t, InOut blocks) const {
+    std::ranges::fill(blocks, 0.0);
+    const Points p = points(0, needs_of_[0]);
+    for (const auto& effect : effects_[0]) {
+      effect->add_direction_derivatives(t, p, 1, blocks);
+    }
+  }
+  /// Couplings of those effects of the first strand that have any.
   void couplings(double t, std::vector<Coupling>& all) const {
     all.clear();
     const Points p = points(0, needs_of_[0]);

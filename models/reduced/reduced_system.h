@@ -52,6 +52,9 @@ class ReducedSystem : public System,
         x->resize(9 * Pack::lanes * kinematics_.blocks().size());
       }
     }
+    if (dynamics_.effect_needs().directions) {
+      by_direction_.resize(9 * Pack::lanes * kinematics_.blocks().size());
+    }
     full_ = empty_tangent<Exact>(kinematics_);
     full_solver_ = make_tree_solver<Exact>(strand.method, full_);
     if (dynamics_.effect_needs().couplings) {
@@ -180,11 +183,14 @@ class ReducedSystem : public System,
   }
 
   typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
-    if (by_position_.empty()) return {};
+    if (by_position_.empty() && by_direction_.empty()) return {};
     dynamics_.place(dynamics_.effect_needs());
-    dynamics_.uncoupled_derivatives(t, 1, 0, by_position_);
-    dynamics_.uncoupled_derivatives(t, 0, 1, by_velocity_);
-    return {by_position_, by_velocity_};
+    if (!by_position_.empty()) {
+      dynamics_.uncoupled_derivatives(t, 1, 0, by_position_);
+      dynamics_.uncoupled_derivatives(t, 0, 1, by_velocity_);
+    }
+    if (!by_direction_.empty()) dynamics_.direction_derivatives(t, by_direction_);
+    return {by_position_, by_velocity_, by_direction_};
   }
 
   Status acceleration(double t, In q, In v, Out a) noexcept override {
@@ -324,7 +330,7 @@ class ReducedSystem : public System,
   std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
   bool full_in_use_ = false;
   Status factored_ = Status::retry;
-  std::vector<double> zero_, scratch_, by_position_, by_velocity_;
+  std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_;
   std::vector<Coupling> contacts_;
 };
 

@@ -200,17 +200,23 @@ Difference difference(const F& f, double size) {
   return {fine, 2 * std::abs(coarse - fine) + 100 * eps * size / h};
 }
 
+/// Point i by itself: the others do not matter to it.
+Cloud alone(const Cloud& cloud, std::size_t i) {
+  Cloud one(1);
+  store3(load3(&cloud.x[3 * i]), one.x.data());
+  store3(load3(&cloud.v[3 * i]), one.v.data());
+  store3(load3(&cloud.tangent[3 * i]), one.tangent.data());
+  one.mass = {cloud.mass[i]};
+  one.length = {cloud.length[i]};
+  return one;
+}
+
 /// With x, or v, of point i moved along axis k.
 template <class Member>
 void expect_blocks(const Effect& effect, const Cloud& cloud, Member member,
                    const std::vector<double>& blocks) {
   for (std::size_t i = 0; i < cloud.count(); ++i) {
-    Cloud one(1);  // the other points do not matter to it
-    store3(load3(&cloud.x[3 * i]), one.x.data());
-    store3(load3(&cloud.v[3 * i]), one.v.data());
-    store3(load3(&cloud.tangent[3 * i]), one.tangent.data());
-    one.mass = {cloud.mass[i]};
-    one.length = {cloud.length[i]};
+    const Cloud one = alone(cloud, i);
     const auto f0 = load(effect, now, one.points());
     const double size = 1 + std::sqrt(f0[0] * f0[0] + f0[1] * f0[1] + f0[2] * f0[2]);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -241,6 +247,37 @@ TEST_P(EffectContract, DerivativesByVelocityAreDifferencesOfTheLoad) {
   const Cloud points = crowd(*effect);
   expect_blocks(*effect, points, &Cloud::v,
                 derivatives(*effect, now, points.points(), 0, 1));
+}
+
+// The tangent turns: towards either of two directions across it, and stays a unit vector.
+TEST_P(EffectContract, DerivativesByDirectionAreDifferencesOfTheLoad) {
+  const Cloud points = crowd(*effect);
+  std::vector<double> blocks(9 * points.count(), 0.0);
+  effect->add_direction_derivatives(now, points.points(), 1, blocks);
+  double clearest = 0;
+  for (std::size_t i = 0; i < points.count(); ++i) {
+    const Cloud one = alone(points, i);
+    const Vec t = load3(one.tangent.data());
+    const Vec other = std::abs(t.x) < 0.7 ? Vec{1, 0, 0} : Vec{0, 1, 0};
+    const Vec first = (1 / norm(cross(t, other))) * cross(t, other);
+    const double size = 1 + norm(load3(load(*effect, now, one.points()).data()));
+    for (const Vec& across : {first, cross(t, first)}) {
+      for (std::size_t r = 0; r < 3; ++r) {
+        const auto component = [&](double h) {
+          Cloud turned = one;
+          const Vec moved = t + h * across;
+          store3((1 / norm(moved)) * moved, turned.tangent.data());
+          return load(*effect, now, turned.points())[r];
+        };
+        const Difference d = difference(component, size);
+        EXPECT_NEAR(dot(load3(&blocks[9 * i + 3 * r]), across), d.value, d.bound)
+            << "point " << i << ", d" << r;
+        clearest = std::max(clearest, std::abs(d.value) / d.bound);
+      }
+    }
+  }
+  // What is there stands out from the error of the difference, or is not there.
+  EXPECT_EQ(clearest > 1e3, effect->needs().directions);
 }
 
 TEST_P(EffectContract, DerivativesAreNeededExactlyWhenTheyAreNotZero) {
