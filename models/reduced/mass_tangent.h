@@ -74,8 +74,8 @@ Vec3<Real> restoring(const ReducedSegmentOf<Real>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
-/// local += sum J^T (B + B^T)/2 J over the points of a segment, B the matrices that
-/// effects have there: their part of a tangent that is to stay symmetric.
+/// local += sum J^T B J over the points of a segment, B the symmetric matrices that
+/// effects have there.
 template <class Kernel, int dofs>
 void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i,
                         In matrices,
@@ -92,8 +92,7 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
     const Vec3<Pack>& p = block.position;
     const PointMatrix matrix =
         PointMatrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
-                    kinematics.start(i).frame)
-            .symmetric();
+                    kinematics.start(i).frame);
     auto entry = total.begin();
     for (int c = 0; c < columns; ++c) {
       const Vec3<Pack> force =

@@ -28,18 +28,6 @@ struct PointMatrix {
     return x.x * column[0] + x.y * column[1] + x.z * column[2];
   }
 
-  /// Half of the sum with the transpose.
-  PointMatrix symmetric() const {
-    const Vec3<Pack>&a = column[0], &b = column[1], &c = column[2];
-    const Pack half(0.5), xy = half * (a.y + b.x), xz = half * (a.z + c.x),
-                          yz = half * (b.z + c.y);
-    PointMatrix s;
-    s.column[0] = {a.x, xy, xz};
-    s.column[1] = {xy, b.y, yz};
-    s.column[2] = {xz, yz, c.z};
-    return s;
-  }
-
   Vec3<Pack> column[3];
 };
 

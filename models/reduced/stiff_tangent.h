@@ -1,5 +1,6 @@
 #pragma once
 
+#include "models/reduced/definite_block.h"
 #include "models/reduced/inverse_dynamics.h"
 #include "models/reduced/mass_tangent.h"
 
@@ -23,7 +24,10 @@ TreeTangent<Shape> empty_tangent(const K& kinematics) {
 }
 
 /// Mass, friction and elastic stiffness of all segments, w.acc M + w.vel C + w.pos K,
-/// with the derivatives of effects made symmetric.
+/// with the derivatives of effects by the place and velocity of each point, made
+/// symmetric and semidefinite so that the sum stays definite: a repulsion resists along
+/// its gap and helps across it, by force/gap, more than mass and elasticity bear. What
+/// turning the strand's tangent does to loads is left out.
 template <class Kernel, int dofs>
 class StiffTangent {
  public:
@@ -48,6 +52,7 @@ class StiffTangent {
     kinematics_.move(t, q, v, zero_);
     dynamics_.place(dynamics_.effect_needs());
     dynamics_.derivatives(t, -w.pos, -w.vel, of_effects_);
+    make_semidefinite(of_effects_);
     return here(w, of_effects_);
   }
   /// Without effects, where Kinematics is.

@@ -24,33 +24,37 @@ void PrintTo(const Spiral& s, std::ostream* out) {
   if (s.kinked) *out << ", kinked";
 }
 
+/// Turns of 10 cm narrow from a radius of 10 mm to 4 mm and lie some 2 mm apart, within
+/// reach.
+std::unique_ptr<System> spiral_of(const Spiral& of, bool touches = true,
+                                  bool curled = true) {
+  const Parameters parameters =
+      parameters_of(of.model, with({{"elements", "16"}}, of.settings));
+  Strand s = strand(parameters);
+  const bool planar =
+      parameters.knows("modes") && parameters.word("modes") != "bend_twist";
+  for (std::size_t i = 0; i < s.segments.size(); ++i) {
+    const double along = static_cast<double>(i) / 16;
+    s.segments[i].natural = {planar ? 0.0 : 20, 100 + 150 * along, 0};
+    s.segments[i].initial = curled ? s.segments[i].natural : Vec{};
+    if (of.kinked && i == 7) s.segments[i].mount = rotation({0.6, 0, 0.8}, 0.3);
+  }
+  const double stiffness = touches ? of.stiffness : 0;
+  Effects effects = strand_effects(parameters);
+  effects.push_back(
+      std::make_shared<SelfContact>(ContactLaw({.stiffness = stiffness,
+                                                .viscosity = 1e-3 * stiffness,
+                                                .inner = 3e-3,
+                                                .outer = 5e-3},
+                                               "test"),
+                                    1.2e-2));
+  return find_model(of.model).on_strand(s, parameters, effects);
+}
+
 class SelfTouch : public testing::TestWithParam<Spiral> {
  protected:
-  /// Turns of 10 cm narrow from a radius of 10 mm to 4 mm and lie some 2 mm apart, within
-  /// reach.
   static std::unique_ptr<System> spiral(bool touches = true, bool curled = true) {
-    const Spiral& of = GetParam();
-    const Parameters parameters =
-        parameters_of(of.model, with({{"elements", "16"}}, of.settings));
-    Strand s = strand(parameters);
-    const bool planar =
-        parameters.knows("modes") && parameters.word("modes") != "bend_twist";
-    for (std::size_t i = 0; i < s.segments.size(); ++i) {
-      const double along = static_cast<double>(i) / 16;
-      s.segments[i].natural = {planar ? 0.0 : 20, 100 + 150 * along, 0};
-      s.segments[i].initial = curled ? s.segments[i].natural : Vec{};
-      if (of.kinked && i == 7) s.segments[i].mount = rotation({0.6, 0, 0.8}, 0.3);
-    }
-    const double stiffness = touches ? of.stiffness : 0;
-    Effects effects = strand_effects(parameters);
-    effects.push_back(
-        std::make_shared<SelfContact>(ContactLaw({.stiffness = stiffness,
-                                                  .viscosity = 1e-3 * stiffness,
-                                                  .inner = 3e-3,
-                                                  .outer = 5e-3},
-                                                 "test"),
-                                      1.2e-2));
-    return find_model(of.model).on_strand(s, parameters, effects);
+    return spiral_of(GetParam(), touches, curled);
   }
 };
 
@@ -66,6 +70,24 @@ TEST_P(SelfTouch, HasTheTangentOfItsResidual) {
     EXPECT_LE(tangent_error(*system, *system, s, w, short_step), tangent_tolerance);
     if (w.pos < 1e-3) continue;
     EXPECT_GE(tangent_error(*alone, *system, s, w, short_step), 0.01);
+  }
+}
+
+// Across the gap a repulsion helps what leaves the line of both, by force/gap: the stiff
+// tangent leaves that out, or it would have no Cholesky factor.
+TEST(StiffSelfTouch, IsDefiniteHoweverStrongTheContactIs) {
+  for (const char* solver : {"recursive", "composite"}) {
+    for (const double stiffness : {10.0, 1e3, 1e6}) {
+      const Spiral of{
+          "super_helix", {{"tangent", "stiff"}, {"solver", solver}}, stiffness};
+      const auto system = spiral_of(of);
+      States s(*system, 3);
+      s.shake(0.01);
+      for (const double h : {1e-3, 1e-2, 0.1}) {
+        EXPECT_EQ(system->linearize(t0, s.q, s.v, s.a, {1, h, h * h}), Status::ok)
+            << solver << ", " << stiffness << " N/m^2, " << h << " s";
+      }
+    }
   }
 }
 
@@ -91,20 +113,21 @@ TEST_P(SelfTouch, ContactsComeAndGo) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, SelfTouch,
-    testing::Values(Spiral{"super_helix", {{"root", "shake_rotate"}}, 10},
-                    Spiral{"super_helix", {{"root", "free"}}, 10},
-                    Spiral{"super_helix", {{"root", "shake_rotate"}}, 10, true},
-                    Spiral{
-                        "super_helix", {{"modes", "bend"}, {"root", "shake_rotate"}}, 10},
-                    Spiral{"super_helix", {{"modes", "bend_planar"}}, 10},
-                    Spiral{"articulated_chain", {{"root", "shake_rotate"}}, 10},
-                    Spiral{"force_transport", {{"root", "shake_rotate"}}, 10},
-                    Spiral{"der", {{"root", "shake_rotate"}}, 1e6},
-                    Spiral{"der", {{"root", "free"}}, 1e6},
-                    Spiral{"corde", {{"root", "shake_rotate"}}, 1e6},
-                    Spiral{"xpbd_cosserat", {{"root", "shake_rotate"}}, 1e6},
-                    Spiral{"dynamic_spline", {{"root", "shake_rotate"}}, 1e6},
-                    Spiral{"mass_spring", {{"root", "shake_rotate"}}, 1e6}));
+    testing::Values(
+        Spiral{"super_helix", {{"root", "shake_rotate"}}, 10},
+        Spiral{"super_helix", {{"root", "free"}}, 10},
+        Spiral{"super_helix", {{"root", "shake_rotate"}}, 10, true},
+        Spiral{"super_helix", {{"modes", "bend"}, {"root", "shake_rotate"}}, 10},
+        Spiral{"super_helix", {{"modes", "bend_planar"}}, 10},
+        Spiral{"super_helix", {{"modes", "bend_planar"}, {"root", "shake_rotate"}}, 10},
+        Spiral{"articulated_chain", {{"root", "shake_rotate"}}, 10},
+        Spiral{"force_transport", {{"root", "shake_rotate"}}, 10},
+        Spiral{"der", {{"root", "shake_rotate"}}, 1e6},
+        Spiral{"der", {{"root", "free"}}, 1e6},
+        Spiral{"corde", {{"root", "shake_rotate"}}, 1e6},
+        Spiral{"xpbd_cosserat", {{"root", "shake_rotate"}}, 1e6},
+        Spiral{"dynamic_spline", {{"root", "shake_rotate"}}, 1e6},
+        Spiral{"mass_spring", {{"root", "shake_rotate"}}, 1e6}));
 
 }  // namespace
 }  // namespace tress
