@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <stdexcept>
 
@@ -146,6 +147,89 @@ double measure_ring(const ModelTrial& trial) {
   return zero_of_last(known);
 }
 
+// 2 j, j = 2.006299671789448 the first zero of the Bessel function J_{-1/4} [Michell
+// 1899; Prandtl 1899].
+constexpr double lateral = 4.012599343578896;
+
+/// A blade with a tip load along its depth; GJ by St Venant's torsion of the ellipse
+/// [1855]. The bending in the plane of the load that comes first changes the load by some
+/// (EI_2 + GJ)/(2 EI_1), 7e-4 where it is 40 times as deep as wide.
+double measure_lateral(const ModelTrial& trial) {
+  const TestRod rod;
+  Strand strand = rod.strand(trial.elements, horizontal_clamp());
+  const CrossSection round = strand.segments.front().section;
+  const double width = round.a1 / std::sqrt(trial.parameter);
+  const double depth = round.a2 * std::sqrt(trial.parameter);
+  for (Segment& segment : strand.segments) segment.section = {width, depth};
+  const double cube = pi * std::pow(width, 3);
+  const double weak = strand.material.youngs_modulus * cube * depth / 4;
+  const double twisting = strand.material.shear_modulus * cube * std::pow(depth, 3) /
+                          (width * width + depth * depth);
+  const double unit = std::sqrt(weak * twisting) / (rod.length * rod.length);
+  return threshold(
+      [&](double load) {
+        Statics statics(trial.variant, strand, {}, {.force = (-load * unit) * axis_z});
+        statics.relax(1);
+        return statics.least_square();
+      },
+      0.3 * lateral, 2 * lateral);
+}
+
+std::string no_twist(const ModelVariant& variant) {
+  return variant.model->id == "mass_spring" || variant.model->id == "inextensible_strand"
+             ? "points do not twist"
+             : std::string();
+}
+
+std::string no_common_inertia(const ModelVariant& variant) {
+  return variant.model->id == "force_transport"
+             ? "its joints do not feel the inertia beyond them: no two modes meet"
+             : std::string();
+}
+
+// Load P L^2/EI at which the first two frequencies of Beck's column meet, and where they
+// do: a double root of p^2 + 2 w^2 (1 + cos a cosh b) + p w sin a sinh b, a^2, b^2 =
+// sqrt(p^2/4 + w^2) +- p/2.
+constexpr double beck_load = 20.050953618974, beck_rate = 11.015557706142;
+
+// What is measured of Beck's column.
+enum BeckQuantity { flutter_load = 1, flutter_rate = 2 };
+
+double beck(double quantity) {
+  return static_cast<int>(quantity) == flutter_load ? beck_load : beck_rate;
+}
+
+/// Squares x, y of the first two frequencies as their sum and (x - y)^2, which is smooth
+/// where they meet and turn complex. A round column has each twice, in either plane.
+struct TwoSquares {
+  double sum, discriminant;
+};
+TwoSquares two_squares(Statics& statics) {
+  const std::vector<std::complex<double>> all = statics.squares();
+  std::complex<double> sum = 0, squares = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum += all.at(i) / 2.0;
+    squares += all.at(i) * all.at(i) / 2.0;
+  }
+  return {sum.real(), (2.0 * squares - sum * sum).real()};
+}
+
+double measure_beck(const ModelTrial& trial) {
+  const TestRod rod;
+  const Strand strand = rod.strand(trial.elements, horizontal_clamp());
+  const auto at = [&](double load) {
+    Statics statics(
+        trial.variant, strand, {}, {},
+        {std::make_shared<FollowerForce>(trial.elements, load * rod.force())});
+    statics.relax(1);
+    return two_squares(statics);
+  };
+  const double load = threshold([&](double p) { return at(p).discriminant; },
+                                0.7 * beck_load, 1.3 * beck_load);
+  if (static_cast<int>(trial.parameter) == flutter_load) return load;
+  return std::sqrt(at(load).sum / 2) / rod.rate();
+}
+
 }  // namespace
 
 std::vector<ValidationTest> buckling_tests() {
@@ -203,6 +287,44 @@ std::vector<ValidationTest> buckling_tests() {
           .reference = ring_twist,
           .refusal = no_section,
           .measure = measure_ring,
+      },
+      {
+          .name = "lateral_buckling",
+          .what = "elliptic blade, clamped, that a dead force across its tip buckles "
+                  "sideways by bending and twist",
+          .source = "Michell 1899; Prandtl 1899",
+          .parameter = "depth over width of the section",
+          .quantity = "P L^2/sqrt(GJ EI_2) at which it buckles",
+          .range = {15, 100},
+          .quick = {{40}, {10, 20}},
+          .usual = {{20, 40}, {5, 10, 20, 40}},
+          .full = {{15, 20, 40, 80}, {5, 10, 20, 40, 80}},
+          .tolerance = 0.02,
+          .why = two_per_cent,
+          .judged_from = 20,
+          .claimed = rods,
+          .reference = [](double) { return lateral; },
+          .refusal = no_twist,
+          .measure = measure_lateral,
+      },
+      {
+          .name = "beck",
+          .what =
+              "straight strand, clamped, pushed at its tip by a force along its tangent",
+          .source = "Beck 1952; the double root of its frequency equation",
+          .parameter = "1: the load, 2: the frequency",
+          .quantity = "P L^2/EI at which it flutters, omega sqrt(rho S L^4/EI) there",
+          .range = {1, 2, true},
+          .quick = {{1, 2}, {10, 20}},
+          .usual = {{1, 2}, {5, 10, 20, 40}},
+          .full = {{1, 2}, {5, 10, 20, 40, 80}},
+          .tolerance = 0.02,
+          .why = two_per_cent,
+          .judged_from = 20,
+          .claimed = rods,
+          .reference = beck,
+          .refusal = no_common_inertia,
+          .measure = measure_beck,
       },
   };
 }

@@ -1,12 +1,10 @@
 #include "experiments/validation/loads.h"
 
 #include "models/math/gauss_legendre.h"
+#include "models/math/mat3.h"
 
 namespace tress {
 namespace {
-
-// Models carry a segment's mass by one node, or by a multiple of so many points.
-constexpr int fewest_points = 4, most_points = 32;
 
 /// Of the polynomial through the points of Gauss's rule, at the end of its interval.
 std::vector<double> at_end(int points) {
@@ -38,18 +36,15 @@ double Weight::potential(double t, const Points& p) const noexcept {
   return sum;
 }
 
-TipForce::TipForce(int elements) : elements_(elements), rules_{{1}} {
-  for (int points = fewest_points; points <= most_points; points += fewest_points) {
-    rules_.push_back(at_end(points));
-  }
-}
-
-const std::vector<double>& TipForce::weights(const Points& p) const noexcept {
-  return rules_[static_cast<std::size_t>(p.count / (fewest_points * elements_))];
+const std::vector<double>& TipPoints::weights(const Points& p) const {
+  // Models carry a segment's mass by one node, n + 1 in all, or by several points.
+  const int points = p.count > elements_ + 1 ? p.count / elements_ : 1;
+  if (weights_.size() != static_cast<std::size_t>(points)) weights_ = at_end(points);
+  return weights_;
 }
 
 void TipForce::add_load(double, const Points& p, InOut f) const noexcept {
-  const std::vector<double>& w = weights(p);
+  const std::vector<double>& w = tip_.weights(p);
   const std::size_t first = p.mass.size() - w.size();
   for (std::size_t k = 0; k < w.size(); ++k) {
     double* load = &f[3 * (first + k)];
@@ -58,11 +53,40 @@ void TipForce::add_load(double, const Points& p, InOut f) const noexcept {
 }
 
 double TipForce::potential(double, const Points& p) const noexcept {
-  const std::vector<double>& w = weights(p);
+  const std::vector<double>& w = tip_.weights(p);
   const std::size_t first = p.mass.size() - w.size();
   double sum = 0;
   for (std::size_t k = 0; k < w.size(); ++k) {
     sum -= w[k] * dot(force, load3(&p.x[3 * (first + k)]));
+  }
+  return sum;
+}
+
+void FollowerForce::add_load(double, const Points& p, InOut f) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const std::size_t at = 3 * (first + k);
+    store3(load3(&f[at]) - (force_ * w[k]) * load3(&p.tangent[at]), &f[at]);
+  }
+}
+
+void FollowerForce::add_direction_derivatives(double, const Points& p, double factor,
+                                              InOut blocks) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    add9((-factor * force_ * w[k]) * identity(), &blocks[9 * (first + k)]);
+  }
+}
+
+double FollowerForce::power(double, const Points& p) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  double sum = 0;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const std::size_t at = 3 * (first + k);
+    sum -= force_ * w[k] * dot(load3(&p.tangent[at]), load3(&p.v[at]));
   }
   return sum;
 }

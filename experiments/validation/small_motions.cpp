@@ -35,17 +35,25 @@ std::vector<SmallMotion> of_symmetric(const MatrixXd& mass, const MatrixXd& stif
   return all;
 }
 
+/// M and K over the motions that the conditions leave.
+struct Reduced {
+  MatrixXd right, mass, stiffness;
+};
+Reduced reduced(const MatrixXd& mass, const MatrixXd& stiffness, const MatrixXd& columns,
+                const MatrixXd& rows, In typical) {
+  const Eigen::Map<const VectorXd> size(typical.data(), mass.rows());
+  const MatrixXd right =
+      size.asDiagonal() * complement(size.asDiagonal() * rows.transpose());
+  const MatrixXd left = size.asDiagonal() * complement(size.asDiagonal() * columns);
+  return {right, left.transpose() * mass * right, left.transpose() * stiffness * right};
+}
+
 }  // namespace
 
 std::vector<SmallMotion> small_motions(const MatrixXd& mass, const MatrixXd& stiffness,
                                        const MatrixXd& columns, const MatrixXd& rows,
                                        In typical) {
-  const Eigen::Map<const VectorXd> size(typical.data(), mass.rows());
-  const MatrixXd right =
-      size.asDiagonal() * complement(size.asDiagonal() * rows.transpose());
-  const MatrixXd left = size.asDiagonal() * complement(size.asDiagonal() * columns);
-  const MatrixXd m = left.transpose() * mass * right;
-  const MatrixXd k = left.transpose() * stiffness * right;
+  const auto [right, m, k] = reduced(mass, stiffness, columns, rows, typical);
   std::vector<SmallMotion> all;
   if (symmetric(m) && symmetric(k)) {
     all = of_symmetric((m + m.transpose()) / 2, (k + k.transpose()) / 2);
@@ -57,6 +65,17 @@ std::vector<SmallMotion> small_motions(const MatrixXd& mass, const MatrixXd& sti
     }
     std::ranges::sort(all, {}, &SmallMotion::square);
   }
+  return all;
+}
+
+std::vector<std::complex<double>> squares_of_motions(const MatrixXd& mass,
+                                                     const MatrixXd& stiffness,
+                                                     const MatrixXd& columns,
+                                                     const MatrixXd& rows, In typical) {
+  const auto [right, m, k] = reduced(mass, stiffness, columns, rows, typical);
+  const Eigen::VectorXcd values = eigenvalues(solution(m, k));
+  std::vector<std::complex<double>> all(values.begin(), values.end());
+  std::ranges::sort(all, {}, [](const auto& square) { return square.real(); });
   return all;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 #include <vector>
 
 #include "models/system.h"
@@ -23,5 +24,13 @@ std::vector<SmallMotion> small_motions(const Eigen::MatrixXd& mass,
                                        const Eigen::MatrixXd& stiffness,
                                        const Eigen::MatrixXd& columns,
                                        const Eigen::MatrixXd& rows, In typical);
+
+/// omega^2 of the same, complex where motions grow, ascending by real parts: whatever is
+/// symmetric, so that a small part that is not counts.
+std::vector<std::complex<double>> squares_of_motions(const Eigen::MatrixXd& mass,
+                                                     const Eigen::MatrixXd& stiffness,
+                                                     const Eigen::MatrixXd& columns,
+                                                     const Eigen::MatrixXd& rows,
+                                                     In typical);
 
 }  // namespace tress

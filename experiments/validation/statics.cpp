@@ -253,7 +253,11 @@ double Statics::energy() {
   return system_->energetics()->energy(t_, q_, zero).potential;
 }
 
-std::vector<SmallMotion> Statics::motions() {
+struct Statics::Motion {
+  MatrixXd mass, stiffness, columns, rows;
+};
+
+Statics::Motion Statics::motion() {
   take_curvature();
   const Conditions now = conditions();
   MatrixXd k = stiffness();
@@ -266,8 +270,18 @@ std::vector<SmallMotion> Statics::motions() {
       rigid.push_back(i);
     }
   }
-  return small_motions(dense_mass(*system_, t_, q_), k, now.columns(Eigen::all, rigid),
-                       now.rows(rigid, Eigen::all), q_typ_);
+  return {dense_mass(*system_, t_, q_), std::move(k), now.columns(Eigen::all, rigid),
+          now.rows(rigid, Eigen::all)};
+}
+
+std::vector<SmallMotion> Statics::motions() {
+  const Motion of = motion();
+  return small_motions(of.mass, of.stiffness, of.columns, of.rows, q_typ_);
+}
+
+std::vector<std::complex<double>> Statics::squares() {
+  const Motion of = motion();
+  return squares_of_motions(of.mass, of.stiffness, of.columns, of.rows, q_typ_);
 }
 
 std::vector<double> Statics::displacements(const SmallMotion& motion) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,8 @@ class Statics {
   /// About the equilibrium with all that holds it; the least square is negative where the
   /// equilibrium is not stable.
   std::vector<SmallMotion> motions();
+  /// Their omega^2, with what follower loads make of them: complex where they grow.
+  std::vector<std::complex<double>> squares();
   double least_square() { return motions().front().square; }
   /// What a shape does to the points, (3 count) m.
   std::vector<double> displacements(const SmallMotion& motion);
@@ -55,6 +58,8 @@ class Statics {
  private:
   struct Conditions;  // their slopes at the present state
   Conditions conditions();
+  struct Motion;  // M, K and the conditions of small motions
+  Motion motion();
   Eigen::MatrixXd stiffness();
   void take_curvature();
   void load_tip();

@@ -156,6 +156,11 @@ ReducedOptions reduced_options(const Parameters& p) {
 // reached at 0.29, 4.7, 9.8, 15.6, 21.8, 28.3, 35.3 rad by 4, 8 ... 28 points, steps of a
 // pack; the last line follows these.
 int quadrature_points(double angle) {
+  constexpr double widest = 6500;  // rad, for some 4100 points
+  if (!(angle <= widest)) {
+    throw InputError("an element winds by more than 6500 rad", "natural or initial shape",
+                     "use more elements, or less curvature and twist");
+  }
   if (angle <= 0.28) return 4;
   if (angle <= 4.6) return 8;
   if (angle <= 9.7) return 12;

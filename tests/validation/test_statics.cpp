@@ -4,6 +4,8 @@
 
 #include "experiments/validation/rod.h"
 #include "experiments/validation/statics.h"
+#include "models/input_error.h"
+#include "models/math/gauss_legendre.h"
 
 namespace tress {
 namespace {
@@ -93,6 +95,52 @@ INSTANTIATE_TEST_SUITE_P(Statics, Rods,
                                          variant("dynamic_spline"),
                                          variant("kirchhoff_nodal")),
                          name);
+
+// Of a strand of one segment along (sin(angle s), cos(angle s), s) the tip is the
+// polynomial's through the points, off by max |x^(n)|/n! prod (1 - s_k) per component, n!
+// angle^n/(2n)! for Gauss's points; rounding grows with the sum of the weights' sizes, 2n
+// at most.
+TEST(TipForce, FindsTheTipFromAnyNumberOfPoints) {
+  for (const auto& [angle, n] :
+       {std::pair(0.28, 4), {25.0, 32}, {41.5, 36}, {55.0, 44}}) {
+    std::vector<double> x, mass, length;
+    for (const QuadraturePoint& point : gauss_legendre(n, 1)) {
+      x.insert(x.end(),
+               {std::sin(angle * point.at), std::cos(angle * point.at), point.at});
+      mass.push_back(point.weight);
+      length.push_back(point.weight);
+    }
+    const double off =
+        std::exp(n * std::log(angle) + std::lgamma(n + 1.0) - std::lgamma(2.0 * n + 1));
+    const double rounding = 2.0 * n * n * 2.2e-16;
+    TipForce tip(1);
+    tip.force = {1, 0, 0};
+    EXPECT_NEAR(-tip.potential(0, {n, x, {}, {}, mass, length}), std::sin(angle),
+                off + rounding)
+        << n;
+    EXPECT_LT(off, 1e-3) << "nothing to see";
+  }
+}
+
+// Each element of this coil winds by 55 rad: 44 points each. A force of a thousandth of
+// EI/L^2 bends it next to nothing.
+TEST(Statics, CoilsOfManyTurnsAnElementAreInEquilibrium) {
+  TestRod rod;
+  rod.natural = uniform_shape({0, 5500, 0});
+  const Strand strand = rod.strand(10, horizontal_clamp());
+  Statics statics(variant("super_helix"), strand, {},
+                  {.force = (1e-3 * rod.force()) * axis_z});
+  const Vec before = statics.tip();
+  EXPECT_NO_THROW(statics.relax(1));
+  EXPECT_LE(norm(statics.tip() - before), 1e-3 * rod.length);
+}
+
+TEST(Statics, CoilsOfAThousandTurnsAnElementAreRefused) {
+  TestRod rod;
+  rod.natural = uniform_shape({0, 1e6, 0});
+  const Strand strand = rod.strand(10, horizontal_clamp());  // 10 000 rad each
+  EXPECT_THROW(Statics(variant("super_helix"), strand, {}), InputError);
+}
 
 // Gradients of a section's rows against differences of order 4 (other steps), their
 // curvature against differences of the gradients: 1e-8 of its size.
