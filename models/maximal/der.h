@@ -30,10 +30,16 @@ namespace tress {
 /// edge has turned by more than 60 degrees from its own; accept() then takes the present
 /// frame as the reference and gives theta' the turning that the old one brought, so that
 /// neither frames nor spins jump.
+///
+/// The kinetic energy of the angles takes theta' for the section's spin, theta' + c . e'
+/// with c of rod_edge.h, so that M is constant: the difference grows with the angle from
+/// the reference. A free strand's angular momentum drifts by that, some (r/L)^2 of itself
+/// a radian whatever the step, and a new reference changes the energy by as much
+/// (tests/models/maximal/test_framed_spline.cpp). corde's quaternions have no such share.
 struct DerOptions {
   bool inextensible = false;         // |e| = l as constraints with multipliers
   bool quasi_static_twist = false;   // angles have no inertia
-  Tangent tangent = Tangent::exact;  // stiff: without the second derivatives of strains
+  Tangent tangent = Tangent::exact;  // stiff: without second derivatives of strains
   LinearKind solver = LinearKind::automatic;
 };
 

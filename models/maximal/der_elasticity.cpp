@@ -273,6 +273,16 @@ void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
   }
 }
 
+Vec DerElasticity::spin(const Placement& p, In inertia) noexcept {
+  place(p);
+  Vec sum;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const Vec& t = edges_[i].turn.t;
+    sum = sum + (inertia[i] * dot(edges_[i].spin, t)) * t;
+  }
+  return sum;
+}
+
 bool DerElasticity::end_frame(const Placement& p, Frame& frame) noexcept {
   const std::size_t last = edges_.size() - 1;
   const Vec e = load3(&p.z[3 * last + 3]) - load3(&p.z[3 * last]);

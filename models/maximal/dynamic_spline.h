@@ -29,8 +29,8 @@ namespace tress {
 /// in the first and the last, as many as there are ways to stretch a straight strand.
 /// With two or three points in every span what a bent cubic cannot help stretching, EA
 /// h^6 or so, takes two digits from a hair of ten spans (EA L^2/EI = 4e6). rho (I1 + I2)
-/// is lumped at the angles, whose spins the momentum leaves out: a free strand keeps its
-/// own to their share of it, some (r/L)^2.
+/// is lumped at the angles, with theta' for the section's spin as in der.h: a free strand
+/// keeps its momentum and energy to their share of it, some (r/L)^2.
 ///
 /// Plane bending: frequencies, (beta h)^4/1440 too high, and statics are of order 4.
 /// Whatever twists is of order 2, torsional frequencies (beta h)^2/24 too low. The

@@ -205,21 +205,27 @@ double FramedSpline::power(const Placement& p) noexcept {
   return total;
 }
 
+Vec FramedSpline::spin(const Placement& p, In inertia) noexcept {
+  Vec sum;
+  for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
+    const EdgeTurn turn(references_[knot].e0, direction(p.z, knot));
+    const Vec spin = turn.spin(direction(p.rate, knot), p.rate[angle(knot)]);
+    sum = sum + (inertia[knot - first_angle()] * dot(spin, turn.t)) * turn.t;
+  }
+  return sum;
+}
+
 bool FramedSpline::end_frame(const Placement& p, Frame& frame) noexcept {
-  const std::size_t last = spans_.size() - 1, knot = last + 1;
-  frame = edge_frame(references_[knot], of_controls(spans_[last].end, &p.z[3 * last]),
-                     p.z[angle(knot)]);
+  const std::size_t knot = spans_.size();
+  frame = edge_frame(references_[knot], direction(p.z, knot), p.z[angle(knot)]);
   return true;
 }
 
 bool FramedSpline::rebase(InOut z, InOut rate) {
   bool moved = false;
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
-    const std::size_t span = knot > 0 ? knot - 1 : 0;
-    const auto& weight = knot > 0 ? spans_[span].end : spans_[span].start;
-    moved |= renew_reference(references_[knot], of_controls(weight, &z[3 * span]),
-                             of_controls(weight, &rate[3 * span]), z[angle(knot)],
-                             rate[angle(knot)]);
+    moved |= renew_reference(references_[knot], direction(z, knot), direction(rate, knot),
+                             z[angle(knot)], rate[angle(knot)]);
   }
   return moved;
 }

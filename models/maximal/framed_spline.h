@@ -38,6 +38,7 @@ class FramedSpline final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
+  Vec spin(const Placement& p, In inertia) noexcept override;
   bool end_frame(const Placement& p, Frame& frame) noexcept override;
   bool rebase(InOut z, InOut rate) override;
   void reset() override { references_ = references_at_start_; }
@@ -56,6 +57,11 @@ class FramedSpline final : public Elasticity {
   bool held(std::size_t knot) const { return knot < first_angle(); }
   std::size_t angle(std::size_t knot) const {
     return 3 * (spans_.size() + 3) + knot - first_angle();
+  }
+  /// r' at a knot, or its rate.
+  Vec direction(In z, std::size_t knot) const {
+    const std::size_t span = knot > 0 ? knot - 1 : 0;
+    return of_controls(knot > 0 ? spans_[span].end : spans_[span].start, &z[3 * span]);
   }
   std::size_t size(std::size_t span) const { return held(span) ? most - 1 : most; }
   /// Values at a span's knots, with those of the clamp where it holds the first.

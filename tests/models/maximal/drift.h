@@ -19,13 +19,13 @@ inline const ModelSettings bent_throw = {{"elements", "6"},
                                          {"initial", "bent"},
                                          {"initial_curvature_1_m", "20"}};
 
-/// What implicit_midpoint loses of a free strand in 0.1 s: root mean square of the
+/// What implicit_midpoint loses of a free strand in `duration`: root mean square of the
 /// energy's drift over the largest kinetic energy, and the largest drift of linear and
 /// angular momentum over their sizes.
 struct Drift {
   double energy, momentum;
 };
-inline Drift drift(System& system, double step) {
+inline Drift drift(System& system, double step, double duration = 0.1) {
   Energetics& energetics = *system.energetics();
   State start{zeros(system), zeros(system)};
   system.initial_state(start.q, start.v);
@@ -42,7 +42,7 @@ inline Drift drift(System& system, double step) {
     return std::sqrt(dot(off, off) / dot(size, size));
   };
   const Simulation run = simulate(
-      "implicit_midpoint", system, options, start, 0.1, [&](double t, In q, In v) {
+      "implicit_midpoint", system, options, start, duration, [&](double t, In q, In v) {
         const Energy e = energetics.energy(t, q, v);
         square += std::pow(e.total() - before, 2);
         kinetic = std::max(kinetic, e.kinetic);
