@@ -37,8 +37,8 @@ int elements_of(const Hair& hair) {
 }
 
 /// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass,
-/// u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2. Ten times that for the
-/// tip's share, sqrt(30) of the root mean square speed, is in the bound itself.
+/// u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2, the square of the root
+/// mean square speed. The tip's is at most sqrt(30) of that.
 double wind_speed_bound(const Hair& hair, const Parameters& p) {
   const double area = std::numbers::pi * hair.radius * hair.radius;
   const double c = wind_drag / (p.number("density_kg_m3") * area);

@@ -1,6 +1,8 @@
 // The pages made from templates and tables: `node --test tests/report/test_prose.mjs`.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
@@ -8,9 +10,9 @@ import { must, number, percent, range, row_of, table, time } from '../../experim
 import { answers, written_pages } from '../../experiments/report/prose/pages.mjs';
 import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
 import { fill, untraced_numbers } from '../../experiments/report/prose/template.mjs';
-import { spawnSync } from 'node:child_process';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
+const command = join(root, 'experiments/report/prose/prose.mjs');
 
 test('every page says what templates and tables say', () => {
   for (const { page, text } of written_pages(root)) {
@@ -59,6 +61,29 @@ test('rows are selected by value, and one row must be one', () => {
   assert.throws(() => row_of(tables, 't', {}), /2 rows/);
 });
 
+test('the command writes pages, checks them, and refuses numbers typed by hand', () => {
+  const made = mkdtempSync(join(tmpdir(), 'tress-prose-'));
+  const run = (...argv) => spawnSync(process.execPath, [command, ...argv, made], { encoding: 'utf8' });
+  try {
+    mkdirSync(join(made, 'docs/templates/studies'), { recursive: true });
+    mkdirSync(join(made, 'results'));
+    writeFileSync(join(made, 'docs/templates/README.md'), '# strands\n');
+    assert.equal(run('--check').status, 3);
+    assert.equal(run().status, 0);
+    assert.equal(run('--check').status, 0);
+    writeFileSync(join(made, 'README.md'), readFileSync(join(made, 'README.md'), 'utf8') + 'more\n');
+    const changed = run('--check');
+    assert.equal(changed.status, 3);
+    assert.match(changed.stderr, /^README\.md:3: says "more"/);
+    writeFileSync(join(made, 'docs/templates/README.md'), 'holds 19 cases\n');
+    const typed = run();
+    assert.equal(typed.status, 2);
+    assert.match(typed.stderr, /docs\/templates\/README\.md:1: '19' is typed by hand/);
+  } finally {
+    rmSync(made, { recursive: true });
+  }
+});
+
 test('values are written in few digits', () => {
   assert.equal(number(0.012345), '0.012');
   assert.equal(number(123.4), '123');
@@ -78,6 +103,6 @@ test('the catalogue page shows what the program lists', () => {
   assert.equal(
     readFileSync(join(root, snapshot), 'utf8'),
     stdout,
-    `${snapshot}: write it anew: ${program} --list > ${snapshot}; then ./tress report`,
+    `${snapshot}: write it anew with ./tress report`,
   );
 });
