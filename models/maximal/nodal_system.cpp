@@ -122,7 +122,7 @@ void NodalSystem::load_slopes(double t) noexcept {
   for (const auto& effect : parts_.effects) {
     effect->add_derivatives(t, p, 1, 0, load_by_x_);
     effect->add_derivatives(t, p, 0, 1, load_by_v_);
-    effect->add_direction_derivatives(t, p, 1, load_by_t_);
+    if (needs_.directions) effect->add_direction_derivatives(t, p, 1, load_by_t_);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Seen {
   int calls = 0;
   bool position = false, velocity = false, tangent = false;
-  int derivatives = 0;
+  int derivatives = 0, directions = 0;
 };
 
 /// Pushes nothing and keeps count of what it is given.
@@ -31,6 +31,10 @@ class Spy final : public Effect {
   void add_derivatives(double, const Points&, double, double,
                        InOut) const noexcept override {
     ++seen_.derivatives;
+  }
+  void add_direction_derivatives(double, const Points&, double,
+                                 InOut) const noexcept override {
+    ++seen_.directions;
   }
   double potential(double, const Points&) const noexcept override { return 0; }
   double power(double, const Points&) const noexcept override { return 0; }
@@ -73,6 +77,11 @@ TEST_P(EffectCost, OnlyWhatIsAskedForIsComputed) {
   EXPECT_TRUE(seen({.position = true}).position);
   EXPECT_TRUE(seen({.velocity = true}).velocity);
   EXPECT_TRUE(seen({.tangent = true}).tangent);
+  const Needs turning{.velocity = true, .tangent = true, .derivatives = true};
+  EXPECT_EQ(seen(turning).directions, 0) << "nobody asked what turning does";
+  Needs directed = turning;
+  directed.directions = true;
+  EXPECT_GT(seen(directed).directions, 0);
 }
 
 /// The strand without effects is the one whose effect does nothing, bit by bit.
