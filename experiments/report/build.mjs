@@ -36,16 +36,21 @@ const page = await build({
   format: 'iife',
 });
 
+// The package that a file belongs to, undefined for our own.
+const package_of = (path) =>
+  [...path.matchAll(/node_modules\/((?:@[^/]+\/)?[^/]+)/g)].at(-1)?.[1];
+
+// Some packages come with others inside: the source map beside a file names them.
+function sources_of(input) {
+  const map = at(`${input}.map`);
+  if (package_of(input) === undefined || !existsSync(map)) return [input];
+  return [input, ...JSON.parse(readFileSync(map, 'utf8')).sources];
+}
+
 // Licence texts of every bundled package, each text once.
 function notices(inputs) {
   const packages = [
-    ...new Set(
-      inputs.flatMap((path) =>
-        [...path.matchAll(/.*node_modules\/((?:@[^/]+\/)?[^/]+)/g)].map(
-          (match) => match[1],
-        ),
-      ),
-    ),
+    ...new Set(inputs.flatMap(sources_of).map(package_of).filter(Boolean)),
   ].sort();
   const texts = new Map();
   for (const name of packages) {

@@ -92,6 +92,7 @@ for (const [what, make] of Object.entries(makers)) {
         assert.equal(of.length, 1, `${file}: ${warnings}`);
         assert.match(of[0], /; .*(remove|again|write)/, 'names a remedy');
       }
+      assert.ok(!page.includes(directory), 'the page names no folder of this machine');
       assert.equal((page.match(/Not everything could be used/g) ?? []).length, 1);
     }));
 }
@@ -147,22 +148,35 @@ test('Checks_MayHaveAnyStateAndNoShape', () =>
       {},
       { claim: 'old and held', held: true, value: 1 },
       { claim: 'old and not', held: false, value: 2 },
-      { claim: 'new and passed', state: 'passed' },
-      { claim: 'a limit', state: 'finding', value: 0.04, expected: 0.05 },
-      { claim: 'a ratio', state: 'figure', value: 3 },
-      { claim: 'was not run', state: 'not judged' },
+      { claim: 'new and held', held: true, state: 'held' },
+      { claim: 'a limit', held: false, state: 'known_limit', value: 0.04, reason: 'so <it> is' },
+      { claim: 'another', held: false, state: 'changed', value: 3 },
       { claim: 'a later word', state: 'postponed' },
       { claim: ['<b>'], state: { a: 1 }, value: {} },
     ];
-    writeFileSync(join(directory, 'good.meta.json'), JSON.stringify({ checks }));
+    const not_judged = [{ claim: 'was not run', reason: 'no rows' }, null];
+    const figures = [{ figure: 'a ratio', value: 3.5 }, 7];
+    writeFileSync(
+      join(directory, 'good.meta.json'),
+      JSON.stringify({ checks, not_judged, figures }),
+    );
     const { page, warnings } = await report();
     assert.deepEqual(warnings, []);
-    assert.match(page, /good: 2 of 3 judged claims passed, 1 finding, 1 figure/);
+    assert.match(
+      page,
+      /good: 2 of 8 claims .* held, changed: 1, known limit: 1, not judged: 1, figure: 1, postponed: 1/,
+    );
     assert.match(page, /Did not hold: old and not \(measured 2\)/);
-    assert.match(page, /Known limit: a limit \(measured 0\.04, expected 0\.05\)/);
-    assert.match(page, /Figure, not judged: a ratio \(measured 3\)/);
-    assert.match(page, /Not judged: was not run/);
+    assert.match(page, /Known limit: a limit \(measured 0\.04\): so &lt;it&gt; is/);
+    assert.match(page, /Changed: another \(measured 3\)/);
+    assert.match(page, /Not judged: was not run: no rows/);
+    assert.match(page, /Figure: a ratio \(measured 3\.5\)/);
     assert.match(page, /postponed: a later word/);
+    writeFileSync(
+      join(directory, 'good.meta.json'),
+      JSON.stringify({ checks: 5, not_judged: {}, figures: 'x' }),
+    );
+    assert.deepEqual((await report()).warnings, []);
   }));
 
 // Values that a broken run may leave: every number the same, every text the same.

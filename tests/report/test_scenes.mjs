@@ -1,10 +1,12 @@
 // The scenes tab in headless Chromium: `node --test tests/report/test_scenes.mjs`.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
 import { after, before, test } from 'node:test';
 import { Browser } from './browser.mjs';
-import { fixture_directory, remove, run_page } from './support.mjs';
+import { fixture_directory, remove, report_root, run_page } from './support.mjs';
 
 let directory, browser, url;
 
@@ -236,4 +238,57 @@ test('FillWindow_LeavesOnlyThePicture', async () => {
   assert.equal(tools, true);
   await browser.press(keys.escape);
   assert.ok(await browser.run("return document.getElementById('scene-play').offsetParent !== null"));
+});
+
+// '#' starts the last part of an address, '%' an encoded character, '-' an option.
+test('Picture_IsTakenOfAPageAndIntoAFileOfAnyName', () => {
+  const folder = join(directory, '-a #%41');
+  mkdirSync(folder);
+  copyFileSync(join(directory, 'report.html'), join(folder, '-p\u00e9#.html'));
+  const { status, stderr } = spawnSync(
+    join(report_root, 'picture.sh'),
+    ['-p\u00e9#.html', 'scene=fixture_wind&frame=3', '-o#1.png', '300,200'],
+    { cwd: folder, encoding: 'utf8' },
+  );
+  assert.equal(status, 0, stderr);
+  const png = readFileSync(join(folder, '-o#1.png'));
+  assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [300, 200]);
+  // A page that was not found gives a grey picture of an error: far smaller.
+  assert.ok(png.length > 4000, `${png.length} bytes`);
+  const missing = spawnSync(
+    join(report_root, 'picture.sh'),
+    ['none.html', 'scene=a', 'o.png'],
+    { cwd: folder, encoding: 'utf8' },
+  );
+  assert.equal(missing.status, 2);
+  assert.match(missing.stderr, /none\.html: no such page/);
+});
+
+// All of the strand, at every azimuth, and no more room than it needs where it is seen
+// broadside (from -y).
+test('Scenes_FillTheCanvasWithoutBeingCut', async () => {
+  for (const [width, height] of [
+    [1200, 500],
+    [500, 1200],
+  ]) {
+    for (const azimuth of [-90, 0]) {
+      await open(`#scene=fixture_wind&frame=9&view=${azimuth},15,1&full=picture`, width, height);
+      const [left, right, top, bottom] = await browser.run(`
+        const canvas = document.getElementById('scene-canvas');
+        const { width, height } = canvas;
+        const { data } = canvas.getContext('2d').getImageData(0, 0, width, height);
+        const box = [1, 0, 1, 0];
+        for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+          const k = 4 * (y * width + x);
+          // The strand's brown: clearly more red than blue.
+          if (data[k + 3] < 200 || data[k] < data[k + 2] + 25) continue;
+          box[0] = Math.min(box[0], x / width); box[1] = Math.max(box[1], x / width);
+          box[2] = Math.min(box[2], y / height); box[3] = Math.max(box[3], y / height);
+        }
+        return box;`);
+      const where = `${width} ${height} ${azimuth}: ${[left, right, top, bottom]}`;
+      assert.ok(left > 0.01 && right < 0.99 && top > 0.01 && bottom < 0.99, where);
+      if (azimuth === -90) assert.ok(Math.max(right - left, bottom - top) > 0.6, where);
+    }
+  }
 });

@@ -40,6 +40,7 @@ export const vega_config = (theme) => ({
     titleFontSize: 12,
     titleFontWeight: 500,
     titlePadding: 8,
+    labelLimit: 0,
   },
   legend: {
     labelColor: theme.text,
@@ -47,11 +48,11 @@ export const vega_config = (theme) => ({
     labelFontSize: 12,
     titleFontSize: 12,
     titleFontWeight: 600,
-    labelLimit: 210,
+    labelLimit: 0,
     rowPadding: 3,
     symbolSize: 70,
     symbolStrokeWidth: 1.8,
-    titleLimit: 300,
+    titleLimit: 0,
     layout: {
       bottom: { anchor: 'start', direction: 'vertical', margin: 14 },
       top: { anchor: 'start', direction: 'vertical', margin: 14 },
@@ -101,8 +102,16 @@ export function log_channel(field, title, { domain, ticks }, axis = {}) {
   };
 }
 
+// Six digits, and no more of them than differ: never 1.000000000005.
+export const plain_label = "format(datum.value, '.6~g')";
+
 export function linear_channel(field, title, axis = {}) {
-  return { field, type: 'quantitative', title, axis: { tickCount: 5, ...axis } };
+  return {
+    field,
+    type: 'quantitative',
+    title,
+    axis: { tickCount: 5, labelExpr: plain_label, ...axis },
+  };
 }
 
 const axis_room = 64;
@@ -137,21 +146,37 @@ export function layout(
           orient: above ? 'top' : 'bottom',
           columns: legend_columns,
           offset: 14,
-          ...(above ? { labelLimit: 0 } : {}),
         },
   };
 }
 
-// Text broken into lines of at most `width` pixels, at about 6.4 pixels a letter.
+// Text broken at spaces, not at no-break ones, into lines of at most `width` pixels, at about 6.4 pixels a letter.
 export function lines_of(text, width, letter = 6.4) {
   const lines = [];
-  for (const word of text.split(/\s+/)) {
+  for (const word of text.split(/[ \n]+/)) {
     const longer = lines.length > 0 ? `${lines.at(-1)} ${word}` : word;
     if (lines.length > 0 && longer.length * letter <= width)
       lines[lines.length - 1] = longer;
     else lines.push(word);
   }
   return lines;
+}
+
+// Places in [0, end] at least `gap` apart and near the wanted ones, in the same order.
+export function spread(wanted, gap, end) {
+  const order = wanted.map((_, i) => i).sort((a, b) => wanted[a] - wanted[b]);
+  const placed = new Array(wanted.length);
+  let next = 0;
+  for (const i of order) {
+    placed[i] = Math.max(next, wanted[i]);
+    next = placed[i] + gap;
+  }
+  let last = end;
+  for (const i of order.reverse()) {
+    placed[i] = Math.min(last, placed[i]);
+    last = placed[i] - gap;
+  }
+  return placed;
 }
 
 // Selection by legend: a legend click keeps one entry and dims the rest (shift-click

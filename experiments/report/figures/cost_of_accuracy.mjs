@@ -59,8 +59,14 @@ function winner_sentences(rows, target) {
   });
 }
 
-// The geometric mean, over scenes and targets, of what replacing one choice costs.
-const choice_means = (rows) =>
+function median(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  const half = sorted.length >> 1;
+  return sorted.length % 2 === 1 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2;
+}
+
+// The median, over scenes and targets, of what replacing one choice costs.
+const choice_medians = (rows) =>
   [
     ...group_by(
       of_kind(rows, 'without').filter((row) => is_positive(row.cost_factor)),
@@ -69,9 +75,7 @@ const choice_means = (rows) =>
   ]
     .map(([choice, members]) => ({
       choice,
-      factor: Math.exp(
-        members.reduce((sum, row) => sum + Math.log(row.cost_factor), 0) / members.length,
-      ),
+      factor: median(members.map((row) => row.cost_factor)),
     }))
     .sort((a, b) => b.factor - a.factor);
 
@@ -82,12 +86,12 @@ export function cost_findings(tables) {
   const rows = rows_of(tables);
   const targets = distinct(of_kind(rows, 'winner').map((row) => row.target_error_rel));
   const wanted = targets.includes(0.01) ? 0.01 : targets[0];
-  const means = choice_means(rows);
+  const medians = choice_medians(rows);
   const said = winner_sentences(rows, wanted);
-  if (means.length > 0)
+  if (medians.length > 0)
     said.push(
-      `What a choice is worth (time when it is replaced by the next best that keeps the error, mean over ` +
-        `scenes and errors): ${means
+      `What a choice is worth (time when it is replaced by the next best that keeps the error, median over ` +
+        `scenes and errors): ${medians
           .map(({ choice, factor }) => `${choice_name(choice)} ${format_ratio(factor)}`)
           .join(', ')}.`,
     );
@@ -125,6 +129,7 @@ export const cost_of_accuracy = {
       'error (%)',
       log_extent(rows.map((row) => row.error_pct)),
     );
+    const margin = rows.some((row) => is_number(row.margin));
     const tooltip = tooltips([
       ['kind', 'kind'],
       ['target_error_rel', 'wanted error', '.1%'],
@@ -135,6 +140,7 @@ export const cost_of_accuracy = {
       ['dt_ms', 'step (ms)', '.3g'],
       ['error_pct', 'error (%)', '.3g'],
       ['wall_ms', 'time per simulated second (ms)', '.3g'],
+      ...(margin ? [['margin', 'margin', '.3g']] : []),
     ]);
     const opacity = dimmed_unless(['pick_model']);
     const list = scenes.map(([scene, members]) => {

@@ -10,7 +10,7 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { formulation_style, series_style, shapes } from './palette.mjs';
+import { family_name, family_style, formulation_style } from './palette.mjs';
 
 // Exact zeros have no place on a log axis: they are drawn on a marked floor.
 const floor = 1e-19;
@@ -21,7 +21,7 @@ export const drift_cost = {
   table: 'constraint_drift',
   caption: `Each mark is one run: largest constraint violation max |g| over the whole run
     against the wall time it took. Lower is less drift, further left is cheaper. Colour is
-    the formulation, shape the integrator. Exact zeros sit on the line at the bottom.
+    the formulation, shape the family of the integrator, which a mark's tooltip names. Exact zeros sit on the line at the bottom.
     Click a legend entry to keep it and dim the others; shift-click adds entries. Made
     from the rows of constraint_drift.csv whose study is "formulation"; runs that failed
     are in the table only.`,
@@ -37,6 +37,7 @@ export const drift_cost = {
       )
       .map((row) => ({
         ...row,
+        family: family_name(row.integrator),
         g_drawn: row.g_max > 0 ? Math.max(row.g_max, floor) : floor,
       })),
 
@@ -44,10 +45,10 @@ export const drift_cost = {
     const rows = this.rows(tables);
     const groups = [...group_by(rows, (row) => row.system)];
     const formulations = formulation_style(rows.map((row) => row.formulation));
-    const integrators = series_style(rows.map((row) => row.integrator)).domain;
+    const families = family_style(rows.map((row) => row.integrator));
     const { columns, panel_width, legend } = layout(width, groups.length, {
       columns_max: 2,
-      labels: [...formulations.domain, ...integrators],
+      labels: [...formulations.domain, ...families.domain],
     });
     const list = groups.map(([system, members]) => ({
       title: system.replaceAll('_', ' '),
@@ -85,16 +86,13 @@ export const drift_cost = {
               scale: { domain: formulations.domain, range: formulations.colours },
             },
             shape: {
-              field: 'integrator',
+              field: 'family',
               type: 'nominal',
               title: 'integrator',
               legend,
-              scale: {
-                domain: integrators,
-                range: integrators.map((_, i) => shapes[i % shapes.length]),
-              },
+              scale: { domain: families.domain, range: families.shapes },
             },
-            opacity: dimmed_unless(['pick_formulation', 'pick_integrator']),
+            opacity: dimmed_unless(['pick_formulation', 'pick_family']),
             tooltip: tooltips([
               ['formulation', 'formulation'],
               ['integrator', 'integrator'],
@@ -138,7 +136,7 @@ export const drift_cost = {
     return panels(
       with_parameters(list, [
         legend_selection('pick_formulation', 'formulation'),
-        legend_selection('pick_integrator', 'integrator'),
+        legend_selection('pick_family', 'family'),
       ]),
       columns,
     );

@@ -3,16 +3,18 @@ import { distinct, group_by, is_number } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
 import { spaced } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
+import { cell_fills } from './palette.mjs';
 
-// From best to worst.
+// From best to worst: name, letter in the cell, look.
 export const outcomes = [
-  ['stable and accurate', '#00805c'],
-  ['stable', '#7cc8ae'],
-  ['not finished', '#E6B84A'],
-  ['unstable', '#D55E00'],
-  ['refused', '#9aa1aa'],
+  ['stable and accurate', 'A', cell_fills.dark],
+  ['stable', 'S', cell_fills.light],
+  ['not finished', 'T', cell_fills.middle],
+  ['unstable', 'U', cell_fills.strong],
+  ['refused', '\u2013', undefined],
 ];
 const rank = (outcome) => outcomes.findIndex(([name]) => name === outcome);
+const letter = (outcome) => outcomes[rank(outcome)][1];
 
 const rows_of = (tables) =>
   (tables.hard_cases ?? [])
@@ -21,6 +23,7 @@ const rows_of = (tables) =>
       ...row,
       name: spaced(row.model),
       situation: spaced(row.case),
+      letter: letter(row.outcome),
       step: format_time(row.dt_s),
       error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
     }));
@@ -70,10 +73,10 @@ export const hard_cases = {
   title: 'Case by case, at each step',
   table: 'hard_cases',
   caption: `One chart per integrator: hard cases downwards, models across. Each cell is split by time
-    step, the shortest at the left. Dark green: stable and within the accepted error; light green: every bound of
-    physics was kept, but the answer is further off; orange: a bound broke, or the step's equations found no
-    solution; yellow: did not finish in the time a run was given; grey: the model or the integrator does not take this
-    case, and says why. Variants of a model (its tangents, its ways to keep lengths) count as their best. Made from
+    step, the shortest at the left. A, dark green: stable and within the accepted error; S, light green: every
+    bound of physics was kept, but the answer is further off; U, orange: a bound broke, or the step's equations
+    found no solution; T, yellow: did not finish in the time a run was given; a dash, grey: the model or the
+    integrator does not take this case, and says why. Variants of a model (its tangents, its ways to keep lengths) count as their best. Made from
     hard_cases.csv.`,
 
   rows: (tables) => best_variants(rows_of(tables)),
@@ -91,7 +94,6 @@ export const hard_cases = {
       width: { step: room, for: 'position' },
       height: { step: 19 },
       data: { values: members },
-      mark: { type: 'rect', stroke: theme.background, strokeWidth: 1 },
       encoding: {
         x: {
           field: 'name',
@@ -114,37 +116,58 @@ export const hard_cases = {
           sort: distinct(rows.map((row) => row.situation)),
           axis: { labelLimit: 0, domain: false, ticks: false },
         },
-        color: {
-          field: 'outcome',
-          type: 'nominal',
-          title: null,
-          scale: {
-            domain: known.map(([name]) => name),
-            range: known.map(([, colour]) => colour),
-          },
-          legend: {
-            orient: 'top',
-            direction: 'horizontal',
-            columns: width > 640 ? 5 : 2,
-            symbolType: 'square',
-            labelLimit: 0,
+      },
+      layer: [
+        {
+          mark: { type: 'rect', stroke: theme.background, strokeWidth: 1 },
+          encoding: {
+            color: {
+              field: 'outcome',
+              type: 'nominal',
+              title: null,
+              scale: {
+                domain: known.map(([name]) => name),
+                range: known.map(([, , look]) => look?.fill ?? theme.grid),
+              },
+              legend: {
+                orient: 'top',
+                direction: 'horizontal',
+                columns: width > 640 ? 5 : 2,
+                symbolType: 'square',
+                symbolSize: 220,
+                symbolStrokeWidth: 0,
+                labelExpr: `{${known
+                  .map(([name, mark]) => `'${name}': '${mark}: ${name}'`)
+                  .join(', ')}}[datum.value]`,
+              },
+            },
+            tooltip: tooltips([
+              ['situation', 'case'],
+              ['name', 'model'],
+              ['variant', 'variant'],
+              ['integrator', 'integrator'],
+              ['step', 'step'],
+              ['outcome', 'outcome'],
+              ['measure_name', 'what is looked at'],
+              ['measure', 'its value', '.3g'],
+              ['limit', 'must not exceed', '.3g'],
+              ['error_pct', 'tip error (%)', '.3g'],
+              ['why', 'why no better'],
+            ]),
           },
         },
-        opacity: { condition: { test: "datum.outcome == 'refused'", value: 0.3 }, value: 1 },
-        tooltip: tooltips([
-          ['situation', 'case'],
-          ['name', 'model'],
-          ['variant', 'variant'],
-          ['integrator', 'integrator'],
-          ['step', 'step'],
-          ['outcome', 'outcome'],
-          ['measure_name', 'what is looked at'],
-          ['measure', 'its value', '.3g'],
-          ['limit', 'must not exceed', '.3g'],
-          ['error_pct', 'tip error (%)', '.3g'],
-          ['why', 'why no better'],
-        ]),
-      },
+        ...known.map(([name, , look]) => ({
+          transform: [{ filter: { field: 'outcome', equal: name } }],
+          mark: {
+            type: 'text',
+            fontSize: 9,
+            fontWeight: 600,
+            color: look?.text ?? theme.muted,
+            tooltip: null,
+          },
+          encoding: { text: { field: 'letter' } },
+        })),
+      ],
     });
     return {
       concat: [...group_by(rows, (row) => row.integrator)].map(chart),

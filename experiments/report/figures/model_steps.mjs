@@ -63,8 +63,8 @@ export const model_steps = {
     backward Euler with whole Newton steps, where a step is too long once Newton's iteration
     finds no solution. super_helix and articulated_chain: recursion, the papers' tangent
     above and the exact one below, as of force_transport; others: their default solver and
-    tangent. The shaded
-    band holds the runs that were stable up to the end of the scan. Made from
+    tangent. Hollow marks
+    in the shaded band are lower bounds: runs that were stable up to the end of the scan. Made from
     stability_limit.csv, scenes that every model was run on.`,
 
   rows: (tables) =>

@@ -1,7 +1,7 @@
 // Figure 11: the step that nodal finite differences of a rod need.
 import { distinct, is_positive } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
-import { spaced } from '../src/strand.mjs';
+import { is_capped, spaced } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -27,7 +27,12 @@ const method_of = (row) =>
 const rows_of = (tables) =>
   (tables.nodal_limit ?? [])
     .filter((row) => is_positive(row.dt_max_s))
-    .map((row) => ({ ...row, method: method_of(row), dt_us: 1e6 * row.dt_max_s }));
+    .map((row) => ({
+      ...row,
+      limited_by: row.limited_by ?? '',
+      method: method_of(row),
+      dt_us: 1e6 * row.dt_max_s,
+    }));
 
 export function nodal_limit_findings(tables) {
   const at = (tables.nodal_limit ?? []).filter(
@@ -54,8 +59,8 @@ export const nodal_limit = {
   table: 'nodal_limit',
   caption: `Largest stable step of finite differences of Kirchhoff's equations in curvatures
     against the number of nodes, a straight hair of 10 cm let go horizontally. Split:
-    implicit in the terms of highest order only. The cross is the source's claim,
-    200 nodes at 10 µs. Made from nodal_limit.csv.`,
+    implicit in the terms of highest order only. Hollow with an arrow: stable up to the end
+    of the scan, a lower bound. The large cross is the source's claim, 200 nodes at 10 µs. Made from nodal_limit.csv.`,
 
   rows: rows_of,
 
@@ -74,23 +79,34 @@ export const nodal_limit = {
       'largest stable step (µs)',
       log_extent(rows.map((row) => row.dt_us), 7),
     );
+    const series = series_channels('method', 'method', style, legend);
+    const opacity = dimmed_unless(['pick_method']);
+    const tooltip = tooltips([
+      ['method', 'method'],
+      ['elements', 'nodes'],
+      ['dt_us', 'largest stable step (µs)', '.3g'],
+      ['limited_by', 'limited by'],
+      ['at_claim', 'at 10 µs'],
+    ]);
+    const bound = (mark, encoding) => ({
+      data: { values: rows.filter(is_capped) },
+      mark,
+      encoding: { x, y, color: series.color, opacity, ...encoding },
+    });
     const claim = [{ elements: claimed_nodes, dt_us: 1e6 * claimed_s }];
     const plot = {
       width: panel_width,
       height: 320,
       layer: [
-        ...marked_line(rows, {
-          x,
-          y,
-          series: series_channels('method', 'method', style, legend),
-          opacity: dimmed_unless(['pick_method']),
-          tooltip: tooltips([
-            ['method', 'method'],
-            ['elements', 'nodes'],
-            ['dt_us', 'largest stable step (µs)', '.3g'],
-            ['at_claim', 'at 10 µs'],
-          ]),
-        }),
+        ...marked_line(
+          rows.filter((row) => !is_capped(row)),
+          { x, y, series, opacity, tooltip },
+        ),
+        bound(
+          { type: 'point', filled: false, size: 65, strokeWidth: 1.7 },
+          { shape: series.shape, tooltip },
+        ),
+        bound({ type: 'text', text: '\u2191', dy: -13, fontSize: 14 }, {}),
         {
           data: { values: claim },
           mark: {

@@ -28,6 +28,12 @@ export const shapes = [
   polygon(16, [1, 0.55]),
   'M-1,-0.35L1,-0.35L1,0.35L-1,0.35Z',
   'M-0.35,-1L0.35,-1L0.35,1L-0.35,1Z',
+  'M-1,0.5A1,1,0,0,1,1,0.5Z',
+  'M-1,-0.5A1,1,0,0,0,1,-0.5Z',
+  'M0,-1L0.8,0L0.3,0L0.3,1L-0.3,1L-0.3,0L-0.8,0Z',
+  'M0,1L0.8,0L0.3,0L0.3,-1L-0.3,-1L-0.3,0L-0.8,0Z',
+  'M-1,-0.6L0,0.2L1,-0.6L1,0.2L0,1L-1,0.2Z',
+  'M-0.9,-0.9L-0.3,-0.9L-0.3,0.3L0.9,0.3L0.9,0.9L-0.9,0.9Z',
 ];
 
 const dashes = [
@@ -93,6 +99,15 @@ function family_of(name) {
     }),
   );
   return best;
+}
+
+export const family_name = (name) => families[family_of(name).index].name;
+
+// {domain, shapes} for the families of integrator names: a shape each.
+export function family_style(names) {
+  const used = new Set(names.map(family_name));
+  const domain = families.map(({ name }) => name).filter((name) => used.has(name));
+  return { domain, shapes: domain.map((_, i) => shapes[i]) };
 }
 
 // {domain, colours, shapes, dashes} for integrator names, ordered by family.
@@ -169,6 +184,15 @@ export function formulation_style(names) {
     colours: domain.map((_, i) => formulation_colours[i % formulation_colours.length]),
   };
 }
+
+// Fills of cells that are told apart by lightness too (CIE L* 30, 53, 72, 88 in this
+// order), and the colour of text on them.
+export const cell_fills = {
+  dark: { fill: '#00523a', text: '#ffffff' },
+  strong: { fill: '#d9541e', text: '#ffffff' },
+  middle: { fill: '#d9a93b', text: '#1d2127' },
+  light: { fill: '#b5e6d1', text: '#1d2127' },
+};
 
 // Sequential ramp for max order 1..5 (light to dark is not used: it must read on both
 // themes).

@@ -1,18 +1,9 @@
-// Figure 7: cost per step against elements, and composite against recursive.
-import { distinct, is_positive, succeeded } from '../src/tables.mjs';
+// Figure 7: cost per step against elements, model by model, and composite against
+// recursive.
+import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
 import { method_name, scaling_series, solver_pairs, spaced } from '../src/strand.mjs';
 import { scaling_finding } from '../src/findings/scaling.mjs';
-import {
-  dimmed_unless,
-  layout,
-  legend_selection,
-  log_channel,
-  log_extent,
-  panels,
-  series_channels,
-  tooltips,
-  with_parameters,
-} from './common.mjs';
+import { layout, log_channel, log_extent, panels, spread, tooltips } from './common.mjs';
 import { method_style } from './palette.mjs';
 
 // All modes of every solver; fewer modes of the recursion alone and maximal coordinates by
@@ -22,9 +13,21 @@ const drawn = ({ members: [row] }) =>
   (['', 'bend_twist'].includes(row.modes ?? '') ||
     (row.solver === 'recursive' && row.tangent !== 'exact'));
 
-const label = ({ name, exponent }) =>
-  is_positive(exponent) ? `${name}: slope ${exponent.toFixed(2)}` : name;
+// A panel for each of the models that have several solvers, one for all others.
+const panel_names = {
+  super_helix: 'super helix: cost of one step',
+  articulated_chain: 'articulated chain: cost of one step',
+};
+const others = 'other models: cost of one step';
+const panel_of = ({ model }) => panel_names[model.replace(/_tree$/, '')] ?? others;
 
+// The name of a line beside its end, without what the panel's title says.
+const label = ({ name, exponent }) => {
+  const short = name.replace(/^articulated chain, |, banded/g, '');
+  return is_positive(exponent) ? `${short}: N^${exponent.toFixed(2)}` : short;
+};
+
+const panel_height = 330;
 const ours = '#1F7FC2';
 const source = '#D55E00';
 
@@ -67,7 +70,7 @@ function ratio_panel(pairs, { panel_width, theme }) {
   return {
     title: 'What composite costs beside recursive',
     width: panel_width,
-    height: 330,
+    height: panel_height,
     layer: [
       layer(of('ours', true), { type: 'line', color: ours, strokeWidth: 1.8 }),
       layer(of('source', true), {
@@ -103,18 +106,91 @@ function ratio_panel(pairs, { panel_width, theme }) {
   };
 }
 
+// One line per solver, its name at its end.
+function cost_panel(title, rows, trees, { panel_width, x, y, style }) {
+  const nominal = (range) => ({
+    field: 'method',
+    type: 'nominal',
+    scale: { domain: style.domain, range },
+    legend: null,
+  });
+  const color = nominal(style.colours);
+  const tooltip = tooltips([
+    ['structure', 'structure'],
+    ['method', 'solver'],
+    ['elements', 'elements'],
+    ['cost_us', 'cost per step (µs)', '.3g'],
+    ['exponent', 'slope', '.2f'],
+    ['dt_max_s', 'largest stable dt (s)', '.3e'],
+    ['fps', 'frames per second', '.3g'],
+    ['seed_fps', "source's frames per second"],
+  ]);
+  const names = [...group_by(rows, (row) => row.method).values()].map((members) =>
+    members.reduce((last, row) => (row.elements > last.elements ? row : last)),
+  );
+  const font_size = panel_width < 300 ? 9.5 : 11;
+  const longest = Math.max(...names.map((row) => row.series.length));
+  const room = 0.56 * font_size * longest + 16;
+  const plot_width = Math.floor(Math.max(90, panel_width - room));
+  const [bottom, top] = y.scale.domain.map(Math.log10);
+  const pixels = panel_height / (top - bottom);
+  const places = spread(
+    names.map((row) => pixels * (top - Math.log10(row.cost_us))),
+    font_size + 3,
+    panel_height,
+  ).map((place) => 10 ** (top - place / pixels));
+  return {
+    title,
+    width: plot_width,
+    height: panel_height,
+    layer: [
+      {
+        data: { values: rows },
+        mark: { type: 'line', strokeWidth: 1.6 },
+        encoding: { x, y, color, strokeDash: nominal(style.dashes) },
+      },
+      {
+        data: { values: rows },
+        mark: { type: 'point', filled: true, size: 45 },
+        encoding: { x, y, color, shape: nominal(style.shapes), tooltip },
+      },
+      {
+        data: { values: trees },
+        mark: {
+          type: 'point',
+          shape: 'diamond',
+          filled: false,
+          size: 100,
+          strokeWidth: 1.7,
+        },
+        encoding: { x, y, color, tooltip },
+      },
+      {
+        data: { values: names.map((row, i) => ({ ...row, place: places[i] })) },
+        mark: {
+          type: 'text',
+          align: 'left',
+          baseline: 'middle',
+          fontSize: font_size,
+          x: plot_width + 8,
+        },
+        encoding: { y: { ...y, field: 'place' }, text: { field: 'series' }, color },
+      },
+    ],
+  };
+}
+
 export const scaling = {
   id: 'scaling',
   title: 'Cost against the number of elements',
   table: 'scaling',
   finding: scaling_finding,
-  caption: `First: cost of one time step against the number of elements of a straight
-    strand, one line per solver, with the slope fitted by the experiment; hollow diamonds
-    are the five trees. Second: how many times the recursive step the composite one costs;
-    diamonds are trees, squares what the source's frames per second say (rounded there,
-    and equal at one and two elements). Its hardware was of 2008, so its frames per second
-    are not comparable with ours, the ratio is. Click a legend entry to keep it and dim
-    the others. Made from scaling.csv.`,
+  caption: `Cost of one time step against the number of elements of a straight strand, one
+    line per solver, with the power of N fitted by the experiment from 20 elements on; hollow
+    diamonds are the five trees. Last: how many times the recursive step the composite one
+    costs; diamonds are trees, squares what the source's frames per second say (rounded
+    there, and equal at one and two elements). Its hardware was of 2008, so its frames per
+    second are not comparable with ours, the ratio is. Made from scaling.csv.`,
 
   rows(tables) {
     return scaling_series(tables.scaling ?? [])
@@ -131,9 +207,7 @@ export const scaling = {
 
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
-    const labels = new Map(rows.map((row) => [row.method, row.series]));
-    const style = method_style(rows.map((row) => row.method));
-    const named = { ...style, domain: style.domain.map((name) => labels.get(name)) };
+    const drawn_methods = new Map(rows.map((row) => [row.method, row.series]));
     const trees = (tables.scaling ?? [])
       .filter(
         (row) =>
@@ -144,70 +218,41 @@ export const scaling = {
       .map((row) => ({
         ...row,
         structure: spaced(row.structure),
-        series: labels.get(method_name(row)),
+        method: method_name(row),
+        series: drawn_methods.get(method_name(row)),
         cost_us: 1e6 * row.cost_per_step_s,
       }))
       .filter((row) => row.series !== undefined);
     const pairs = solver_pairs(tables.scaling).filter((p) => p.ours || p.source);
-    const { columns, panel_width, legend } = layout(width, pairs.length > 0 ? 2 : 1, {
+    const groups = group_by(rows, panel_of);
+    const titles = [...Object.values(panel_names), others].filter((t) => groups.has(t));
+    const { columns, panel_width } = layout(width, titles.length + (pairs.length > 0), {
       columns_max: 2,
-      labels: named.domain,
-      above: true,
+      above: true, // no legend: names stand at the lines
     });
     const all = [...rows, ...trees];
-    const x = log_channel('elements', 'elements', log_extent(all.map((r) => r.elements)));
-    const y = log_channel(
-      'cost_us',
-      'cost per step (µs)',
-      log_extent(all.map((r) => r.cost_us)),
-    );
-    const series = series_channels('series', 'solver', named, legend);
-    const opacity = dimmed_unless(['pick_series']);
-    const tooltip = tooltips([
-      ['structure', 'structure'],
-      ['series', 'solver'],
-      ['elements', 'elements'],
-      ['cost_us', 'cost per step (µs)', '.3g'],
-      ['dt_max_s', 'largest stable dt (s)', '.3e'],
-      ['fps', 'frames per second', '.3g'],
-      ['seed_fps', "source's frames per second"],
-    ]);
-    const cost_panel = {
-      title: 'Cost of one step',
-      width: panel_width,
-      height: 330,
-      layer: [
-        {
-          data: { values: rows },
-          mark: { type: 'line', strokeWidth: 1.8 },
-          encoding: { x, y, ...series, shape: undefined, opacity },
-        },
-        {
-          data: { values: rows },
-          mark: { type: 'point', filled: true, size: 50 },
-          encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip },
-        },
-        {
-          data: { values: trees },
-          mark: {
-            type: 'point',
-            shape: 'diamond',
-            filled: false,
-            size: 100,
-            strokeWidth: 1.7,
-          },
-          encoding: { x, y, color: series.color, opacity, tooltip },
-        },
-      ],
+    const shared = {
+      panel_width,
+      style: method_style(rows.map((row) => row.method)),
+      x: log_channel('elements', 'elements', log_extent(all.map((r) => r.elements))),
+      y: log_channel(
+        'cost_us',
+        'cost per step (µs)',
+        log_extent(all.map((r) => r.cost_us)),
+      ),
     };
     return panels(
-      with_parameters(
-        [
-          cost_panel,
-          ...(pairs.length > 0 ? [ratio_panel(pairs, { panel_width, theme })] : []),
-        ],
-        [legend_selection('pick_series', 'series')],
-      ),
+      [
+        ...titles.map((title) =>
+          cost_panel(
+            title,
+            groups.get(title),
+            trees.filter((row) => panel_of(row) === title),
+            shared,
+          ),
+        ),
+        ...(pairs.length > 0 ? [ratio_panel(pairs, { panel_width, theme })] : []),
+      ],
       columns,
     );
   },

@@ -52,8 +52,19 @@ function with_places(rows, domain) {
         : has_limit(row)
           ? 1e3 * row.dt_max_s
           : null,
+      capped: is_capped(row),
     })),
   };
+}
+
+// A line joins measured limits: it ends where a bound of the scan lies between them.
+function with_stretches(rows) {
+  return [...group_by(rows, (row) => row.method).values()].flatMap((members) => {
+    let stretch = 0;
+    return [...members]
+      .sort((a, b) => a.elements - b.elements)
+      .map((row) => ({ ...row, stretch: row.capped ? ++stretch : stretch }));
+  });
 }
 
 function axes({ bottom, top, first, last_row }) {
@@ -104,7 +115,8 @@ function panel(
     ['cost_per_step_s', 'cost per step (s)', '.3e'],
     ['realtime_factor', 'simulated s per s', '.3g'],
   ]);
-  const stable = members.filter((row) => row.dt_ms !== null);
+  const stable = with_stretches(members.filter((row) => row.dt_ms !== null));
+  const hollow = (row) => row.capped || row.method === 'composite';
   return {
     title: {
       text: spaced(members[0].scene),
@@ -117,9 +129,18 @@ function panel(
     height,
     layer: [
       {
-        data: { values: stable.filter((row) => row.method !== 'composite') },
+        data: {
+          values: stable.filter((row) => row.method !== 'composite' && !row.capped),
+        },
         mark: { type: 'line', strokeWidth: 1.8 },
-        encoding: { x, y, ...series, shape: undefined, opacity },
+        encoding: {
+          x,
+          y,
+          ...series,
+          shape: undefined,
+          opacity,
+          detail: { field: 'stretch' },
+        },
       },
       {
         data: { values: [{ low: cap_ms, high: top }] },
@@ -131,11 +152,13 @@ function panel(
         mark: { type: 'rule', strokeDash: [5, 4], color: theme.text },
         encoding: { y },
       },
-      ...[38, 130].map((size) => ({
-        data: {
-          values: stable.filter((row) => (row.method === 'composite') === size > 100),
-        },
-        mark: { type: 'point', strokeWidth: 1.7, filled: false, size },
+      ...[
+        [(row) => !hollow(row), { filled: true, size: 48 }],
+        [(row) => hollow(row) && row.method !== 'composite', { filled: false, size: 38 }],
+        [(row) => row.method === 'composite', { filled: false, size: 130 }],
+      ].map(([is_of, mark]) => ({
+        data: { values: stable.filter(is_of) },
+        mark: { type: 'point', strokeWidth: 1.7, ...mark },
         encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip },
       })),
       {
@@ -218,8 +241,10 @@ export function limit_spec(rows, style, { width, theme }, columns_wanted = 3) {
   return {
     title: {
       text: lines_of(
-        'Dashed: 33 ms, one frame at 30 frames/s. Shaded: stable up to the end of the ' +
-          'scan (100 ms; curl drop 33 ms, whip 5 ms: longer steps miss the drive).',
+        'Filled, joined: the limit that was measured. Hollow, in the shaded band: a lower ' +
+          'bound, stable up to the end of the scan (100\u00a0ms; curl drop 33\u00a0ms, whip 5\u00a0ms: longer ' +
+          'steps miss the drive). Cross: no stable step found. Dashed: 33\u00a0ms, one frame at 30 ' +
+          'frames/s.',
         width - 20,
       ),
       fontSize: 12,
@@ -241,8 +266,8 @@ export const stability_limit = {
   finding: stability_finding,
   caption: `Largest stable time step against the number of elements, one panel per scene
     and damping. Composite is drawn as hollow squares on the line of recursive: the two
-    solve the same equations. The shaded band holds the runs that were stable up to the
-    end of the scan, 100 ms; the height inside the band means nothing. The dashed line is
+    solve the same equations. Hollow marks in the shaded band are lower bounds, runs that
+    were stable up to the end of the scan, 100 ms; the height inside the band means nothing. The dashed line is
     33 ms, one frame at 30 frames/s. A cross at the bottom: no stable step was found. The
     step is the papers' semi-implicit one unless the legend says otherwise. Made from
     stability_limit.csv, up to 40 elements; other solvers, integrators and modes, and

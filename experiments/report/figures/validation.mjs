@@ -3,6 +3,7 @@ import { distinct, group_by, is_number, is_set } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
 import { spaced, variant_name } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
+import { cell_fills } from './palette.mjs';
 
 export const answered = (row) => is_number(row.error_rel);
 
@@ -32,7 +33,10 @@ function cell(members) {
     error_pct: 100 * worst.error_rel,
     tolerance_pct: 100 * worst.tolerance,
     at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
-    label: worst.error_rel < 1e-4 ? '<.01' : format_number(100 * worst.error_rel, 2),
+    label:
+      worst.error_rel < 1e-4
+        ? '<.01'
+        : format_number(100 * worst.error_rel, 2).replace(/^0\./, '.'),
     lost: within && lost,
     reason: lost ? reason : '',
   };
@@ -44,12 +48,13 @@ export const named = (tables) =>
 export const validation_cells = (tables) =>
   [...group_by(named(tables), (row) => `${row.test}|${row.name}`).values()].map(cell);
 
+// Name in the legend, fill and colour of the number; what does not apply is left grey.
 const outcomes = {
-  within: ['within the accepted error', '#009E73'],
-  outside: ['outside, or a run without an answer', '#D55E00'],
-  'not judged': ['outside, with fewer elements than it is judged at', '#C79A1B'],
-  'no answer': ['no answer found', '#B6407F'],
-  'does not apply': ['does not apply to this model', '#9aa1aa'],
+  within: ['within the accepted error', cell_fills.dark],
+  outside: ['outside, or a run without an answer', cell_fills.strong],
+  'not judged': ['outside, with fewer elements than it is judged at', cell_fills.light],
+  'no answer': ['\u2013: no answer found', cell_fills.middle],
+  'does not apply': ['empty: does not apply to this model', undefined],
 };
 
 export function validation_findings(tables) {
@@ -129,22 +134,19 @@ export const validation = {
               title: null,
               scale: {
                 domain: known.map(([id]) => id),
-                range: known.map(([, [, colour]]) => colour),
+                range: known.map(([, [, look]]) => look?.fill ?? theme.grid),
               },
               legend: {
                 orient: 'bottom',
                 direction: 'horizontal',
                 columns: width > 600 ? 3 : 1,
                 symbolType: 'square',
-                labelLimit: 0,
+                symbolSize: 220,
+                symbolStrokeWidth: 0,
                 labelExpr: `{${known
                   .map(([id, [text]]) => `'${id}': '${text}'`)
                   .join(', ')}}[datum.value]`,
               },
-            },
-            opacity: {
-              condition: { test: "datum.outcome == 'does not apply'", value: 0.25 },
-              value: 0.85,
             },
             tooltip: tooltips([
               ['name', 'model'],
@@ -157,10 +159,17 @@ export const validation = {
             ]),
           },
         },
-        {
-          mark: { type: 'text', fontSize: 9.5, color: '#ffffff', fontWeight: 600 },
+        ...known.map(([id, [, look]]) => ({
+          transform: [{ filter: { field: 'outcome', equal: id } }],
+          mark: {
+            type: 'text',
+            fontSize: 9.5,
+            color: look?.text ?? theme.muted,
+            fontWeight: 600,
+            tooltip: null,
+          },
           encoding: { x, y, text: { field: 'label' } },
-        },
+        })),
       ],
     };
   },

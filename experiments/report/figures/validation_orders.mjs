@@ -23,7 +23,11 @@ const order_rows = (tables) => {
     const worst = members.reduce((a, b) => (b.error_rel > a.error_rel ? b : a));
     return members
       .filter((row) => row.parameter === worst.parameter)
-      .map((row) => ({ ...row, error_pct: 100 * row.error_rel }));
+      .map((row, _, { length }) => ({
+        ...row,
+        error_pct: 100 * row.error_rel,
+        points: length,
+      }));
   });
 };
 
@@ -33,7 +37,8 @@ export const validation_orders = {
   table: 'validation',
   caption: `Error in per cent against the number of elements, one panel per test, each model at the
     parameter where its error is largest. Slope -2: halving the elements' length quarters the
-    error. Made from validation.csv.`,
+    error. Dashed with hollow points: two numbers of elements only, so that the slope is no
+    fitted order, and nothing says that it lasts. Made from validation.csv.`,
 
   rows: order_rows,
 
@@ -47,11 +52,11 @@ export const validation_orders = {
       above: true,
     });
     const list = tests.map(([test, members]) => {
-      const x = log_channel(
-        'elements',
-        'elements',
-        log_extent(members.map((row) => row.elements)),
-      );
+      const elements = members.map((row) => row.elements);
+      const x = log_channel('elements', 'elements', {
+        ...log_extent(elements),
+        ticks: distinct(elements).sort((a, b) => a - b),
+      });
       const y = log_channel(
         'error_pct',
         'error (%)',
@@ -59,33 +64,30 @@ export const validation_orders = {
       );
       const series = series_channels('name', 'model', style, legend);
       const opacity = dimmed_unless(['pick_model'], 0.9);
+      const tooltip = tooltips([
+        ['name', 'model'],
+        ['elements', 'elements'],
+        ['parameter', 'parameter', '.4g'],
+        ['error_pct', 'error (%)', '.3g'],
+        ['order', 'slope', '.2f'],
+        ['points', 'numbers of elements the slope is from'],
+      ]);
       return {
         title: spaced(test),
         width: panel_width,
         height: 180,
         data: { values: members },
         layer: [
-          {
-            mark: { type: 'point', filled: true, size: 55 },
-            encoding: {
-              x,
-              y,
-              ...series,
-              strokeDash: undefined,
-              opacity,
-              tooltip: tooltips([
-                ['name', 'model'],
-                ['elements', 'elements'],
-                ['parameter', 'parameter', '.4g'],
-                ['error_pct', 'error (%)', '.3g'],
-                ['order', 'order', '.2f'],
-              ]),
-            },
-          },
-          {
-            mark: { type: 'line', strokeWidth: 1.5 },
-            encoding: { x, y, ...series, shape: undefined, opacity },
-          },
+          ...['datum.points > 2', 'datum.points <= 2'].map((filter, hollow) => ({
+            transform: [{ filter }],
+            mark: { type: 'point', filled: hollow === 0, size: 55, strokeWidth: 1.5 },
+            encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip },
+          })),
+          ...['datum.points > 2', 'datum.points <= 2'].map((filter, hollow) => ({
+            transform: [{ filter }],
+            mark: { type: 'line', strokeWidth: 1.3, strokeDash: hollow ? [5, 3] : [1, 0] },
+            encoding: { x, y, color: series.color, opacity },
+          })),
         ],
       };
     });

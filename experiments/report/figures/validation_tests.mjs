@@ -30,6 +30,21 @@ const curve_rows = (tables) => {
     .map((row) => ({ ...row, error_pct: 100 * row.error_rel }));
 };
 
+// Differences of less than this part of the values are not drawn apart: their ticks could
+// not be told apart either.
+const least_range = 1e-4;
+const few = 4; // so many parameters have a tick each
+
+// Ticks at powers of ten on both sides of zero, 0 among them, that enclose low < 0 < high.
+function symlog_ticks(low, high) {
+  const decades = (end) =>
+    Array.from(
+      { length: Math.max(1, Math.ceil(Math.log10(end))) },
+      (_, k) => 10 ** (k + 1),
+    );
+  return [...decades(-low).map((t) => -t), 0, ...decades(high)];
+}
+
 // Log axes where the values span decades, also on both sides of zero; one value has a tick
 // of its own.
 function axis(field, title, values) {
@@ -42,14 +57,20 @@ function axis(field, title, values) {
       scale: { domain: [low - room, low + room] },
     };
   }
-  if (low < 0 && high > 100)
+  if (low < 0 && high > 100) {
+    const ticks = symlog_ticks(low, high);
     return {
-      ...linear_channel(field, title, { values: distinct(values) }),
-      scale: { type: 'symlog' },
+      ...linear_channel(field, title, { values: ticks }),
+      scale: { type: 'symlog', domain: [ticks[0], ticks.at(-1)], nice: false },
     };
-  return low > 0 && high / low > 20
-    ? log_channel(field, title, log_extent(values, 5))
-    : { ...linear_channel(field, title), scale: { zero: false, nice: true, padding: 12 } };
+  }
+  if (low > 0 && high / low > 20) return log_channel(field, title, log_extent(values, 5));
+  const size = least_range * Math.max(Math.abs(low), Math.abs(high));
+  const scale =
+    high - low > size
+      ? { zero: false, nice: true, padding: 12 }
+      : { domain: [low - size, high + size], nice: false };
+  return { ...linear_channel(field, title), scale };
 }
 
 function test_panel(test, members, gloss, { panel_width, legend, style }) {
@@ -59,6 +80,8 @@ function test_panel(test, members, gloss, { panel_width, legend, style }) {
     lines_of(texts.parameter ?? 'parameter', panel_width),
     members.map((row) => row.parameter),
   );
+  const parameters = distinct(members.map((row) => row.parameter));
+  if (x.scale.type === undefined && parameters.length <= few) x.axis.values = parameters;
   const y = axis(
     'measured',
     lines_of(texts.quantity ?? 'measured', 190),

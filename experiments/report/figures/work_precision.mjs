@@ -18,7 +18,7 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { series_style, solver_dashes } from './palette.mjs';
+import { model_style, series_style, solver_dashes } from './palette.mjs';
 
 // Guides of error ~ time^-p from the lower left corner: what order p looks like.
 function order_guides(members) {
@@ -115,7 +115,8 @@ const counts = [
   ['below', 'below the reference'],
 ];
 
-function panel(problem, members, { panel_width, legend, style, theme, dash }) {
+// `by`: the field that colour and shape tell apart.
+function panel(problem, members, { panel_width, legend, style, theme, dash, by }) {
   const x = log_channel(
     'wall_s_per_sim_s',
     'wall time per simulated second (s/s)',
@@ -130,10 +131,10 @@ function panel(problem, members, { panel_width, legend, style, theme, dash }) {
     log_extent(members.map((r) => r.error_rel)),
   );
   const series = {
-    ...series_channels('integrator', 'integrator', style, legend),
+    ...series_channels(by, by, style, legend),
     ...(dash ? { strokeDash: dash } : {}),
   };
-  const opacity = dimmed_unless(['pick_integrator']);
+  const opacity = dimmed_unless([`pick_${by}`]);
   const front = pareto_rows(members);
   const guides = order_guides(members);
   const guide_xy = { x: { ...x, field: 'x' }, y: { ...y, field: 'y' } };
@@ -207,12 +208,49 @@ function panel(problem, members, { panel_width, legend, style, theme, dash }) {
   };
 }
 
+// One integrator on several models: the models are what such a problem tells apart.
+const compares_models = (members) =>
+  distinct(members.map((row) => row.integrator)).length === 1 &&
+  distinct(members.map((row) => row.model)).length > 1;
+
+function problem_panels(groups, { by, style, solvers, rows, width, theme }) {
+  const { columns, panel_width, legend } = layout(width, groups.length, {
+    columns_max: 2,
+    labels: style.domain,
+  });
+  const compared = by === 'integrator' && solvers.length > 0;
+  const dash = compared && {
+    field: 'solver',
+    type: 'nominal',
+    title: 'linear solver',
+    scale: solver_dashes(solvers, rows),
+    legend: { ...legend, values: solvers, symbolType: 'stroke', symbolSize: 500 },
+  };
+  // Solvers give one error at different times: the first in full, its rivals thin.
+  const rivals = dash ? dash.scale.domain.slice(1, solvers.length) : [];
+  return panels(
+    with_parameters(
+      groups.map(([problem, members]) =>
+        panel(
+          problem,
+          members.map((row) => ({ ...row, rival: rivals.includes(row.solver) })),
+          { panel_width, legend, style, theme, dash, by },
+        ),
+      ),
+      [legend_selection(`pick_${by}`, by)],
+    ),
+    columns,
+    { dashes: dash ? 'shared' : 'independent' },
+  );
+}
+
 export const work_precision = {
   id: 'work_precision',
   title: 'What accuracy costs in time',
   table: 'work_precision',
   caption: `Relative error against wall time per simulated second; down and left is
-    better. Each line is one integrator from loose to tight. Ringed points joined by the
+    better. Each line is one integrator from loose to tight; in a panel of one integrator on
+    several models, one model at one number of elements. Ringed points joined by the
     grey band are the Pareto front: nothing else is both faster and more accurate. Hollow
     points lie below the accuracy of the reference and prove nothing. The dashed fan shows
     the slopes of orders 1, 2 and 4. Where one problem was solved with several linear
@@ -242,36 +280,28 @@ export const work_precision = {
 
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
-    const groups = [...group_by(rows, problem_name)];
     const solvers = compared_solvers(rows);
-    const style = series_style(rows.map((row) => row.integrator));
-    const { columns, panel_width, legend } = layout(width, groups.length, {
-      columns_max: 2,
-      labels: style.domain,
+    const groups = [...group_by(rows, problem_name)];
+    const kinds = [
+      { by: 'integrator', groups: groups.filter(([, members]) => !compares_models(members)) },
+      { by: 'model', groups: groups.filter(([, members]) => compares_models(members)) },
+    ].filter((kind) => kind.groups.length > 0);
+    const list = kinds.map(({ by, groups }) => {
+      const members = groups.flatMap(([, group]) => group);
+      const names = members.map((row) => row[by]);
+      const style = by === 'model' ? model_style(names) : series_style(names);
+      return problem_panels(groups, { by, style, solvers, rows, width, theme });
     });
-    const dash = solvers.length > 0 && {
-      field: 'solver',
-      type: 'nominal',
-      title: 'linear solver',
-      scale: solver_dashes(solvers, rows),
-      legend: { ...legend, values: solvers, symbolType: 'stroke', symbolSize: 500 },
-    };
-    // Solvers give one error at different times: the first in full, its rivals thin.
-    const rivals = dash ? dash.scale.domain.slice(1, solvers.length) : [];
-    return panels(
-      with_parameters(
-        groups.map(([problem, members]) =>
-          panel(
-            problem,
-            members.map((row) => ({ ...row, rival: rivals.includes(row.solver) })),
-            { panel_width, legend, style, theme, dash },
-          ),
-        ),
-        [legend_selection('pick_integrator', 'integrator')],
-      ),
-      columns,
-      { dashes: dash ? 'shared' : 'independent' },
-    );
+    return list.length === 1
+      ? list[0]
+      : {
+          vconcat: list,
+          spacing: 36,
+          resolve: {
+            scale: { color: 'independent', shape: 'independent', strokeDash: 'independent' },
+            legend: { color: 'independent', shape: 'independent', strokeDash: 'independent' },
+          },
+        };
   },
 
   describe(tables) {

@@ -107,7 +107,7 @@ function write_figures(directory, drawn, warn) {
 }
 
 async function report({ directory, out, figures }, { template, render, say }) {
-  const warnings = new Warnings(say);
+  const warnings = new Warnings(directory, say);
   const warn = (text, table) => warnings.add(text, table);
   const tables = load_results(directory, warn);
   const scenes = load_scenes(directory, warn);

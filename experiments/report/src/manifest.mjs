@@ -23,57 +23,62 @@ const facts = [
   ['date', /(^|[._])(date|start)$/i],
 ];
 
-// How a claim ended: its `state`, or as older manifests have it, whether it held.
-function state_of({ state, held }) {
-  if (typeof state === 'string') return state.replaceAll('_', ' ');
-  return held === true ? 'passed' : held === false ? 'failed' : 'not judged';
-}
-
-// What is said of claims that did not simply pass, by state; other states by their name.
+// What is said of claims by how they ended; those that held are only counted, of other
+// words the word itself is said.
 const state_words = {
-  failed: 'Did not hold',
-  finding: 'Known limit',
-  figure: 'Figure, not judged',
+  broken: 'Did not hold',
+  changed: 'Changed',
+  'known limit': 'Known limit',
   'not judged': 'Not judged',
+  figure: 'Figure',
 };
-const worst_first = Object.keys(state_words);
+const passing = 'held';
 
 const value_text = (value) =>
-  ['number', 'string', 'boolean'].includes(typeof value) ? format_number(value) : '';
+  ['number', 'string'].includes(typeof value) ? format_number(value) : '';
 
-function check_html({ claim, value, expected, state }) {
-  const numbers = [
-    value_text(value) === '' ? '' : `measured ${value_text(value)}`,
-    value_text(expected) === '' ? '' : `expected ${value_text(expected)}`,
-  ].filter(Boolean);
-  return (
-    `<li>${escape_html(state_words[state] ?? state)}: ${escape_html(claim)}` +
-    `${numbers.length > 0 ? ` (${escape_html(numbers.join(', '))})` : ''}</li>`
-  );
+// Older manifests say only whether a claim held.
+const state_of = ({ state, held }) =>
+  typeof state === 'string' ? state.replaceAll('_', ' ') : held === true ? passing : 'broken';
+
+// Every judged claim, claim that was not judged, and figure that is no claim.
+function claims_of(manifest) {
+  const list = (key) => (Array.isArray(manifest?.[key]) ? manifest[key].filter(is_object) : []);
+  const named = (entry, state) => ({
+    state,
+    text: value_text(entry.claim ?? entry.figure) || 'without words',
+    value: value_text(entry.value),
+    reason: value_text(entry.reason),
+  });
+  return [
+    ...list('checks').map((check) => named(check, state_of(check))),
+    ...list('not_judged').map((claim) => named(claim, 'not judged')),
+    ...list('figures').map((figure) => named(figure, 'figure')),
+  ];
 }
 
-// Claims the experiment itself checked: how many passed, and each of the others.
+function claim_html({ state, text, value, reason }) {
+  const measured = value === '' ? '' : ` (measured ${value})`;
+  const why = reason === '' ? '' : `: ${reason}`;
+  return `<li>${escape_html(`${state_words[state] ?? state}: ${text}${measured}${why}`)}</li>`;
+}
+
+// Claims the experiment itself checked: how many held, and each of the others, what did not
+// hold first.
 export function checks_html(name, manifest) {
-  const list = Array.isArray(manifest?.checks) ? manifest.checks.filter(is_object) : [];
-  const checks = list.map((check) => ({
-    ...check,
-    claim: value_text(check.claim) || 'a claim without words',
-    state: state_of(check),
-  }));
-  if (checks.length === 0) return '';
-  const others = checks.filter(({ state }) => state !== 'passed');
-  const states = [...new Set([...worst_first, ...others.map(({ state }) => state)])];
-  const groups = states
-    .map((state) => others.filter((check) => check.state === state))
-    .filter((members) => members.length > 0);
-  const judged = checks.filter(({ state }) => ['passed', 'failed'].includes(state)).length;
+  const claims = claims_of(manifest);
+  if (claims.length === 0) return '';
+  const of = (state) => claims.filter((claim) => claim.state === state);
+  const states = [...new Set([...Object.keys(state_words), ...claims.map((c) => c.state)])];
+  const others = states.filter((state) => state !== passing && of(state).length > 0);
+  const judged = claims.length - of('not judged').length - of('figure').length;
   const counts = [
-    `${checks.length - others.length} of ${judged} judged claims passed`,
-    ...groups
-      .filter(([{ state }]) => state !== 'failed')
-      .map((members) => `${members.length} ${members[0].state}`),
+    `${of(passing).length} of ${judged} claims checked by the experiment held`,
+    ...others
+      .filter((state) => state !== 'broken')
+      .map((state) => `${state}: ${of(state).length}`),
   ];
-  const items = groups.flat().map(check_html);
+  const items = others.flatMap(of).map(claim_html);
   return (
     `<p>${escape_html(name)}: ${escape_html(counts.join(', '))}.</p>` +
     (items.length > 0 ? `<ul class="findings">${items.join('')}</ul>` : '')

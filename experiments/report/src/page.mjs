@@ -223,8 +223,8 @@ function section_html(section, { tables, objects, warnings }) {
   );
 }
 
-const nav_html = (sections) =>
-  `<nav aria-label="Sections">${sections
+const nav_html = (sections, of) =>
+  `<nav aria-label="Sections of: ${escape_html(of)}">${sections
     .map(({ figure }) => figures.find(({ id }) => id === figure))
     .map(({ id, title }) => `<a href="#${id}">${escape_html(title)}</a>`)
     .join('')}<a href="#made">How this was made</a></nav>`;
@@ -235,8 +235,8 @@ function question_html({ heading, intro, sections }, contents) {
     .map((name) => checks_html(name, contents.tables[name]?.manifest))
     .join('');
   return [
-    `<header><h1>${heading}</h1>\n<p>${escape_html(one_line(intro))}</p>` +
-      `${sections.length > 1 ? nav_html(sections) : ''}</header>`,
+    `<h1>${heading}</h1>\n<p>${escape_html(one_line(intro))}</p>` +
+      `${sections.length > 1 ? nav_html(sections, heading) : ''}`,
     ...sections.map((section) => section_html(section, contents)),
     checked === '' ? '' : `<section><h2>What the run itself checked</h2>${checked}</section>`,
   ].join('\n');
@@ -248,8 +248,7 @@ function header_html({ objects, warnings }) {
       warnings.guard(`${name}.csv`, 'the answer', () => make(objects), undefined) ??
         `No answer yet: ${name}.csv is missing or holds no finished runs.`,
     );
-  return `<header>
-<h1>Constraint drift, stable steps, and the price of accuracy</h1>
+  return `<h1>Constraint drift, stable steps, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
 <dd id="answer-drift">${answer('constraint_drift', drift_answer)}</dd>
@@ -261,8 +260,7 @@ function header_html({ objects, warnings }) {
 <dd id="answer-swing">${answer('swing', swing_answer)}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
-</header>
-${nav_html(measurements)}`;
+${nav_html(measurements, 'Measurements')}`;
 }
 
 const tab_html = (name, text, selected) =>
@@ -295,9 +293,9 @@ export function body_html(tables, objects, scenes, warnings) {
     { name: 'scenes', tab: 'Scenes', html: scenes_html(scenes) },
   ];
   return [
-    '<div class="tabs"><span class="kicker">tress report</span><div role="tablist" ' +
+    '<header class="tabs"><span class="kicker">tress report</span><div role="tablist" ' +
       `aria-label="Parts of the report">` +
-      `${panels.map(({ name, tab }, i) => tab_html(name, tab, i === 0)).join('')}</div></div>`,
+      `${panels.map(({ name, tab }, i) => tab_html(name, tab, i === 0)).join('')}</div></header>`,
     '<main>',
     warnings_html(warnings),
     ...panels.map(({ name, html }, i) => panel_html(name, html, i === 0 ? '' : ' hidden')),
@@ -317,6 +315,6 @@ function measured_html(contents) {
       ? '<section id="other"><h2>Other tables</h2>' +
         `${extra.map((name) => table_html(name, name, tables[name].rows.length)).join('\n')}</section>`
       : '',
-    `<footer id="made"><h2>How this was made</h2>\n${manifest_html(tables, warnings)}\n</footer>`,
+    `<section id="made"><h2>How this was made</h2>\n${manifest_html(tables, warnings)}\n</section>`,
   ].join('\n');
 }

@@ -7,6 +7,23 @@ import { paper_theme, paper_width, vega_config } from '../figures/common.mjs';
 
 export const sources = TRESS_SOURCES;
 
+// Node has no canvas to measure text with, and Vega's own estimate is 0.8 of the font size
+// a letter: legends spread and names are cut short. Widths of DejaVu Sans over the font
+// size, the widest of the usual fonts, so that nothing is narrower in another.
+const letter_widths = [
+  [/[ijl'|!.,:;I]/u, 0.32],
+  [/[ftr()[\] -]/u, 0.4],
+  [/[mwMW%@]/u, 0.95],
+  [/[A-HJ-LN-VX-Z]/u, 0.71],
+];
+const letter_width = (letter) =>
+  letter_widths.find(([letters]) => letters.test(letter))?.[1] ?? 0.62;
+vega.textMetrics.width = ({ fontSize = 11, fontWeight = 400 }, text) => {
+  const bold = fontWeight === 'bold' || fontWeight >= 600 ? 1.1 : 1;
+  const letters = [...String(text ?? '').trim()];
+  return bold * fontSize * letters.reduce((sum, c) => sum + letter_width(c), 0);
+};
+
 // Vega reports what fails while it draws to a logger and goes on.
 class Errors {
   first = undefined;

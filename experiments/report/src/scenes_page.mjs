@@ -44,7 +44,7 @@ ${select_html('scene-strands', 'Strands', [
     .join('')}<button type="button" id="scene-full">Fill window</button></span>
 </div>
 <div class="stage">
-<canvas id="scene-canvas" tabindex="0" role="img" aria-describedby="scene-caption"></canvas>
+<canvas id="scene-canvas" tabindex="0" role="img" aria-label="A scene in 3D" aria-describedby="scene-caption"></canvas>
 <div class="stage-title" id="scene-title"></div>
 <div class="colour-bar" id="scene-bar" hidden><span class="bar-name"></span>
 <span class="bar-low"></span><span class="bar-ramp"></span><span class="bar-high"></span></div>
@@ -72,7 +72,7 @@ goes to its time.</p>
 }
 
 export const scenes_html = (scenes) =>
-  scenes.length === 0 ? missing : player_html(scenes);
+  `<h1>Scenes</h1>\n${scenes.length === 0 ? missing : player_html(scenes)}`;
 
 // One script element for each scene, so that the page reads only those it shows.
 export const scene_data_html = (scenes, embedded_json) =>

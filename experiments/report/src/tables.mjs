@@ -52,6 +52,7 @@ export const known_tables = {
       'wall_s_per_sim_s',
       'ms_per_frame',
       'cost_factor',
+      'margin',
       'runs',
     ],
     command: './tress run',

@@ -1,16 +1,20 @@
 // What could not be used, each said once.
 export class Warnings {
-  list = []; // {text, table}: `table` is the name of the table that is left out, if one is
+  // {text, table}: `table` is the name of the table that is left out, if one is. The text is
+  // for the page, which names files by where they lie in `directory`.
+  list = [];
 
-  constructor(say) {
+  constructor(directory, say) {
+    this.prefix = directory.endsWith('/') ? directory : `${directory}/`;
     this.say = say;
   }
 
   // On one line, whatever a file's name or a value holds.
   add(text, table) {
     const line = text.replace(/\p{Cc}+/gu, ' ');
-    if (this.list.some((other) => other.text === line)) return;
-    this.list.push({ text: line, table });
+    const shown = line.replaceAll(this.prefix, '');
+    if (this.list.some((other) => other.text === shown)) return;
+    this.list.push({ text: shown, table });
     this.say(`report: warning: ${line}`);
   }
 

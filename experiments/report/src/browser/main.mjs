@@ -4,6 +4,7 @@ import { expressionInterpreter } from 'vega-interpreter';
 import { figures, figure_spec } from '../../figures/all.mjs';
 import { page_theme, vega_config } from '../../figures/common.mjs';
 import { all_objects } from '../objects.mjs';
+import { describe_picture } from './described.mjs';
 import { Player } from './scenes/player.mjs';
 import { fill_table } from './table.mjs';
 import { start_tabs } from './tabs.mjs';
@@ -51,6 +52,7 @@ async function draw_at(place, width) {
       tooltip: { theme: 'custom', formatTooltip: tooltip_html },
     }),
   );
+  describe_picture(place, spec.description);
 }
 
 // The drawn figure as a file: the page's colour variables become the colours now shown.

@@ -30,7 +30,29 @@ function sorted(rows, { column, descending }, numeric) {
   });
 }
 
-export function fill_table(details, { columns, rows }) {
+// RFC 4180; numbers as short as they come back the same.
+function csv_text({ columns, rows }) {
+  const field = (value) => {
+    const text = String(value ?? '');
+    return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  };
+  const lines = [columns.map(({ name }) => name), ...rows];
+  return lines.map((line) => `${line.map(field).join(',')}\r\n`).join('');
+}
+
+function save_button(name, table) {
+  const button = element('button', { type: 'button' }, 'Save as CSV');
+  button.addEventListener('click', () => {
+    const file = new Blob([csv_text(table)], { type: 'text/csv' });
+    const link = element('a', { href: URL.createObjectURL(file), download: `${name}.csv` });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+  return button;
+}
+
+export function fill_table(details, table) {
+  const { columns, rows } = table;
   const shown = columns
     .map((column, i) => ({ ...column, i }))
     .filter(
@@ -111,7 +133,13 @@ export function fill_table(details, { columns, rows }) {
   });
   const label = details.querySelector('summary').textContent;
   details.append(
-    element('div', { class: 'table-tools' }, filter, count),
+    element(
+      'div',
+      { class: 'table-tools' },
+      filter,
+      count,
+      save_button(details.dataset.table, table),
+    ),
     element(
       'div',
       { class: 'table-box', tabindex: '0', role: 'region', 'aria-label': label },

@@ -1,5 +1,6 @@
-// The tabs of the page. An address that starts with #scene opens the scenes, one that
-// names a section the tab that it is in.
+// The tabs of the page. Each has an address, #tab-NAME, so that a link opens it and the
+// browser's back button returns to it. An address that starts with #scene opens the
+// scenes, one that names a section the tab that it is in.
 const tabs = [...document.querySelectorAll('[role="tab"]')];
 const panel_of = (tab) => document.getElementById(tab.getAttribute('aria-controls'));
 
@@ -13,6 +14,24 @@ function show(chosen) {
 
 const named = (id) => tabs.find((tab) => tab.id === id);
 
+// The tab of an address, and the section in it that the address names.
+function place_of(hash) {
+  if (hash === '') return { tab: tabs[0] };
+  if (hash.startsWith('#scene')) return { tab: named('tab-scenes') };
+  const id = hash.slice(1);
+  const section = document.getElementById(id);
+  const panel = section?.closest('[role="tabpanel"]');
+  return { tab: named(id) ?? tabs.find((tab) => panel_of(tab) === panel), section };
+}
+
+// Where the keys of the tab list lead from tab `i`.
+const destinations = {
+  ArrowRight: (i) => (i + 1) % tabs.length,
+  ArrowLeft: (i) => i - 1,
+  Home: () => 0,
+  End: () => -1,
+};
+
 // `changed` is called with whether the scenes are shown, after every change.
 export function start_tabs(changed) {
   const choose = (tab) => {
@@ -20,21 +39,23 @@ export function start_tabs(changed) {
     changed(tab.id === 'tab-scenes');
   };
   const follow_address = () => {
-    if (location.hash.startsWith('#scene')) choose(named('tab-scenes'));
-    else if (location.hash !== '') {
-      const target = document.getElementById(location.hash.slice(1));
-      const panel = target?.closest('[role="tabpanel"]');
-      if (!panel) return;
-      choose(tabs.find((tab) => panel_of(tab) === panel));
-      target.scrollIntoView();
-    }
+    const { tab, section } = place_of(location.hash);
+    if (tab === undefined) return;
+    choose(tab);
+    if (section !== tab) section?.scrollIntoView();
   };
   tabs.forEach((tab, i) => {
-    tab.addEventListener('click', () => choose(tab));
-    tab.addEventListener('keydown', ({ key }) => {
-      const step = { ArrowRight: 1, ArrowLeft: -1 }[key];
-      if (step === undefined) return;
-      const next = tabs.at((i + step) % tabs.length);
+    tab.addEventListener('click', () => {
+      if (tab.getAttribute('aria-selected') === 'true') return;
+      history.pushState(null, '', `#${tab.id}`);
+      choose(tab);
+    });
+    // Keys pass tabs on their way: they leave no trace in the history.
+    tab.addEventListener('keydown', (event) => {
+      if (!Object.hasOwn(destinations, event.key)) return;
+      const next = tabs.at(destinations[event.key](i));
+      event.preventDefault();
+      history.replaceState(null, '', `#${next.id}`);
       choose(next);
       next.focus();
     });

@@ -20,16 +20,60 @@ export const named_views = {
   top: { azimuth: -90, elevation: steepest },
 };
 
+// What a scene reaches, as {rho, z} about the vertical through `middle` (m): the picture
+// holds all of it from every azimuth, so that turning does not change its size.
+export function profile_of(points, middle) {
+  const slices = 24;
+  const heights = points.map((point) => point[2] - middle[2]);
+  const low = heights.reduce((a, b) => Math.min(a, b), 0);
+  const high = heights.reduce((a, b) => Math.max(a, b), 0);
+  const profile = new Map();
+  points.forEach((point, i) => {
+    const z = heights[i];
+    const slice = Math.min(slices - 1, Math.floor((slices * (z - low)) / (high - low || 1)));
+    const rho = Math.hypot(point[0] - middle[0], point[1] - middle[1]);
+    const { rho: most = 0, low: least = z, high: top = z } = profile.get(slice) ?? {};
+    profile.set(slice, {
+      rho: Math.max(most, rho),
+      low: Math.min(least, z),
+      high: Math.max(top, z),
+    });
+  });
+  return [...profile.values()].flatMap(({ rho, low: least, high: top }) => [
+    { rho, z: least },
+    { rho, z: top },
+  ]);
+}
+
+const directions = Array.from({ length: 16 }, (_, k) => (Math.PI * k) / 8);
+const filled = 0.92; // part of the picture's width or height
+
+// Pixels for the tangent 1 of the angle off the middle, so that the profile turned to every
+// azimuth just fits, seen from `distance` at the elevation with this cosine and sine.
+function fit(profile, distance, cosine, sine, width, height) {
+  let [wide, tall] = [1e-9, 1e-9];
+  for (const { rho, z } of profile) {
+    for (const direction of directions) {
+      const away = rho * Math.cos(direction);
+      const depth = distance + away * cosine - z * sine;
+      wide = Math.max(wide, Math.abs(rho * Math.sin(direction)) / depth);
+      tall = Math.max(tall, Math.abs(z * cosine + away * sine) / depth);
+    }
+  }
+  return (filled / 2) * Math.min(width / wide, height / tall);
+}
+
 export class Camera {
   azimuth = named_views.home.azimuth; // degrees from +x to +y, of the eye about the target
   elevation = named_views.home.elevation; // degrees above the horizon
   zoom = 1; // 1: the scene fills the picture; the eye stays where it is
   shift = [0, 0, 0]; // m, of the target off the middle of the scene
 
-  // The scene lies in the ball about `middle`, m.
-  constructor(middle, radius) {
+  // The scene lies in the ball about `middle`, m; `profile`: what it fills of that.
+  constructor(middle, radius, profile = [{ rho: radius, z: 0 }]) {
     this.middle = middle;
     this.radius = radius;
+    this.profile = profile;
   }
 
   look(name) {
@@ -85,7 +129,9 @@ export class Camera {
     const target = add(this.middle, this.shift);
     const distance = this.radius / Math.sin(half_angle);
     const eye = add(target, forward, -distance);
-    const scale = (this.zoom * Math.min(width, height)) / 2 / Math.tan(half_angle);
+    const scale =
+      this.zoom *
+      fit(this.profile, distance, Math.cos(e), Math.sin(e), width, height);
     return { eye, forward, right, up, target, distance, scale, width, height };
   }
 }

@@ -1,26 +1,49 @@
 // The picture of one moment of a scene on a canvas.
 import { bodies_at, draw_body } from './bodies.mjs';
-import { Camera, add } from './camera.mjs';
+import { Camera, add, profile_of } from './camera.mjs';
 import { bins, page_theme_colours } from './colours.mjs';
 import { positions_at } from './data.mjs';
 import { Strands } from './strands.mjs';
 
-// The middle of all strands of all frames and all bodies but planes, and a radius that
-// fills the picture: 0.85 half diagonals of their box, of which every side shows less.
-function extent({ low, high, bodies }) {
-  const [least, most] = [[...low], [...high]];
-  for (const { shape, half_axes_m: half, poses } of bodies) {
-    if (shape === 'plane') continue;
-    const reach = shape === 'capsule' ? half[0] + half[2] : Math.max(...half);
-    for (const pose of poses) {
-      for (let i = 0; i < 3; ++i) {
-        least[i] = Math.min(least[i], pose[i] - reach);
-        most[i] = Math.max(most[i], pose[i] + reach);
-      }
-    }
+const samples = 4000;
+
+// Positions (m) of some points of some frames, ends of strands among them.
+function some_points(scene) {
+  const { points, frames, starts } = scene;
+  const frame_stride = Math.ceil(frames / 40);
+  const stride = Math.max(1, Math.floor((points * Math.min(frames, 40)) / samples));
+  const ends = new Set(starts.map((start) => start - 1));
+  const out = [];
+  const positions = new Float64Array(3 * points);
+  for (let frame = 0; frame < frames; frame += frame_stride) {
+    positions_at(scene, frame, positions);
+    for (let p = 0; p < points; ++p)
+      if (p % stride === 0 || ends.has(p)) out.push([...positions.subarray(3 * p, 3 * p + 3)]);
   }
+  return out;
+}
+
+// The ends of a body but a plane in every direction, at each of its poses.
+const body_points = ({ shape, half_axes_m: half, poses }) => {
+  if (shape === 'plane') return [];
+  const reach = shape === 'capsule' ? half[0] + half[2] : Math.max(...half);
+  return poses.flatMap((pose) =>
+    [0, 1, 2].flatMap((i) =>
+      [reach, -reach].map((r) => [0, 1, 2].map((k) => pose[k] + (k === i ? r : 0))),
+    ),
+  );
+};
+
+// The middle of all that is shown, planes apart, the radius (m) of a ball about it that
+// holds it, and its profile.
+function extent(scene) {
+  const points = [...some_points(scene), ...scene.bodies.flatMap(body_points)];
+  const [least, most] = [Math.min, Math.max].map((of) =>
+    [0, 1, 2].map((i) => points.reduce((end, point) => of(end, point[i]), points[0][i])),
+  );
   const middle = least.map((l, i) => (l + most[i]) / 2);
-  return { middle, radius: 0.425 * Math.hypot(...add(most, least, -1)) || 1 };
+  const radius = 0.5 * Math.hypot(...add(most, least, -1)) || 1;
+  return { middle, radius, profile: profile_of(points, middle) };
 }
 
 // A length of 1, 2 or 5 times a power of ten, not longer than `most`.
@@ -43,7 +66,8 @@ export class Picture {
     this.canvas = canvas;
     this.scene = scene;
     this.extent = extent(scene);
-    this.camera = new Camera(this.extent.middle, this.extent.radius);
+    const { middle, radius, profile } = this.extent;
+    this.camera = new Camera(middle, radius, profile);
     this.positions = new Float64Array(3 * scene.points);
     this.show_strands(false);
     this.channel = scene.channels[0];

@@ -2,6 +2,7 @@
 import embed from 'vega-embed';
 import { expressionInterpreter } from 'vega-interpreter';
 import { page_theme, vega_config } from '../../../figures/common.mjs';
+import { describe_picture } from '../described.mjs';
 
 const units = {
   m: 'm', mm: 'mm', s: 's', ms: 'ms', us: 'µs', j: 'J', n: 'N', kg: 'kg', rad: 'rad',
@@ -97,6 +98,7 @@ export class Series {
           expr: expressionInterpreter,
           config: vega_config(page_theme),
         });
+        describe_picture(box, spec.description);
         view.addEventListener('click', (event) => {
           const left = view.origin()[0] + view.padding().left;
           const at = event.clientX - box.getBoundingClientRect().left - left;
