@@ -56,6 +56,8 @@ export class Browser {
       },
     });
     browser.session = `/session/${sessionId}`;
+    // Scripts on a busy machine may take longer than the 30 s that are usual.
+    await browser.command('/timeouts', { script: 120000 });
     // Chromium's own start page must not be counted among the page's requests.
     await browser.command('/url', { url: 'about:blank' });
     await browser.requests();

@@ -4,16 +4,6 @@ import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { sources_hash } from '../../experiments/report/src/sources_hash.mjs';
-import { paper_theme, spread } from '../../experiments/report/figures/common.mjs';
-import {
-  cell_fills,
-  families,
-  model_style,
-  series_style,
-  shapes,
-} from '../../experiments/report/figures/palette.mjs';
-import { limit_spec } from '../../experiments/report/figures/stability_limit.mjs';
-import { validation_orders } from '../../experiments/report/figures/validation_orders.mjs';
 import { parse_csv } from '../../experiments/report/src/csv.mjs';
 import {
   empty_directory,
@@ -90,38 +80,6 @@ test('Notices_NameWhatIsInsideOtherPackages', () => {
   for (const name of ['d3-array', 'fast-json-patch', 'semver', 'vega-embed'])
     assert.match(notices, new RegExp(`^(.*, )?${name}(,.*)?$`, 'm'), name);
   assert.doesNotMatch(notices, /^axe-core/m, 'a tool of the tests');
-});
-
-// Relative luminance of sRGB, from 0 to 1, as CIE L*.
-function lightness(hex) {
-  const linear = [1, 3, 5]
-    .map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
-    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
-  const y = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
-  return y > 0.008856 ? 116 * Math.cbrt(y) - 16 : 903.3 * y;
-}
-
-// A difference of 1 to 2 in L* is just noticeable, 12 is plain; 100 is the paper.
-test('CellFills_DifferInGrey', () => {
-  const all = Object.values(cell_fills)
-    .map(({ fill }) => lightness(fill))
-    .concat(100)
-    .sort((a, b) => a - b);
-  all.slice(1).forEach((l, i) => assert.ok(l - all[i] >= 12, all.join(' ')));
-  for (const { fill, text } of Object.values(cell_fills))
-    assert.ok(Math.abs(lightness(fill) - lightness(text)) >= 40, fill);
-});
-
-test('Shapes_AreOneForEachIntegrator', () => {
-  assert.equal(new Set(shapes).size, shapes.length);
-  const known = families.flatMap(({ members }) => members);
-  assert.ok(shapes.length >= known.length, `${shapes.length} for ${known.length}`);
-  assert.equal(new Set(series_style(known).shapes).size, known.length);
-});
-
-test('Spread_KeepsTheOrderAndTheGap', () => {
-  assert.deepEqual(spread([50, 10, 52], 13, 330), [50, 10, 63]);
-  assert.deepEqual(spread([329, 330, 5], 10, 330), [320, 330, 5]);
 });
 
 test('Report_WritesPageAndOneSvgPerFigure', () => {
@@ -366,51 +324,6 @@ test('Ticks_HaveSixDigitsAtMost', () => {
     for (const tick of list)
       assert.ok(tick.replace(/[^0-9]/g, '').replace(/^0+/, '').length <= 7, `${id}: ${tick}`);
   }
-});
-
-test('OrdersOfTwoPoints_AreDashed', () => {
-  const rows = [10, 20, 40].map((elements) => ({
-    test: 'cantilever',
-    model: 'der',
-    elements,
-    parameter: 1,
-    error_rel: 1 / elements ** 2,
-  }));
-  const two = rows.slice(0, 2).map((row) => ({ ...row, model: 'corde' }));
-  const drawn = validation_orders.rows({ validation: [...rows, ...two] });
-  assert.deepEqual(
-    drawn.map(({ points }) => points),
-    [3, 3, 3, 2, 2],
-  );
-});
-
-test('LowerBounds_AreNotJoinedToLimits', () => {
-  const row = (elements, dt_max_s, limited_by) => ({
-    scene: 'shake',
-    model: 'der',
-    integrator: 'semi_implicit_euler',
-    damping: 'none',
-    method: 'der',
-    elements,
-    dt_max_s,
-    limited_by,
-    status: 'ok',
-  });
-  const rows = [row(5, 0.01, 'energy'), row(10, 0.1, 'cap'), row(20, 0.02, 'energy')];
-  const { concat } = limit_spec(rows, model_style(['der']), {
-    width: 1000,
-    theme: paper_theme,
-  });
-  const [line, , , filled, hollow] = concat[0].layer.map(({ data }) => data.values);
-  assert.deepEqual(
-    line.map(({ elements, stretch }) => [elements, stretch]),
-    [
-      [5, 0],
-      [20, 1],
-    ],
-  );
-  assert.deepEqual(filled.map(({ elements }) => elements), [5, 20]);
-  assert.deepEqual(hollow.map(({ elements }) => elements), [10]);
 });
 
 test('Csv_ReadsQuotesAndSpecialNumbers', () => {
