@@ -1,17 +1,16 @@
 #!/usr/bin/env bash
 # test_readme.sh REPOSITORY BUILD: runs what the README tells its reader to type, as it is
 # written: every line of its code blocks that begins with build/ or ./tress. Left out are
-# the commands of ./tress that build, which their own tests look at. It runs in a copy
-# whose results/ is its own; build/release there is BUILD.
+# the commands of ./tress that build, which their own tests look at. It runs in a copy of
+# the repository, which it may change; build/release there is BUILD.
 set -euo pipefail
 repository=$1 build=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+tar -C "$repository" --exclude=./build --exclude=./.git --exclude=./results/scenes \
+  --exclude=node_modules -c . | tar -C "$work" -x
 mkdir "$work/build"
 ln -s "$build" "$work/build/release"
-cp -r "$repository/tress" "$repository/README.md" "$repository/results" "$work"
-for folder in cmake experiments scenes; do ln -s "$repository/$folder" "$work/$folder"; done
-rm -rf "$work/results/scenes"
 
 commands=$(awk '/^```/ { inside = !inside; next }
                 inside && /^(build\/|\.\/tress)/ { print }' "$work/README.md" |
