@@ -54,7 +54,7 @@ constexpr Parameter own_settings[] = {
      .min = 1e-3,
      .max = 1e3},
     {.name = "strands",
-     .help = "of a groom so many strands are looked at",
+     .help = "of a groom so many typical strands are looked at",
      .number = 1,
      .min = 1,
      .max = 1e4,
@@ -135,6 +135,9 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.longest_run = line.quick ? 2048 : 8192;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;
+  // Whoever waits for an answer does not wait for a check of the reference.
+  plan.refine = own.word("advise").empty();
+  plan.report = !plan.refine && line.progress != ProgressMode::none;
   return plan;
 }
 

@@ -44,6 +44,33 @@ const Row* find(const std::vector<Row>& rows, std::string_view kind) {
   return found == rows.end() ? nullptr : &*found;
 }
 
+/// Whether the search ended before it had tried all.
+bool cut(const Row& row) {
+  return row.text("search").find("cut") != row.text("search").npos;
+}
+
+/// What to do about a search that did not come to its end.
+std::string more(const Row& row) {
+  const bool by_the_clock = row.text("search").find("clock") != row.text("search").npos;
+  return fmt::format(
+      "the search did not come to its end ({}): {} goes on", row.text("search"),
+      by_the_clock ? "--timeout with more time" : "--set search_work with more work");
+}
+
+/// Where no run meets the target.
+std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& best) {
+  const double target = 1e2 * best.number("target_error_rel");
+  std::vector<std::string> lines{
+      cut(best) ? fmt::format("no run within {:.3g} % so far", target)
+                : fmt::format("no run within {:.3g} %, by no method tried", target),
+      "best so far " + configuration_and_price(best)};
+  if (const Row* given = find(rows, "as_given")) {
+    lines.push_back("the file as it is: " + configuration_and_price(*given));
+  }
+  if (cut(best)) lines.push_back(more(best));
+  return lines;
+}
+
 /// The file's own configuration where it is worse, else the dearest of the replaced
 /// choices.
 std::string what_not(const std::vector<Row>& rows, const Row& best) {
@@ -81,16 +108,27 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   const Row* best = advised(rows);
   if (best == nullptr) {
     const Row& first = rows.front();
-    return {fmt::format("nothing: {}", first.text("reason"))};
+    return {first.status() == "timeout"
+                ? fmt::format("out of time before the first run was compared ({}): "
+                              "references that are complete are kept, --timeout with "
+                              "more time goes on from there",
+                              first.text("reason"))
+                : fmt::format("nothing: {}", first.text("reason"))};
   }
-  std::vector<std::string> lines{fmt::format("take {}: {}", what(*best), price(*best))};
+  if (best->status() == "not_met") return best_so_far(rows, *best);
+  std::vector<std::string> lines{"take " + configuration_and_price(*best)};
   const Row* winner = find(rows, "winner");
+  if (winner != nullptr && winner->status() == "not_met") winner = nullptr;
   const Row* next = best == winner ? find(rows, "runner_up") : winner;
-  lines.push_back(next == nullptr
-                      ? "next best: no other model or integrator does"
-                      : fmt::format("next best {}: {}", what(*next), price(*next)));
+  lines.push_back(next == nullptr ? "next best: no other model or integrator does"
+                                  : "next best " + configuration_and_price(*next));
   lines.push_back(what_not(rows, winner == nullptr ? *best : *winner));
+  if (cut(*best)) lines.push_back(more(*best));
   return lines;
+}
+
+std::string configuration_and_price(const Row& row) {
+  return fmt::format("{}: {}", what(row), price(row));
 }
 
 std::string advised_text(const SceneText& text, const Row& row, double rate) {

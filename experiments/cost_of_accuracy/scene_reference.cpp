@@ -13,6 +13,7 @@
 #include "experiments/harness/files.h"
 #include "experiments/harness/message.h"
 #include "experiments/harness/tip_track.h"
+#include "experiments/scenes/typical_strands.h"
 #include "experiments/scenes/variants.h"
 #include "models/input_error.h"
 
@@ -75,16 +76,18 @@ Comparison comparison(const SceneText& text, double rate, double horizon,
   Comparison made{.rate = rate, .strands = strands};
   const double span = std::min(horizon, text.given().duration);
   made.frames = static_cast<std::size_t>(std::max(1.0, std::floor(span * rate + 1e-9)));
-  const Scene few = thinned(text.given(), strands);
-  for (const Strand& strand : few.strands) made.length += strand.length();
-  made.length /= static_cast<double>(few.strands.size());
+  const std::vector<Strand>& all = text.given().strands;
+  const std::vector<std::size_t> typical = typical_strands(all, strands);
+  for (const std::size_t i : typical) made.length += all[i].length();
+  made.length /= static_cast<double>(typical.size());
+  if (typical.size() < all.size()) made.chosen = typical;
   return made;
 }
 
 Scene compared(Scene scene, const Comparison& comparison) {
   scene.frame_rate = comparison.rate;
   scene.duration = comparison.horizon();
-  return thinned(std::move(scene), comparison.strands);
+  return comparison.chosen.empty() ? scene : only(std::move(scene), comparison.chosen);
 }
 
 SceneReference scene_reference(const SceneText& text, const Comparison& comparison,
@@ -180,8 +183,12 @@ void save_reference(const std::string& folder, const std::string& name,
 
 std::string reference_key(const SceneText& text, const Comparison& comparison,
                           const ReferenceCut& cut) {
-  return hash(fmt::format("{} {} {} {} {} {}\n{}", reference_version, comparison.rate,
-                          comparison.frames, comparison.strands, cut.elements,
+  std::string chosen;
+  for (const std::size_t strand : comparison.chosen) {
+    chosen += fmt::format(" {}", strand);
+  }
+  return hash(fmt::format("{} {} {} {}{} {} {}\n{}", reference_version, comparison.rate,
+                          comparison.frames, comparison.strands, chosen, cut.elements,
                           cut.substeps, text.physics()));
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/cost_of_accuracy/scene_text.h"
 #include "experiments/harness/strand_reference.h"
@@ -16,6 +17,9 @@ struct Comparison {
   std::size_t frames = 30;  // the horizon
   std::size_t strands = 1;  // of a groom
   double length = 0;        // of the strands, mean (m)
+  /// Which of the strands; none: all. Typical ones of the scene as its file has it: they
+  /// are the same however strands are cut.
+  std::vector<std::size_t> chosen = {};
 
   double horizon() const { return static_cast<double>(frames) / rate; }
 };

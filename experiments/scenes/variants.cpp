@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/harness/timing.h"
+#include "experiments/scenes/typical_strands.h"
 #include "experiments/scenes/world.h"
 
 namespace tress {
@@ -106,10 +107,14 @@ Scene bare(Scene scene) {
 }
 
 Scene thinned(Scene scene, std::size_t most) {
-  const std::size_t all = scene.strands.size();
-  if (scene.interaction || all <= most) return scene;
+  if (scene.interaction) return scene;
+  const auto typical = typical_strands(scene.strands, most);
+  return only(std::move(scene), typical);
+}
+
+Scene only(Scene scene, const std::vector<std::size_t>& strands) {
   std::vector<Strand> chosen;
-  for (std::size_t i = 0; i < most; ++i) chosen.push_back(scene.strands[i * all / most]);
+  for (const std::size_t i : strands) chosen.push_back(scene.strands[i]);
   scene.strands = std::move(chosen);
   return scene;
 }

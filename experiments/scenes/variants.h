@@ -23,8 +23,10 @@ std::vector<Ingredient> ingredients(const Scene& scene);
 /// The scene without any effect and interaction.
 Scene bare(Scene scene);
 
-/// At most `most` of its strands, evenly chosen; where they touch each other, all.
+/// At most `most` of its strands, typical ones; where they touch each other, all.
 Scene thinned(Scene scene, std::size_t most);
+/// These of its strands.
+Scene only(Scene scene, const std::vector<std::size_t>& strands);
 
 /// Segments cut in halves of the same shape, steps halved: what the difference from the
 /// scene itself says about its discretisation.

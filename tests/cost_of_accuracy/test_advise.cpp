@@ -53,7 +53,33 @@ TEST(Advise, KeepsTheReference) {
   EXPECT_THAT(process.run("--advise hair.toml" + small).err,
               testing::Not(HasSubstr("computing")));
   EXPECT_TRUE(process.exists("reference/hair.csv"));
-  EXPECT_TRUE(process.exists("reference/hair.refined.meta.json"));
+  EXPECT_TRUE(process.exists("reference/hair.changed.meta.json"));
+}
+
+// A search that is over after its probes has answers, but no winner.
+TEST(Advise, SaysTheBestSoFarWhereTheSearchWasCut) {
+  Toy process;
+  process.write("hair.toml", sagging);
+  const Toy::Result result = process.run(
+      "--advise hair.toml --set accuracy=0.002 --set search_work=0.0005" + small);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("no run within 0.2 % so far"));
+  EXPECT_THAT(result.out, HasSubstr("best so far super_helix"));
+  EXPECT_THAT(result.out, HasSubstr("--set search_work"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("nothing")));
+  EXPECT_TRUE(process.exists("hair.advised.toml"));
+}
+
+TEST(Advise, SaysThatTimeIsOver) {
+  Toy process;
+  process.write("hair.toml", sagging);
+  const Toy::Result result = process.run(
+      "--advise hair.toml --quick --timeout 0.1 --out table.csv "
+      "--set reference_substeps=4096 --set references=reference");
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("out of time"));
+  EXPECT_THAT(result.out, HasSubstr("--timeout"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("nothing")));
 }
 
 TEST(Advise, BudgetTakesTheBestInTheTimeThereIs) {

@@ -7,6 +7,7 @@
 #include "experiments/cost_of_accuracy/changed_data.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/harness/tip_track.h"
+#include "experiments/scenes/typical_strands.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress {
@@ -138,6 +139,33 @@ TEST(SceneReference, EndsWhereItsSidesPart) {
   EXPECT_EQ(agreed(reference, compare, 1).frames, 9u);
   reference.tips.other[3] = 50;
   EXPECT_EQ(agreed(reference, compare, 0.1).frames, 1u);  // one at least
+}
+
+// Nine strands of a groom are alike, one is a curl, two are long: two typical ones are
+// one of the nine and a long one, however strands are cut.
+TEST(TypicalStrands, StandForTheGroom) {
+  const auto groom = [](int elements) {
+    std::vector<Strand> all;
+    for (int i = 0; i < 12; ++i) {
+      const double length = i > 9 ? 0.3 : 0.1 + 1e-4 * i;
+      const Shape shape =
+          i == 0 ? helix_shape(0.01, 0.02) : uniform_shape({0, 0.1 * i, 0});
+      all.push_back(make_strand({}, {}, {elements, length, 1}, shape));
+    }
+    return all;
+  };
+  const std::vector<Strand> all = groom(8);
+  const auto one = typical_strands(all, 1);
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_GE(one.front(), 1u);
+  EXPECT_LE(one.front(), 9u);
+  const auto four = typical_strands(all, 4);
+  ASSERT_EQ(four.size(), 4u);
+  EXPECT_GE(four.back(), 10u);
+  EXPECT_EQ(typical_strands(groom(20), 4), four);
+  EXPECT_EQ(typical_strands(all, 99).size(), all.size());
+  const std::vector<Strand> alike(5, all.front());
+  EXPECT_EQ(typical_strands(alike, 2), (std::vector<std::size_t>{0, 2}));
 }
 
 const char* const elastic = R"(

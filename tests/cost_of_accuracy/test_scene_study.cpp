@@ -207,6 +207,7 @@ Row shown(std::string_view kind, double error, double refined, double wall) {
   Row row;
   row.set("scene", "s").set("kind", kind).set("target_error_rel", 0.01);
   row.set("error_rel", error).set("error_refined_rel", refined).set("reference_gap", 0.);
+  row.set("refined_gap", 0.);
   row.set("error_neighbours_rel", error).set("margin", error / 0.01);
   return row.set("wall_s_per_sim_s", wall);
 }

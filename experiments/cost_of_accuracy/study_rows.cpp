@@ -1,0 +1,136 @@
+#include "experiments/cost_of_accuracy/study_rows.h"
+
+#include <fmt/format.h>
+
+#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/scenes/scene_tables.h"
+
+namespace tress {
+namespace {
+
+void set_wall(const Study& study, double wall_s, Row& row) {
+  row.set("wall_s_per_sim_s", wall_s / study.comparison.horizon());
+  row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
+}
+
+/// Why there is no winner.
+std::string not_met(bool cut) {
+  return cut ? "no run within the target with neighbours that hold, so far: the search "
+               "ended with its work"
+             : "no run within the target with neighbours that hold";
+}
+
+}  // namespace
+
+Row begin(const Study& study, std::string_view kind) {
+  Row row = study.identity;
+  row.set("kind", kind).set("reference_gap", study.gap());
+  if (study.refined) row.set("refined_gap", study.refined->tips.gap);
+  row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut);
+  return row;
+}
+
+Row row_of(const Study& study, std::string_view kind, const Trial& run) {
+  Row row = begin(study, kind);
+  set_method(study.methods[run.method], row);
+  row.set("elements", run.elements);
+  row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
+  row.set("error_rel", run.error);
+  if (run.examined == neighbour_count) row.set("error_neighbours_rel", run.neighbours);
+  set_wall(study, run.wall_s, row);
+  return row;
+}
+
+SceneMeasure measure_of(const Study& study) {
+  return {study.text, study.comparison, study.reference.tips.tip, study.changed};
+}
+
+void add_target(const Study& study, Finalists& finalists, double target,
+                std::vector<Row>& rows) {
+  if (target < study.floor()) {
+    Row row = begin(study, "winner");
+    row.set("target_error_rel", target);
+    rows.push_back(row.failed("below_reference",
+                              fmt::format("target {} < {} x gap {:.3g} of the references",
+                                          target, believed, study.gap())));
+    return;
+  }
+  const auto met = finalists.of(target - study.gap());
+  if (!met) {
+    const auto nearest = finalists.nearest();
+    Row row = nearest ? row_of(study, "winner", *nearest) : begin(study, "winner");
+    row.set("target_error_rel", target);
+    rows.push_back(row.failed("not_met", not_met(finalists.cut())));
+    return;
+  }
+  const auto add = [&](std::string_view kind, const Trial& run) -> Row& {
+    Row row = row_of(study, kind, run);
+    row.set("target_error_rel", target);
+    row.set("margin", (run.neighbours + study.gap()) / target);
+    row.set("cost_factor", run.wall_s / met->winner.wall_s);
+    row.set("time_scatter", finalists.scatter(run));
+    rows.push_back(std::move(row));
+    return rows.back();
+  };
+  const auto check_refined = [&](const Trial& run, Row& row) {
+    if (!study.refined) return;
+    row.set("error_refined_rel",
+            measure_of(study).error(study.methods[run.method], run.elements, run.substeps,
+                                    study.refined->tips.tip));
+  };
+  check_refined(met->winner, add("winner", met->winner).set("rank", 1));
+  if (met->runner_up) {
+    const bool tied = finalists.tied(*met->runner_up, met->winner);
+    Row& row = add("runner_up", *met->runner_up).set("rank", tied ? 1 : 2);
+    check_refined(*met->runner_up, row.set("tied", tied));
+  }
+  for (const auto& [choice, run] : met->without) {
+    if (run) {
+      const bool tied = finalists.tied(*run, met->winner);
+      add("without", *run).set("choice", choice).set("tied", tied);
+      continue;
+    }
+    Row row = begin(study, "without");
+    row.set("target_error_rel", target).set("choice", choice);
+    rows.push_back(row.failed("not_met", "none that was tried meets the target"));
+  }
+}
+
+void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows) {
+  const double budget_s = study.plan.budget_s;
+  if (budget_s == 0) return;
+  const auto frames = static_cast<double>(study.comparison.frames);
+  const auto run = finalists.within(budget_s * frames, study.floor());
+  Row row = run ? row_of(study, "budget", *run) : begin(study, "budget");
+  row.set("budget_ms", 1e3 * budget_s);
+  if (!run) {
+    row.failed("not_met", "no run in the time there is");
+  } else if (run->error < study.floor()) {
+    row.failed("below_reference", "more accurate than the reference can tell");
+  }
+  rows.push_back(std::move(row));
+}
+
+void add_given(const Study& study, std::vector<Row>& rows) {
+  const Scene& given = study.text.given();
+  Row row = begin(study, "as_given");
+  Method method{given.model, {}, given.integrator, given.options.formulation};
+  for (const Parameter& p : model_table_parameters(*given.model)) {
+    if (p.name == "id" || p.choices.empty()) continue;
+    const std::string_view word = given.model_options.word(p.name);
+    if (word != words_of(p.choices).front()) method.options.emplace_back(p.name, word);
+  }
+  set_method(method, row);
+  row.set("elements", given.strands.front().segments.size());
+  row.set("dt_s", given.options.step);
+  const auto run = measure_of(study).best_of(given, study.plan.repeat);
+  if (!run) {
+    row.failed("diverged", "the scene as given does not run to the horizon");
+  } else {
+    row.set("error_rel", run->error);
+    set_wall(study, run->wall_s, row);
+  }
+  rows.push_back(std::move(row));
+}
+
+}  // namespace tress

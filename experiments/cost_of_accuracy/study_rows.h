@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/finalists.h"
+#include "experiments/cost_of_accuracy/scene_measure.h"
+#include "experiments/cost_of_accuracy/scene_study.h"
+
+namespace tress {
+
+/// What all rows of a scene are written from.
+struct Study {
+  const StudyPlan& plan;
+  const SceneText text;
+  const Row& identity;
+  Comparison comparison = {};  // cut where the references part
+  bool cut = false;
+  SceneReference reference = {};
+  std::optional<SceneReference> refined = {};
+  ChangedTips changed = {};
+  std::vector<Method> methods = {};
+
+  double gap() const { return reference.tips.gap; }
+  double floor() const { return believed * gap(); }
+};
+
+/// A row of the study with what all of them say; the same with a run.
+Row begin(const Study& study, std::string_view kind);
+Row row_of(const Study& study, std::string_view kind, const Trial& run);
+
+SceneMeasure measure_of(const Study& study);
+
+/// Winner, runner-up and replaced choices of one target.
+void add_target(const Study& study, Finalists& finalists, double target,
+                std::vector<Row>& rows);
+/// What the time per frame buys, where that was asked.
+void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
+/// The scene with the file's own model, integrator, elements and step; steps end at the
+/// frames of the comparison.
+void add_given(const Study& study, std::vector<Row>& rows);
+
+}  // namespace tress
