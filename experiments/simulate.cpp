@@ -12,6 +12,7 @@
 #include "experiments/harness/message.h"
 #include "experiments/scenes/scene_run.h"
 #include "experiments/scenes/schema.h"
+#include "integrators/error_indicator.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -118,6 +119,13 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{} -> {}.csv\n",
        scene.name, run.frames, run.simulated_s, run.wall_s,
        run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
+  if (run.indicator > unresolved) {
+    tell(
+        "simulate: warning: {}: {} did not resolve the motion (one step was wrong by "
+        "{:.2g} of an unknown's scale, by its own indicator): take a shorter dt_s, or "
+        "an integrator that iterates such as implicit_midpoint\n",
+        scene.name, scene.integrator, run.indicator);
+  }
   return run.end != SceneRun::End::failed;
 }
 

@@ -53,8 +53,8 @@ std::unique_ptr<Integrator> make_implicit_midpoint(System& system,
 /// residual, one factorisation and one solve per step, like semi_implicit_euler, but
 /// order 2, with any tangent (a W-method). Stable as implicit_midpoint on linear systems
 /// with the exact tangent; beyond, the step must resolve what the tangent leaves out and
-/// how it changes. [Steihaug, Wolfbrandt 1979, Math. Comp. 33, 521; Hairer, Wanner:
-/// Solving ODEs II, IV.7]
+/// how it changes: it has an ErrorIndicator. [Steihaug, Wolfbrandt 1979, Math. Comp. 33,
+/// 521; Hairer, Wanner: Solving ODEs II, IV.7]
 std::unique_ptr<Integrator> make_linearly_implicit_midpoint(System& system,
                                                             const Options& options);
 

@@ -45,8 +45,10 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
     const double wall_s = paths.once_s < short_run
                               ? wall_time(wall_times(run, short_repeats)).least_s
                               : paths.once_s;
-    return Trial{0, elements, substeps,
-                 tip_error(paths.x, reference_, comparison_.length), wall_s};
+    Trial made{0, elements, substeps, tip_error(paths.x, reference_, comparison_.length),
+               wall_s};
+    made.indicator = paths.indicator;
+    return made;
   } catch (const InputError&) {  // refused at this number of elements
     return {};
   } catch (const std::runtime_error&) {
@@ -70,8 +72,11 @@ double SceneMeasure::changed_error(const Method& method, int elements, int subst
 std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const {
   const Scene run = compared(given, comparison_);
   try {
-    const double error = tip_error(tip_paths(run, 0).x, reference_, comparison_.length);
-    return Trial{0, 0, 0, error, wall_time(wall_times(run, count, long_enough)).least_s};
+    const TipPaths paths = tip_paths(run, 0);
+    Trial made{0, 0, 0, tip_error(paths.x, reference_, comparison_.length),
+               wall_time(wall_times(run, count, long_enough)).least_s};
+    made.indicator = paths.indicator;
+    return made;
   } catch (const std::runtime_error&) {
     return {};
   }

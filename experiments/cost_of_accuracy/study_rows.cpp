@@ -37,6 +37,7 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
   row.set("error_rel", run.error);
   if (run.examined == neighbour_count) row.set("error_neighbours_rel", run.neighbours);
+  if (run.indicator > 0) row.set("error_indicator", run.indicator);
   set_wall(study, run.wall_s, row);
   return row;
 }
@@ -128,6 +129,7 @@ void add_given(const Study& study, std::vector<Row>& rows) {
     row.failed("diverged", "the scene as given does not run to the horizon");
   } else {
     row.set("error_rel", run->error);
+    if (run->indicator > 0) row.set("error_indicator", run->indicator);
     set_wall(study, run->wall_s, row);
   }
   rows.push_back(std::move(row));

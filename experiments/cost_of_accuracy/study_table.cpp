@@ -37,6 +37,9 @@ constexpr Column columns[] = {
      "moduli "
      "and length 2 % up and down"},
     {"margin", "the same and the gap over the wanted error; at most 1.5, or it is luck"},
+    {"error_indicator",
+     "what the method itself says of its worst step, over an unknown's scale; beyond 0.1 "
+     "the step does not resolve the motion"},
     {"reference_gap", "how far super_helix and der, extrapolated, are apart"},
     {"refined_gap", "the same refined once more"},
     {"horizon_s", "compared time: what was asked for, or until the references part"},

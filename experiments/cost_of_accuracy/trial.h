@@ -25,6 +25,9 @@ struct Trial {
   int examined = 0;
   double neighbours = 0;
 
+  /// Largest of its steps, 0 where the method has none (ErrorIndicator).
+  double indicator = 0;
+
   /// The smallest target for which the run counts: its own error, and what its neighbours
   /// leave of the allowance. A lower bound until all of them were examined.
   double judged() const;

@@ -113,6 +113,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
       break;
     }
     add_frame();
+    run.indicator = std::max(run.indicator, world->error_indicator());
     bar.show(world->time());
     if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
     const Snapshot snapshot = world->snapshot();

@@ -25,6 +25,7 @@ struct SceneRun {
   std::string reason;  // of a failure
   std::size_t frames;
   double wall_s, simulated_s;
+  double indicator = 0;  // largest World::error_indicator
 };
 
 /// Runs a scene and writes what it does: series, pictures, and while it goes on what a

@@ -37,6 +37,7 @@ struct TipPaths {
   std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
   double once_s = 0;      // wall time of stepping in the run that was read
   double wall_s = 0;      // the same where that is long, else the median of repeats
+  double indicator = 0;   // World::error_indicator at the end
 };
 
 /// Where a run is given up, looked at after every frame.
@@ -50,7 +51,7 @@ struct RunLimit {
 TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit = {});
 
 /// Wall times of some runs to the end (s): of `runs`, or more until they have taken
-/// `at_least_s` altogether.
+/// `at_least_s` altogether. Without the guard, which is no part of what a method costs.
 std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s = 0);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.

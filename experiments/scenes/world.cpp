@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "integrators/catalogue.h"
+#include "integrators/error_indicator.h"
 #include "models/groom/coupled_strands.h"
 #include "models/math/pack.h"
 
@@ -292,6 +293,15 @@ Stats World::stats() const {
     sum.solver = one.solver;
   }
   return sum;
+}
+
+double World::error_indicator() const {
+  double largest = 0;
+  for (const Body& body : bodies_) {
+    const ErrorIndicator* own = tress::error_indicator(*body.integrator);
+    if (own != nullptr) largest = std::max(largest, own->largest_indicator());
+  }
+  return largest;
 }
 
 Energy World::energy() {

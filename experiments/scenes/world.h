@@ -43,6 +43,8 @@ class World {
   double time() const { return t_; }
   const std::string& failure() const { return failure_; }
   Stats stats() const;  // summed over strands
+  /// Largest of all strands so far; 0 where the method has none (ErrorIndicator).
+  double error_indicator() const;
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }

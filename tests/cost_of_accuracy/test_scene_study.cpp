@@ -10,6 +10,7 @@
 #include "experiments/cost_of_accuracy/scene_study.h"
 #include "experiments/harness/tip_track.h"
 #include "experiments/scenes/variants.h"
+#include "integrators/error_indicator.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress {
@@ -199,6 +200,33 @@ TEST(SceneStudy, LuckyRunOfTheSwingIsPassedOver) {
   const bool lucky = row.text("tangent") == "stiff" && row.text("elements") == "12" &&
                      row.number("dt_s") > 0.004;
   EXPECT_FALSE(lucky);
+}
+
+TipPaths swing_by_one_solve_a_step(int elements, int substeps) {
+  const SceneText text(TRESS_SCENES "/accuracy/swing.toml");
+  const Method method{&find_model("super_helix"),
+                      {{"modes", "bend_planar"}, {"tangent", "stiff"}},
+                      "linearly_implicit_midpoint"};
+  const Comparison compare = comparison(text, 60, 0.5, 1);
+  Scene scene = compared(text.scene(method, elements, substeps, 60), compare);
+  scene.guard = false;  // it would end the run; here the method shall tell
+  return tip_paths(scene, 0);
+}
+
+// Without the guard it ends "ok" and is half a length off: the method itself knows.
+TEST(ErrorIndicator, TellsWhatIsNotResolved) {
+  const TipPaths fine = swing_by_one_solve_a_step(13, 16);
+  const TipPaths coarse = swing_by_one_solve_a_step(13, 4);
+  EXPECT_GT(tip_error(coarse.x, fine.x, 0.2), 0.1);
+  EXPECT_GT(coarse.indicator, unresolved);
+  EXPECT_LT(fine.indicator, unresolved);
+}
+
+// h^2/24 |a - a*| with a - a* = h^2 a'': order 4.
+TEST(ErrorIndicator, FallsWithTheFourthPowerOfTheStep) {
+  const double ratio = swing_by_one_solve_a_step(3, 64).indicator /
+                       swing_by_one_solve_a_step(3, 128).indicator;
+  EXPECT_NEAR(std::log2(ratio), 4, 0.2);
 }
 
 // ---- claims -----------------------------------------------------------------------
