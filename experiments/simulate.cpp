@@ -74,7 +74,7 @@ std::vector<std::string> all_scenes() {
 void ready_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
+  if (!std::filesystem::is_directory(folder, error)) {
     throw InputError("the output is not a folder", "--out " + folder,
                      "give a folder that exists or can be made");
   }

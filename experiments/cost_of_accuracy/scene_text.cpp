@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "experiments/harness/files.h"
 #include "experiments/harness/toml_text.h"
 #include "models/input_error.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
@@ -56,7 +56,9 @@ std::string_view Method::word(std::string_view choice) const {
 }
 
 SceneText::SceneText(const std::string& file)
-    : file_(file), text_(read_file(file)), given_(parse_scene(text_, file)) {
+    : file_(file),
+      text_(read_file(file, most_toml_bytes)),
+      given_(parse_scene(text_, file)) {
   if (given_.strands.empty()) {
     throw InputError(
         "the model brings its own geometry: no other model can do this scene", file,

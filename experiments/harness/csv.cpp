@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "experiments/harness/files.h"
 #include "models/input_error.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
@@ -43,6 +43,7 @@ class Reader {
   char peek() const { return text_[at_]; }
 
   void step() {
+    if (text_[at_] == '\0') fail("a NUL byte");  // it would end every message
     column_ = text_[at_] == '\n' ? 1 : column_ + 1;
     line_ += text_[at_] == '\n' ? 1 : 0;
     ++at_;
@@ -113,6 +114,10 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   Reader reader(text, file);
   CsvTable table;
   if (!reader.done()) table.header = reader.line(table.places.emplace_back());
+  if (table.header.size() > most_columns) {
+    throw InputError(fmt::format("{} columns", table.header.size()), file + ":1",
+                     fmt::format("give at most {}", most_columns));
+  }
   for (std::size_t i = 0; i < table.header.size(); ++i) {
     const auto rest = table.header.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     if (std::find(rest, table.header.end(), table.header[i]) != table.header.end()) {
@@ -134,6 +139,8 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   return table;
 }
 
-CsvTable read_csv(const std::string& file) { return parse_csv(read_file(file), file); }
+CsvTable read_csv(const std::string& file) {
+  return parse_csv(read_file(file, most_table_bytes), file);
+}
 
 }  // namespace tress

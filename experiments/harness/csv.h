@@ -29,8 +29,12 @@ std::string csv_line(std::span<const std::string> cells);
 /// Header and rows; status "ok" is written out where a row does not say otherwise.
 std::string to_csv(std::span<const std::string> header, std::span<const Row> rows);
 
+/// Of a table that is read; in memory it is a hundred times as large.
+constexpr std::size_t most_table_bytes = 16 << 20, most_columns = 128;
+
 /// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
-/// unclosed quote, a line of the wrong length and a repeated column name.
+/// unclosed quote, a line of the wrong length, a repeated column name and more columns
+/// than most_columns.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
 CsvTable read_csv(const std::string& file);

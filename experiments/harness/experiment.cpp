@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <thread>
 
@@ -116,14 +116,16 @@ RunKey run_key(const Experiment& experiment, const CommandLine& line) {
 
 /// Rows of a complete table from an earlier run with the same settings.
 void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
-  if (!std::filesystem::exists(line.out)) return;
+  std::error_code ignored;  // check_output has told what is wrong with it
+  if (!std::filesystem::exists(line.out, ignored)) return;
   const CsvTable table = read_csv(line.out);
   check_header(table, experiment.columns, line.out);
   const std::string meta = beside(line.out, ".meta.json");
-  if (std::filesystem::exists(meta)) {
-    const auto manifest = nlohmann::json::parse(read_file(meta), nullptr, false);
-    const bool same = manifest.is_object() &&
-                      manifest.value("settings", std::string()) == settings_text(line);
+  if (std::filesystem::exists(meta, ignored)) {
+    const auto manifest =
+        nlohmann::json::parse(read_file(meta, most_table_bytes), nullptr, false);
+    const bool same = manifest.is_object() && manifest.contains("settings") &&
+                      manifest["settings"] == settings_text(line);
     if (!same) {
       throw InputError("the table to resume was made with other settings", meta,
                        "repeat them, choose another --out, or leave out --resume");
@@ -189,8 +191,7 @@ int merge_tables(const Experiment& experiment, const CommandLine& line) {
   return merged.conflicts.empty() ? code : rows_failed;
 }
 
-/// Fails before the work rather than after it. Standard output can only be tried by
-/// writing to it, so it gets the header now.
+/// Standard output can only be tried by writing to it, so it gets the header now.
 void check_place(const Experiment& experiment, const CommandLine& line) {
   if (line.out == standard_output) {
     write_all(STDOUT_FILENO, csv_line(header(experiment.columns)), "standard output");
@@ -202,19 +203,40 @@ void check_place(const Experiment& experiment, const CommandLine& line) {
   check_output(line.out);
 }
 
+/// Tells what is wrong with the output before a plan that may take seconds for its
+/// references, without touching anything.
+void check_early(const CommandLine& line) {
+  if (line.out == standard_output || line.places.count("out") == 0) return;
+  check_output(line.out);
+  check_output(journal_file(line));
+}
+
+bool has_journal(const CommandLine& line) {
+  std::error_code none;
+  return std::filesystem::file_size(journal_file(line), none) > 0 && !none;
+}
+
+std::unique_ptr<Journal> open_journal(const Experiment& experiment,
+                                      const CommandLine& line) {
+  return std::make_unique<Journal>(
+      journal_file(line), run_key(experiment, line),
+      line.resume ? Journal::Mode::resume : Journal::Mode::fresh);
+}
+
 int run_rows(const Experiment& experiment, const CommandLine& line) {
+  check_early(line);
+  Rows rows;
+  if (line.resume) keep_table(experiment, line, rows);
+  std::unique_ptr<Journal> journal;
+  if (has_journal(line)) journal = open_journal(experiment, line);
   const std::vector<Case> planned = plan(experiment, line);
   if (planned.empty() && line.shard_count == 1) {
     throw InputError("these options leave no row to run", "command line",
                      "--list shows what there is");
   }
   check_place(experiment, line);
-  Rows rows;
-  std::optional<Journal> journal;
-  if (line.resume) keep_table(experiment, line, rows);
-  if (line.out != standard_output) {
-    journal.emplace(journal_file(line), run_key(experiment, line),
-                    line.resume ? Journal::Mode::resume : Journal::Mode::fresh);
+  if (!journal && line.out != standard_output) journal = open_journal(experiment, line);
+  if (journal) {
     for (const Row& row : journal->rows()) rows.keep(row);
   }
   std::vector<Case> todo;

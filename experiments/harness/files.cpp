@@ -31,25 +31,6 @@ File::File(const std::string& file, int flags)
 
 File::~File() { ::close(descriptor_); }
 
-std::string read_file(const std::string& file) {
-  const auto refuse = [&file](const std::string& problem) {
-    throw InputError("cannot read: " + problem, file, "give an existing, readable file");
-  };
-  std::error_code error;
-  if (fs::is_directory(file, error)) refuse("is a directory");
-  std::FILE* stream = std::fopen(file.c_str(), "rb");
-  if (stream == nullptr) refuse(std::strerror(errno));
-  std::string text;
-  char buffer[65536];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, stream)) {
-    text.append(buffer, n);
-  }
-  const bool broken = std::ferror(stream) != 0;
-  std::fclose(stream);
-  if (broken) refuse("read error");
-  return text;
-}
-
 void write_all(int descriptor, std::string_view text, const std::string& file) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -79,6 +60,7 @@ void check_output(const std::string& file) {
   const std::string where = "--out " + file;
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
+  if (!fs::status_known(status)) cannot_write(file, error.value());
   if (fs::is_directory(status)) {
     throw InputError("the output is a directory", where, "give a file name in it");
   }

@@ -3,10 +3,9 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+#include "models/read_file.h"
 
-/// The whole file; throws InputError when it is missing, a directory or unreadable.
-std::string read_file(const std::string& file);
+namespace tress {
 
 /// An open file; closed on every path.
 class File {

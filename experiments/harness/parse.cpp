@@ -13,6 +13,7 @@ namespace {
 
 constexpr int most_elements = 10'000'000;
 constexpr std::size_t most_counts = 10'000;
+constexpr double shortest_duration = 1e-3, longest_duration = 9e8;  // s
 
 std::string_view trim(std::string_view text) {
   const std::string_view blank = " \t";
@@ -87,8 +88,11 @@ double parse_duration(std::string_view text, const std::string& where) {
   const std::string_view unit(end,
                               static_cast<std::size_t>(text.data() + text.size() - end));
   for (const auto& [name, seconds] : units) {
-    const bool positive = error == std::errc{} && std::isfinite(x) && x > 0;
-    if (positive && unit == name) return x * seconds;
+    if (error != std::errc{} || !std::isfinite(x) || unit != name) continue;
+    const double duration = x * seconds;
+    if (duration >= shortest_duration && duration <= longest_duration) return duration;
+    throw InputError(fmt::format("'{}' is out of range", text), where,
+                     "give 1ms to 250000h");
   }
   throw InputError(fmt::format("'{}' is not a duration", text), where,
                    "give a positive number with ms, s, m or h, as in 10m");

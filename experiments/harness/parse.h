@@ -13,7 +13,8 @@ namespace tress {
 /// left out), in the order given, repeats dropped. `where` is quoted in the InputError.
 std::vector<int> parse_counts(std::string_view text, const std::string& where);
 
-/// "10m", "30s", "1.5h", "200ms"; a bare number is in seconds. Result in s, positive.
+/// "10m", "30s", "1.5h", "200ms"; a bare number is in seconds. Result in s, from a
+/// millisecond to 30 years, which the clocks of timeouts can count.
 double parse_duration(std::string_view text, const std::string& where);
 
 /// "2/5" -> {2, 5}, 1 <= first <= second.

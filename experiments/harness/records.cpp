@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "experiments/harness/csv.h"
-#include "experiments/harness/files.h"
 #include "experiments/harness/row.h"
 #include "models/input_error.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
@@ -144,7 +144,7 @@ Records parse_records(std::string_view text, const std::string& file, Observed o
 }
 
 Records read_records(const std::string& file, Observed observed) {
-  return parse_records(read_file(file), file, observed);
+  return parse_records(read_file(file, most_table_bytes), file, observed);
 }
 
 }  // namespace tress

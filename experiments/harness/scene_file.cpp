@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "experiments/harness/files.h"
 #include "experiments/harness/parse.h"
 #include "experiments/harness/toml_text.h"
 #include "models/input_error.h"
 #include "models/parameters.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
@@ -113,7 +113,11 @@ constexpr std::pair<std::string_view, Reader> readers[] = {
 }  // namespace
 
 void read_scene_options(const std::string& file, CommandLine& line) {
-  const toml::table scene = parse_toml(read_file(file), file);
+  const toml::table scene = parse_toml(read_file(file, most_toml_bytes), file);
+  if (scene["quick"].value_or(false) && scene["full"].value_or(false)) {
+    throw InputError("quick and full exclude each other",
+                     place_of(scene.get("full")->source(), file), "give one of them");
+  }
   for (const auto& [key, value] : scene) {
     const std::string name(key.str());
     const std::string where = place_of(value.source(), file);

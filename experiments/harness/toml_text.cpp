@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "experiments/harness/parse.h"
+#include "experiments/harness/toml_levels.h"
 #include "models/input_error.h"
 
 namespace tress {
@@ -31,6 +32,7 @@ std::string place_of(const toml::source_region& source, const std::string& file)
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
   refuse_nul_bytes(text, file);
+  refuse_deep(text, file);
   try {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& error) {

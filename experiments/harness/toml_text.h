@@ -9,8 +9,11 @@ namespace tress {
 /// file:line:column of the start of `source`.
 std::string place_of(const toml::source_region& source, const std::string& file);
 
-/// Throws InputError with file:line:column on NUL bytes and malformed TOML; `file` is the
-/// name of the text in messages.
+/// Of a TOML file for any of our programs; the rest of a larger one is not read.
+constexpr std::size_t most_toml_bytes = 4 << 20;
+
+/// Throws InputError with file:line:column on NUL bytes, malformed TOML and more than 100
+/// levels; `file` is the name of the text in messages.
 toml::table parse_toml(const std::string& text, const std::string& file);
 
 /// Text of a scalar as `--set` would give it, numbers so that reading them gives the same

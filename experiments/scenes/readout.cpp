@@ -78,9 +78,13 @@ Frame3d Readout::read(World& world) {
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
       static_cast<double>(now.newton_iterations - before_.newton_iterations);
-  // Of a system: all advance through the same time.
-  const double interval = steps > 0 ? 1 / scene_.frame_rate : std::nan("");
-  row.push_back(interval * static_cast<double>(world.systems()) / steps);
+  // Of a system: all advance through the same time, which the last frame may cut short.
+  const std::size_t last = scene_.last_frame();
+  const double interval = world.time() < scene_.duration || last == 0
+                              ? 1 / scene_.frame_rate
+                              : scene_.duration - scene_.time_of(last - 1);
+  row.push_back(steps > 0 ? interval * static_cast<double>(world.systems()) / steps
+                          : std::nan(""));
   row.push_back(iterations / steps);
   before_ = now;
   return frame;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "experiments/harness/files.h"
 #include "experiments/harness/integrator_options.h"
 #include "experiments/harness/parse.h"
 #include "experiments/scenes/groom.h"
@@ -15,11 +14,11 @@
 #include "experiments/scenes/scene_tables.h"
 #include "models/effects/strand_interaction.h"
 #include "models/input_error.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
 
-constexpr std::size_t most_bytes = 4 << 20;  // of a file
 constexpr std::size_t most_strands = 10'000, most_elements = 200'000;
 constexpr std::size_t most_effects = 1000;
 constexpr double most_frames = 1e6;
@@ -237,28 +236,18 @@ class Reader {
   std::size_t elements_ = 0;
 };
 
-void refuse_large(std::size_t bytes, const std::string& file) {
-  if (bytes <= most_bytes) return;
-  throw InputError(fmt::format("a scene of {} bytes", bytes), file + ":1:1",
-                   fmt::format("give at most {} bytes", most_bytes));
-}
-
 }  // namespace
 
 std::size_t Scene::last_frame() const {
-  // 1e-9: a whole number of frames up to rounding is not one less.
-  return static_cast<std::size_t>(std::floor(duration * frame_rate + 1e-9));
+  // 1e-9: a whole number of frames up to rounding is not one more.
+  return static_cast<std::size_t>(std::ceil(duration * frame_rate - 1e-9));
 }
 
 Scene read_scene(const std::string& file) {
-  std::error_code no_size;
-  const auto bytes = std::filesystem::file_size(file, no_size);
-  if (!no_size) refuse_large(bytes, file);
-  return parse_scene(read_file(file), file);
+  return parse_scene(read_file(file, most_toml_bytes), file);
 }
 
 Scene parse_scene(const std::string& text, const std::string& file) {
-  refuse_large(text.size(), file);
   return Reader(text, file).read();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,9 +46,11 @@ struct Scene {
   std::uint64_t seed = 1;
   bool guard = true;  // what physics rules out ends the run (harness/guard.h)
 
-  std::size_t last_frame() const;  // the first is 0, at t = 0
+  /// The first frame is 0, at t = 0; the last is at the end, which may come before a
+  /// whole frame is over.
+  std::size_t last_frame() const;
   double time_of(std::size_t frame) const {
-    return static_cast<double>(frame) / frame_rate;
+    return std::min(static_cast<double>(frame) / frame_rate, duration);
   }
 };
 

@@ -27,7 +27,8 @@ constexpr Parameter top[] = {
      .min = 1e-9,
      .max = 1e6},
     {.name = "frames_1_s",
-     .help = "frames of the series and the geometry per simulated time (1/s)",
+     .help = "frames of the series and the geometry per simulated time, and one at its "
+             "end (1/s)",
      .number = 50,
      .min = 1e-6,
      .max = 1e6},

@@ -4,16 +4,17 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string_view>
 
 #include "models/input_error.h"
+#include "models/read_file.h"
 
 namespace tress {
 namespace {
 
-constexpr std::size_t most_points = 100'000'000;
+constexpr std::size_t most_points = 20'000'000;
+constexpr std::size_t most_bytes = 1 << 29;  // of a file, some 25 for each point
 
 /// Weights of the four points around a place u in [0, 1] between the middle two, and
 /// their derivatives by u [Keys 1981, eq. 15].
@@ -33,12 +34,8 @@ Weights weights(double u) {
 /// The numbers of a file, one after the other.
 class Numbers {
  public:
-  explicit Numbers(const std::string& file) : file_(file), stream_(file) {
-    if (!stream_) {
-      throw InputError("cannot read the signed distance grid", file,
-                       "give the name of a text file that exists");
-    }
-  }
+  explicit Numbers(const std::string& file)
+      : file_(file), text_(read_file(file, most_bytes)), rest_(text_) {}
 
   template <class T>
   T next(const char* what) {
@@ -61,31 +58,26 @@ class Numbers {
     throw InputError("more than nx ny nz values", where(),
                      "check nx ny nz in the first line");
   }
-  std::string where() const { return file_ + ":" + std::to_string(line_number_); }
-
- private:
-  static constexpr std::string_view blanks = " \t\r";
-
-  std::string_view next_word() {
-    for (;;) {
-      const std::size_t start = rest_.find_first_not_of(blanks);
-      if (start != std::string_view::npos) {
-        rest_.remove_prefix(start);
-        const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
-        rest_.remove_prefix(word.size());
-        return word;
-      }
-      if (!std::getline(stream_, line_)) return {};
-      ++line_number_;
-      rest_ = std::string_view(line_).substr(0, line_.find('#'));
-    }
+  std::string where() const {
+    const auto read = static_cast<std::ptrdiff_t>(text_.size() - rest_.size());
+    const auto lines = std::count(text_.begin(), text_.begin() + read, '\n');
+    return file_ + ":" + std::to_string(lines + 1);
   }
 
-  std::string file_;
-  std::ifstream stream_;
-  std::string line_;
-  std::string_view rest_;
-  int line_number_ = 0;
+ private:
+  std::string_view next_word() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
+    while (rest_.starts_with('#')) {
+      rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size()));
+      rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
+    }
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n#"));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  std::string file_, text_;
+  std::string_view rest_;  // of the text: what is not read yet
 };
 
 }  // namespace
@@ -117,7 +109,7 @@ DistanceGrid::DistanceGrid(Samples samples, const std::string& where)
       std::max({s_.nx, s_.ny, s_.nz}) > most_points || s_.nx * s_.ny > most_points ||
       s_.nx * s_.ny * s_.nz > most_points) {
     throw InputError("the grid is too small or too large", where,
-                     "give at least 4 points each way and at most 1e8 in all");
+                     "give at least 4 points each way and at most 2e7 in all");
   }
   if (s_.value.size() != s_.nx * s_.ny * s_.nz) {
     throw InputError("not nx ny nz values", where, "give one value per point");
@@ -193,12 +185,12 @@ DistanceGrid read_distance_grid(const std::string& file) {
     *n = numbers.next<std::size_t>("a number of points (nx ny nz)");
     if (*n < 4 || *n > most_points) {
       throw InputError("the grid is too small or too large", numbers.where(),
-                       "give at least 4 points each way and at most 1e8 in all");
+                       "give at least 4 points each way and at most 2e7 in all");
     }
   }
   if (s.nx * s.ny > most_points || s.nx * s.ny * s.nz > most_points) {
     throw InputError("the grid is too large", numbers.where(),
-                     "give at most 1e8 points in all");
+                     "give at most 2e7 points in all");
   }
   for (double* x : {&s.origin.x, &s.origin.y, &s.origin.z}) {
     *x = numbers.next<double>("a number of the origin");

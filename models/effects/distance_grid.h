@@ -41,7 +41,7 @@ class DistanceGrid {
 /// Reads a text file of numbers, separated by blanks or line ends, `#` to the end of the
 /// line being a comment:
 ///
-///     nx ny nz        points each way
+///     nx ny nz        points each way, 4 or more and at most 2e7 in all
 ///     x y z           place of the first point, m
 ///     spacing         m
 ///     value ...       nx ny nz signed distances, m, < 0 inside; x fastest, z slowest

@@ -33,6 +33,12 @@ TEST_P(BadInputTest, IsOneLineWithPlaceAndRemedyAndExitCodeTwoAndNothingWritten)
   EXPECT_EQ(result.out, "");
 }
 
+std::string dotted_key(int levels) {
+  std::string key = "a";
+  for (int i = 1; i < levels; ++i) key += ".a";
+  return key;
+}
+
 const BadInput bad_inputs[] = {
     {"UnknownModel", "--models no_such_model", "(--models)", "--list shows"},
     {"UnknownIntegrator", "--integrators no_such_one", "(--integrators)", "--list shows"},
@@ -61,12 +67,17 @@ const BadInput bad_inputs[] = {
     {"BadElements", "--elements 3:1", "(--elements)", "ascending"},
     {"ZeroElements", "--elements 0", "(--elements)", "from 1 to"},
     {"BadDuration", "--timeout soon", "(--timeout)", "as in 10m"},
+    {"EndlessDuration", "--timeout 1e10", "(--timeout)", "give 1ms to"},
     {"BadShard", "--shard 3/2", "(--shard)", "as in 2/5"},
     {"NoJobs", "--jobs 0", "(--jobs)", "from 1 to"},
     {"QuickAndFull", "--quick --full", "(command line)", "give one of them"},
     {"MergeWithoutOutput", "--merge a.csv b.csv", "(--merge)", "give --out"},
     {"MergeOfMissingTable", "--merge a.csv --out c.csv", "(a.csv)", "existing"},
     {"SceneMissing", "--scene none.toml", "(none.toml)", "existing"},
+    {"SceneIsADevice", "--scene /dev/zero", "(/dev/zero)", "readable file"},
+    {"SceneIsAFolder", "--scene .", "is a directory (.)", "readable file"},
+    {"SceneDeepKey", "--scene scene.toml", "(scene.toml:2:", "nest less deeply",
+     "seed = 1\n" + dotted_key(31'000) + " = 1\n"},
     {"SceneMalformed", "--scene scene.toml", "(scene.toml:2:", "correct the TOML",
      "seed = 1\nmodels = [\n"},
     {"SceneKeyTwice", "--scene scene.toml", "(scene.toml:2:", "correct the TOML",

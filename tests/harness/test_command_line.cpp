@@ -89,7 +89,8 @@ TEST(Parse, DurationsHaveUnits) {
   EXPECT_EQ(parse_duration("1.5s", "x"), 1.5);
   EXPECT_EQ(parse_duration("250ms", "x"), 0.25);
   EXPECT_EQ(parse_duration("3", "x"), 3);
-  for (const char* bad : {"", "m", "-1s", "0", "nan", "inf", "1d", "1 m"}) {
+  for (const char* bad :
+       {"", "m", "-1s", "0", "nan", "inf", "1d", "1 m", "1e10", "1e300h", "1e-9"}) {
     EXPECT_THROW(parse_duration(bad, "x"), InputError) << bad;
   }
 }

@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
 
 #include "experiments/scenes/scene.h"
 #include "models/input_error.h"
+#include "tests/harness/toy_process.h"
 
 namespace tress {
 namespace {
@@ -34,7 +36,24 @@ TEST_P(WrongSceneTest, IsRefusedWithPlaceAndRemedy) {
 }
 
 const std::string strand = "[strand]\n";
+
+std::string times(int n, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += text;
+  return all;
+}
+
 const Wrong wrong_scenes[] = {
+    {"DeepKey", times(31'000, "a.") + "a = 1\n", "2:202", "nest less deeply"},
+    {"DeepHeader", "[" + times(31'000, "a.") + "a]\n", "2:203", "nest less deeply"},
+    {"DeepList", "a = " + times(31'000, "["), "2:105", "nest less deeply"},
+    {"DeepTable", "a = " + times(31'000, "{a="), "2:305", "nest less deeply"},
+    {"DeepTogether", "a = " + times(40, "{a.a.a=["), "2:205", "nest less deeply"},
+    {"DeepAfterString", "a = [\"\"\"b\"\"\"\"\", {" + times(31'000, "a.") + "a = 1}]\n",
+     "2:215", "nest less deeply"},
+    {"DistancesOfADevice",
+     strand + "[[effects.body]]\nshape = \"sdf\"\nsdf_file = \"/dev/zero\"\n", "3:1",
+     "readable file"},
     {"MalformedToml", "[strand\n", "2:8", "correct the TOML"},
     {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:12", "correct the TOML"},
     {"UnknownTable", "[strnd]\n", "2:2", "did you mean 'strand'?"},
@@ -112,8 +131,28 @@ TEST(SceneErrors, TitleMustBeGiven) {
   EXPECT_THAT(refusal_of("[strand]\n"), HasSubstr("(s.toml:1:1): begin it with title"));
 }
 
-TEST(SceneErrors, LargeFileIsRefusedUnread) {
-  EXPECT_THAT(refusal_of(std::string(5 << 20, '#')), HasSubstr("(s.toml:1:1)"));
+std::string refusal_of_file(const std::string& file) {
+  try {
+    read_scene(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// Nobody writes into the pipe: whoever waited for it would wait for ever.
+TEST(SceneErrors, OnlyRegularFilesOfLimitedSizeAreRead) {
+  const Toy folder;
+  folder.write("large.toml", std::string((4 << 20) + 1, '#'));
+  const std::string pipe = folder.path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusal_of_file(folder.path("work/large.toml")), HasSubstr("4194304"));
+  for (const std::string& special :
+       {pipe, std::string("/dev/zero"), std::string("/dev/urandom")}) {
+    EXPECT_THAT(refusal_of_file(special), HasSubstr("is not a regular file"));
+  }
+  EXPECT_THAT(refusal_of_file(folder.path("work")), HasSubstr("is a directory"));
+  EXPECT_THAT(refusal_of_file(folder.path("none")), HasSubstr("No such file"));
 }
 
 }  // namespace

@@ -44,6 +44,24 @@ bool wait_for(const Toy& toy, const std::string& file) {
   return toy.exists(file);
 }
 
+// 0.05 s are a frame and a half, 0.01 s less than one.
+TEST(Simulate, RunsTheWholeDurationWhereItIsNoWholeNumberOfFrames) {
+  for (const auto& [duration, frames] : {std::pair{"0.05", 3U}, std::pair{"0.01", 2U}}) {
+    Toy toy;
+    toy.write("fall.toml",
+              std::string("title = \"t\"\nduration_s = ") + duration +
+                  "\nframes_1_s = 30\n[integrator]\ndt_s = 0.0016666666666666667\n"
+                  "[strand]\nelements = 1\n[effects.gravity]\n");
+    const Toy::Result run = toy.run("fall.toml --out out --progress none");
+    ASSERT_EQ(run.code, 0) << run.err;
+    const CsvTable table = parse_csv(toy.read("out/fall.csv"), "fall.csv");
+    ASSERT_EQ(table.rows.size(), frames);
+    EXPECT_EQ(table.rows.back().number("t_s"), std::stod(duration));
+    // Steps divide this frame too; times are sums of frames, good to some units of them.
+    EXPECT_NEAR(table.rows.back().number("dt_s"), 1.0 / 600, 1e-15);
+  }
+}
+
 TEST(Simulate, WritesASeriesThatConservesEnergy) {
   Toy toy;
   toy.write("fall.toml",
