@@ -213,7 +213,8 @@ void check_early(const CommandLine& line) {
 
 bool has_journal(const CommandLine& line) {
   std::error_code none;
-  return std::filesystem::file_size(journal_file(line), none) > 0 && !none;
+  return line.out != standard_output &&
+         std::filesystem::file_size(journal_file(line), none) > 0 && !none;
 }
 
 std::unique_ptr<Journal> open_journal(const Experiment& experiment,

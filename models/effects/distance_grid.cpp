@@ -59,7 +59,10 @@ class Numbers {
                      "check nx ny nz in the first line");
   }
   std::string where() const {
-    const auto read = static_cast<std::ptrdiff_t>(text_.size() - rest_.size());
+    // Line ends that close the file begin no line.
+    const std::size_t end = text_.find_last_not_of(" \t\r\n") + 1;
+    const auto read =
+        static_cast<std::ptrdiff_t>(std::min(end, text_.size() - rest_.size()));
     const auto lines = std::count(text_.begin(), text_.begin() + read, '\n');
     return file_ + ":" + std::to_string(lines + 1);
   }
