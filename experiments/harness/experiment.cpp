@@ -203,20 +203,6 @@ void check_place(const Experiment& experiment, const CommandLine& line) {
   check_output(line.out);
 }
 
-/// Tells what is wrong with the output before a plan that may take seconds for its
-/// references, without touching anything.
-void check_early(const CommandLine& line) {
-  if (line.out == standard_output || line.places.count("out") == 0) return;
-  check_output(line.out);
-  check_output(journal_file(line));
-}
-
-bool has_journal(const CommandLine& line) {
-  std::error_code none;
-  return line.out != standard_output &&
-         std::filesystem::file_size(journal_file(line), none) > 0 && !none;
-}
-
 std::unique_ptr<Journal> open_journal(const Experiment& experiment,
                                       const CommandLine& line) {
   return std::make_unique<Journal>(
@@ -225,17 +211,27 @@ std::unique_ptr<Journal> open_journal(const Experiment& experiment,
 }
 
 int run_rows(const Experiment& experiment, const CommandLine& line) {
-  check_early(line);
   Rows rows;
-  if (line.resume) keep_table(experiment, line, rows);
   std::unique_ptr<Journal> journal;
-  if (has_journal(line)) journal = open_journal(experiment, line);
+  // What is wrong with a named output is told before a plan that may take seconds for its
+  // references; a plan that fails leaves nothing behind.
+  const bool named = line.out != standard_output && line.places.count("out") > 0;
+  if (named) {
+    check_output(line.out);
+    if (line.resume) keep_table(experiment, line, rows);
+    journal = open_journal(experiment, line);
+    if (journal->rows().empty()) {
+      journal->remove();
+      journal.reset();
+    }
+  }
   const std::vector<Case> planned = plan(experiment, line);
   if (planned.empty() && line.shard_count == 1) {
     throw InputError("these options leave no row to run", "command line",
                      "--list shows what there is");
   }
   check_place(experiment, line);
+  if (line.resume && !named) keep_table(experiment, line, rows);
   if (!journal && line.out != standard_output) journal = open_journal(experiment, line);
   if (journal) {
     for (const Row& row : journal->rows()) rows.keep(row);

@@ -111,10 +111,12 @@ Recording::Recording(std::string stem, const RunKey& key, const Readout& readout
       columns_(readout.series()),
       points_(readout.points()),
       channels_(readout.channels().size()) {
-  if (resume && std::filesystem::exists(stem_ + ".state")) {
+  const std::string state = stem_ + ".state";
+  std::error_code error;
+  if (resume && std::filesystem::exists(state, error)) {
     this->resume(key);
-  } else {
-    std::filesystem::remove(stem_ + ".state");
+  } else if (std::filesystem::remove(state, error); error) {
+    throw InputError("cannot remove: " + error.message(), state, "choose another --out");
   }
   std::string table = header();
   std::size_t bytes = 0;
