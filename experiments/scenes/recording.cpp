@@ -114,7 +114,12 @@ Recording::Recording(std::string stem, const RunKey& key, const Readout& readout
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {
-    this->resume(key);
+    try {
+      this->resume(key);
+    } catch (...) {
+      if (binary_.read().empty()) binary_.remove();  // made here, for the lock
+      throw;
+    }
   } else if (std::filesystem::remove(state, error); error) {
     throw InputError("cannot remove: " + error.message(), state, "choose another --out");
   }
