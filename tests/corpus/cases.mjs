@@ -196,6 +196,7 @@ function* states() {
   for (const [name, what] of [...garbage, ...special]) {
     if (what === null) continue;
     for (const ending of ['state', 'frames']) {
+      if (ending === 'frames' && what === '') continue;  // goes with what made it: a lock
       yield { program: 'simulate', kind: `.${ending}`, name, maybe: what.link === 'itself',
         files: { 'scene.toml': scene, 'out/scene.state': 'x', [`out/scene.${ending}`]: what },
         args: ['scene.toml', '--out', 'out', '--resume'] };
