@@ -93,8 +93,14 @@ function(tress_test name)
   endif()
   math(EXPR last "${arg_SHARDS} - 1")
   foreach(shard RANGE ${last})
-    add_test(NAME ${name}_${shard} COMMAND test_${name} --gtest_brief=1)
+    set(report ${CMAKE_CURRENT_BINARY_DIR}/${name}_${shard}.xml)
+    add_test(NAME ${name}_${shard}
+             COMMAND test_${name} --gtest_brief=1 --gtest_output=xml:${report})
     set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT 300 ENVIRONMENT
       "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+    list(APPEND shards ${name}_${shard})
+    list(APPEND reports ${report})
   endforeach()
+  set(${name}_shards ${shards} PARENT_SCOPE)    # names of the tests
+  set(${name}_reports ${reports} PARENT_SCOPE)  # what each of them writes
 endfunction()
