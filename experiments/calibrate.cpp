@@ -275,6 +275,8 @@ bool finding(const Row& row) {
          (row.status() == "not_identified" || row.status() == "time_error");
 }
 
+constexpr Unused unused[] = {not_repeated, not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -289,6 +291,7 @@ int main(int argc, char** argv) {
       .quick_timeout_s = 60,
       .columns = columns,
       .settings = settings_of_rows,
+      .unused = unused,
       .cases = cases,
       .checks = check_calibrate_claims,
       .finding = finding};

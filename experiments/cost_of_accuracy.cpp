@@ -188,6 +188,8 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   tell("cost_of_accuracy: wrote {}\n", to);
 }
 
+constexpr Unused unused[] = {not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -203,6 +205,7 @@ int main(int argc, char** argv) {
       .columns = study_columns(),
       .settings = own_settings,
       .options = own_options,
+      .unused = unused,
       .cases = cases,
       .checks = check_accuracy_claims,
       .finding = finding,

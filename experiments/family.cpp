@@ -84,6 +84,11 @@ bool finding(const Row& row) {
   return std::ranges::find(without_answer, row.status()) != without_answer.end();
 }
 
+constexpr Unused unused[] = {{"models", "each study compares its own"},
+                             {"integrators", "each study compares its own"},
+                             {"elements", "each study compares its own"},
+                             not_repeated};
+
 }  // namespace
 }  // namespace tress::family
 
@@ -98,6 +103,7 @@ int main(int argc, char** argv) {
       .quick_timeout_s = 600,  // for hangs only: steps bound the work
       .columns = columns,
       .settings = family::settings,
+      .unused = family::unused,
       .cases = family::cases,
       .finding = family::finding,
       .conclude = family::write_summary};

@@ -312,6 +312,9 @@ std::vector<Case> cases(const CommandLine& line) {
 /// A strand that comes apart, by its model or by the seed's step, is a result.
 bool finding(const Row& row) { return row.status() == "unstable"; }
 
+constexpr Unused unused[] = {{"repeat", "its costs are medians of five runs"},
+                             {"seed", "its small starts are always the same"}};
+
 }  // namespace
 }  // namespace tress
 
@@ -322,6 +325,7 @@ int main(int argc, char** argv) {
       .question = "what does it cost to let the rest of the strand move rigidly?",
       .example = "--models force_transport,corde --elements 10",
       .columns = columns,
+      .unused = unused,
       .cases = cases,
       .derive = compare_with_corde,
       .checks = check_transport_claims,

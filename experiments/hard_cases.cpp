@@ -34,12 +34,17 @@ constexpr Column columns[] = {
      true},
 };
 
-/// Time of the processor (s) that a row has, and within it the reference that it makes
-/// for all rows of its case and model.
+/// What a row may do, and within it the reference that it makes for all rows of its case
+/// and model.
 struct Budget {
-  double row, reference;
-  double patience;  // for a reference that another row makes, wall time
+  WorkLimit row, reference;
+  double patience;  // s, for a reference that another row makes
 };
+
+Budget budget_of(const CommandLine& line) {
+  const double times = line.quick ? 1 : 120;
+  return {{times * quick_row.most}, {times * quick_reference.most}, 0.6 * line.timeout_s};
+}
 
 void measure(const Cell& cell, References& references, const Budget& budget,
              double coarser, Row& row) {
@@ -47,10 +52,10 @@ void measure(const Cell& cell, References& references, const Budget& budget,
   row.set("measure_name", hard.measure);
   row.set("limit", hard.limit).set("criterion", hard.criterion);
   row.set("error_limit", largest_error);
-  const Survival s = survive(cell.attempt, CpuLimit(budget.row), [&] {
+  const Survival s = survive(cell.attempt, budget.row, [&] {
     return references.get(cell.reference, budget.patience, [&] {
       return reference(hard, cell.compared, cell.attempt.defaults, cell.attempt.options,
-                       coarser, CpuLimit(budget.reference));
+                       coarser, budget.reference);
     });
   });
   row.set("wall_s", s.wall_s);
@@ -71,9 +76,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, hard_case_settings());
   const Grid grid = hard_grid(line, settings);
   const auto references = std::make_shared<References>(grid.references);
-  // A third in all: a machine that is shared may take three times as long.
-  const Budget budget{line.timeout_s / 10, line.timeout_s / 5, 0.6 * line.timeout_s};
-
+  const Budget budget = budget_of(line);
   const double coarser = line.quick ? 2 : 1;
   std::vector<Case> all;
   for (const Cell& cell : grid.cells) {
@@ -107,6 +110,9 @@ std::vector<Gloss> glossary() {
 /// What does not survive is what is looked for.
 bool finding(const Row& row) { return row.status() != "crashed"; }
 
+constexpr Unused unused[] = {
+    {"elements", "how many there are belongs to each case"}, not_repeated, not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -119,9 +125,10 @@ int main(int argc, char** argv) {
           "step?",
       .example = "--models super_helix,der --set case=violent_shake",
       .timed = false,
-      .quick_timeout_s = 5,
+      .quick_timeout_s = 120,  // an emergency: its work bounds a row
       .columns = columns,
       .settings = hard_case_settings(),
+      .unused = unused,
       .cases = cases,
       .derive = fill,
       .checks = check_hard_cases,

@@ -145,6 +145,9 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
+constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_euler"},
+                             not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -156,8 +159,9 @@ int main(int argc, char** argv) {
       .example = "--elements 20,100 --set solver=recursive",
       .columns = columns,
       .settings = scaling_settings(),
+      .unused = unused,
       .cases = cases,
       .derive = add_exponents,
-      .checks = check_scaling_claims};
+      .checks = tell_scaling_figures};
   return run_experiment(experiment, argc, argv);
 }

@@ -149,6 +149,8 @@ bool finding(const Row& row) {
   return row.status() == "unstable" || row.status() == "gave_up";
 }
 
+constexpr Unused unused[] = {not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -161,6 +163,7 @@ int main(int argc, char** argv) {
       .timed = false,
       .columns = columns,
       .settings = stability_settings(),
+      .unused = unused,
       .cases = cases,
       .checks = check_stability_claims,
       .finding = finding};

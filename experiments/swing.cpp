@@ -139,6 +139,8 @@ void derive(std::vector<Row>& rows) {
 /// A step or tolerance too loose for the method is where its curve ends, not a mistake.
 bool finding(const Row&) { return true; }
 
+constexpr Unused unused[] = {not_random};
+
 }  // namespace
 }  // namespace tress
 
@@ -151,6 +153,7 @@ int main(int argc, char** argv) {
       .example = "--integrators implicit_midpoint --set error=time",
       .columns = columns,
       .settings = swing_settings(),
+      .unused = unused,
       .cases = cases,
       .derive = derive,
       .checks = check_swing_claims,

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "experiments/harness/formulations.h"
+#include "experiments/harness/method_run.h"
 #include "experiments/harness/tip_track.h"
 #include "models/input_error.h"
 
@@ -58,29 +59,52 @@ Course course(const HardCase& hard, const Options& options, double dt, double sh
 struct Watched {
   Simulation end;
   std::vector<double> tips;
+  bool cut;  // its work was done
 };
 
+/// These two factor a dense matrix where their tangent is exact.
+bool dense(const Situation& s, std::string_view model) {
+  return (model == "kirchhoff_nodal" || model == "force_transport") &&
+         s.parameters.word("tangent") == "exact";
+}
+
+double work(const Stats& stats, double unknowns, bool dense) {
+  const double factors = dense ? unknowns * unknowns * unknowns / 1500 : 0;
+  return unknowns * static_cast<double>(stats.residuals + stats.newton_iterations +
+                                        stats.sweeps) +
+         factors * static_cast<double>(stats.linearizations);
+}
+
 /// One run, with the tip sampled up to the horizon, if there is one.
-Watched watch(std::string_view integrator, const HardCase& hard, Situation& s,
-              const Course& c, const Observer& each_step) {
+Watched watch(std::string_view integrator, const HardCase& hard, const Subject& subject,
+              Situation& s, const Course& c, const WorkLimit& limit,
+              const Observer& each_step) {
   std::optional<TipSamples> tip;
   if (hard.horizon > 0) {
     tip.emplace(*s.system, hard.horizon, Reference::samples, c.growth);
     s.system->reset();
     tip->start(s.start.q, s.start.v);
   }
-  Simulation end = simulate(integrator, *s.system, c.options, s.start, c.stops, {},
-                            [&](double t, In q, In v) {
-                              if (tip) tip->step_to(t, q, v);
-                              return each_step(t, q, v);
-                            });
-  return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>()};
+  const Layout layout = s.system->layout();
+  const double unknowns = layout.coordinates + layout.constraints;
+  const bool full = dense(s, subject.model->id);
+  const auto method = make_integrator(integrator, *s.system, c.options);
+  bool cut = false;
+  Simulation end =
+      run_method(*method, *s.system, s.start, c.stops, {}, [&](double t, In q, In v) {
+        if (tip) tip->step_to(t, q, v);
+        cut = work(method->stats(), unknowns, full) > limit.most;
+        return !cut && each_step(t, q, v);
+      });
+  return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>(), cut};
 }
+
+std::string cut_at(double t) { return "its work was done at t = " + text(t) + " s"; }
 
 /// The reference's tips at one step; empty and `why` where there is none.
 std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
                             const Parameters& defaults, const Options& options, double dt,
-                            const GiveUp& give_up, std::string& why) {
+                            const WorkLimit& limit, std::string& why) {
   Situation s = situation(hard, subject, defaults);
   Course c{options, {hard.horizon}, 1.5};
   c.options.step = dt;
@@ -91,13 +115,10 @@ std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
     return {};
   }
   c.options.formulation = formulations.front();
-  bool late = false;
-  Watched run = watch(reference_integrator, hard, s, c, [&](double, In, In) {
-    late = give_up && give_up();
-    return !late;
-  });
+  Watched run = watch(reference_integrator, hard, subject, s, c, limit,
+                      [](double, In, In) { return true; });
   if (run.end.status == Status::ok) return std::move(run.tips);
-  why = late ? "its time was over at t = " + text(run.end.t) + " s" : run.end.failure;
+  why = run.cut ? cut_at(run.end.t) : run.end.failure;
   return {};
 }
 
@@ -120,7 +141,7 @@ Outcome outcome_of(std::string_view word, const std::string& where) {
 
 Reference reference(const HardCase& hard, const Subject& subject,
                     const Parameters& defaults, const Options& options, double coarser,
-                    const GiveUp& give_up) {
+                    const WorkLimit& limit) {
   HardCase finer = hard;
   Subject whose = subject;
   Parameters parameters = defaults;
@@ -132,7 +153,7 @@ Reference reference(const HardCase& hard, const Subject& subject,
   Reference found;
   const double dt = coarser * hard.reference_step;
   const auto at = [&](double step) {
-    return tips_at(finer, whose, parameters, options, step, give_up, found.why);
+    return tips_at(finer, whose, parameters, options, step, limit, found.why);
   };
   const std::vector<double> coarse = at(2 * dt);
   if (!coarse.empty()) found.tip = at(dt);
@@ -150,7 +171,7 @@ Reference reference(const HardCase& hard, const Subject& subject,
   return found;
 }
 
-Survival survive(const Attempt& attempt, const GiveUp& give_up,
+Survival survive(const Attempt& attempt, const WorkLimit& limit,
                  const std::function<Reference()>& find) {
   const HardCase& hard = *attempt.hard;
   const IntegratorEntry& entry = find_integrator(attempt.integrator);
@@ -179,14 +200,12 @@ Survival survive(const Attempt& attempt, const GiveUp& give_up,
   const StabilityBounds bounds = hard.bounds(s, c.stops.back());
   StabilityJudge judge(*s.system, bounds, s.start);
   const std::unique_ptr<Gauge> gauge = hard.gauge != nullptr ? hard.gauge(s) : nullptr;
-  bool late = false;
   const auto began = std::chrono::steady_clock::now();
-  const Watched run = watch(attempt.integrator, hard, s, c, [&](double t, In q, In v) {
-    late = give_up && give_up();
-    if (late) return false;
-    if (gauge) gauge->see(t, q, v);
-    return judge(t, q, v);
-  });
+  const Watched run = watch(attempt.integrator, hard, attempt.subject, s, c, limit,
+                            [&](double t, In q, In v) {
+                              if (gauge) gauge->see(t, q, v);
+                              return judge(t, q, v);
+                            });
   result.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
@@ -200,9 +219,9 @@ Survival survive(const Attempt& attempt, const GiveUp& give_up,
                          : std::max({part(verdict.energy_gain, bounds.energy),
                                      part(verdict.reach, bounds.reach),
                                      part(verdict.speed, bounds.speed)});
-  if (late) {
+  if (run.cut) {
     result.outcome = Outcome::not_finished;
-    result.why = "its time was over at t = " + text(run.end.t) + " s";
+    result.why = cut_at(run.end.t);
     return result;
   }
   result.outcome = Outcome::unstable;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <ctime>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -10,7 +10,7 @@
 namespace tress {
 
 /// How a run of a case ended. `unstable`: a bound of the case did not hold, its measure
-/// among them. `not_finished`: its time was over before a bound was broken.
+/// among them. `not_finished`: its work was done before a bound was broken.
 enum class Outcome { refused, not_finished, unstable, stable, accurate };
 std::string_view name(Outcome outcome);
 /// Throws InputError naming `where` on any other text.
@@ -38,27 +38,25 @@ struct Attempt {
   double shorter = 1;  // the part of HardCase::count that is run
 };
 
-/// True after so much time of this process's own: what a row gets done does not depend on
-/// who else is at work.
-class CpuLimit {
- public:
-  explicit CpuLimit(double seconds) : end_(now() + seconds) {}
-  bool operator()() const { return now() > end_; }
-
- private:
-  static double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-  double end_;
+/// Work that a run may do, in unknowns of a residual or of a solve (0.15 us on a
+/// processor of 2023), and n^3/1500 of them for the factors of a dense matrix. Not a
+/// time: what a row gets done depends neither on the machine nor on who else is at work.
+struct WorkLimit {
+  double most = std::numeric_limits<double>::infinity();
 };
+/// Of --quick: half a second a row, and a second for the reference that it makes for all
+/// rows of its case and model.
+inline constexpr WorkLimit quick_row{3e6}, quick_reference{6e6};
 
 /// The reference of a case on one model; `coarser` times as long steps as the case asks
 /// for.
 Reference reference(const HardCase& hard, const Subject& subject,
                     const Parameters& defaults, const Options& options, double coarser,
-                    const GiveUp& give_up);
+                    const WorkLimit& limit);
 
 /// Runs it and judges. `find` gives the reference; asked for where a stable run has one
 /// to be compared with.
-Survival survive(const Attempt& attempt, const GiveUp& give_up,
+Survival survive(const Attempt& attempt, const WorkLimit& limit,
                  const std::function<Reference()>& find);
 
 }  // namespace tress

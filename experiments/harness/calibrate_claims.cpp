@@ -17,6 +17,7 @@ bool holds(const Row& row, const std::string& name, const std::string& unit) {
 }  // namespace
 
 void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
+  const std::size_t before = verdicts.all().size();
   for (const Row& row : rows) {
     if (!row.has("gamma_true_kg_m3_s") || row.text("model") != "super_helix") continue;
     const std::string what =
@@ -36,6 +37,9 @@ void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
           row.ok() && holds(row, "gamma", "_kg_m3_s") && holds(row, "nu", "_kg_m_s"),
           row.number("gamma_kg_m3_s") / row.number("gamma_true_kg_m3_s"));
     }
+  }
+  if (verdicts.all().size() == before) {
+    verdicts.not_judged("fits of simulated records by super_helix find the truth");
   }
 }
 

@@ -160,6 +160,21 @@ void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> o
   }
 }
 
+void hide(CLI::App& app, std::span<const Unused> unused) {
+  for (const Unused& option : unused) {
+    app.get_option("--" + std::string(option.option))->group("");
+  }
+}
+
+void refuse_unused(std::string_view name, const CommandLine& line,
+                   std::span<const Unused> unused) {
+  for (const auto& [option, why] : unused) {
+    if (line.places.count(option) == 0) continue;
+    throw InputError(fmt::format("{} has no use for --{}: {}", name, option, why),
+                     line.place(option), "leave it out");
+  }
+}
+
 /// Where the table goes unless the user says so.
 std::string default_table(std::string_view name, const CommandLine& line,
                           std::span<const OwnOption> own) {
@@ -205,13 +220,15 @@ std::string CommandLine::place(std::string_view option) const {
 
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
-                               const char* const* argv, std::span<const OwnOption> own) {
+                               const char* const* argv, std::span<const OwnOption> own,
+                               std::span<const Unused> unused) {
   CommandLine line;
   Raw raw;
   CLI::App app{std::string(question), std::string(name)};
   app.set_version_flag("--version",
                        fmt::format("{} {} ({})", name, TRESS_VERSION, TRESS_GIT_COMMIT));
   declare(app, line, raw, own);
+  hide(app, unused);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -224,6 +241,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   line.argv.assign(argv, argv + argc);
   interpret(app, raw, own, line);
   if (!line.scene.empty()) read_scene_options(line.scene, line);
+  refuse_unused(name, line, unused);
   if (line.out.empty()) line.out = default_table(name, line, own);
   check_combinations(line);
   return line;

@@ -44,6 +44,15 @@ struct OwnOption {
   bool names_table = false;
 };
 
+/// An option that all experiments share and one of them has no use for: it is not shown
+/// by
+/// --help, and giving it is refused with this reason rather than left without effect.
+struct Unused {
+  std::string_view option, why;
+};
+inline constexpr Unused not_random{"seed", "nothing in it is random"};
+inline constexpr Unused not_repeated{"repeat", "no row is timed more than once"};
+
 /// Whether a choice such as --models leaves `id` in; an empty one leaves everything in.
 bool wanted(const std::vector<std::string>& chosen, std::string_view id);
 
@@ -58,6 +67,7 @@ class Answer : public std::runtime_error {
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
                                const char* const* argv,
-                               std::span<const OwnOption> own = {});
+                               std::span<const OwnOption> own = {},
+                               std::span<const Unused> unused = {});
 
 }  // namespace tress

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -73,9 +74,32 @@ class Rows {
   std::map<std::string, std::size_t> place_;
 };
 
+/// Throws InputError on a model, integrator or number of elements that was asked for and
+/// that no row has, though rows have one: it would be left out without a word.
+void check_honoured(const CommandLine& line, const std::vector<Case>& cases) {
+  std::vector<std::string> counts;
+  for (const int count : line.elements) counts.push_back(std::to_string(count));
+  const auto check = [&](std::string_view option, std::string_view column,
+                         const std::vector<std::string>& chosen) {
+    std::set<std::string_view> shown;
+    for (const Case& work : cases) shown.insert(work.identity.text(column));
+    shown.erase(std::string_view{});
+    for (const std::string& value : chosen) {
+      if (shown.empty() || shown.count(value) != 0) continue;
+      throw InputError(
+          fmt::format("no row of these options has the {} {}", column, value),
+          line.place(option), fmt::format("the rows have: {}", fmt::join(shown, ", ")));
+    }
+  };
+  check("models", "model", line.models);
+  check("integrators", "integrator", line.integrators);
+  check("elements", "elements", counts);
+}
+
 /// The cases of this shard, each with its run_id.
 std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
   std::vector<Case> cases = experiment.cases(line);
+  check_honoured(line, cases);
   std::set<std::string> ids;
   std::vector<Case> mine;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -134,6 +158,40 @@ void keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
   for (const Row& row : table.rows) rows.keep(row);
 }
 
+std::string_view heading(Verdicts::State state) {
+  switch (state) {
+    case Verdicts::State::held:
+      return "PASS";
+    case Verdicts::State::broken:
+      return "FAIL";
+    case Verdicts::State::known_limit:
+      return "KNOWN LIMIT";
+    case Verdicts::State::changed:
+      return "CHANGED";
+    case Verdicts::State::not_judged:
+    case Verdicts::State::figure:
+      break;
+  }
+  return "FIGURE";
+}
+
+void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
+  int not_judged = 0;
+  for (const Verdicts::Verdict& verdict : verdicts.all()) {
+    if (verdict.state == Verdicts::State::not_judged) {
+      ++not_judged;
+      continue;
+    }
+    const bool limit = verdict.state == Verdicts::State::known_limit ||
+                       verdict.state == Verdicts::State::changed;
+    tell("{}: {} {} ({:.3g}){}{}\n", experiment, heading(verdict.state), verdict.claim,
+         verdict.value, limit ? "; " : "", limit ? verdict.reason : "");
+  }
+  if (not_judged > 0) {
+    tell("{}: not judged: {} claims of rows that were not run\n", experiment, not_judged);
+  }
+}
+
 int report(const Experiment& experiment, const CommandLine& line,
            const std::vector<Row>& rows, const Verdicts& verdicts) {
   std::map<std::string, int> counts;
@@ -143,12 +201,8 @@ int report(const Experiment& experiment, const CommandLine& line,
     const bool finding = experiment.finding && experiment.finding(row);
     if (failed == nullptr && !row.ok() && !finding) failed = &row;
   }
-  bool held = true;
-  for (const auto& [claim, holds, value] : verdicts.all()) {
-    held = held && holds;
-    if (line.progress == ProgressMode::json) continue;  // the manifest has them
-    tell("{}: {} {} ({:.3g})\n", experiment.name, holds ? "PASS" : "FAIL", claim, value);
-  }
+  // For progress as JSON the manifest has them.
+  if (line.progress != ProgressMode::json) tell_verdicts(experiment.name, verdicts);
   if (line.progress != ProgressMode::none || failed != nullptr) {
     std::string text;
     for (const auto& [status, count] : counts)
@@ -158,7 +212,8 @@ int report(const Experiment& experiment, const CommandLine& line,
     }
     tell("{}: {} rows{} -> {}\n", experiment.name, rows.size(), text, line.out);
   }
-  return held && failed == nullptr ? done : rows_failed;
+  const bool alarm = std::ranges::any_of(verdicts.all(), &Verdicts::Verdict::alarm);
+  return alarm || failed != nullptr ? rows_failed : done;
 }
 
 /// Completes, judges and writes the table; returns the exit code.
@@ -282,7 +337,7 @@ int dry_run(const Experiment& experiment, const CommandLine& line) {
 int answer(const Experiment& experiment, int argc, char** argv) {
   CommandLine line =
       parse_command_line(experiment.name, experiment.question, experiment.example, argc,
-                         argv, experiment.options);
+                         argv, experiment.options, experiment.unused);
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }

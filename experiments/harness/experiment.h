@@ -60,11 +60,13 @@ struct Experiment {
   std::span<const Parameter> settings =
       {};                                   // keys of --set that are the experiment's own
   std::span<const OwnOption> options = {};  // short for --set of some of them
+  std::span<const Unused> unused = {};      // of the shared options: refused
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
-  /// Optional: states what the table must show; a claim that does not hold makes the exit
-  /// code 3. Neither is called on a single shard.
+  /// Optional: states what the table must show; a claim that is broken makes the exit
+  /// code
+  /// 3. Neither is called on a single shard.
   std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
   /// Optional: kept in the manifest, where the report page reads it.
   std::function<std::vector<Gloss>()> glossary = {};
@@ -76,8 +78,9 @@ struct Experiment {
 };
 
 /// The whole main(): options, --list, sweep, table, manifest; returns the exit code.
-/// 0 all rows ok and checks passed; 1 internal error; 2 usage or input error; 3 some rows
-/// failed or a check did not hold (the table is complete); 130 interrupted (resumable).
+/// 0 all rows ok, no claim broken; 1 internal error; 2 usage or input error; 3 some rows
+/// failed or a claim that was judged is broken or changed (the table is complete); 130
+/// interrupted (resumable).
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
 }  // namespace tress

@@ -15,11 +15,34 @@
 namespace tress {
 namespace {
 
+using nlohmann::ordered_json;
+
 std::string utc_now() {
   const auto now =
       std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
                      fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
+/// Claims that were judged, those whose rows were not run, and what is no claim.
+struct Judgements {
+  ordered_json checks = ordered_json::array(), not_judged = checks, figures = checks;
+};
+
+Judgements judgements(const Verdicts& verdicts) {
+  Judgements all;
+  for (const auto& [claim, held, value, state, reason] : verdicts.all()) {
+    if (state == Verdicts::State::not_judged) {
+      all.not_judged.push_back({{"claim", claim}, {"reason", reason}});
+    } else if (state == Verdicts::State::figure) {
+      all.figures.push_back({{"figure", claim}, {"value", value}});
+    } else {
+      all.checks.push_back(
+          {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
+      if (!reason.empty()) all.checks.back()["reason"] = reason;
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -60,7 +83,6 @@ void Manifest::add_input(std::string file, std::string text) {
 
 std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                                std::size_t kept_from_before) const {
-  using nlohmann::ordered_json;
   const Machine here = machine();
   std::map<std::string, int> counts;
   for (const Row& row : rows) ++counts[std::string(row.status())];
@@ -68,10 +90,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   for (const Column& column : experiment_.columns) {
     columns[std::string(column.name)] = column.help;
   }
-  ordered_json checks = ordered_json::array();
-  for (const auto& [claim, held, value] : verdicts.all()) {
-    checks.push_back({{"claim", claim}, {"held", held}, {"value", value}});
-  }
+  const Judgements judged = judgements(verdicts);
   ordered_json libraries;
   for (const auto& [library, version] : library_versions()) libraries[library] = version;
   ordered_json glossary = ordered_json::object();
@@ -104,7 +123,9 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"shard", fmt::format("{}/{}", line_.shard_index, line_.shard_count)},
       {"start", start_},
       {"end", utc_now()},
-      {"checks", checks},
+      {"checks", judged.checks},
+      {"not_judged", judged.not_judged},
+      {"figures", judged.figures},
       {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
       {"build",
        {{"compiler", TRESS_COMPILER},

@@ -12,9 +12,9 @@ namespace tress {
 /// at least.
 void add_exponents(std::vector<Row>& rows);
 
-/// What the table of scaling must show of the super-helix with the papers' tangent: the
-/// recursion's cost is linear and its element cheap, the composite's is a multiple of it
-/// that grows, fewer unknowns take less time.
-void check_scaling_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+/// What the table of scaling tells of the super-helix with the papers' tangent, as
+/// figures of the machine: how the recursion's cost grows and what its element costs, by
+/// how much the composite is dearer, and what fewer unknowns save.
+void tell_scaling_figures(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress

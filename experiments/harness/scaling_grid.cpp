@@ -186,6 +186,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
   for (const std::string_view tree : words_of(tree_choices)) {
     if (!keeps("structure", tree)) continue;
     const auto elements = static_cast<int>(tree_segments(tree).size());
+    if (!line.elements.empty() && !std::ranges::count(line.elements, elements)) continue;
     for (const Method& m : methods_of_trees) {
       if (!wanted_method(m)) continue;
       all.push_back({tree, &find_model(m.model), m.solver, m.tangent, m.modes, elements});

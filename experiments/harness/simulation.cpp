@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "experiments/harness/method_run.h"
+
 namespace tress {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
@@ -18,22 +20,29 @@ State initial_state(const System& system) {
   return state;
 }
 
+Simulation run_method(Integrator& method, System& system, const State& start,
+                      std::span<const double> stops,
+                      const std::function<void(const State&)>& at_stop,
+                      const Observer& each_step) {
+  State state = start;
+  system.reset();
+  Status status = method.start(0, start.q, start.v);
+  for (const double t : stops) {
+    if (status == Status::ok) status = method.advance(t, each_step);
+    std::ranges::copy(method.q(), state.q.begin());
+    std::ranges::copy(method.v(), state.v.begin());
+    if (status != Status::ok) break;
+    if (at_stop) at_stop(state);
+  }
+  return {status, method.failure(), method.time(), std::move(state), method.stats()};
+}
+
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, std::span<const double> stops,
                     const std::function<void(const State&)>& at_stop,
                     const Observer& each_step) {
   const auto method = make_integrator(integrator, system, options);
-  State state = start;
-  system.reset();
-  Status status = method->start(0, start.q, start.v);
-  for (const double t : stops) {
-    if (status == Status::ok) status = method->advance(t, each_step);
-    std::ranges::copy(method->q(), state.q.begin());
-    std::ranges::copy(method->v(), state.v.begin());
-    if (status != Status::ok) break;
-    if (at_stop) at_stop(state);
-  }
-  return {status, method->failure(), method->time(), std::move(state), method->stats()};
+  return run_method(*method, system, start, stops, at_stop, each_step);
 }
 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,

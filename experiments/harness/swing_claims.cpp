@@ -15,23 +15,28 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A wall time (s) within which some run has to reach an error.
+// Its runs alone are within every error that is asked for here.
+constexpr std::string_view sure = "implicit_midpoint";
+
+/// That some run has an error, and in what time.
 void check_target(const std::vector<Row>& rows, std::string_view kind, double error,
-                  double target, const std::string& claim, Verdicts& verdicts) {
+                  const std::string& what, Verdicts& verdicts) {
   const Row* best = nullptr;
-  bool any = false;
+  double least = infinity;
+  bool complete = false;
   for (const Row& row : rows) {
-    if (row.text("error_kind") != kind || !row.ok()) continue;
+    if (row.text("error_kind") != kind) continue;
     if (kind == "time" && row.number("elements") != peer_elements) continue;
-    any = true;
+    complete = complete || row.text("integrator") == sure;
+    if (!row.ok()) continue;
+    least = std::min(least, row.number("tip_error_rel"));
     if (row.number("tip_error_rel") > error) continue;
     if (best == nullptr || row.number("wall_s") < best->number("wall_s")) best = &row;
   }
-  if (!any) return;
-  const double wall = best == nullptr ? infinity : best->number("wall_s");
-  verdicts.check(
-      claim + (best == nullptr ? "" : ", by " + std::string(best->text("integrator"))),
-      wall <= target, wall);
+  verdicts.check_found("some run has " + what, best != nullptr, complete, least);
+  if (best == nullptr) return;
+  verdicts.figure("seconds to " + what + ", by " + std::string(best->text("integrator")),
+                  best->number("wall_s"));
 }
 
 /// The time error of a run with converged steps, by all that tells rows apart but for the
@@ -63,9 +68,12 @@ void check_twist(const std::vector<Row>& rows, Verdicts& verdicts) {
     any = true;
     worst = std::max(worst, std::abs(error / other->second - 1));
   }
+  const std::string claim =
+      "converged steps: bend and bend_twist have the same error to 5 %";
   if (any) {
-    verdicts.check("converged steps: bend and bend_twist have the same error to 5 %",
-                   worst <= 0.05, worst);
+    verdicts.check(claim, worst <= 0.05, worst);
+  } else {
+    verdicts.not_judged(claim);
   }
 }
 
@@ -77,17 +85,19 @@ void check_references(const std::vector<Row>& rows, std::string_view kind, doubl
       gap = std::max(gap, row.number("reference_gap"));
     }
   }
-  if (gap >= 0) verdicts.check(claim, gap <= bound, gap);
+  if (gap >= 0) {
+    verdicts.check(claim, gap <= bound, gap);
+  } else {
+    verdicts.not_judged(claim);
+  }
 }
 
 }  // namespace
 
 void check_swing_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
-  check_target(rows, "time", 0.01, 20e-3, "20 elements: 1 % time error within 20 ms",
-               verdicts);
-  check_target(rows, "time", 0.001, 50e-3, "20 elements: 0.1 % time error within 50 ms",
-               verdicts);
-  check_target(rows, "total", 0.01, 4e-3, "1 % total error within 4 ms", verdicts);
+  check_target(rows, "time", 0.01, "1 % time error with 20 elements", verdicts);
+  check_target(rows, "time", 0.001, "0.1 % time error with 20 elements", verdicts);
+  check_target(rows, "total", 0.01, "1 % total error", verdicts);
   check_twist(rows, verdicts);
   // A tenth of the smallest error that a claim is about.
   check_references(rows, "time", 1e-3 / ReferenceGap::margin,

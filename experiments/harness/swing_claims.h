@@ -7,10 +7,9 @@
 
 namespace tress {
 
-/// What the table of swing must show: at the peers' number of elements a time error of
-/// 1 % within 20 ms and of 0.1 % within 50 ms; a total error of 1 % within 4 ms; that
-/// twist does not matter; that the references agree. Claims without a row that could
-/// decide them are left out.
+/// What the table of swing must show: runs with a time error of 1 % and of 0.1 % at the
+/// peers' number of elements and with a total error of 1 %, whose times are figures; that
+/// twist does not matter; that the references agree.
 void check_swing_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress

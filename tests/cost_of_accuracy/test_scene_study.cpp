@@ -244,7 +244,7 @@ bool hold(const std::vector<Row>& rows) {
   Verdicts verdicts;
   check_accuracy_claims(rows, verdicts);
   bool all = !verdicts.all().empty();
-  for (const auto& [claim, held, value] : verdicts.all()) all = all && held;
+  for (const auto& verdict : verdicts.all()) all = all && verdict.held;
   return all;
 }
 

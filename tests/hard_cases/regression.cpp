@@ -21,9 +21,8 @@ const std::string file = TRESS_SOURCE_DIR "/tests/hard_cases/expected.csv";
 const std::vector<std::string> columns{"case",       "model", "variant",
                                        "integrator", "dt_s",  "outcome"};
 
-// A cell that takes longer (s of the processor) is left to the experiment; what is kept
-// has ten times as long, for slower machines and checked builds.
-constexpr double longest = 0.3, patience = 10 * longest;
+// For a reference that another process makes: here there is none.
+constexpr double patience = 0;
 // Accurate is remembered with a tenth to spare: another compiler rounds otherwise.
 constexpr double safely = 0.9 * largest_error;
 
@@ -37,22 +36,15 @@ Grid cells() {
   return hard_grid(line, Settings(line, hard_case_settings()));
 }
 
-struct Found {
-  Survival survival;
-  double seconds;  // of the processor
-};
-
-Found run(const Cell& cell, References& references) {
+/// Bounded by work alone: the same on a slow machine and in a checked build.
+Survival run(const Cell& cell, References& references) {
   constexpr double coarser = 2;  // as --quick
-  const auto began = std::clock();
-  Survival survival = survive(cell.attempt, CpuLimit(patience), [&] {
+  return survive(cell.attempt, quick_row, [&] {
     return references.get(cell.reference, patience, [&] {
       return reference(*cell.attempt.hard, cell.compared, cell.attempt.defaults,
-                       cell.attempt.options, coarser, CpuLimit(patience));
+                       cell.attempt.options, coarser, quick_reference);
     });
   });
-  const double seconds = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
-  return {std::move(survival), seconds};
 }
 
 Outcome to_remember(const Survival& survival) {
@@ -66,9 +58,8 @@ int rewrite(const Grid& grid) {
   References references(grid.references);
   std::vector<Row> rows;
   for (const Cell& cell : grid.cells) {
-    const Found found = run(cell, references);
-    const Outcome outcome = to_remember(found.survival);
-    if (found.seconds > longest || outcome == Outcome::not_finished) continue;
+    const Outcome outcome = to_remember(run(cell, references));
+    if (outcome == Outcome::not_finished) continue;
     rows.push_back(cell.identity().set("outcome", name(outcome)));
   }
   std::string text = csv_line(columns);
@@ -92,14 +83,14 @@ int compare(const Grid& grid) {
   for (const Cell& cell : grid.cells) {
     const auto known = expected.find(key(cell.identity()));
     if (known == expected.end()) continue;
-    const Found found = run(cell, references);
-    const Outcome best = known->second, now = found.survival.outcome;
+    const Survival found = run(cell, references);
+    const Outcome best = known->second, now = found.outcome;
     const std::string which = describe(cell.identity());
     if (passed(best) && now < best) {
       ++worse;
       fmt::print("WORSE  {}: was {}, is {}: {}\n", which, name(best), name(now),
-                 found.survival.why);
-    } else if (to_remember(found.survival) > best && passed(now)) {
+                 found.why);
+    } else if (to_remember(found) > best && passed(now)) {
       ++better;
       fmt::print("better {}: was {}, is {}\n", which, name(best), name(now));
     }

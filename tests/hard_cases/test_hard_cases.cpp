@@ -201,20 +201,23 @@ TEST(HardCaseJudge, RefusesInTheWordsOfTheLibrary) {
             Outcome::refused);
 }
 
-TEST(HardCaseJudge, StopsWhenTimeIsOver) {
+// However long that takes: five steps of one iteration at least do not fit.
+TEST(HardCaseJudge, StopsWhenItsWorkIsDone) {
   const Attempt attempt{&named("one_element"),
                         subject("super_helix"),
                         defaults("super_helix"),
                         "backward_euler",
                         1.0 / 300,
                         {}};
-  int steps = 0;
-  const Survival s = survive(
-      attempt, [&] { return ++steps > 5; }, [] { return Reference{}; });
+  const WorkLimit little{5 * 2 * 3.0};  // residual and solve of three unknowns
+  const auto run = [&] { return survive(attempt, little, [] { return Reference{}; }); };
+  const Survival s = run();
   EXPECT_EQ(s.outcome, Outcome::not_finished);
   EXPECT_FALSE(passed(s.outcome));
-  // The sixth step was taken and not judged.
-  EXPECT_NEAR(s.t, 6.0 / 300, 1e-12);
+  EXPECT_THAT(s.why, HasSubstr("its work was done at t = "));
+  EXPECT_GT(s.stats.steps, 0);
+  EXPECT_LE(s.stats.steps, 6);
+  EXPECT_EQ(run().stats.steps, s.stats.steps);
 }
 
 // dt and dt/100 in turn: as many steps as the simulated time has of their sum, twice.
@@ -313,25 +316,51 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
                InputError);
 }
 
-Row claimed(std::string_view passed, std::string_view outcome) {
+using State = Verdicts::State;
+
+Row claimed(std::string_view hard, std::string_view passed, std::string_view outcome) {
   Row row;
-  row.set("case", "x").set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("case", hard).set("model", "super_helix").set("variant", "tangent=exact");
   row.set("integrator", "backward_euler").set("dt_s", 1.0 / 30);
   return row.set("passed", passed).set("outcome", outcome).set("why", "broke");
 }
 
+/// What is said of the case, or of all cells.
+Verdicts::Verdict judged(const Row& row, std::string_view of) {
+  Verdicts verdicts;
+  check_hard_cases({row}, verdicts);
+  EXPECT_EQ(
+      std::ranges::count(verdicts.all(), State::not_judged, &Verdicts::Verdict::state),
+      static_cast<std::ptrdiff_t>(hard_cases().size()) - 1);
+  for (const auto& verdict : verdicts.all()) {
+    if (verdict.claim.starts_with(of)) return verdict;
+  }
+  return {"none", false, 0, State::not_judged, ""};
+}
+
 TEST(HardCaseClaims, FailOnAWrongTable) {
-  const auto held = [](const std::vector<Row>& rows) {
-    Verdicts verdicts;
-    check_hard_cases(rows, verdicts);
-    std::vector<bool> all;
-    for (const auto& verdict : verdicts.all()) all.push_back(verdict.held);
-    return all;
+  const auto of = [](std::string_view passed, std::string_view outcome) {
+    return judged(claimed("straight", passed, outcome), "straight").state;
   };
-  EXPECT_EQ(held({claimed("true", "stable")}), (std::vector<bool>{true, true}));
-  EXPECT_EQ(held({claimed("false", "unstable")}), (std::vector<bool>{true, false}));
-  EXPECT_EQ(held({claimed("false", "refused")}), (std::vector<bool>{true}));
-  EXPECT_EQ(held({claimed("true", "")}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(of("true", "stable"), State::held);
+  EXPECT_EQ(of("false", "unstable"), State::broken);
+  EXPECT_EQ(of("false", "refused"), State::not_judged);  // no claim at all
+  EXPECT_EQ(judged(claimed("straight", "true", ""), "every cell").state, State::broken);
+}
+
+// What is known to fail is no alarm as long as it fails as it is known to.
+TEST(HardCaseClaims, KnownLimitsAlarmWhenTheyChange) {
+  Row known = claimed("million_steps", "false", "unstable").set("measure", 0.2085);
+  EXPECT_EQ(judged(known, "million_steps").state, State::known_limit);
+  EXPECT_FALSE(judged(known, "million_steps").alarm());
+  EXPECT_NE(judged(known, "million_steps").reason, "");
+  known.set("measure", 0.5);
+  EXPECT_EQ(judged(known, "million_steps").state, State::changed);
+  known.set("measure", "");
+  EXPECT_TRUE(judged(known, "million_steps").alarm());
+  const Row held = claimed("million_steps", "true", "stable").set("measure", 0.009);
+  EXPECT_TRUE(judged(held, "million_steps").alarm());
+  EXPECT_NE(judged(held, "million_steps").reason.find("take it off"), std::string::npos);
 }
 
 }  // namespace

@@ -24,10 +24,19 @@ Row semi_implicit(std::string_view solver, double stable, double unstable,
 
 constexpr double none = std::numeric_limits<double>::infinity();  // an empty cell
 
-std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
+std::vector<Verdicts::Verdict> all_of(const std::vector<Row>& rows) {
   Verdicts all;
   check_stability_claims(rows, all);
   return all.all();
+}
+
+/// Without the claims whose rows were not run.
+std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
+  std::vector<Verdicts::Verdict> judged = all_of(rows);
+  std::erase_if(judged, [](const Verdicts::Verdict& verdict) {
+    return verdict.state == Verdicts::State::not_judged;
+  });
+  return judged;
 }
 
 TEST(StabilityClaims, BracketsThatOverlapAreTheSameLimit) {
@@ -95,6 +104,24 @@ TEST(StabilityClaims, TheShakenStrandDecidesOnTheTwoTangents) {
   ASSERT_EQ(bad.size(), 2u);
   EXPECT_TRUE(good[0].held && good[1].held);
   EXPECT_FALSE(bad[0].held || bad[1].held);
+}
+
+// Four claims: of two solvers, of two tangents, and of the shaken strand by two tangents.
+TEST(StabilityClaims, OfRowsThatWereNotRunAreNotJudged) {
+  const auto unjudged = all_of({semi_implicit("recursive", 1, 2)});
+  ASSERT_EQ(unjudged.size(), 4u);
+  for (const auto& verdict : unjudged) {
+    EXPECT_EQ(verdict.state, Verdicts::State::not_judged) << verdict.claim;
+    EXPECT_FALSE(verdict.alarm());
+  }
+}
+
+// A row that was run and found no limit does not hold what is claimed of it.
+TEST(StabilityClaims, ARowThatGaveUpBreaksItsClaim) {
+  Row failed = row("shake", "backward_euler", "recursive", "exact", 0.1, none);
+  const auto all = verdicts({failed.failed("gave_up", "")});
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_TRUE(all[0].alarm());
 }
 
 }  // namespace

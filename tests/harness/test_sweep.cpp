@@ -119,6 +119,37 @@ TEST(Sweep, ABrokenCheckMakesTheExitCodeThreeButKeepsTheTable) {
   EXPECT_EQ(table(toy, "toy.csv").rows.size(), 4u);
 }
 
+struct Promise {
+  std::string set;
+  int code;
+  std::string told, kept;  // in the message and in the manifest
+};
+void PrintTo(const Promise& promise, std::ostream* out) { *out << promise.set; }
+
+class PromiseTest : public testing::TestWithParam<Promise> {};
+
+// What changed is an alarm; what is known, was not run or depends on the machine is none.
+TEST_P(PromiseTest, IsToldAndKeptInTheManifest) {
+  const Promise& promise = GetParam();
+  Toy toy;
+  const Toy::Result result = toy.run("--out toy.csv --set promise=" + promise.set);
+  EXPECT_EQ(result.code, promise.code) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(promise.told));
+  EXPECT_THAT(toy.read("toy.meta.json"), HasSubstr(promise.kept));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sweep, PromiseTest,
+    testing::Values(Promise{"known", 0, "KNOWN LIMIT the promise (4); as the toy is",
+                            "\"state\": \"known_limit\""},
+                    Promise{"changed", 3, "CHANGED the promise (4); known to fail",
+                            "\"state\": \"changed\""},
+                    Promise{"not_judged", 0, "not judged: 1 claims",
+                            "\"reason\": \"the rows it speaks of were not run\""},
+                    Promise{"figure", 0, "FIGURE the promise (4)",
+                            "\"figure\": \"the promise\""}),
+    [](const auto& tested) { return tested.param.set; });
+
 TEST(Sweep, KilledHalfWayResumesWithoutRepeatingFinishedRows) {
   Toy toy;
   const std::string command = "--out toy.csv --set particles=8 --set nap=0.05";

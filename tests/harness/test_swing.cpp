@@ -289,50 +289,62 @@ TEST(Pareto, IsWhatNothingBeatsInBoth) {
   EXPECT_EQ(rows[4].text("pareto"), "");
 }
 
-std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
-  Verdicts all;
-  check_swing_claims(rows, all);
-  return all.all();
-}
+using State = Verdicts::State;
+
+struct Judged {
+  std::vector<Row> rows;
+
+  /// Of the claim, or figure, that begins so.
+  Verdicts::Verdict of(std::string_view begin) const {
+    Verdicts all;
+    check_swing_claims(rows, all);
+    for (const auto& verdict : all.all()) {
+      if (verdict.claim.starts_with(begin)) return verdict;
+    }
+    return {"none", false, 0, State::broken, "no such claim"};
+  }
+};
 
 TEST(SwingClaims, TakeTheFastestRunThatIsAccurateEnough) {
-  const auto all =
-      verdicts({run("time", 20, 0.009, 0.015), run("time", 20, 0.02, 0.001),
-                run("time", 20, 0.0009, 0.06), run("time", 5, 0.0001, 0.001)});
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_TRUE(all[0].held);
-  EXPECT_EQ(all[0].value, 0.015);
-  EXPECT_FALSE(all[1].held);
-  EXPECT_EQ(all[1].value, 0.06);
+  const Judged swing{{run("time", 20, 0.009, 0.015), run("time", 20, 0.02, 0.001),
+                      run("time", 20, 0.0009, 0.06), run("time", 5, 0.0001, 0.001)}};
+  EXPECT_EQ(swing.of("some run has 1 % time error").state, State::held);
+  EXPECT_EQ(swing.of("some run has 0.1 % time error").value, 0.0009);
+  EXPECT_EQ(swing.of("seconds to 1 % time error").value, 0.015);
+  EXPECT_EQ(swing.of("seconds to 0.1 % time error").state, State::figure);
+  EXPECT_EQ(swing.of("some run has 1 % total error").state, State::not_judged);
 }
 
 TEST(SwingClaims, DoNotHoldWhereNothingIsAccurateEnough) {
-  const auto all = verdicts({run("total", 9, 0.02, 0.001)});
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_FALSE(all[0].held);
-  EXPECT_TRUE(std::isinf(all[0].value));
+  Judged swing{{run("total", 9, 0.02, 0.001)}};
+  EXPECT_EQ(swing.of("some run has 1 % total error").state, State::broken);
+  EXPECT_EQ(swing.of("some run has 1 % total error").value, 0.02);
+  // Of a method that need not be.
+  swing.rows[0].set("integrator", "backward_euler");
+  EXPECT_EQ(swing.of("some run has 1 % total error").state, State::not_judged);
 }
 
 TEST(SwingClaims, CompareConvergedRunsWithAndWithoutTwist) {
-  const auto pair = [](double error, const char* tolerance) {
+  const auto twist = [](double error, const char* tolerance) {
     std::vector<Row> rows{run("time", 20, 0.005, 1),
                           run("time", 20, error, 1, "bend_twist")};
     for (Row& row : rows) row.set("dt_s", 1e-3).set("newton_tolerance", tolerance);
-    return verdicts(rows);
+    return Judged{rows}.of("converged steps");
   };
-  EXPECT_TRUE(pair(0.0051, "1e-10").back().held);
-  EXPECT_FALSE(pair(0.0056, "1e-10").back().held);
-  EXPECT_NEAR(pair(0.0056, "1e-10").back().value, 0.12, 1e-12);
-  EXPECT_EQ(pair(0.0056, "0.3").size(), 2u);  // the two targets alone
+  EXPECT_TRUE(twist(0.0051, "1e-10").held);
+  EXPECT_FALSE(twist(0.0056, "1e-10").held);
+  EXPECT_NEAR(twist(0.0056, "1e-10").value, 0.12, 1e-12);
+  EXPECT_EQ(twist(0.0056, "0.3").state, State::not_judged);
 }
 
 TEST(SwingClaims, ReferencesMustAgree) {
-  std::vector<Row> rows{run("total", 9, 0.02, 0.001), run("total", 5, 0.02, 0.001)};
-  rows[0].set("reference_gap", 2e-5);
-  EXPECT_TRUE(verdicts(rows).back().held);
-  rows[1].set("reference_gap", 2e-4);
-  EXPECT_FALSE(verdicts(rows).back().held);
-  EXPECT_EQ(verdicts(rows).back().value, 2e-4);
+  Judged swing{{run("total", 9, 0.02, 0.001), run("total", 5, 0.02, 0.001)}};
+  swing.rows[0].set("reference_gap", 2e-5);
+  EXPECT_TRUE(swing.of("rod:").held);
+  swing.rows[1].set("reference_gap", 2e-4);
+  EXPECT_EQ(swing.of("rod:").state, State::broken);
+  EXPECT_EQ(swing.of("rod:").value, 2e-4);
+  EXPECT_EQ(swing.of("time:").state, State::not_judged);
 }
 
 }  // namespace

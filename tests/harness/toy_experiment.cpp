@@ -33,7 +33,9 @@ constexpr Parameter settings[] = {
     {.name = "odd_row",
      .help = "what row 2 does",
      .choices = "ok|crash|throw|busy|deaf|polite|quit|undeclared"},
-    {.name = "promise", .help = "what the check says", .choices = "held|broken"},
+    {.name = "promise",
+     .help = "what the check says",
+     .choices = "held|broken|known|changed|not_judged|figure"},
     {.name = "further",
      .help = "rows of a case beyond its own",
      .number = 0,
@@ -103,25 +105,45 @@ std::vector<Case> cases(const CommandLine& line) {
   return list;
 }
 
+constexpr Unused unused[] = {{"repeat", "it times nothing"}};
+
+/// `rows`: the number of rows, four unless told otherwise.
+void judge(std::string_view promise, double rows, Verdicts& verdicts) {
+  const std::string claim = "the promise";
+  if (promise == "not_judged") {
+    verdicts.not_judged(claim);
+  } else if (promise == "figure") {
+    verdicts.figure(claim, rows);
+  } else if (promise == "known" || promise == "changed") {
+    const double expected = promise == "known" ? 4 : 5;
+    verdicts.check_known(claim, false, rows, {"", expected, expected, "as the toy is"});
+  } else {
+    verdicts.check(claim, promise == "held", rows);
+  }
+}
+
 }  // namespace
 }  // namespace tress
 
 int main(int argc, char** argv) {
   // The check cannot see the settings, so the promise is read from the arguments.
-  bool held = true;
+  std::string_view promise = "held";
   for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "promise=broken") held = false;
+    const std::string_view word(argv[i]);
+    if (word.starts_with("promise=")) promise = word.substr(word.find('=') + 1);
   }
-  const tress::Experiment toy{
-      .name = "toy",
-      .question = "Does the harness keep its promises?",
-      .example = "--set particles=10 --out toy.csv",
-      .columns = tress::columns,
-      .settings = tress::settings,
-      .options = tress::options,
-      .cases = tress::cases,
-      .checks = [held](const std::vector<tress::Row>& rows, tress::Verdicts& verdicts) {
-        verdicts.check("the promise", held, static_cast<double>(rows.size()));
-      }};
+  const tress::Experiment toy{.name = "toy",
+                              .question = "Does the harness keep its promises?",
+                              .example = "--set particles=10 --out toy.csv",
+                              .columns = tress::columns,
+                              .settings = tress::settings,
+                              .options = tress::options,
+                              .unused = tress::unused,
+                              .cases = tress::cases,
+                              .checks = [promise](const std::vector<tress::Row>& rows,
+                                                  tress::Verdicts& verdicts) {
+                                tress::judge(promise, static_cast<double>(rows.size()),
+                                             verdicts);
+                              }};
   return tress::run_experiment(toy, argc, argv);
 }
