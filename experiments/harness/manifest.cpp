@@ -24,23 +24,12 @@ std::string utc_now() {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
 }
 
-/// Claims that were judged, those whose rows were not run, and what is no claim.
-struct Judgements {
-  ordered_json checks = ordered_json::array(), not_judged = checks, figures = checks;
-};
-
-Judgements judgements(const Verdicts& verdicts) {
-  Judgements all;
+ordered_json checks_of(const Verdicts& verdicts) {
+  ordered_json all = ordered_json::array();
   for (const auto& [claim, held, value, state, reason] : verdicts.all()) {
-    if (state == Verdicts::State::not_judged) {
-      all.not_judged.push_back({{"claim", claim}, {"reason", reason}});
-    } else if (state == Verdicts::State::figure) {
-      all.figures.push_back({{"figure", claim}, {"value", value}});
-    } else {
-      all.checks.push_back(
-          {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
-      if (!reason.empty()) all.checks.back()["reason"] = reason;
-    }
+    all.push_back(
+        {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
+    if (!reason.empty()) all.back()["reason"] = reason;
   }
   return all;
 }
@@ -90,7 +79,6 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   for (const Column& column : experiment_.columns) {
     columns[std::string(column.name)] = column.help;
   }
-  const Judgements judged = judgements(verdicts);
   ordered_json libraries;
   for (const auto& [library, version] : library_versions()) libraries[library] = version;
   ordered_json glossary = ordered_json::object();
@@ -123,9 +111,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"shard", fmt::format("{}/{}", line_.shard_index, line_.shard_count)},
       {"start", start_},
       {"end", utc_now()},
-      {"checks", judged.checks},
-      {"not_judged", judged.not_judged},
-      {"figures", judged.figures},
+      {"checks", checks_of(verdicts)},
       {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
       {"build",
        {{"compiler", TRESS_COMPILER},

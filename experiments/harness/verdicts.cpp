@@ -41,11 +41,11 @@ void Verdicts::figure(std::string what, double value) {
 std::string_view name(Verdicts::State state) {
   switch (state) {
     case Verdicts::State::held:
-      return "held";
+      return "passed";
     case Verdicts::State::broken:
-      return "broken";
+      return "failed";
     case Verdicts::State::known_limit:
-      return "known_limit";
+      return "finding";
     case Verdicts::State::changed:
       return "changed";
     case Verdicts::State::not_judged:
