@@ -82,6 +82,28 @@ void check_recovery(const std::vector<Row>& rows, Verdicts& verdicts) {
   if (!any) verdicts.not_judged(claim);
 }
 
+/// Strands that predictor_corrector does not bring to the end at 1/120 s, and after how
+/// many of the 60 steps they stop.
+constexpr std::string_view stops =
+    "a step of 1/120 s has no solution; at 1 ms, or with linear springs, lengths hold";
+constexpr KnownLimit stopped[] = {{"der stretch=inextensible", 0, 59, stops},
+                                  {"inextensible_strand ", 0, 59, stops}};
+
+void check_corrected(const Row& row, Verdicts& verdicts) {
+  const std::string strand =
+      std::string(row.text("system")) + " " + std::string(row.text("variant"));
+  const std::string claim =
+      "shaken " + strand + ", predictor_corrector at 1/120 s: lengths within 1e-6";
+  const double error = row.number("length_error_rel");
+  const bool held = row.ok() && error <= 1e-6;
+  const auto known = std::ranges::find(stopped, strand, &KnownLimit::claim);
+  if (known == std::end(stopped)) {
+    verdicts.check(claim, held, error);
+  } else {
+    verdicts.check_known(claim, held, row.number("steps"), *known);
+  }
+}
+
 /// The first seed's claim: corrected lengths where springs, solved once a step, give way.
 /// A run that failed keeps no length.
 void check_strands(const std::vector<Row>& rows, Verdicts& verdicts) {
@@ -91,10 +113,7 @@ void check_strands(const std::vector<Row>& rows, Verdicts& verdicts) {
     const double error = row.number("length_error_rel");
     if (row.text("integrator") == "predictor_corrector") {
       corrected = true;
-      verdicts.check("shaken " + std::string(row.text("system")) + " " +
-                         std::string(row.text("variant")) +
-                         ", predictor_corrector at 1/120 s: lengths within 1e-6",
-                     row.ok() && error <= 1e-6, error);
+      check_corrected(row, verdicts);
     }
     if (row.text("system") == "mass_spring" &&
         row.text("integrator") == "semi_implicit_euler") {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/drift_claims.h"
 #include "experiments/harness/stability_claims.h"
 
 namespace tress {
@@ -122,6 +123,24 @@ TEST(StabilityClaims, ARowThatGaveUpBreaksItsClaim) {
   const auto all = verdicts({failed.failed("gave_up", "")});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].alarm());
+}
+
+// A run that stopped kept no length: it breaks the claim unless that is known of it.
+TEST(DriftClaims, ARunThatStoppedIsNotPassedOver) {
+  const auto state = [](std::string_view system, std::string_view variant) {
+    Row stopped;
+    stopped.set("study", "strands").set("system", system).set("variant", variant);
+    stopped.set("integrator", "predictor_corrector").set("dt_s", 1.0 / 120);
+    Verdicts all;
+    check_drift_claims({stopped.set("steps", 6).failed("solver_error", "")}, all);
+    for (const auto& verdict : all.all()) {
+      if (verdict.state != Verdicts::State::not_judged) return verdict.state;
+    }
+    return Verdicts::State::not_judged;
+  };
+  EXPECT_EQ(state("inextensible_strand", "stretch_springs=linear"),
+            Verdicts::State::broken);
+  EXPECT_EQ(state("inextensible_strand", ""), Verdicts::State::known_limit);
 }
 
 }  // namespace
