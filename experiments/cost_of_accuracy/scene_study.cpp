@@ -171,6 +171,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   add_budget(study, finalists, rows);
   for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {
     rows.push_back(row_of(study, "front", run));
+    rows.back().set("time_scatter", finalists.scatter(run));
   }
   add_given(study, rows);
   if (search.cut()) how += ", cut while settling";

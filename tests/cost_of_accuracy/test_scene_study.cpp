@@ -268,6 +268,12 @@ TEST(AccuracyClaims, AskNothingOfWhatIsLuck) {
                     shown("front", 0.0099, 0, 0.5).set("error_neighbours_rel", 0.1)}));
 }
 
+// A verdict must not depend on what else the machine does.
+TEST(AccuracyClaims, AskNoMoreOfTimesThanTheyRepeat) {
+  EXPECT_TRUE(hold({shown("winner", 0.009, 0.009, 1),
+                    shown("front", 0.0099, 0, 0.8).set("time_scatter", 0.3)}));
+}
+
 TEST(AccuracyClaims, FailWhereSomethingElseIsCheaper) {
   EXPECT_FALSE(hold({shown("winner", 0.009, 0.009, 1), shown("front", 0.0099, 0, 0.9)}));
 }
