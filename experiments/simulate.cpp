@@ -84,6 +84,7 @@ constexpr Column columns[] = {
     {"scene", "name of the scene"},
     {"frames", "frames written"},
     {"simulated_s", "simulated time"},
+    {"rejected_steps", "steps that were tried again with shorter ones"},
     {"wall_s", "time it took, output included", true},
 };
 
@@ -114,10 +115,14 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   Row row;
   row.set("scene", scene.name).set("frames", run.frames);
   row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
+  row.set("rejected_steps", run.rejected);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
-  tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{} -> {}.csv\n",
+  tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
        scene.name, run.frames, run.simulated_s, run.wall_s,
+       run.rejected > 0
+           ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
+           : "",
        run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
   if (run.indicator > unresolved) {
     tell(

@@ -255,7 +255,7 @@ bool Guard::broken(Breach::Kind kind, std::string what, std::string where, doubl
   return false;
 }
 
-std::array<double, Guard::remembered> Guard::memory() const {
+Guard::Memory Guard::memory() const {
   const Record& r = record_;
   return {r.t, r.energy, r.slack, r.seen, r.power, r.work, r.frame, r.lowest};
 }

@@ -71,7 +71,8 @@ class Guard {
   /// All that start() and judging have gathered; recall() lets another guard of a system
   /// made alike go on from there.
   static constexpr std::size_t remembered = 8;  // numbers
-  std::array<double, remembered> memory() const;
+  using Memory = std::array<double, remembered>;
+  Memory memory() const;
   void recall(In memory);
 
  private:

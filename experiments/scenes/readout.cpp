@@ -41,18 +41,13 @@ Readout::Readout(const Scene& scene, const World& world)
   add("mean_distance_m", "from a strand to the nearest other one, mean");
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
+  add("rejected_steps", "steps tried again with shorter ones since the last frame");
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
   if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
 
   for (const Strand& strand : scene.strands) {
     lumps_.push_back(lumps(strand));
-    Twins twins;
-    twins.bare = scene.model->on_strand(strand, scene.model_options, {});
-    for (const auto& effect : effects_) {
-      twins.with.push_back(scene.model->on_strand(strand, scene.model_options, {effect}));
-    }
-    twins_.push_back(std::move(twins));
   }
 }
 
@@ -61,7 +56,10 @@ Frame3d Readout::read(World& world) {
   std::vector<double>& row = frame.series;
   row.assign(1, world.time());
   read_points(world, frame);
-  read_energies(world, row);
+  const Energies energies = world.energies();
+  row.push_back(energies.kinetic);
+  row.push_back(energies.elastic);
+  row.insert(row.end(), energies.effects.begin(), energies.effects.end());
   row.push_back(world.stretch());
   double depth = 0;
   for (const auto& effect : effects_) {
@@ -86,37 +84,9 @@ Frame3d Readout::read(World& world) {
   row.push_back(steps > 0 ? interval * static_cast<double>(world.systems()) / steps
                           : std::nan(""));
   row.push_back(iterations / steps);
+  row.push_back(static_cast<double>(now.rejected - before_.rejected));
   before_ = now;
   return frame;
-}
-
-void Readout::read_energies(World& world, std::vector<double>& row) {
-  const Energy all = world.energy();
-  row.push_back(all.kinetic);
-  if (twins_.empty()) {
-    row.push_back(all.potential);
-    return;
-  }
-  const Snapshot now = world.snapshot();
-  double elastic = 0;
-  std::vector<double> by_effect(effects_.size());
-  for (std::size_t k = 0; k < twins_.size(); ++k) {
-    const Snapshot::OfStrand& strand = now.strands[k];
-    const auto potential = [&](System& system) {
-      system.recall(strand.memory);
-      Energetics* energetics = system.energetics();
-      return energetics == nullptr
-                 ? 0
-                 : energetics->energy(now.t, strand.q, strand.v).potential;
-    };
-    const double bare = potential(*twins_[k].bare);
-    elastic += bare;
-    for (std::size_t e = 0; e < by_effect.size(); ++e) {
-      by_effect[e] += potential(*twins_[k].with[e]) - bare;
-    }
-  }
-  row.push_back(elastic);
-  row.insert(row.end(), by_effect.begin(), by_effect.end());
 }
 
 void Readout::find_lines(const World& world) {

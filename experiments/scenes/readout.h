@@ -21,8 +21,6 @@ struct Frame3d {
 };
 
 /// What is told of a scene: places and energies of its strands, what its effects do.
-/// Energies by kind come from twins of every strand that have no effect, or one alone, so
-/// that they are exactly those that the model itself counts.
 class Readout {
  public:
   /// `world`: any of this scene.
@@ -40,12 +38,6 @@ class Readout {
   void restart() { before_ = {}; }
 
  private:
-  struct Twins {
-    std::unique_ptr<System> bare;
-    std::vector<std::unique_ptr<System>> with;  // one effect each
-  };
-
-  void read_energies(World& world, std::vector<double>& row);
   void find_lines(const World& world);
   void read_points(World& world, Frame3d& frame);
   void read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame);
@@ -54,7 +46,6 @@ class Readout {
   std::vector<int> lines_;
   std::vector<std::size_t> drawn_;  // material points, line after line
   std::vector<Reading> series_, channels_;
-  std::vector<Twins> twins_;
   Effects effects_;
   std::vector<Lumps> lumps_;  // of each strand
   std::vector<double> tangent_;

@@ -102,7 +102,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     add_frame();
   }
 
-  SceneRun run{SceneRun::End::complete, {}, 0, 0, 0};
+  SceneRun run{SceneRun::End::complete, {}, 0, 0, 0, 0};
   const std::size_t last = scene.last_frame();
   TimeBar bar(options.progress, scene);
   while (recording.frames().size() <= last) {
@@ -126,6 +126,9 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     readout.restart();
   }
   run.frames = recording.frames().size();
+  for (const Frame3d& frame : recording.frames()) {
+    run.rejected += static_cast<long>(frame.series.back());
+  }
   run.simulated_s = world->time();
   run.wall_s = seconds_since(begin);
   pictures.write(recording.frames());

@@ -24,6 +24,7 @@ struct SceneRun {
   End end;
   std::string reason;  // of a failure
   std::size_t frames;
+  long rejected;  // steps tried again with shorter ones
   double wall_s, simulated_s;
   double indicator = 0;  // largest World::error_indicator
 };

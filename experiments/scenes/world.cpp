@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "integrators/catalogue.h"
 #include "integrators/error_indicator.h"
-#include "models/groom/coupled_strands.h"
 #include "models/math/pack.h"
 
 namespace tress {
@@ -45,6 +45,17 @@ void append_strands(In q, In v, In memory, const std::vector<std::size_t>& coord
   }
 }
 
+/// Each with a meter of its own, which `meters` keeps.
+Effects metered(const Effects& effects,
+                std::vector<std::shared_ptr<const Metered>>& meters) {
+  Effects all;
+  for (const auto& effect : effects) {
+    meters.push_back(std::make_shared<Metered>(effect));
+    all.push_back(meters.back());
+  }
+  return all;
+}
+
 }  // namespace
 
 Effects make_effects(const Scene& scene) {
@@ -70,7 +81,10 @@ std::vector<std::string> effect_names(const Scene& scene) {
 }
 
 World::World(const Scene& scene, int threads)
-    : step_(scene.options.step), crew_(threads) {
+    : integrator_(scene.integrator),
+      options_(scene.options),
+      effects_(scene.effects.size()),
+      crew_(threads) {
   if (scene.strands.empty()) {
     add(scene.model->make(scene.model_options), 1);
     if (scene.guard) guard(guarded_strands(*scene.model, scene.model_options));
@@ -130,8 +144,9 @@ void World::build_strands(const Scene& scene) {
         std::make_unique<StrandInteraction>(*scene.interaction, material_points(scene));
   }
   const Effects shared = make_effects(scene);
+  std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
   const auto effects_of = [&](std::size_t k) {
-    Effects effects = shared;
+    Effects effects = metered(shared, meters);
     if (interaction_) effects.push_back(interaction_->effect(k));
     return effects;
   };
@@ -148,12 +163,15 @@ void World::build_strands(const Scene& scene) {
                                             scene.model_options, std::move(effects));
       if (system != nullptr) {
         add(std::move(system), end - k);
+        bodies_.back().meters = std::exchange(meters, {});
         if (scene.guard) guard(guarded(scene, k, end - k, shared));
         k = end;
         continue;
       }
+      meters.clear();
     }
     add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
+    bodies_.back().meters = std::exchange(meters, {});
     if (scene.guard) guard(guarded(scene, k, 1, shared));
     ++k;
   }
@@ -163,16 +181,23 @@ void World::build_strands(const Scene& scene) {
 void World::build_coupled(const Scene& scene) {
   const Effects shared = make_effects(scene);
   std::vector<std::unique_ptr<System>> systems;
-  std::vector<std::size_t> coordinates, memory;
+  std::vector<std::size_t> coordinates;
+  std::vector<std::shared_ptr<const Metered>> meters;
   for (const Strand& strand : scene.strands) {
-    systems.push_back(scene.model->on_strand(strand, scene.model_options, shared));
+    systems.push_back(
+        scene.model->on_strand(strand, scene.model_options, metered(shared, meters)));
     coordinates.push_back(static_cast<std::size_t>(systems.back()->layout().coordinates));
-    memory.push_back(systems.back()->memory().size());
   }
-  add(std::make_unique<CoupledStrands>(std::move(systems), *scene.interaction),
-      scene.strands.size());
-  bodies_.front().coordinates = std::move(coordinates);
-  bodies_.front().memory = std::move(memory);
+  auto coupled = std::make_unique<CoupledStrands>(std::move(systems), *scene.interaction);
+  CoupledStrands* const whole = coupled.get();
+  add(std::move(coupled), scene.strands.size());
+  Body& body = bodies_.front();
+  body.coupled = whole;
+  body.meters = std::move(meters);
+  body.coordinates = std::move(coordinates);
+  // It remembers more than its strands do: all of it goes with the first.
+  body.memory.assign(scene.strands.size(), 0);
+  body.memory.front() = body.system->memory().size();
   points_ = material_points(scene);
   if (scene.guard) guard(guarded(scene, 0, scene.strands.size(), shared));
 }
@@ -186,7 +211,6 @@ void World::ready(const Scene& scene) {
     append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
   }
   const std::size_t points = bodies_.back().first_point + bodies_.back().points;
-  remedy_ = remedy(scene.integrator, scene.options);
   x_.values.resize(3 * points);
   u_.values.resize(3 * points);
   restore(begin);
@@ -207,6 +231,10 @@ void World::restore(const Snapshot& snapshot) {
     // Contact sets follow the state; where it was accepted before, nothing changes.
     body.system->accept(t_, all.q, all.v);
     body.status = body.integrator->start(t_, all.q, all.v);
+    body.before = {};
+    body.indicator = 0;
+    body.shortened = 0;
+    body.gave_up = false;
   }
   failure_.clear();
   x_.done = u_.done = false;
@@ -234,84 +262,30 @@ Snapshot World::snapshot() const {
   return snapshot;
 }
 
-Status World::advance(double t_end) {
-  // Without an exchange nobody needs to wait for the others.
-  const double span = t_end - t_;
-  const double count = interaction_ ? std::max(1.0, std::ceil(span / step_ - 1e-9)) : 1.0;
-  const double begin = t_;
-  for (long i = 1; i <= static_cast<long>(count); ++i) {
-    const double t = i == static_cast<long>(count)
-                         ? t_end
-                         : begin + static_cast<double>(i) * (span / count);
-    const bool last = i == static_cast<long>(count);
-    crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
-    t_ = t;
-    x_.done = u_.done = false;
-    for (const Body& body : bodies_) {
-      if (body.status == Status::ok) continue;
-      failure_ = failure_of(body);
-      return body.status;
-    }
-    exchange();
-  }
-  return Status::ok;
-}
-
-/// Its guard sees the last state of all, also where the method gave up there.
-void World::advance(Body& body, double t, bool last) {
-  if (body.status != Status::ok) return;
-  Integrator& method = *body.integrator;
-  if (!body.guard) {
-    body.status = method.advance(t);
-    return;
-  }
-  body.status = method.advance(
-      t, [&guard = *body.guard](double at, In q, In v) { return guard(at, q, v); });
-  if (body.guard->breach() || (body.status == Status::ok && !last)) return;
-  if (!body.guard->judge(method.time(), method.q(), method.v())) {
-    body.status = Status::fatal;
-  }
-}
-
-std::string World::failure_of(const Body& body) const {
-  if (body.guard && body.guard->breach()) {
-    return fmt::format("{}: {}; guard = false lets it go on",
-                       body.guard->breach()->message(), remedy_);
-  }
-  const std::size_t last = body.first + body.coordinates.size() - 1;
-  return fmt::format("strand {}{}: {}", body.first,
-                     last > body.first ? fmt::format(" to {}", last) : "",
-                     body.integrator->failure());
-}
-
-Stats World::stats() const {
-  Stats sum;
-  for (const Body& body : bodies_) {
-    const Stats one = body.integrator->stats();
-    sum.steps += one.steps;
-    sum.newton_iterations += one.newton_iterations;
-    sum.solver = one.solver;
-  }
-  return sum;
-}
-
 double World::error_indicator() const {
   double largest = 0;
   for (const Body& body : bodies_) {
-    const ErrorIndicator* own = tress::error_indicator(*body.integrator);
-    if (own != nullptr) largest = std::max(largest, own->largest_indicator());
+    largest = std::max({largest, body.indicator, indicator_of(*body.integrator)});
   }
   return largest;
 }
 
-Energy World::energy() {
-  Energy sum;
+Energies World::energies() {
+  Energies sum;
+  sum.effects.resize(effects_);
   for (const Body& body : bodies_) {
     Energetics* energetics = body.system->energetics();
     if (energetics == nullptr) continue;
-    const Energy one = energetics->energy(t_, body.integrator->q(), body.integrator->v());
+    const In q = body.integrator->q(), v = body.integrator->v();
+    const Energy one = energetics->energy(t_, q, v);
+    double of_effects = 0;
+    for (std::size_t i = 0; i < body.meters.size(); ++i) {
+      sum.effects[i % effects_] += body.meters[i]->last();
+      of_effects += body.meters[i]->last();
+    }
+    if (body.coupled != nullptr) of_effects += body.coupled->contact_potential(t_, q, v);
     sum.kinetic += one.kinetic;
-    sum.potential += one.potential;
+    sum.elastic += one.potential - of_effects;
   }
   return sum;
 }

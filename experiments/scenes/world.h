@@ -7,8 +7,10 @@
 
 #include "experiments/harness/guard.h"
 #include "experiments/scenes/crew.h"
+#include "experiments/scenes/metered.h"
 #include "experiments/scenes/scene.h"
 #include "models/effects/strand_interaction.h"
+#include "models/groom/coupled_strands.h"
 
 namespace tress {
 
@@ -21,6 +23,12 @@ struct Snapshot {
   double t = 0;  // s
   std::vector<OfStrand> strands;
   std::vector<double> guards;  // what they have gathered; none: they start here
+};
+
+/// J, of all strands; `elastic` is what no effect has, of a mechanism all potential.
+struct Energies {
+  double kinetic = 0, elastic = 0;
+  std::vector<double> effects;  // in the scene's order
 };
 
 /// A scene built: systems and integrators of its strands, its effects, and what couples
@@ -38,18 +46,22 @@ class World {
   void restore(const Snapshot& snapshot);
   Snapshot snapshot() const;
 
-  /// Advances all strands to t_end. Not ok: failure() says what happened where and when.
+  /// Advances all strands to t_end. A step of a strand that has no solution is taken in
+  /// 2, 4 ... 64 shorter ones, then the scene's step goes on: a hundred times for each
+  /// strand, beyond which the step is too long for the scene. stats().rejected counts
+  /// every try that failed. Not ok: failure() says what happened where and when.
   Status advance(double t_end);
   double time() const { return t_; }
   const std::string& failure() const { return failure_; }
-  Stats stats() const;  // summed over strands
   /// Largest of all strands so far; 0 where the method has none (ErrorIndicator).
   double error_indicator() const;
+  /// Steps, rejected ones and Newton iterations since restore(), summed over strands.
+  Stats stats() const;
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
-  /// Of all strands, as their systems count it.
-  Energy energy();
+  /// As the systems count it.
+  Energies energies();
   double stretch();  // largest |length/rest - 1|, 0 where models do not say
   /// Null where strands do not touch.
   const StrandInteraction* interaction() const { return interaction_.get(); }
@@ -70,8 +82,23 @@ class World {
     /// Sizes of each strand's coordinates and memory.
     std::vector<std::size_t> coordinates, memory;
     std::size_t first_point = 0, points = 0;
+    /// Effects of its first strand, of the second ...
+    std::vector<std::shared_ptr<const Metered>> meters;
+    CoupledStrands* coupled = nullptr;  // the system, where it is one
     std::optional<Guard> guard;
     Status status = Status::ok;
+    // The last state that a step led to.
+    double t = 0;
+    std::vector<double> q, v;
+    // Of what ran until the integrator's last start.
+    Stats before;
+    double indicator = 0;
+    int shortened = 0;     // steps that were taken in shorter ones, since restore()
+    bool gave_up = false;  // shorter steps did not help
+
+    bool breached() const { return guard && guard->breach(); }
+    void keep(double at, In new_q, In new_v);
+    Observer observer();
   };
 
   void add(std::unique_ptr<System> system, std::size_t strands);
@@ -82,6 +109,7 @@ class World {
   void build_coupled(const Scene& scene);
   void ready(const Scene& scene);
   void advance(Body& body, double t, bool last);
+  Status shorter_steps(Body& body, double end);
   std::string failure_of(const Body& body) const;
   /// Coordinates of all points at the present state.
   struct Read {
@@ -91,13 +119,15 @@ class World {
   void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();
 
-  double step_;  // s, between two exchanges
+  std::string integrator_;
+  Options options_;
+  std::size_t effects_;
   std::unique_ptr<StrandInteraction> interaction_;
   std::vector<Body> bodies_;
   std::vector<int> points_, before_;
   Read x_, u_;
   double t_ = 0;
-  std::string failure_, remedy_;
+  std::string failure_;
   Crew crew_;
 };
 

@@ -26,9 +26,15 @@ Energy CoupledStrands::energy(double t, In q, In v) {
     sum.kinetic += own.kinetic;
     sum.potential += own.potential;
   }
+  sum.potential += contact_potential(t, q, v);
+  return sum;
+}
+
+double CoupledStrands::contact_potential(double t, In q, In v) {
+  double sum = 0;
   place(t, q, v);
   contacts_->each_contact(x_, u_, [&](const auto&, const PieceContact& contact) {
-    sum.potential += contact.potential(contacts_->law());
+    sum += contact.potential(contacts_->law());
   });
   return sum;
 }

@@ -53,6 +53,8 @@ class CoupledStrands final : public System, private Energetics, private Material
   MaterialPoints* material_points() override { return this; }
 
   const StrandContacts& contacts() const { return *contacts_; }
+  /// The part of energy() that no strand has by itself, J.
+  double contact_potential(double t, In q, In v);
 
  private:
   Energy energy(double t, In q, In v) override;

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "models/effects/effect.h"
+
+namespace tress {
+
+/// An effect that keeps the potential energy it was last asked for: whoever asks a model
+/// for its energy then knows the part of each effect. One for every strand.
+class Metered final : public Effect {
+ public:
+  explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}
+
+  double last() const { return last_; }  // J
+
+  std::string_view name() const override { return effect_->name(); }
+  Needs needs() const override { return effect_->needs(); }
+  void add_load(double t, const Points& p, InOut f) const noexcept override {
+    effect_->add_load(t, p, f);
+  }
+  std::optional<Vec> uniform_acceleration() const noexcept override {
+    return effect_->uniform_acceleration();
+  }
+  void add_derivatives(double t, const Points& p, double pos, double vel,
+                       InOut blocks) const noexcept override {
+    effect_->add_derivatives(t, p, pos, vel, blocks);
+  }
+  void add_direction_derivatives(double t, const Points& p, double factor,
+                                 InOut blocks) const noexcept override {
+    effect_->add_direction_derivatives(t, p, factor, blocks);
+  }
+  void add_couplings(double t, const Points& p,
+                     std::vector<Coupling>& all) const override {
+    effect_->add_couplings(t, p, all);
+  }
+  double potential(double t, const Points& p) const noexcept override {
+    return last_ = effect_->potential(t, p);
+  }
+  double power(double t, const Points& p) const noexcept override {
+    return effect_->power(t, p);
+  }
+
+ private:
+  std::shared_ptr<const Effect> effect_;
+  mutable double last_ = 0;
+};
+
+}  // namespace tress

@@ -1,0 +1,103 @@
+// A scene built: what it tells of its energies, and strands that are one system.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "experiments/harness/simulation.h"
+#include "experiments/scenes/world.h"
+
+namespace tress {
+namespace {
+
+Scene pair(const std::string& model, const std::string& coupling) {
+  const std::string strand = "length_m = 0.1\nelements = 10\nshape = \"helix\"\n";
+  return parse_scene(
+      "title = \"pair\"\nduration_s = 0.1\n[model]\nid = \"" + model +
+          "\"\n[integrator]\nid = \"semi_implicit_euler\"\n[material]\n"
+          "name = \"hair.asian\"\n[[strand]]\n" +
+          strand + "[[strand]]\nposition_m = [0, 0.004, 0]\n" + strand +
+          "[root]\nmotion = \"fixed\"\n[effects.gravity]\n[effects.body]\n"
+          "centre_m = [0, 0, -0.005]\n[effects.strand_interaction]\ncoupling = \"" +
+          coupling + "\"\n",
+      "pair.toml");
+}
+
+/// By systems of its own for every strand, without effects and with one alone.
+Energies by_twins(const Scene& scene, World& world) {
+  Energies sum;
+  sum.effects.resize(scene.effects.size());
+  const Snapshot now = world.snapshot();
+  const Effects effects = make_effects(scene);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    const Snapshot::OfStrand& state = now.strands[k];
+    const auto energy = [&](const Effects& with) {
+      const auto twin =
+          scene.model->on_strand(scene.strands[k], scene.model_options, with);
+      twin->recall(state.memory);
+      return twin->energetics()->energy(now.t, state.q, state.v);
+    };
+    const Energy bare = energy({});
+    sum.kinetic += bare.kinetic;
+    sum.elastic += bare.potential;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+      sum.effects[e] += energy({effects[e]}).potential - bare.potential;
+    }
+  }
+  return sum;
+}
+
+TEST(World, KnowsEnergiesByKindAsSystemsOfOneEffectDo) {
+  for (const char* const model : {"super_helix", "mass_spring", "der"}) {
+    const Scene scene = pair(model, "lagged");
+    World world(scene);
+    ASSERT_EQ(world.advance(0.05), Status::ok) << world.failure();
+    const Energies now = world.energies(), expected = by_twins(scene, world);
+    // Sums and differences of a few potentials, each of some hundred terms.
+    double size = now.kinetic + std::abs(now.elastic);
+    for (const double effect : now.effects) size += std::abs(effect);
+    const double rounding = 1000 * 2.3e-16 * size;
+    EXPECT_NEAR(now.kinetic, expected.kinetic, rounding) << model;
+    EXPECT_NEAR(now.elastic, expected.elastic, rounding) << model;
+    for (std::size_t e = 0; e < now.effects.size(); ++e) {
+      EXPECT_NEAR(now.effects[e], expected.effects[e], rounding) << model << e;
+    }
+  }
+}
+
+/// Its system remembers more than its strands do: a snapshot that kept only their part
+/// was read beyond its end.
+TEST(World, StrandsThatAreOneSystemGoOnFromASnapshot) {
+  const Scene scene = pair("mass_spring", "monolithic");
+  World world(scene), other(scene);
+  ASSERT_EQ(world.advance(0.02), Status::ok) << world.failure();
+  const Snapshot middle = world.snapshot();
+  world.restore(middle);
+  other.restore(middle);
+  ASSERT_EQ(world.advance(0.04), Status::ok) << world.failure();
+  ASSERT_EQ(other.advance(0.04), Status::ok) << other.failure();
+  EXPECT_EQ(world.positions(), other.positions());
+}
+
+/// At 50 ms the whirling of soft, long hair takes Newton's iteration more than 8 rounds
+/// now and then.
+TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
+  const std::string strand = "length_m = 0.2\nelements = 20\n";
+  const Scene scene = parse_scene(
+      "title = \"soft\"\n[model]\nid = \"super_helix\"\n[integrator]\n"
+      "id = \"backward_euler\"\ndt_s = 0.05\nnewton_iterations = 8\n[material]\n"
+      "name = \"hair.asian\"\nyoungs_modulus_pa = 1e7\n[[strand]]\n" +
+          strand + "[[strand]]\n" + strand +
+          "[root]\nmotion = \"shake\"\namplitude_m = 0.05\nfrequency_hz = 3\n"
+          "[effects.gravity]\n",
+      "soft.toml");
+  World world(scene), other(scene, 2);
+  ASSERT_EQ(world.advance(0.5), Status::ok) << world.failure();
+  ASSERT_EQ(other.advance(0.5), Status::ok) << other.failure();
+  EXPECT_GT(world.stats().rejected, 0);
+  EXPECT_EQ(world.stats().rejected, other.stats().rejected);
+  EXPECT_EQ(world.positions(), other.positions());
+}
+
+}  // namespace
+}  // namespace tress
