@@ -90,8 +90,8 @@ Status World::shorter_steps(Body& body, double end) {
     if (status != Status::ok) continue;
     add_work(method->stats(), body.before);
     add_work(body.integrator->stats(), body.before);
-    body.indicator = std::max({body.indicator, indicator_of(*body.integrator),
-                               indicator_of(*method)});
+    body.indicator =
+        std::max({body.indicator, indicator_of(*body.integrator), indicator_of(*method)});
     return body.integrator->start(end, body.q, body.v);
   }
   body.gave_up = true;
