@@ -28,8 +28,9 @@ std::vector<std::vector<double>> simulated(const Records& records,
   for (std::size_t i = 0; i < records.all.size(); ++i) {
     const Record& record = records.all[i];
     const auto system = model.make(strands[i]);
+    Guard guard(*system, guarded_strands(model, strands[i]));
     const TipSignal signal = run_tip_signal(watch.integrator, *system, watch.options,
-                                            watch.axis, longer * record.t.back());
+                                            watch.axis, longer * record.t.back(), &guard);
     if (signal.status != Status::ok) return {};
     if (watch.observed == Observed::envelope) {
       all.push_back(envelope(signal, record.t));

@@ -68,7 +68,7 @@ std::vector<Turn> without_ripples(const std::vector<Turn>& all) {
 }  // namespace
 
 TipSignal run_tip_signal(std::string_view integrator, System& system,
-                         const Options& options, int axis, double t_end) {
+                         const Options& options, int axis, double t_end, Guard* guard) {
   MaterialPoints& points = *system.material_points();
   std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
   const auto k = static_cast<std::size_t>(axis);
@@ -85,7 +85,10 @@ TipSignal run_tip_signal(std::string_view integrator, System& system,
   const State start = initial_state(system);
   system.reset();
   see(0, start.q, start.v);
-  const Simulation run = simulate(integrator, system, options, start, t_end, see);
+  const Simulation run =
+      guard != nullptr
+          ? simulate_guarded(*guard, integrator, system, options, start, t_end, see)
+          : simulate(integrator, system, options, start, t_end, see);
   signal.status = run.status;
   signal.failure = run.failure;
   return signal;

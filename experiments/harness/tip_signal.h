@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/harness/guard.h"
 #include "integrators/integrator.h"
 
 namespace tress {
@@ -16,9 +17,10 @@ struct TipSignal {
   std::vector<double> t, x, v;  // s, m, m/s
 };
 
-/// `axis`: 0, 1, 2 for x, y, z.
+/// `axis`: 0, 1, 2 for x, y, z. A breach of `guard`, if there is one, ends the run.
 TipSignal run_tip_signal(std::string_view integrator, System& system,
-                         const Options& options, int axis, double t_end);
+                         const Options& options, int axis, double t_end,
+                         Guard* guard = nullptr);
 
 /// At `times`, all within the run, by the cubic through places and velocities at both
 /// ends of a step: off by (omega h)^4/384 of an oscillation of rate omega at steps h.

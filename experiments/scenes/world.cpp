@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "experiments/scenes/memory.h"
 #include "integrators/catalogue.h"
 #include "integrators/error_indicator.h"
 #include "models/math/pack.h"
@@ -85,6 +86,7 @@ World::World(const Scene& scene, int threads)
       options_(scene.options),
       effects_(scene.effects.size()),
       crew_(threads) {
+  refuse_too_large(scene);
   if (scene.strands.empty()) {
     add(scene.model->make(scene.model_options), 1);
     if (scene.guard) guard(guarded_strands(*scene.model, scene.model_options));

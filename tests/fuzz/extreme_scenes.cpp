@@ -7,10 +7,12 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "experiments/harness/files.h"
@@ -91,16 +93,16 @@ std::string outcome(std::uint64_t seed, const std::string& simulate) {
   const RandomScene scene = random_scene(seed);
   const std::string stem = (folder / std::to_string(seed)).string();
   std::ofstream(stem + ".toml") << scene.text;
-  const std::string command = "timeout " + std::to_string(seconds) + " " + simulate +
+  const std::string command = "timeout -k 5 " + std::to_string(seconds) + " " + simulate +
                               " " + stem + ".toml --progress none --out " +
                               folder.string() + " >" + stem + ".out 2>" + stem + ".err";
   const int status = std::system(command.c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 255;
-  std::string word = code == 0     ? "ok"
-                     : code == 3   ? "stated failure"
-                     : code == 2   ? "refused"
-                     : code == 124 ? "out of time"
-                                   : "crash";
+  std::string word = code == 0                    ? "ok"
+                     : code == 3                  ? "stated failure"
+                     : code == 2                  ? "refused"
+                     : code == 124 || code == 137 ? "out of time"
+                                                  : "crash";
   std::string why;
   if (word == "ok") why = nonsense(scene, stem);
   if (!why.empty()) word = "silent failure";
@@ -131,10 +133,18 @@ int main(int argc, char** argv) {
     const long count = std::atol(argv[1]);
     std::uint64_t seed = std::strtoull(argv[2], nullptr, 10) << 20;
     std::map<std::string, long> outcomes;
-    for (long legal = 0; legal < count; ++seed) {
-      const std::string word = outcome(seed, argv[3]);
-      ++outcomes[word];
-      if (word != "refused") ++legal;
+    const unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
+    for (long legal = 0; legal < count;) {
+      std::vector<std::future<std::string>> running;
+      for (unsigned job = 0; job < jobs; ++job) {
+        running.push_back(
+            std::async(std::launch::async, outcome, seed++, std::string(argv[3])));
+      }
+      for (auto& one : running) {
+        const std::string word = one.get();
+        ++outcomes[word];
+        if (word != "refused") ++legal;
+      }
     }
     for (const auto& [word, times] : outcomes) {
       std::printf("%6ld %s\n", times, word.c_str());

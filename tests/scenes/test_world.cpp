@@ -1,11 +1,17 @@
 // A scene built: what it tells of its energies, and strands that are one system.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <fstream>
+#include <new>
 #include <string>
 
 #include "experiments/harness/simulation.h"
 #include "experiments/scenes/world.h"
+#include "models/input_error.h"
 
 namespace tress {
 namespace {
@@ -98,6 +104,37 @@ TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
   EXPECT_EQ(world.stats().rejected, other.stats().rejected);
   EXPECT_EQ(world.positions(), other.positions());
 }
+
+#ifndef __SANITIZE_ADDRESS__  // it has an allocator and an address space of its own
+/// As under `ulimit -v`: these strands need more than a gigabyte.
+TEST(World, TooManyStrandsForTheMemoryAreRefusedWithTheFigure) {
+  const Scene scene = parse_scene(
+      "title = \"crowd\"\n[model]\nid = \"super_helix\"\n[integrator]\n"
+      "id = \"semi_implicit_euler\"\n[groom]\ncount = 5000\nelements = 20\n"
+      "length_m = 0.2\n[root]\nmotion = \"fixed\"\n[effects.linear_drag]\n",
+      "crowd.toml");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const auto now =
+      static_cast<rlim_t>(pages) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+  const rlimit tight{now + (rlim_t{300} << 20), before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &tight), 0);
+  std::string message;
+  try {
+    const World world(scene);
+  } catch (const InputError& error) {
+    message = error.what();
+  } catch (const std::bad_alloc&) {
+    message = "no memory";
+  }
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_THAT(message, testing::HasSubstr("5000 strands of 100000 elements altogether "
+                                          "need about "));
+  EXPECT_THAT(message, testing::HasSubstr("give fewer strands or elements"));
+}
+#endif
 
 }  // namespace
 }  // namespace tress
