@@ -67,10 +67,11 @@ export const midpoint_keeps = asserted(
     const rows = ok_rows(tables, 'free_flight', { integrator: 'implicit_midpoint' });
     const worst = (model) =>
       Math.max(...rows.filter((row) => row.model === model).map((row) => row.angular_error_rel));
-    return worst('der') < 1e-9 && worst('super_helix') > 1e-9;
+    return worst('mass_spring') < 1e-9 && worst('der') < 1e-5 && worst('super_helix') > 1e-9;
   },
   'The midpoint rule keeps the angular momentum of particles to rounding, because it is bilinear in q and v; in the ' +
-    'curvatures of a super-helix it keeps it to second order',
+    'curvatures of a super-helix it keeps it to second order. Models whose sections turn by an angle of their own ' +
+    '(`der`, `dynamic_spline`) drift by the spin that their kinetic energy leaves out, whatever the step',
 );
 
 export const small_load = asserted(
