@@ -29,6 +29,7 @@ using tress::testing_support::random_scene;
 using tress::testing_support::RandomScene;
 
 constexpr int seconds = 10;
+constexpr double thermal = 4e-21;  // J, kT at room temperature: less is no motion
 const std::filesystem::path folder = "extreme_scenes";
 
 /// Columns of numbers by their names.
@@ -70,8 +71,9 @@ std::string nonsense(const RandomScene& scene, const std::string& stem) {
   }
   const double begin = kinetic.front() + series.at("elastic_j").front();
   if (scene.passive) {
-    if (most > scene.weight_work + 0.1 * begin) {
-      return "energy rises by " + std::to_string(most / scene.weight_work) + " m g L";
+    if (most > scene.weight_work + 0.1 * begin + thermal) {
+      return "energy rises by " + std::to_string(most) +
+             " J, m g L = " + std::to_string(scene.weight_work) + " J";
     }
   }
   const double energy =
