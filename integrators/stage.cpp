@@ -12,19 +12,8 @@ namespace {
 // A kept matrix is rebuilt when corrections shrink by less than this per iteration.
 constexpr double slow_rate = 0.3;
 
-// Corrections that stop shrinking are rounding when they are this close to the tolerance.
-constexpr double stagnation_factor = 1e4;
-
 // Corrections that grew this often do not shrink by themselves.
 constexpr int most_grown = 2;
-
-// Damped steps are shorter, so there may be more of them; a step this much shorter than
-// Newton's gets nowhere.
-constexpr int damped_patience = 3;
-constexpr double shortest = 1e-4;
-
-// Of a step lengthened bit by bit: where it begins, and when it gets nowhere.
-constexpr double first_part = 0.1, shortest_part = 1e-3, least_growth = 1.05;
 
 }  // namespace
 
@@ -42,7 +31,14 @@ Stage::Stage(Dynamics& dynamics, const Options& options)
       a_kept_(q_.size()),
       lambda_kept_(c_.size()),
       a_step_(q_.size()),
-      lambda_step_(c_.size()) {}
+      lambda_step_(c_.size()),
+      q_start_(q_.size()),
+      a_part_(q_.size()),
+      lambda_part_(c_.size()),
+      a_before_(q_.size()),
+      here_(q_.size(), c_.size()),
+      there_(q_.size(), c_.size()),
+      middle_(q_.size(), c_.size()) {}
 
 void Stage::place(In q_bar, In v_bar, Weights w, In a) noexcept {
   for (std::size_t i = 0; i < q_.size(); ++i) {
@@ -76,11 +72,25 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
   return std::isfinite(correction) ? Status::ok : Status::retry;
 }
 
+Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
+                          Out lambda_step, double& size) noexcept {
+  Status s = dynamics_.linearize(t, q_, v_, a, lambda, w);
+  if (s == Status::ok) {
+    s = dynamics_.residual(t, q_, v_, a, lambda, a_step, lambda_step);
+  }
+  if (s == Status::ok) s = dynamics_.solve(a_step, lambda_step);
+  if (s != Status::ok) return s;
+  ++dynamics_.stats.newton_iterations;
+  size = size_of(a_step, w);
+  return std::isfinite(size) ? Status::ok : Status::retry;
+}
+
 Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
                     InOut lambda) noexcept {
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, a, lambda);
+  if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
   // From the guess, from no acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -89,44 +99,19 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
     std::ranges::copy(lambda_guess_, lambda.begin());
     s = damped(t, q_bar, v_bar, w, a, lambda);
   }
-  if (s != Status::retry) return s;
-  std::ranges::copy(lambda_guess_, lambda.begin());
-  return lengthened(t, q_bar, v_bar, w, a, lambda);
-}
-
-/// Continuation in the length of the step [Deuflhard 2011, section 5.1]: of a very short
-/// one no acceleration is a good guess, of each longer one the displacement before.
-Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, InOut a,
-                         InOut lambda) noexcept {
-  std::ranges::fill(a, 0.0);
-  double part = 0, growth = first_part;
-  while (part < 1) {
-    const double next = std::min(1.0, part == 0 ? growth : part * growth);
-    const double same_place = (part / next) * (part / next);
-    std::ranges::copy(a, a_guess_.begin());
-    std::ranges::copy(lambda, lambda_guess_.begin());
-    for (double& entry : a) entry *= same_place;
-    const Status s =
-        damped(t, q_bar, v_bar, {w.acc, next * w.vel, next * next * w.pos}, a, lambda);
-    if (s == Status::fatal) return s;
-    if (s == Status::ok) {
-      growth = part == 0 ? 2 : std::min(2.0, growth * growth);
-      part = next;
-      continue;
-    }
-    std::ranges::copy(a_guess_, a.begin());
+  for (const Drift drift : {Drift::whole, Drift::own}) {
+    if (s != Status::retry) break;
     std::ranges::copy(lambda_guess_, lambda.begin());
-    growth = part == 0 ? growth / 4 : std::sqrt(growth);
-    if (growth < (part == 0 ? shortest_part : least_growth)) return Status::retry;
+    s = lengthened(t, q_bar, v_bar, w, drift, a, lambda);
   }
-  return Status::ok;
+  return s;
 }
 
 Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
                      InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
   double previous = std::numeric_limits<double>::infinity();
-  double rate = 1;
+  double rate = rate_ = 0;
   int grown = 0;
   const bool kept = matrix_ == dynamics_.matrix();
   const bool same_matrix = factored_.vel == w.vel && factored_.pos == w.pos;
@@ -135,59 +120,19 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
     double correction = 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
-    rate = correction / previous;
+    rate = rate_ = correction / previous;
     // The error left is the sum of the corrections to come: rate / (1 - rate) of this
     // one. The first correction has no rate yet.
     const double error_left =
         i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
     if (correction <= tolerance_ || error_left <= 0.1 * tolerance_) return Status::ok;
-    if (rate > 0.5 && i >= 2 && correction <= stagnation_factor * tolerance_) {
+    if (rate > 0.5 && i >= 2 && correction <= stage_stagnation * tolerance_) {
       return Status::ok;
     }
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     linearize = refresh_ == Refresh::every_iteration ||
                 (refresh_ == Refresh::when_slow && i > 0 && rate > slow_rate);
     previous = correction;
-  }
-  return Status::retry;
-}
-
-Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
-                     InOut lambda) noexcept {
-  place(q_bar, v_bar, w, a);
-  for (int i = 0; i < damped_patience * iterations_; ++i) {
-    Status s = dynamics_.linearize(t, q_, v_, a, lambda, w);
-    if (s == Status::ok) {
-      s = dynamics_.residual(t, q_, v_, a, lambda, a_step_, lambda_step_);
-    }
-    if (s == Status::ok) s = dynamics_.solve(a_step_, lambda_step_);
-    if (s != Status::ok) return s;
-    ++dynamics_.stats.newton_iterations;
-    const double size = size_of(a_step_, w);
-    if (!std::isfinite(size)) return Status::retry;
-    s = halve_until_smaller(t, q_bar, v_bar, w, size, a, lambda);
-    const bool rounding = s == Status::retry && size <= stagnation_factor * tolerance_;
-    if (size <= tolerance_ || rounding) return Status::ok;
-    if (s != Status::ok) return s;
-  }
-  return Status::retry;
-}
-
-/// Takes the step a_step_, lambda_step_ or as much of it as makes the correction of the
-/// kept matrix smaller than `size`, that of the step itself.
-Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
-                                  InOut a, InOut lambda) noexcept {
-  std::ranges::copy(a, a_kept_.begin());
-  std::ranges::copy(lambda, lambda_kept_.begin());
-  for (double part = 1; part >= shortest; part /= 2) {
-    shifted(a, a_kept_, -part, a_step_);
-    shifted(lambda, lambda_kept_, -part, lambda_step_);
-    place(q_bar, v_bar, w, a);
-    if (size <= tolerance_) return Status::ok;
-    Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
-    if (s == Status::ok) s = dynamics_.solve(r_, c_);
-    if (s == Status::fatal) return s;
-    if (s == Status::ok && size_of(r_, w) <= (1 - part / 4) * size) return s;
   }
   return Status::retry;
 }

@@ -6,6 +6,10 @@
 
 namespace tress {
 
+/// Corrections that stop shrinking are rounding when they are this close to the
+/// tolerance.
+inline constexpr double stage_stagnation = 1e4;
+
 /// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
 /// method: find a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
@@ -13,8 +17,17 @@ namespace tress {
 /// monotonicity test [Deuflhard 2011, Newton Methods for Nonlinear Problems, section 3.3]
 /// from the guess, from no acceleration and from standstill: long steps of shaken strands
 /// need it. Where that fails too the step is solved short and made longer bit by bit
-/// [section 5.1]: soft strands that fall far in one step need that. Options:
-/// newton_tolerance bounds the last correction of q and v over System::scale,
+/// [section 5.1], first with the drift of the whole step: soft strands that fall far in
+/// one step need that; then with its own, as a shorter step has it: strands that turn
+/// fast need that, since the drift of the whole step carries them where no guess helps.
+///
+/// A force that jumps, as that of a contact which goes over to another place, may leave
+/// no solution: on either side of the jump the step leads to the other, and Newton's
+/// iteration goes back and forth. Then the solution is taken in the sense of [Filippov
+/// 1988]: the state on the jump at which a mean of the forces of both sides solves the
+/// equations. There a mean of Newton's corrections from both sides vanishes.
+///
+/// Options: newton_tolerance bounds the last correction of q and v over System::scale,
 /// newton_iterations, refresh.
 class Stage {
  public:
@@ -32,12 +45,30 @@ class Stage {
   In v() const { return v_; }
 
  private:
+  /// Of a step solved short: how far it goes without any force.
+  enum class Drift { whole, own };
+  /// A point near a jump, and what Newton's method takes off there.
+  struct Side {
+    Side(std::size_t n, std::size_t m) : a(n), lambda(m), a_step(n), lambda_step(m) {}
+    std::vector<double> a, lambda, a_step, lambda_step;
+    double size = 0;  // of a_step
+  };
+
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  /// Newton's step from q_, v_, the places of `a`, and its size.
+  Status newton_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
+                     double& size) noexcept;
   Status damped(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
-  Status lengthened(double t, In q_bar, In v_bar, Weights w, InOut a,
+  Status lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, InOut a,
                     InOut lambda) noexcept;
+  /// From where newton() ended; `retry` unless it went back and forth there.
+  Status on_jump(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status close_in(double t, In q_bar, In v_bar, Weights w) noexcept;
+  Status correction(double t, In q_bar, In v_bar, Weights w, Side& side) noexcept;
+  double scaled_dot(In x, In y) const noexcept;
+  double apart(const Side& x, const Side& y) const noexcept;
   Status halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
                              InOut a, InOut lambda) noexcept;
   Status correct(double t, In q_bar, In v_bar, Weights w, bool linearize, InOut a,
@@ -48,10 +79,13 @@ class Stage {
   int iterations_;
   Refresh refresh_;
   Weights factored_;  // of the matrix that newton() took last
+  double rate_ = 0;   // of newton(): its last correction over the one before
   long matrix_ = -1;  // which of dynamics_'s it was; others may have taken one since
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
+  std::vector<double> q_start_, a_part_, lambda_part_, a_before_;    // of short ones
+  Side here_, there_, middle_;                                       // of a jump
 };
 
 }  // namespace tress

@@ -16,9 +16,10 @@ struct Limit {
 
 constexpr Limit limits[] = {
     {"t_s",
-     {"long_curl", 0, 0,
+     {"long_curl", 0.033, 0.034,
       "one curvature near the root swings two metres of curls farther than they fall in "
-      "the first step, of which Newton's iteration finds no solution"}},
+      "a step: the first is solved short and made longer, of the second no solution is "
+      "found"}},
     {"t_s",
      {"cone", 0, 0,
       "what sticks below 1 mm/s turns round within one of Newton's steps at 0.3 m/s: no "

@@ -19,9 +19,12 @@ std::span<const Parameter> self_contact_parameters();
 /// radius; each meets the nearest point of the part of the strand that begins
 /// `separation` (m, along the arc at rest) before it, and that of the part after it, with
 /// half of its length, since what it meets has samples too. Forces are distributed to the
-/// four points about a contact and sum to zero (PieceContact). The repulsion is in
-/// potential(). Samples march along the strand in strides that cannot reach a contact:
-/// O(n) for n points of a strand in the open, O(n^2) at worst.
+/// four points about a contact and sum to zero (PieceContact). Where two places are
+/// equally near, as inside a corner of the polyline, the force jumps from one to the
+/// other: a coil of 20 elements came to rest there, and implicit steps are solved on the
+/// jump (integrators/stage.h). The repulsion is in potential(). Samples march along the
+/// strand in strides that cannot reach a contact: O(n) for n points of a strand in the
+/// open, O(n^2) at worst.
 class SelfContact final : public Effect {
  public:
   /// Throws InputError unless `separation` is finite and exceeds the law's reach: a

@@ -160,7 +160,87 @@ TEST(StageDamping, BeginsAnewWhereTheGuessLeadsNowhere) {
   const Solved standstill = solved(cubic, 1, 3, 0);  // from q = 1, 1, -2
   EXPECT_EQ(standstill.status, Status::ok);
   EXPECT_NEAR(standstill.q, root, 1e-9);
-  EXPECT_EQ(solved(cubic, 1, -1, 0).status, Status::retry);  // from q = 1, 1, 2
+  const ScalarData square{none, none, [](double q) { return q * q + 1; },
+                          [](double q) { return 2 * q; }};
+  EXPECT_EQ(solved(square, 1, -1, 0).status, Status::retry);
+}
+
+double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
+double sigmoid_slope(double x) { return sigmoid(x) * (1 - sigmoid(x)); }
+
+// a = F(q) with F = -12 that rises by 3 at q = 2 and by 3 more at 7.5: from 14, where the
+// drift ends, and from 0, where it begins, Newton's method meets a minimum of |a - F|
+// before the one solution, which is q = 5. As a step of a part s grows from s = 0, q
+// passes 2 where s^2 F' is still small, and never comes near 7.5.
+TEST(StageContinuation, FollowsTheMotionFromWhereTheStepBegins) {
+  constexpr double width = 0.2;
+  const ScalarData steep{
+      [](double) { return 1.0; }, none,
+      [](double q) {
+        return -12 + 3 * sigmoid((q - 2) / width) + 3 * sigmoid((q - 7.5) / width);
+      },
+      [](double q) {
+        return 3 / width *
+               (sigmoid_slope((q - 2) / width) + sigmoid_slope((q - 7.5) / width));
+      }};
+  const Solved result = solved(steep, 14, 14, 0);
+  EXPECT_EQ(result.status, Status::ok);
+  EXPECT_NEAR(result.q, 5, 1e-4);  // what the rises leave there
+}
+
+// ---- where the force jumps ---------------------------------------------------------
+
+/// r = a - f(q) of two coordinates; f is (1, y^2) below the parabola x = y^2/10 and
+/// (-2, y^2 - 1) above it.
+class Jump final : public System {
+ public:
+  static double height(In q) { return q[0] - q[1] * q[1] / 10; }
+  Layout layout() const override { return {2, 0}; }
+  Traits traits() const override { return {false, false}; }
+  void initial_state(Out q, Out v) const override { q[0] = q[1] = v[0] = v[1] = 0; }
+  void scale(Out q_typ, Out v_typ) const override {
+    std::ranges::fill(q_typ, 1.0);
+    std::ranges::fill(v_typ, 1.0);
+  }
+  Status residual(double, In q, In, In a, Out r) noexcept override {
+    const bool above = height(q) > 0;
+    r[0] = a[0] - (above ? -2 : 1);
+    r[1] = a[1] - q[1] * q[1] + (above ? 1 : 0);
+    return Status::ok;
+  }
+  Status linearize(double, In q, In, In, Weights w) noexcept override {
+    s_ = w.acc - 2 * w.pos * q[1];
+    acc_ = w.acc;
+    return Status::ok;
+  }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0] / acc_;
+    x[1] = b[1] / s_;
+    return Status::ok;
+  }
+
+ private:
+  double s_ = 1, acc_ = 1;
+};
+
+// From q_bar = (0.5, 0.1) neither force leads to its own side of the parabola: the
+// solution lies on it, under a mean of both.
+TEST(StageJump, IsSolvedByAMeanOfBothForces) {
+  Jump system;
+  const Options options;
+  Dynamics dynamics(system, options);
+  Stage stage(dynamics, options);
+  const std::vector<double> q_bar{0.5, 0.1}, v_bar{0, 0};
+  std::vector<double> a{0, 0}, lambda;
+  const double length = 0.5;
+  ASSERT_EQ(stage.solve(0, q_bar, v_bar, {1, length, length * length}, a, lambda),
+            Status::ok);
+  EXPECT_NEAR(Jump::height(stage.q()), 0, 1e-9);
+  const double share = (1 - a[0]) / 3;  // of the force above
+  EXPECT_GT(share, 0);
+  EXPECT_LT(share, 1);
+  const double y = stage.q()[1];
+  EXPECT_NEAR(a[1], y * y - share, 1e-9 / (length * length));
 }
 
 // One Newton step from a = 0 is force / (inertia + h^2 inertia' a_matrix).

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/stage.h"
+#include "integrators/vector_ops.h"
+
+namespace tress {
+namespace {
+
+// Damped steps are shorter, so there may be more of them; a step this much shorter than
+// Newton's gets nowhere.
+constexpr int damped_patience = 3;
+constexpr double shortest = 1e-4;
+
+// Of a step lengthened bit by bit: where it begins, and when it gets nowhere.
+constexpr double first_part = 0.1, shortest_part = 1e-3, least_growth = 1.05;
+
+}  // namespace
+
+Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
+                     InOut lambda) noexcept {
+  place(q_bar, v_bar, w, a);
+  for (int i = 0; i < damped_patience * iterations_; ++i) {
+    double size = 0;
+    Status s = newton_step(t, w, a, lambda, a_step_, lambda_step_, size);
+    if (s != Status::ok) return s;
+    s = halve_until_smaller(t, q_bar, v_bar, w, size, a, lambda);
+    const bool rounding = s == Status::retry && size <= stage_stagnation * tolerance_;
+    if (size <= tolerance_ || rounding) return Status::ok;
+    if (s != Status::ok) return s;
+  }
+  return Status::retry;
+}
+
+/// Takes the step a_step_, lambda_step_ or as much of it as makes the correction of the
+/// kept matrix smaller than `size`, that of the step itself.
+Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
+                                  InOut a, InOut lambda) noexcept {
+  std::ranges::copy(a, a_kept_.begin());
+  std::ranges::copy(lambda, lambda_kept_.begin());
+  for (double part = 1; part >= shortest; part /= 2) {
+    shifted(a, a_kept_, -part, a_step_);
+    shifted(lambda, lambda_kept_, -part, lambda_step_);
+    place(q_bar, v_bar, w, a);
+    if (size <= tolerance_) return Status::ok;
+    Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
+    if (s == Status::ok) s = dynamics_.solve(r_, c_);
+    if (s == Status::fatal) return s;
+    if (s == Status::ok && size_of(r_, w) <= (1 - part / 4) * size) return s;
+  }
+  return Status::retry;
+}
+
+/// The equations of a part of the step, s of its length, have v = v_bar + s w.vel a and
+///     q = q_bar - left v_bar + s^2 w.pos a,
+/// where `left` is 0 with the drift of the whole step, and (1 - s) w.pos/w.vel with its
+/// own, so that it starts where the whole one does.
+Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, InOut a,
+                         InOut lambda) noexcept {
+  std::ranges::fill(a, 0.0);
+  double before = 0, part = 0, growth = first_part;
+  while (part < 1) {
+    const double next = std::min(1.0, part == 0 ? growth : part * growth);
+    std::ranges::copy(a, a_part_.begin());
+    std::ranges::copy(lambda, lambda_part_.begin());
+    double left = 0;
+    if (drift == Drift::whole) {
+      for (double& entry : a) entry *= (part / next) * (part / next);  // the same place
+    } else {
+      left = (1 - next) * w.pos / w.vel;
+      const double further = before > 0 ? (next - part) / (part - before) : 0;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const double gained = part * a[i];
+        a[i] = (gained + further * (gained - before * a_before_[i])) / next;
+      }
+    }
+    shifted(q_start_, q_bar, -left, v_bar);
+    const Status s = damped(t - left, q_start_, v_bar,
+                            {w.acc, next * w.vel, next * next * w.pos}, a, lambda);
+    if (s == Status::fatal) return s;
+    if (s == Status::ok) {
+      growth = part == 0 ? 2 : std::min(2.0, growth * growth);
+      before = part;
+      part = next;
+      a_before_.swap(a_part_);
+      continue;
+    }
+    std::ranges::copy(a_part_, a.begin());
+    std::ranges::copy(lambda_part_, lambda.begin());
+    growth = part == 0 ? growth / 4 : std::sqrt(growth);
+    if (growth < (part == 0 ? shortest_part : least_growth)) return Status::retry;
+  }
+  return Status::ok;
+}
+
+}  // namespace tress
