@@ -59,7 +59,7 @@ void World::advance(Body& body, double t, bool last) {
   Integrator& method = *body.integrator;
   body.keep(t_, method.q(), method.v());
   body.status = method.advance(t, body.observer());
-  while (again && body.status != Status::ok && !body.breached() &&
+  while (again && body.status != Status::ok && !body.breached() && !body.gave_up &&
          body.shortened++ < most_shortened) {
     const double end = body.t + span / count;
     body.status = shorter_steps(body, end < t - 1e-6 * span / count ? end : t);

@@ -146,6 +146,14 @@ void CoupledStrands::add_contacts(Weights w) noexcept {
 }
 
 Status CoupledStrands::linearize(double t, In q, In v, In a, Weights w) noexcept {
+  uncoupled_ = w.vel == 0 && w.pos == 0;
+  if (uncoupled_) {
+    factored_ = Status::ok;
+    for (std::size_t k = 0; k < strands() && factored_ == Status::ok; ++k) {
+      factored_ = strands_[k]->linearize(t, part(q, k), part(v, k), part(a, k), w);
+    }
+    return factored_;
+  }
   matrix_->clear();
   for (std::size_t k = 0; k < strands(); ++k) {
     const Status s = strands_[k]->sparse_form()->values(t, part(q, k), part(v, k),
@@ -162,6 +170,13 @@ Status CoupledStrands::linearize(double t, In q, In v, In a, Weights w) noexcept
 
 Status CoupledStrands::solve(In b, Out x) noexcept {
   if (factored_ != Status::ok) return factored_;
+  if (uncoupled_) {
+    for (std::size_t k = 0; k < strands(); ++k) {
+      const Status s = strands_[k]->solve(part(b, k), part(x, k));
+      if (s != Status::ok) return s;
+    }
+    return Status::ok;
+  }
   std::ranges::copy(b, x.begin());
   return solver_->solve(x);
 }

@@ -20,7 +20,8 @@ namespace tress {
 /// state of now and exactly opposite, so linear momentum is kept; drag acts
 /// across the gap, not along it, and angular momentum goes with it. The tangent has the
 /// strands' own on its diagonal and the contacts' between strands, and is factored sparse
-/// by KLU. Its pattern follows the pairs of segments that may touch: accept() says true
+/// by KLU; the mass alone (w.vel = w.pos = 0) couples no strands, and each solves its
+/// own. The pattern follows the pairs of segments that may touch: accept() says true
 /// where they have changed, since the factors are gone; there is no SparseForm, whose
 /// pattern would be fixed. Contacts of points that move more than an eighth of the law's
 /// reach within one step may be missed in that step; before a start from any other than
@@ -91,6 +92,7 @@ class CoupledStrands final : public System, private Energetics, private Material
   std::unique_ptr<BlockMatrix> matrix_;  // a block per strand, then the coupling
   std::unique_ptr<LinearSolver> solver_;
   Status factored_ = Status::retry;
+  bool uncoupled_ = false;  // factored: each strand's own mass
 };
 
 }  // namespace tress

@@ -105,6 +105,24 @@ TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
   EXPECT_EQ(world.positions(), other.positions());
 }
 
+/// Turned from one moment to the next, these springs by their filtered tangent have no
+/// step that Newton's iteration solves, however short.
+TEST(World, AStepThatShorterOnesDoNotHelpEndsTheRun) {
+  const Scene scene = parse_scene(
+      "title = \"hinges\"\n[model]\nid = \"mass_spring\"\nbending = \"angular\"\n"
+      "tangent = \"filtered\"\n"
+      "[integrator]\nid = \"generalized_alpha\"\ndt_s = 3e-4\n[material]\n"
+      "name = \"hair.african\"\nradius_m = 2e-5\nyoungs_modulus_pa = 2e7\n[[strand]]\n"
+      "tangent = [0.1, 0.1, 0.5]\nlength_m = 0.015\nelements = 9\n"
+      "[root]\nmotion = \"rotate\"\nfrequency_hz = 17\nangle_rad = 0.4\ncentre_m = "
+      "[-0.05, 0, 0]\n",
+      "hinges.toml");
+  World world(scene);
+  ASSERT_NE(world.advance(0.01), Status::ok);
+  EXPECT_THAT(world.failure(), testing::HasSubstr("nor for 64 in its place"));
+  EXPECT_EQ(world.stats().rejected, 6);
+}
+
 #ifndef __SANITIZE_ADDRESS__  // it has an allocator and an address space of its own
 /// As under `ulimit -v`: these strands need more than a gigabyte.
 TEST(World, TooManyStrandsForTheMemoryAreRefusedWithTheFigure) {

@@ -63,7 +63,7 @@ TEST_P(Coupled, TangentIsTheDerivativeOfTheResidual) {
   for (auto* typ : {&c.states.q_typ, &c.states.v_typ, &c.states.a_typ}) {
     for (double& size : *typ) size *= 1e-3;
   }
-  for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01},
+  for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}, Weights{1, 0, 0},
                           Weights{1, 0.05, 0}, Weights{400, 20, 1}}) {
     EXPECT_LE(tangent_error(c.system, c.system, c.states, w), tangent_tolerance)
         << w.acc << " " << w.vel << " " << w.pos;
