@@ -7,6 +7,7 @@
 
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "integrators/linear/finite.h"
 #include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
@@ -83,7 +84,7 @@ class GslOdeiv2 final : public Integrator {
       ++dynamics_.stats.steps;
       stuck = t_ - before < too_small ? stuck + 1 : 0;
       if (stuck > most_tiny_steps) return fail("stuck: steps below 1e-12 of the run");
-      if (!(h_ > 0) || !std::isfinite(y_[0])) return fail("state not finite");
+      if (!(h_ > 0) || !all_finite(y_)) return fail("state not finite");
       if (projection_ && projection_->project(t_, q_part(), v_part()) != Status::ok) {
         return fail("projection onto the constraints failed");
       }

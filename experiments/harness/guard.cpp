@@ -43,8 +43,18 @@ std::string Breach::message() const {
   return fmt::format("{} at t = {:.9g} s{}{}", what, t, where.empty() ? "" : ", ", where);
 }
 
-std::string remedy(std::string_view integrator, const Options& options) {
-  if (find_integrator(integrator).adaptive) {
+std::string remedy(std::string_view integrator, const Options& options,
+                   std::string_view failure) {
+  const bool adaptive = find_integrator(integrator).adaptive;
+  if (failure.find("max_steps") != failure.npos) {
+    return (adaptive
+                ? fmt::format("try a larger tolerance than rtol = {:g}, a method for "
+                              "stiff systems such as ida",
+                              options.rtol)
+                : fmt::format("try a longer step than {:g} s", options.step)) +
+           fmt::format(", or more than max_steps = {}", options.max_steps);
+  }
+  if (adaptive) {
     return fmt::format("try a smaller tolerance than rtol = {:g}", options.rtol);
   }
   std::string words = fmt::format("try a step of {:.3g} s", options.step / 4);

@@ -113,18 +113,18 @@ void World::Body::keep(double at, In new_q, In new_v) {
 }
 
 std::string World::failure_of(const Body& body) const {
-  const std::string to_try = remedy(integrator_, options_);
   if (body.breached()) {
     return fmt::format("{}: {}; guard = false lets it go on",
-                       body.guard->breach()->message(), to_try);
+                       body.guard->breach()->message(), remedy(integrator_, options_));
   }
+  const std::string why = body.integrator->failure();
   const std::size_t last = body.first + body.coordinates.size() - 1;
   return fmt::format(
       "strand {}{}: {}{}: {}", body.first,
-      last > body.first ? fmt::format(" to {}", last) : "", body.integrator->failure(),
+      last > body.first ? fmt::format(" to {}", last) : "", why,
       body.gave_up ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
                    : "",
-      to_try);
+      remedy(integrator_, options_, why));
 }
 
 Stats World::stats() const {

@@ -1,34 +1,39 @@
-#include <sys/wait.h>
-
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "experiments/harness/exit_code.h"
 #include "experiments/harness/files.h"
+#include "tests/fuzz/limited_run.h"
 #include "tests/fuzz/random_scene.h"
 
 // extreme_scenes COUNT SEED SIMULATE: runs random legal scenes by the program SIMULATE
 // until COUNT of them were not refused, and judges what it wrote of those that it calls
-// ok, from the tables alone. Every scene has 10 s. Ends with 1 on a crash and on a scene
-// that ends ok with what physics rules out; their files stay in extreme_scenes/.
+// ok, from the tables alone. A scene that has used 10 s of processor time is stopped by
+// SIGINT; one that does not end within a second of it hangs. Ends with 1 on a crash, on a
+// hang, on a scene that ends ok with what physics rules out, whose files stay in
+// extreme_scenes/, and where more than one in fifty is stopped.
 
 namespace {
 
+using tress::testing_support::LimitedRun;
 using tress::testing_support::random_scene;
 using tress::testing_support::RandomScene;
+using tress::testing_support::run_limited;
 
-constexpr int seconds = 10;
+constexpr double limit = 10;       // s of processor time
 constexpr double thermal = 4e-21;  // J, kT at room temperature: less is no motion
 const std::filesystem::path folder = "extreme_scenes";
 
@@ -69,7 +74,11 @@ std::string nonsense(const RandomScene& scene, const std::string& stem) {
   for (const double stretch : series.at("stretch_rel")) {
     if (!(stretch <= 0.5)) return "stretched by " + std::to_string(stretch);
   }
-  const double begin = kinetic.front() + series.at("elastic_j").front();
+  double begin = kinetic.front() + series.at("elastic_j").front();
+  // A body that a strand begins inside pushes it out.
+  if (const auto body = series.find("body_j"); body != series.end()) {
+    begin += body->second.front();
+  }
   if (scene.passive) {
     if (most > scene.weight_work + 0.1 * begin + thermal) {
       return "energy rises by " + std::to_string(most) +
@@ -77,7 +86,7 @@ std::string nonsense(const RandomScene& scene, const std::string& stem) {
     }
   }
   const double energy =
-      (2 * scene.weight_work + 1.1 * begin) / scene.lightest + scene.worked;
+      (2 * scene.weight_work + 1.1 * begin + thermal) / scene.lightest + scene.worked;
   const double u = std::sqrt(2 * energy) + scene.pushed;
   const double bound = std::sqrt(30.0) * u + scene.carried;
   const auto page = nlohmann::json::parse(tress::read_file(stem + ".json"));
@@ -90,37 +99,71 @@ std::string nonsense(const RandomScene& scene, const std::string& stem) {
   return {};
 }
 
+const char* word_of(const LimitedRun& run) {
+  if (run.hung) return "hang";
+  switch (run.code) {
+    case tress::done:
+      return "ok";
+    case tress::rows_failed:
+      return "stated failure";
+    case tress::usage_error:
+      return "refused";
+    case tress::interrupted:
+      return run.stopped ? "stopped" : "crash";
+    default:
+      return "crash";
+  }
+}
+
+void tidy(const std::string& stem) {
+  if (std::getenv("EXTREME_SCENES_KEEP") != nullptr) return;
+  for (const char* ending :
+       {".toml", ".out", ".err", ".csv", ".json", ".meta.json", ".frames", ".state"}) {
+    std::filesystem::remove(stem + ending);
+  }
+}
+
 /// One scene; its outcome in a word.
 std::string outcome(std::uint64_t seed, const std::string& simulate) {
   const RandomScene scene = random_scene(seed);
   const std::string stem = (folder / std::to_string(seed)).string();
   std::ofstream(stem + ".toml") << scene.text;
-  const std::string command = "timeout -k 5 " + std::to_string(seconds) + " " + simulate +
-                              " " + stem + ".toml --progress none --out " +
-                              folder.string() + " >" + stem + ".out 2>" + stem + ".err";
-  const int status = std::system(command.c_str());
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 255;
-  std::string word = code == 0                    ? "ok"
-                     : code == 3                  ? "stated failure"
-                     : code == 2                  ? "refused"
-                     : code == 124 || code == 137 ? "out of time"
-                                                  : "crash";
-  std::string why;
+  const LimitedRun run = run_limited(
+      {simulate, stem + ".toml", "--progress", "none", "--out", folder.string()}, stem,
+      limit);
+  std::string word = word_of(run), why;
   if (word == "ok") why = nonsense(scene, stem);
   if (!why.empty()) word = "silent failure";
-  if (word == "crash" || word == "silent failure") {
-    std::printf("%s: seed %llu, %s %s\n", word.c_str(),
-                static_cast<unsigned long long>(seed), why.c_str(), stem.c_str());
+  const bool finding = word == "crash" || word == "hang" || word == "silent failure";
+  if (finding || word == "stopped") {
+    std::printf("%s: seed %llu %s\n", word.c_str(), static_cast<unsigned long long>(seed),
+                why.c_str());
     std::fflush(stdout);
-    return word;
   }
-  if (std::getenv("EXTREME_SCENES_KEEP") == nullptr) {
-    for (const char* ending :
-         {".toml", ".out", ".err", ".csv", ".json", ".meta.json", ".frames", ".state"}) {
-      std::filesystem::remove(stem + ending);
-    }
-  }
+  if (!finding) tidy(stem);
   return word;
+}
+
+/// How often each outcome was met until `count` scenes were not refused.
+std::map<std::string, long> outcomes(long count, std::uint64_t seed,
+                                     const std::string& simulate) {
+  std::map<std::string, long> met;
+  std::mutex mutex;
+  std::atomic<std::uint64_t> next = seed << 20;
+  std::atomic<long> legal = 0;
+  std::vector<std::jthread> threads(std::max(1u, std::thread::hardware_concurrency()));
+  for (std::jthread& thread : threads) {
+    thread = std::jthread([&] {
+      while (legal < count) {
+        const std::string word = outcome(next++, simulate);
+        if (word != "refused") ++legal;
+        const std::lock_guard lock(mutex);
+        ++met[word];
+      }
+    });
+  }
+  threads.clear();
+  return met;
 }
 
 }  // namespace
@@ -132,26 +175,15 @@ int main(int argc, char** argv) {
   }
   try {
     std::filesystem::create_directories(folder);
-    const long count = std::atol(argv[1]);
-    std::uint64_t seed = std::strtoull(argv[2], nullptr, 10) << 20;
-    std::map<std::string, long> outcomes;
-    const unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
-    for (long legal = 0; legal < count;) {
-      std::vector<std::future<std::string>> running;
-      for (unsigned job = 0; job < jobs; ++job) {
-        running.push_back(
-            std::async(std::launch::async, outcome, seed++, std::string(argv[3])));
-      }
-      for (auto& one : running) {
-        const std::string word = one.get();
-        ++outcomes[word];
-        if (word != "refused") ++legal;
-      }
-    }
-    for (const auto& [word, times] : outcomes) {
+    auto met = outcomes(std::atol(argv[1]), std::strtoull(argv[2], nullptr, 10), argv[3]);
+    long legal = 0;
+    for (const auto& [word, times] : met) {
       std::printf("%6ld %s\n", times, word.c_str());
+      if (word != "refused") legal += times;
     }
-    return outcomes["crash"] + outcomes["silent failure"] > 0 ? 1 : 0;
+    std::printf("%6ld legal\n", legal);
+    const long found = met["crash"] + met["hang"] + met["silent failure"];
+    return found > 0 || met["stopped"] > 1 + legal / 50 ? 1 : 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "extreme_scenes: %s\n", error.what());
     return 1;

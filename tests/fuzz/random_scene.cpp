@@ -43,15 +43,36 @@ constexpr double earth = 9.81;  // m/s^2
 // J/m of [effects.strand_interaction] as it is: K P^2/2 of each of six strands.
 constexpr double contact_energy = 6 * 2e-4 * 3e-3 * 3e-3 / 2;
 
+constexpr double affordable = 5;  // s of processor time for a scene
+// No scene is cut to fewer: of a fixed step, and in each frame of an adaptive one.
+constexpr int least_steps = 50, least_steps_of_frame = 20, most_steps_of_frame = 3000;
+
+/// s of processor time, roughly, from the times of some hundred such scenes.
+double seconds_per_step(const IntegratorEntry& entry, int elements, bool monolithic) {
+  constexpr std::string_view explicit_ones[] = {
+      "explicit_euler", "symplectic_euler", "velocity_verlet", "rk4",
+      "xpbd",           "gsl_rkf45",        "gsl_rk8pd",       "gsl_msadams",
+      "arkode_erk",     "cvode_adams"};
+  const bool explicit_one =
+      std::ranges::find(explicit_ones, entry.id) != std::ranges::end(explicit_ones);
+  const double n = elements, pairs = monolithic ? n * n : 0;
+  // Each of its columns takes a difference of the acceleration.
+  if (entry.id == "gsl_bsimp") return 13e-6 * n * n * (1 + n / 50);
+  if (explicit_one) return 10e-6 * n + 1e-6 * pairs;
+  return 100e-6 * n * (1 + n / 50) + 30e-6 * pairs;
+}
+
 class Writer {
  public:
   explicit Writer(std::uint64_t seed) : draw_(seed) {}
 
   RandomScene write() {
     model();
-    integrator();
+    method_ = &draw_.of(integrators());
+    frames_ = draw_.whole(5, 40);
     material();
     strands();
+    integrator();
     root();
     effects();
     if (weight_) gravity_ = earth;
@@ -91,27 +112,6 @@ class Writer {
                    text_.find("\"inextensible\"") != std::string::npos;
   }
 
-  void integrator() {
-    const IntegratorEntry& entry = draw_.of(integrators());
-    line("[integrator]\nid = \"{}\"", entry.id);
-    if (constrained_) {
-      std::vector<Formulation> usable;
-      for (const Formulation one : entry.formulations) {
-        if (one != Formulation::parametric) usable.push_back(one);
-      }
-      if (!usable.empty()) line("formulation = \"{}\"", name(draw_.of(usable)));
-    }
-    frames_ = draw_.whole(5, 40);
-    if (entry.adaptive) {
-      line("rtol = {:.3g}\nmax_steps = 3000", draw_.spread(1e-8, 1e-2));
-      duration_ = draw_.spread(1e-3, 0.1);
-    } else {
-      const double step = draw_.spread(1e-6, 0.05);
-      line("dt_s = {:.3g}", step);
-      duration_ = std::min(step * draw_.whole(20, 200), 2.0);
-    }
-  }
-
   void material() {
     constexpr std::string_view names[] = {"hair.caucasian", "hair.asian", "hair.african"};
     line("[material]\nname = \"{}\"", draw_.of(names));
@@ -125,10 +125,25 @@ class Writer {
          draw_.chance(0.5) ? 0 : draw_.spread(1e-13, 1e-8));
   }
 
+  /// So many of each strand, or as many fewer as leave it the least steps.
+  int affordable_elements(int wanted, int strands) const {
+    const int least = method_->adaptive ? least_steps_of_frame * frames_ : least_steps;
+    while (wanted > 1 &&
+           least * seconds_per_step(*method_, strands * wanted, monolithic_) >
+               affordable) {
+      --wanted;
+    }
+    return wanted;
+  }
+
   void strands() {
     const int count = draw_.chance(0.75) ? 1 : draw_.whole(2, 6);
+    touching_ = count > 1 && draw_.chance(0.5);
+    monolithic_ = touching_ && draw_.chance(0.3);
     length_ = draw_.spread(0.005, 2);
-    const int elements = draw_.chance(0.1) ? draw_.whole(41, 120) : draw_.whole(1, 40);
+    const int wanted = draw_.chance(0.1) ? draw_.whole(41, 120) : draw_.whole(1, 40);
+    const int elements = affordable_elements(wanted, count);
+    elements_ = count * elements;
     std::string shape =
         fmt::format("length_m = {:.17g}\nelements = {}\n", length_, elements);
     if (draw_.chance(0.2))
@@ -158,10 +173,31 @@ class Writer {
           "[[strand]]\nposition_m = [0, {:.17g}, 0]\ntangent = [{:.3g}, 0.1, {:.3g}]\n{}",
           k * draw_.spread(1e-4, 0.01), along, up, shape);
     }
-    several_ = count > 1;
     scene_.lightest = density_ * std::numbers::pi * radius_ * radius_ * length_;
     scene_.mass = count * scene_.lightest;
     total_ = count * length_;
+  }
+
+  /// No more steps than the scene can afford.
+  void integrator() {
+    line("[integrator]\nid = \"{}\"", method_->id);
+    if (constrained_) {
+      std::vector<Formulation> usable;
+      for (const Formulation one : method_->formulations) {
+        if (one != Formulation::parametric) usable.push_back(one);
+      }
+      if (!usable.empty()) line("formulation = \"{}\"", name(draw_.of(usable)));
+    }
+    const double most = affordable / seconds_per_step(*method_, elements_, monolithic_);
+    if (method_->adaptive) {
+      line("rtol = {:.3g}\nmax_steps = {}", draw_.spread(1e-8, 1e-2),
+           static_cast<int>(std::min<double>(most_steps_of_frame, most / frames_)));
+      duration_ = draw_.spread(1e-3, 0.1);
+    } else {
+      const double step = draw_.spread(1e-6, 0.05);
+      line("dt_s = {:.3g}", step);
+      duration_ = std::min(step * std::min<double>(draw_.whole(20, 200), most), 2.0);
+    }
   }
 
   /// The root carries the strand's frame; `f` is its acceleration, `spin` and `turn` its
@@ -266,10 +302,9 @@ class Writer {
            draw_.uniform(0, 1));
       if (!scene_.passive) scene_.pushed += 10 * scene_.carried;
     }
-    if (several_ && draw_.chance(0.5)) {
+    if (touching_) {
       line("[effects.strand_interaction]\ncoupling = \"{}\"",
-           draw_.chance(0.3) ? "monolithic" : "lagged");
-      touching_ = true;
+           monolithic_ ? "monolithic" : "lagged");
     }
   }
 
@@ -278,8 +313,9 @@ class Writer {
   std::string text_;
   double duration_ = 1, radius_ = 0, density_ = 0, length_ = 0, total_ = 0, gravity_ = 0,
          force_ = 0;
-  int frames_ = 10;
-  bool constrained_ = false, several_ = false, weight_ = false, touching_ = false;
+  const IntegratorEntry* method_ = nullptr;
+  int frames_ = 0, elements_ = 0;  // elements of all strands
+  bool constrained_ = false, weight_ = false, touching_ = false, monolithic_ = false;
 };
 
 }  // namespace

@@ -53,6 +53,16 @@ TEST(Guard, EndsAPassiveSceneThatGainsEnergy) {
   EXPECT_TRUE(says(why, "try a step of 0.0011 s")) << why;
 }
 
+TEST(Guard, AdvisesAgainstTooManySteps) {
+  const std::string tight = "1e-3\nmax_steps = 5";
+  const std::string adaptive = ending(scene({"der", "gsl_rkf45", tight, ""}));
+  EXPECT_TRUE(says(adaptive, "max_steps steps needed at t = ")) << adaptive;
+  EXPECT_TRUE(says(adaptive, "try a larger tolerance than rtol = 1e-06")) << adaptive;
+  EXPECT_TRUE(says(adaptive, "or more than max_steps = 5")) << adaptive;
+  const std::string fixed = ending(scene({"der", "backward_euler", tight, ""}));
+  EXPECT_TRUE(says(fixed, "try a longer step than 0.001 s")) << fixed;
+}
+
 TEST(Guard, IsSwitchedOffByTheScene) {
   Said watched = gaining;
   watched.top = "guard = false\n";
