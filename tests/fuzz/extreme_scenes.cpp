@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -132,7 +132,11 @@ std::string outcome(std::uint64_t seed, const std::string& simulate) {
       {simulate, stem + ".toml", "--progress", "none", "--out", folder.string()}, stem,
       limit);
   std::string word = word_of(run), why;
-  if (word == "ok") why = nonsense(scene, stem);
+  try {
+    if (word == "ok") why = nonsense(scene, stem);
+  } catch (const std::exception& error) {
+    why = std::string("its tables cannot be read: ") + error.what();
+  }
   if (!why.empty()) word = "silent failure";
   const bool finding = word == "crash" || word == "hang" || word == "silent failure";
   if (finding || word == "stopped") {
@@ -144,25 +148,36 @@ std::string outcome(std::uint64_t seed, const std::string& simulate) {
   return word;
 }
 
-/// How often each outcome was met until `count` scenes were not refused.
+/// How often each outcome was met, from this seed on until `count` scenes were not
+/// refused: no scene is begun that those under way may make one too many, so the scenes
+/// are the same however many run at once.
 std::map<std::string, long> outcomes(long count, std::uint64_t seed,
                                      const std::string& simulate) {
   std::map<std::string, long> met;
   std::mutex mutex;
-  std::atomic<std::uint64_t> next = seed << 20;
-  std::atomic<long> legal = 0;
-  std::vector<std::jthread> threads(std::max(1u, std::thread::hardware_concurrency()));
-  for (std::jthread& thread : threads) {
-    thread = std::jthread([&] {
-      while (legal < count) {
-        const std::string word = outcome(next++, simulate);
-        if (word != "refused") ++legal;
-        const std::lock_guard lock(mutex);
-        ++met[word];
-      }
-    });
+  std::condition_variable ended;
+  std::uint64_t next = seed << 20;
+  long legal = 0, running = 0;
+  const auto work = [&] {
+    std::unique_lock lock(mutex);
+    while (true) {
+      ended.wait(lock, [&] { return legal == count || legal + running < count; });
+      if (legal == count) return;
+      ++running;
+      const std::uint64_t mine = next++;
+      lock.unlock();
+      const std::string word = outcome(mine, simulate);
+      lock.lock();
+      --running;
+      ++met[word];
+      if (word != "refused") ++legal;
+      ended.notify_all();
+    }
+  };
+  {
+    std::vector<std::jthread> threads(std::max(1u, std::thread::hardware_concurrency()));
+    for (std::jthread& thread : threads) thread = std::jthread(work);
   }
-  threads.clear();
   return met;
 }
 
