@@ -288,7 +288,6 @@ int main(int argc, char** argv) {
           "which internal friction and air drag does a measured oscillation tell?",
       .example = "--set data=measured.csv --set length_m=0.15 --set fit=gamma",
       .timed = false,
-      .quick_timeout_s = 60,
       .columns = columns,
       .settings = settings_of_rows,
       .unused = unused,

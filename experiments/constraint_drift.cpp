@@ -170,7 +170,6 @@ int main(int argc, char** argv) {
       .question = "how far do constraints drift, and what does stopping the drift cost?",
       .example = "--integrators rk4,rattle --set step=5e-4",
       .timed = false,
-      .quick_timeout_s = 2,
       .columns = columns,
       .unused = unused,
       .cases = cases,

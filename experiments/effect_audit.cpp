@@ -224,7 +224,6 @@ int main(int argc, char** argv) {
       .name = "effect_audit",
       .question = "which effects of a scene change the result, and what does each cost?",
       .example = "--set scenes=scenes/head_shaking.toml --set accuracy=0.01",
-      .quick_timeout_s = 60,
       .columns = columns,
       .settings = own_settings,
       .unused = unused,

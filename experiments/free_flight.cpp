@@ -32,6 +32,7 @@ constexpr Column columns[] = {
 
 constexpr double t_end = 0.5;        // s: three quarters of a turn
 constexpr double energy_bound = 10;  // times the start's: diverged
+constexpr double most_work = 6e7;    // of a row
 
 Parameters thrown(const Settings& settings, const ModelEntry& model, int elements) {
   Parameters p = settings.parameters(model);
@@ -97,6 +98,7 @@ std::vector<Case> cases(const CommandLine& line) {
       for (const IntegratorEntry& entry : integrators()) {
         if (!shown(entry, line)) continue;
         Options options = settings.options();
+        if (!line.full && options.max_work == 0) options.max_work = most_work;
         const auto formulations = usable_formulations(entry, *system);
         if (formulations.empty()) continue;
         options.formulation = formulations.front();

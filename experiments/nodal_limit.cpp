@@ -44,8 +44,8 @@ constexpr Parameter settings_of_rows[] = {
      .min = 0},
     {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
     {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-7, .min = 1e-12},
-    {.name = "row_s",
-     .help = "time to search for one row (s), 0: 60, with --quick 1",
+    {.name = "row_work",
+     .help = "work of the search for one row (max_work), 0: 1e9, with --quick 1.5e8",
      .number = 0,
      .min = 0},
 };
@@ -72,7 +72,8 @@ struct Work {
   int elements;
   Parameters parameters;
   Options options;
-  double t_end, claim_time, search_time;  // s
+  double t_end;  // s
+  double claim_work, search_work;
   StepSearch search;
 };
 
@@ -103,16 +104,14 @@ State start_of(const Method& method, System& system) {
   return start;
 }
 
-void measure(const Work& work, const Deadline& deadline, Row& row) {
+void measure(const Work& work, Row& row) {
   const StrandScene& scene = find_strand_scene("release");
   const auto system = find_model(model).make(work.parameters);
   const StabilityBounds bounds = stability_bounds(scene, work.parameters, *system);
   const State start = start_of(work.method, *system);
-  Options options = work.options;
-  const auto judge = [&](double dt, const Deadline& own) {
-    options.step = dt;
-    return judge_run(work.method.integrator, *system, options, start, work.t_end, bounds,
-                     [&] { return own.passed() || deadline.passed(); });
+  const auto runs = [&](double most_work) {
+    return StabilityRuns(work.method.integrator, *system, work.options, start, work.t_end,
+                         bounds, most_work);
   };
   row.set("t_end_s", work.t_end).set("energy_bound_j", bounds.energy);
   if (const auto limit = stability_limit(work.method.integrator, 0)) {
@@ -122,16 +121,16 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
   }
   // Newton's steps with dense tangents are not the claim's, and 1e5 of them too many.
   if (work.method.kind != Method::newton) {
-    if (const auto run = judge(claimed_step, Deadline(work.claim_time))) {
+    if (const auto run = runs(work.claim_work).judge(claimed_step)) {
       row.set("at_claim", name(run->broken)).set("t_claim_s", run->t);
       row.set("energy_gain_claim_j", run->energy_gain);
     }
   }
 
-  const Deadline own(work.search_time);
+  StabilityRuns tried = runs(work.search_work);
   const StepLimit limit =
       find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {
-        const auto run = judge(dt, own);
+        const auto run = tried.judge(dt);
         if (!run) return {};
         return run->broken;
       });
@@ -140,7 +139,7 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
   if (!std::isnan(limit.unstable)) row.set("limited_by", name(limit.limited_by));
   if (limit.stable >= work.search.coarsest) row.set("limited_by", "cap");
   if (!limit.resolved && !limit.complete) {
-    row.failed("gave_up", "the time for the row was over before the limit was found");
+    row.failed("gave_up", "the work of a row was used up before the limit was found");
   } else if (std::isnan(limit.stable)) {
     row.failed("unstable", "no stable step down to " + std::to_string(limit.finest) +
                                " s: " + std::string(name(limit.limited_by)));
@@ -179,14 +178,13 @@ std::vector<Case> cases(const CommandLine& line) {
                       p,
                       settings.options(),
                       chosen("t_end_s", t_end),
-                      line.quick ? 8.0 : 120,
-                      chosen("row_s", line.quick ? 1 : 60),
+                      line.quick ? 1.5e8 : 1e9,
+                      chosen("row_work", line.quick ? 1.5e8 : 1e9),
                       {.coarsest = rows.number("cap_s"),
                        .finest = rows.number("floor_s"),
                        .depth = 1}};
-      all.push_back({identity, [work](Row& row, const Deadline& deadline) {
-                       measure(work, deadline, row);
-                     }});
+      all.push_back(
+          {identity, [work](Row& row, const Deadline&) { measure(work, row); }});
     }
   }
   return all;

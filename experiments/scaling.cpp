@@ -87,8 +87,7 @@ double step_cost(System& system, const Moving& from, double time_s, int repeat) 
 
 /// The largest stable step of the release, searched with the recursion: all solvers
 /// solve the same equations (stability_limit shows it).
-StepLimit largest_step(const ScalingCase& c, const Parameters& parameters,
-                       const Deadline& deadline) {
+StepLimit largest_step(const ScalingCase& c, const Parameters& parameters) {
   Parameters cheapest = parameters;
   set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
   const auto system = c.model->make(cheapest);
@@ -97,10 +96,11 @@ StepLimit largest_step(const ScalingCase& c, const Parameters& parameters,
       c.structure == straight
           ? stability_bounds(find_strand_scene("release"), cheapest, *system)
           : release_bounds(*system, start, t_end);
+  constexpr double most_work = 1e9;
+  StabilityRuns tried("semi_implicit_euler", *system, step_of(frame, *system), start,
+                      t_end, bounds, most_work);
   return find_step_limit({.coarsest = frame}, [&](double dt) -> std::optional<Broken> {
-    const auto run =
-        judge_run("semi_implicit_euler", *system, step_of(dt, *system), start, t_end,
-                  bounds, [&deadline] { return deadline.passed(); });
+    const auto run = tried.judge(dt);
     return run ? std::optional(run->broken) : std::nullopt;
   });
 }
@@ -112,7 +112,7 @@ struct Work {
   int repeat;
 };
 
-void measure(const Work& work, const Deadline& deadline, Row& row) {
+void measure(const Work& work, Row& row) {
   const ScalingCase& c = work.which;
   const auto system = c.model->make(work.parameters);
   row.set("unknowns", system->layout().coordinates);
@@ -122,9 +122,9 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
   if (const auto seed = c.seed_fps()) row.set("seed_fps", *seed);
   if (!c.in_seed_table()) return;
 
-  const StepLimit limit = largest_step(c, work.parameters, deadline);
+  const StepLimit limit = largest_step(c, work.parameters);
   if (!limit.resolved) {
-    row.failed("gave_up", "no largest stable step was found in time");
+    row.failed("gave_up", "no largest stable step was found in the work of a row");
     return;
   }
   const double steps = std::ceil(frame / limit.stable - 1e-9);
@@ -138,9 +138,8 @@ std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
   for (const ScalingCase& c : scaling_cases(line, settings)) {
     const Work work{c, c.parameters(settings), time_s, line.repeat};
-    all.push_back({c.identity(), [work](Row& row, const Deadline& deadline) {
-                     measure(work, deadline, row);
-                   }});
+    all.push_back(
+        {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
   }
   return all;
 }

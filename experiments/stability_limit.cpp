@@ -30,7 +30,7 @@ constexpr Column columns[] = {
     {"limited_by", "what broke there; cap: no larger step was tried"},
     {"stable_above_s", "largest stable step above it: stability is not monotone"},
     {"dt_finest_s", "smallest step tested"},
-    {"search_done", "false: time was over before smaller steps were all tested"},
+    {"search_done", "false: the work was used up before smaller steps were all tested"},
     {"runs", "steps tested"},
     {"t_end_s", "time simulated by a run, at least"},
     {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
@@ -43,9 +43,9 @@ constexpr Column columns[] = {
     {"realtime_factor", "simulated over wall time at dt_max", true},
 };
 
-double row_time(const CommandLine& line, const Parameters& rows) {
-  if (rows.number("row_s") > 0) return rows.number("row_s");
-  return line.quick ? 1 : line.full ? 20 : 5;
+double row_work(const CommandLine& line, const Parameters& rows) {
+  if (rows.number("row_work") > 0) return rows.number("row_work");
+  return line.quick ? 4e6 : line.full ? 1e8 : 2e7;
 }
 
 StepSearch step_search(const Parameters& rows, const StrandScene& scene) {
@@ -73,11 +73,11 @@ struct Work {
   Parameters parameters;
   Options options;
   StepSearch search;
-  double time_s;  // for the search
+  double most_work;  // of the search
   int repeat;
 };
 
-void measure(const Work& work, const Deadline& deadline, Row& row) {
+void measure(const Work& work, Row& row) {
   const StabilityCase& c = work.which;
   const auto system = c.model->make(work.parameters);
   const StabilityBounds bounds = stability_bounds(*c.scene, work.parameters, *system);
@@ -85,17 +85,15 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
   row.set("t_end_s", c.scene->t_end);
   row.set("energy_bound_j", bounds.energy).set("speed_bound_m_s", bounds.speed);
 
-  const Deadline own(work.time_s);
-  const GiveUp late = [&] { return own.passed() || deadline.passed(); };
   Options options = work.options;
   options.formulation =
       usable_formulations(find_integrator(c.integrator), *system).front();
+  StabilityRuns tried(c.integrator, *system, options, start, c.scene->t_end, bounds,
+                      work.most_work);
   std::map<double, StabilityRun> runs;
   const StepLimit limit =
       find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {
-        options.step = dt;
-        auto run = judge_run(c.integrator, *system, options, start, c.scene->t_end,
-                             bounds, late);
+        const auto run = tried.judge(dt);
         if (!run) return {};
         return (runs[dt] = *run).broken;
       });
@@ -116,7 +114,7 @@ void measure(const Work& work, const Deadline& deadline, Row& row) {
     row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
   }
   if (!limit.complete && !limit.resolved) {
-    row.failed("gave_up", "the time for the row was over before the limit was found");
+    row.failed("gave_up", "the work of a row was used up before the limit was found");
   } else if (std::isnan(limit.stable)) {
     const StabilityRun& run = runs.at(limit.unstable);
     row.failed("unstable", "no stable step down to " + std::to_string(limit.finest) +
@@ -134,11 +132,10 @@ std::vector<Case> cases(const CommandLine& line) {
                     c.parameters(settings),
                     settings.options(),
                     step_search(rows, *c.scene),
-                    row_time(line, rows),
+                    row_work(line, rows),
                     line.repeat};
-    all.push_back({c.identity(), [work](Row& row, const Deadline& deadline) {
-                     measure(work, deadline, row);
-                   }});
+    all.push_back(
+        {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
   }
   return all;
 }

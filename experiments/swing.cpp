@@ -92,7 +92,9 @@ void measure(const SwingCase& c, const Parameters& parameters,
              const TipReference& reference, int repeat, Row& row) {
   const auto system = c.model->make(parameters);
   const double t_end = find_strand_scene("swing").t_end;
-  const TipRun run = run_tip(c.integrator, *system, c.options, t_end, samples, repeat);
+  Guard guard(*system, guarded_strands(*c.model, parameters));
+  const TipRun run =
+      run_tip(c.integrator, *system, c.options, t_end, samples, repeat, &guard);
   const Stats& stats = run.stats;
   row.set("steps", stats.steps).set("rejected", stats.rejected);
   row.set("residuals", stats.residuals).set("linearizations", stats.linearizations);

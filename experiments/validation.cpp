@@ -30,7 +30,6 @@ int main(int argc, char** argv) {
       .question = "is the physics right: what do published tests of rods say?",
       .example = "--models der,super_helix --set tests=cantilever",
       .timed = false,
-      .quick_timeout_s = 20,
       .columns = validation_columns(),
       .settings = validation_settings(),
       .unused = unused,

@@ -51,6 +51,8 @@ constexpr Column columns[] = {
      "no other run of the scene and kind of error is both faster and more accurate"},
 };
 
+constexpr double quick_work = 4e7;  // of a run
+
 struct Work {
   const Problem& problem;
   std::string_view integrator;
@@ -142,6 +144,7 @@ std::vector<Case> cases(const CommandLine& line) {
           for (int level = 0; level < points; ++level) {
             Work work{problem, entry.id, solver, base, line.repeat};
             work.options.formulation = formulation;
+            if (line.quick && base.max_work == 0) work.options.max_work = quick_work;
             if (entry.adaptive) {
               work.options.rtol = work.options.atol = std::pow(10, -3 - level);
             } else {
@@ -244,7 +247,6 @@ int main(int argc, char** argv) {
       .name = "work_precision",
       .question = "what does accuracy cost in time, per integrator?",
       .example = "--models beam --integrators cvode_bdf,arkode_dirk",
-      .quick_timeout_s = 2,
       .columns = columns,
       .unused = unused,
       .cases = cases,

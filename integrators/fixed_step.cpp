@@ -89,6 +89,10 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
     ++dynamics_.stats.steps;
     dynamics_.forget();
     if (each_step && !each_step(t_, q_, v_)) return end(Status::fatal, t_, "stopped");
+    if (options_.max_work > 0 && t_ < t_end &&
+        total_work(dynamics_.stats, dynamics_.n()) >= options_.max_work) {
+      return end(Status::fatal, t_, "max_work used up");
+    }
   }
   return Status::ok;
 }

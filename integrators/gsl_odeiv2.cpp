@@ -76,6 +76,10 @@ class GslOdeiv2 final : public Integrator {
     int stuck = 0;
     while (t_ < t_end) {
       if (dynamics_.stats.steps >= limit) return fail("more than max_steps steps needed");
+      if (options_.max_work > 0 &&
+          total_work(dynamics_.stats, dynamics_.n()) >= options_.max_work) {
+        return end("max_work used up");
+      }
       if (options_.max_step > 0) h_ = std::min(h_, options_.max_step);
       const double before = t_;
       const int code = gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &ode_,

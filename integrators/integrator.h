@@ -45,6 +45,7 @@ struct Options {
   double atol = 1e-8;           // adaptive methods, times System::scale
   double max_step = 0;          // s, 0: unlimited
   long max_steps = 10'000'000;  // per advance; beyond it the run fails
+  double max_work = 0;          // since start(), as total_work() counts it; 0: unlimited
 
   int max_order = 0;  // multistep order or Runge-Kutta order; 0: the method's default
   std::string table;  // arkode_dirk: a SUNDIALS Butcher table by name; empty: our default
@@ -83,6 +84,15 @@ struct Stats {
   int rank_deficiency = 0;           // redundant constraints met and solved around
   double condition = 0;              // largest condition estimate met, 0: not estimated
 };
+
+/// What a run has cost, in a measure that depends on no clock: every residual, matrix,
+/// solve, sweep and step of n coordinates counts n + 10. A million takes
+/// 0.01 to 0.4 s, and some 3 s where the tangent is dense.
+inline double total_work(const Stats& done, int coordinates) {
+  const long calls =
+      done.residuals + done.linearizations + done.solves + done.sweeps + done.steps;
+  return static_cast<double>(calls) * (coordinates + 10.0);
+}
 
 /// Sees every accepted step; returning false stops the run (Status::fatal, "stopped").
 using Observer = std::function<bool(double t, In q, In v)>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -40,20 +41,23 @@ TipRun run_of(const Hair& hair, std::string_view model, int elements, double dt)
   return run_tip(integrator, *system, options_at(dt), t_end, samples);
 }
 
-/// The least work, elements times Newton iterations: a count, so that the choice is the
-/// same on every machine.
+TipRun watched_run_of(const Hair& hair, std::string_view model, int elements, double dt) {
+  const auto system = make_system(hair, model, elements);
+  Guard guard = make_guard(hair, model, elements, *system);
+  return run_tip(integrator, *system, options_at(dt), t_end, samples, 0, &guard);
+}
+
 std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In limit) {
-  return cheapest_run(
-      {target, ladder, coarsest, finest},
-      [&](int elements, double dt) -> std::optional<CheapRun> {
-        const TipRun run = run_of(hair, model, elements, dt);
-        if (run.status != Status::ok) return {};
-        const double error = tip_error(run.tip, limit, hair.length);
-        if (!std::isfinite(error)) return {};
-        const double work = elements * static_cast<double>(run.stats.newton_iterations);
-        return CheapRun{elements, dt, error, work};
-      },
-      [] { return false; });
+  return cheapest_run({target, ladder, coarsest, finest},
+                      [&](int elements, double dt) -> CheapRun {
+                        const TipRun run = watched_run_of(hair, model, elements, dt);
+                        const double error =
+                            run.status == Status::ok
+                                ? tip_error(run.tip, limit, hair.length)
+                                : std::numeric_limits<double>::infinity();
+                        return {elements, dt, error, total_work(run.stats, run.unknowns)};
+                      })
+      .run;
 }
 
 /// Both models in turn, so that what else the machine does meets both; the median ratio.

@@ -164,13 +164,26 @@ Parameters parameters_of(const Hair& hair, std::string_view model, int elements)
   return p;
 }
 
+namespace {
+
+Effects effects_of(const Hair& hair, const Parameters& p) {
+  Effects effects = strand_effects(p);
+  if (hair.drive == Drive::wind) effects.push_back(make_wind(wind_of(hair), {}));
+  return effects;
+}
+
+}  // namespace
+
 std::unique_ptr<System> make_system(const Hair& hair, std::string_view model,
                                     int elements, std::string_view modes) {
   Parameters p = parameters_of(hair, model, elements);
   set_known(p, {{"modes", modes}});
-  Effects effects = strand_effects(p);
-  if (hair.drive == Drive::wind) effects.push_back(make_wind(wind_of(hair), {}));
-  return find_model(model).on_strand(strand(p), p, std::move(effects));
+  return find_model(model).on_strand(strand(p), p, effects_of(hair, p));
+}
+
+Guard make_guard(const Hair& hair, std::string_view model, int elements, System& system) {
+  const Parameters p = parameters_of(hair, model, elements);
+  return {system, {guarded_strand(strand(p), effects_of(hair, p))}};
 }
 
 }  // namespace tress::family

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/harness/guard.h"
 #include "experiments/harness/row.h"
 #include "models/parameters.h"
 #include "models/system.h"
@@ -61,6 +62,8 @@ Parameters parameters_of(const Hair& hair, std::string_view model, int elements)
 /// know the word (super_helix, articulated_chain): "bend_twist" or "bend".
 std::unique_ptr<System> make_system(const Hair& hair, std::string_view model,
                                     int elements, std::string_view modes = "bend_twist");
+/// What watches that system; its hair is whole, with bending and twist.
+Guard make_guard(const Hair& hair, std::string_view model, int elements, System& system);
 
 /// Peak of the wind (m/s) at this level.
 double wind_speed(const Hair& hair);

@@ -1,5 +1,6 @@
 #include "experiments/harness/cheapest_run.h"
 
+#include <cmath>
 #include <limits>
 
 namespace tress {
@@ -10,34 +11,31 @@ constexpr double little_gain = 0.8;
 // Errors this many times the target need not fall with the step yet: all is damped away.
 constexpr double far = 10;
 
-// One run beside others takes up to twice its time: what looks dearer may not be.
-constexpr double noise = 2;
-
 }  // namespace
 
-std::optional<CheapRun> cheapest_run(
-    const CheapSearch& search,
-    const std::function<std::optional<CheapRun>(int elements, double dt)>& run,
-    const std::function<bool()>& stop) {
+Cheapest cheapest_run(const CheapSearch& search,
+                      const std::function<CheapRun(int elements, double dt)>& run) {
   std::optional<CheapRun> best;
+  double spent = 0;
   for (const int elements : search.elements) {
     double last = std::numeric_limits<double>::infinity();
     for (double dt = search.coarsest; dt >= search.finest; dt /= 2) {
-      if (stop()) return best;
-      const auto found = run(elements, dt);
-      if (!found) continue;  // too long a step
-      if (found->error <= search.target) {
-        if (!best || found->wall_s < best->wall_s) best = found;
+      if (spent >= search.most_work) return {best, false};
+      const CheapRun found = run(elements, dt);
+      spent += found.work;
+      if (!std::isfinite(found.error)) continue;  // too long a step
+      if (found.error <= search.target) {
+        if (!best || found.work < best->work) best = found;
         break;
       }
-      const bool too_dear = best && found->wall_s > noise * best->wall_s;
+      const bool too_dear = best && found.work > best->work;
       const bool of_space =
-          found->error > little_gain * last && found->error < far * search.target;
+          found.error > little_gain * last && found.error < far * search.target;
       if (too_dear || of_space) break;
-      last = found->error;
+      last = found.error;
     }
   }
-  return best;
+  return {best, true};
 }
 
 }  // namespace tress

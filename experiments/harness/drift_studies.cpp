@@ -38,6 +38,8 @@ std::vector<Scene> scenes(const Settings& user) {
           scene("truss", "tinkertoys", user, {{"structure", "truss"}, {"size", "1"}})};
 }
 
+constexpr double quick_work = 2e7;  // of a run
+
 // Baumgarte's gains for the table: a slow and a fast critically damped pair.
 constexpr double feedback_rates[] = {10, 100};  // omega, 1/s
 
@@ -66,7 +68,9 @@ void add_formulations(const CommandLine& line, const Settings& user,
         study.options.formulation = formulation;
         // IDA drags itself along when its multipliers are in the error test; enough steps
         // to see by how much, then the row says so.
-        study.options.max_steps = std::min(base.max_steps, 200'000L);
+        study.options.max_steps =
+            std::min(base.max_steps, line.quick ? 20'000L : 200'000L);
+        if (line.quick && base.max_work == 0) study.options.max_work = quick_work;
         const auto add_steps = [&] {
           for (const double value : entry.adaptive ? tolerances : steps) {
             (entry.adaptive ? study.options.rtol : study.options.step) = value;

@@ -55,7 +55,10 @@ struct Experiment {
   /// False: no time in the table is what is asked for first, and as many rows run at once
   /// as the machine has processors unless --jobs says otherwise. True: one at a time.
   bool timed = true;
-  double quick_timeout_s = 5;  // a row with --quick has, unless --timeout says otherwise
+  /// s, of a row with --quick, unless --timeout says otherwise: for hangs only, since no
+  /// result may depend on what else the machine does. Work bounds a row
+  /// (Options::max_work).
+  double quick_timeout_s = 60;
   std::span<const Column> columns;  // status, reason and run_id are added to them
   std::span<const Parameter> settings =
       {};                                   // keys of --set that are the experiment's own
@@ -65,8 +68,7 @@ struct Experiment {
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
   /// Optional: states what the table must show; a claim that is broken makes the exit
-  /// code
-  /// 3. Neither is called on a single shard.
+  /// code 3. Neither is called on a single shard.
   std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
   /// Optional: kept in the manifest, where the report page reads it.
   std::function<std::vector<Gloss>()> glossary = {};

@@ -277,6 +277,16 @@ void Guard::recall(In memory) {
   breach_.reset();
 }
 
+void conclude(Guard& guard, std::string_view integrator, const Options& options,
+              Simulation& run) {
+  if (run.status == Status::ok && !guard.judge(run.t, run.state.q, run.state.v)) {
+    run.status = Status::fatal;
+  }
+  if (guard.breach()) {
+    run.failure = guard.breach()->message() + ": " + remedy(integrator, options);
+  }
+}
+
 Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
                             const Options& options, const State& start, double t_end,
                             const Observer& each_step) {
@@ -286,12 +296,7 @@ Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& s
       simulate(integrator, system, options, start, t_end, [&](double t, In q, In v) {
         return guard(t, q, v) && (!each_step || each_step(t, q, v));
       });
-  if (run.status == Status::ok && !guard.judge(run.t, run.state.q, run.state.v)) {
-    run.status = Status::fatal;
-  }
-  if (guard.breach()) {
-    run.failure = guard.breach()->message() + ": " + remedy(integrator, options);
-  }
+  conclude(guard, integrator, options, run);
   return run;
 }
 

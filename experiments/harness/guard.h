@@ -114,6 +114,10 @@ class Guard {
   std::optional<Breach> breach_;
 };
 
+/// After a run that `guard` has watched: judges its end; a breach is its failure.
+void conclude(Guard& guard, std::string_view integrator, const Options& options,
+              Simulation& run);
+
 /// simulate(), watched; a breach is its failure.
 Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
                             const Options& options, const State& start, double t_end,

@@ -96,6 +96,13 @@ const Field fields[] = {
       .max = most_counted,
       .whole = true},
      max_steps},
+    {{.name = "max_work",
+      .help = "evaluations, solves and steps, times coordinates + 10, until a run counts "
+              "as failed, 0: unlimited",
+      .number = 0,
+      .min = 0,
+      .max = largest},
+     real<&Options::max_work>},
     {{.name = "max_order",
       .help = "order of multistep or Runge-Kutta methods, 0: default",
       .number = 0,

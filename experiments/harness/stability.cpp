@@ -124,19 +124,28 @@ StabilityRun StabilityJudge::verdict(const Simulation& run) const {
 
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
-                                      double t_end, const StabilityBounds& bounds,
-                                      const GiveUp& give_up) {
+                                      double t_end, const StabilityBounds& bounds) {
   // 1e-9: a whole number of steps up to rounding is not run one step longer.
   const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
   StabilityJudge judge(system, bounds, start);
-  bool given_up = false;
-  const Simulation run = simulate(integrator, system, options, start,
-                                  steps * options.step, [&](double t, In q, In v) {
-                                    given_up = give_up && give_up();
-                                    return !given_up && judge(t, q, v);
-                                  });
-  if (given_up) return {};
-  return judge.verdict(run);
+  const Simulation run =
+      simulate(integrator, system, options, start, steps * options.step,
+               [&judge](double t, In q, In v) { return judge(t, q, v); });
+  StabilityRun verdict = judge.verdict(run);
+  const bool used_up =
+      options.max_work > 0 &&
+      total_work(run.stats, system.layout().coordinates) >= options.max_work;
+  if (used_up && verdict.broken == Broken::no_solution) return {};
+  return verdict;
+}
+
+std::optional<StabilityRun> StabilityRuns::judge(double dt) {
+  if (left_ <= 0) return {};
+  options_.step = dt;
+  options_.max_work = left_;
+  auto run = judge_run(integrator_, system_, options_, start_, t_end_, bounds_);
+  left_ -= run ? total_work(run->stats, system_.layout().coordinates) : left_;
+  return run;
 }
 
 StepLimit find_step_limit(const StepSearch& search,

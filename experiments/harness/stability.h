@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/harness/simulation.h"
@@ -61,16 +62,40 @@ class StabilityJudge {
   StabilityRun run_;
 };
 
-/// True ends the work: a budget is used up.
-using GiveUp = std::function<bool()>;
-
 /// Steps of exactly `options.step` until `t_end` is reached or passed, so that what is
 /// judged is the step asked for, not one that divides t_end; ends where a bound breaks.
-/// Empty when given up. Throws as StabilityJudge.
+/// Empty when Options::max_work is used up before. Throws as StabilityJudge.
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
-                                      double t_end, const StabilityBounds& bounds,
-                                      const GiveUp& give_up = {});
+                                      double t_end, const StabilityBounds& bounds);
+
+/// The runs of one search, which together may take so much work (total_work()): a row's
+/// result then depends on no clock.
+class StabilityRuns {
+ public:
+  StabilityRuns(std::string_view integrator, System& system, const Options& options,
+                State start, double t_end, const StabilityBounds& bounds,
+                double most_work)
+      : integrator_(integrator),
+        system_(system),
+        options_(options),
+        start_(std::move(start)),
+        t_end_(t_end),
+        bounds_(bounds),
+        left_(most_work) {}
+
+  /// judge_run() of this step (s); empty when the work is used up.
+  std::optional<StabilityRun> judge(double dt);
+
+ private:
+  std::string_view integrator_;
+  System& system_;
+  Options options_;
+  State start_;
+  double t_end_;
+  StabilityBounds bounds_;
+  double left_;
+};
 
 /// How the largest stable step is looked for.
 struct StepSearch {
@@ -97,7 +122,7 @@ struct StepLimit {
 
 /// Scans from coarse to fine. At the first stable step it bisects (geometrically) between
 /// `stable` and `unstable`, then goes on down to the depth, where the next unstable step
-/// begins anew. `judge` is empty when it gave up.
+/// begins anew. An empty answer of `judge` ends the search.
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge);
 

@@ -38,8 +38,9 @@ constexpr Parameter settings_of_rows[] = {
      .help = "bisect until unstable over stable step is this",
      .number = 1.05,
      .min = 1.0001},
-    {.name = "row_s",
-     .help = "time to search for one row (s), 0: 5, with --quick 1, with --full 20",
+    {.name = "row_work",
+     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 4e6, "
+             "with --full 1e8",
      .number = 0,
      .min = 0},
 };

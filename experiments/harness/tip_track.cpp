@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/harness/simulation.h"
+#include "experiments/harness/method_run.h"
 #include "experiments/harness/timing.h"
 #include "integrators/catalogue.h"
 
@@ -57,7 +57,7 @@ void TipSamples::interpolate(const End& now) {
 }
 
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
-               double t_end, int samples, int repeat) {
+               double t_end, int samples, int repeat, Guard* guard) {
   // Of all adaptive methods here SUNDIALS' let steps grow the most, tenfold.
   constexpr double even = 1.5, uneven = 15;
   const auto method = make_integrator(integrator, system, options);
@@ -65,19 +65,21 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   TipSamples seen(system, t_end, samples,
                   find_integrator(integrator).adaptive ? uneven : even);
   const auto run = [&](const Observer& observer) {
-    system.reset();
-    const Status s = method->start(0, start.q, start.v);
-    return s == Status::ok ? method->advance(t_end, observer) : s;
+    return run_method(*method, system, start, {&t_end, 1}, {}, observer);
   };
   system.reset();
   seen.start(start.q, start.v);
-  const Status status = run([&seen](double t, In q, In v) {
+  if (guard != nullptr) guard->start(0, start.q, start.v);
+  Simulation first = run([&](double t, In q, In v) {
+    if (guard != nullptr && !(*guard)(t, q, v)) return false;
     seen.step_to(t, q, v);
     return true;
   });
-  const bool timed = repeat > 0 && status == Status::ok;
+  if (guard != nullptr) conclude(*guard, integrator, options, first);
+  const bool timed = repeat > 0 && first.status == Status::ok;
   const double wall = timed ? time_run(repeat, [&] { static_cast<void>(run({})); }) : 0;
-  return {status, method->failure(), method->stats(), wall, std::move(seen.tips)};
+  return {first.status, first.failure,        first.stats,
+          wall,         std::move(seen.tips), system.layout().coordinates};
 }
 
 double tip_error(In tip, In reference, double length) {

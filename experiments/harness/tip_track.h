@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/harness/guard.h"
 #include "integrators/integrator.h"
 #include "models/math/vec3.h"
 
@@ -49,12 +50,14 @@ struct TipRun {
   Stats stats;
   double wall_s;            // of stepping: setting up and reading the tip are not in it
   std::vector<double> tip;  // (3 samples) m; fewer when the run failed
+  int unknowns;             // coordinates
 };
 
 /// Runs to t_end; the tip is sampled as TipSamples says. repeat = 0, or a failure: one
-/// run, not timed; else the median, as time_run.
+/// run, not timed; else the median, as time_run. `guard` watches the first run, not those
+/// that are timed; what it finds is the run's failure.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
-               double t_end, int samples, int repeat = 0);
+               double t_end, int samples, int repeat = 0, Guard* guard = nullptr);
 
 /// Root mean square distance over the samples, over `length`; infinite when a sample is
 /// missing or not finite.

@@ -83,6 +83,10 @@ Status Driver::advance(double t_end, const Observer& each_step) {
       return fail("max_steps = " + std::to_string(options_.max_steps) +
                   " used up before " + text(t_end) + " s");
     }
+    if (options_.max_work > 0 &&
+        total_work(stats(), dynamics().n()) >= options_.max_work) {
+      return fail("max_work used up");
+    }
     std::ranges::copy(y_.values(), last_.begin());
     double reached = time_;
     const int code = step(t_end, reached);

@@ -115,6 +115,7 @@ TEST(IntegratorOptions, EveryDeclaredKeyReachesItsField) {
   apply(o, "formulation", "index2_ggl", "x");
   apply(o, "max_steps", "50", "x");
   apply(o, "max_step", "0.5", "x");
+  apply(o, "max_work", "1e7", "x");
   EXPECT_EQ(o.alpha, 100);
   EXPECT_EQ(o.beta, 20);
   EXPECT_EQ(o.step, 0.01);
@@ -133,6 +134,7 @@ TEST(IntegratorOptions, EveryDeclaredKeyReachesItsField) {
   EXPECT_EQ(o.formulation, Formulation::index2_ggl);
   EXPECT_EQ(o.max_steps, 50);
   EXPECT_EQ(o.max_step, 0.5);
+  EXPECT_EQ(o.max_work, 1e7);
 }
 
 TEST(IntegratorOptions, DeclaredDefaultsAreThoseOfOptions) {
@@ -150,6 +152,7 @@ TEST(IntegratorOptions, DeclaredDefaultsAreThoseOfOptions) {
     EXPECT_EQ(o.atol, original.atol) << p.name;
     EXPECT_EQ(o.rho_inf, original.rho_inf) << p.name;
     EXPECT_EQ(o.max_steps, original.max_steps) << p.name;
+    EXPECT_EQ(o.max_work, original.max_work) << p.name;
     EXPECT_EQ(o.newton_iterations, original.newton_iterations) << p.name;
     EXPECT_EQ(o.newton_tolerance, original.newton_tolerance) << p.name;
     EXPECT_EQ(o.multiplier_atol, original.multiplier_atol) << p.name;

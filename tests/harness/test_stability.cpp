@@ -210,12 +210,25 @@ TEST(StabilityJudge, RefusesASystemThatCannotBeJudged) {
                InputError);
 }
 
-TEST(StabilityJudge, GivesUpWhenTold) {
+// A step of rk4 on the spring's one coordinate: four accelerations, their solves as the
+// system has them, and the step itself.
+TEST(StabilityJudge, GivesNoVerdictOnceTheWorkIsUsedUp) {
   Spring spring({});
-  int steps = 0;
-  EXPECT_FALSE(judge_run("rk4", spring, step_of(0.1), initial_state(spring), 100, {},
-                         [&steps] { return ++steps > 10; }));
-  EXPECT_EQ(steps, 11);
+  const State start = initial_state(spring);
+  Options options = step_of(0.1);
+  const auto whole = judge_run("rk4", spring, options, start, 100, {});
+  ASSERT_TRUE(whole && whole->stable());
+  const double work = total_work(whole->stats, 1);
+  EXPECT_GE(work, 1000 * (4 + 1) * 11);
+  options.max_work = 0.5 * work;
+  EXPECT_FALSE(judge_run("rk4", spring, options, start, 100, {}));
+  options.max_work = 2 * work;
+  EXPECT_TRUE(judge_run("rk4", spring, options, start, 100, {}));
+
+  StabilityRuns runs("rk4", spring, step_of(0.1), start, 100, {}, 1.5 * work);
+  EXPECT_TRUE(runs.judge(0.1));
+  EXPECT_FALSE(runs.judge(0.1));
+  EXPECT_FALSE(runs.judge(1));
 }
 
 // ---- the search -------------------------------------------------------------------

@@ -121,6 +121,8 @@ export const validation = {
     return {
       width: { step },
       height: { step: 26 },
+      // The slanted name of the last test reaches beyond its column.
+      padding: { left: 4, top: 4, right: 44, bottom: 4 },
       data: { values: rows },
       layer: [
         {

@@ -261,6 +261,17 @@ TEST(DefiniteBand, SolvesDefiniteMatricesInAnyUnits) {
   EXPECT_LE(solver->condition(), n * n);
 }
 
+// [1 c; c 1]: the second pivot is 1 - c^2. What the last digit of c changes of it is the
+// error.
+TEST(DefiniteBand, ConditionIsTheLargestRatioOfADiagonalEntryToItsPivot) {
+  const double c = 1 - 1e-6;
+  const Sparse s = sparse(Eigen::Matrix2d{{1, c}, {c, 1}});
+  const auto solver = make_definite_solver(LinearKind::banded, s.pattern);
+  ASSERT_EQ(solver->factor(s.values), Status::ok);
+  const double expected = 1 / (1 - c * c);
+  EXPECT_NEAR(solver->condition(), expected, 4 * eps * expected * expected);
+}
+
 TEST(DefiniteBand, PivotsWhereAMatrixIsIndefiniteOrUnsymmetric) {
   Random random(4);
   constexpr int n = 30;
@@ -268,9 +279,11 @@ TEST(DefiniteBand, PivotsWhereAMatrixIsIndefiniteOrUnsymmetric) {
   indefinite.diagonal().array() -= 1.7;
   Eigen::MatrixXd unsymmetric = poisson(n);
   unsymmetric(3, 4) += 1e-3;
+  Eigen::MatrixXd hardly = poisson(n);
+  hardly(3, 4) += 1e-9;
   Eigen::MatrixXd lower = Eigen::MatrixXd::Identity(n, n);  // of its pattern too
   lower.diagonal(-1).setConstant(0.5);
-  for (const Eigen::MatrixXd& a : {indefinite, unsymmetric, lower}) {
+  for (const Eigen::MatrixXd& a : {indefinite, unsymmetric, hardly, lower}) {
     const Sparse s = sparse(a);
     const auto solver = make_definite_solver(LinearKind::banded, s.pattern);
     ASSERT_EQ(solver->factor(s.values), Status::ok);

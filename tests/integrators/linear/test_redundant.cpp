@@ -27,6 +27,23 @@ TEST_P(KktRedundant, SolvesDuplicatedConstraintsInLeastSquares) {
   expect_least_squares(p, b, random.vector(15));        // inconsistent
 }
 
+// H has the rows of G in other units, so that null(H^T) is not null(G^T).
+TEST_P(KktRedundant, ConstraintRowsLoseTheirOwnNullSpace) {
+  Random random(16);
+  Problem p = chain(random, 12, 1e-8);
+  MatrixXd g(14, 36);
+  g << p.g, p.g.row(3), -2.5 * p.g.row(7);
+  p.g = g;
+  p.h = Eigen::VectorXd::LinSpaced(14, 0.5, 4).asDiagonal() * g;
+  make(p);
+  ASSERT_EQ(factor(p), Status::ok);
+  EXPECT_EQ(kkt_->report().rank_deficiency, 2);
+  const VectorXd b = 1e-8 * random.vector(36), x = random.vector(36);
+  const VectorXd c = p.h * x;
+  const Solution found = solve(b, c);
+  EXPECT_LE((p.h * found.x - c).norm(), redundant_accuracy * c.norm());
+}
+
 /// Distances between nodes, one gradient a row.
 MatrixXd bars(const MatrixXd& nodes, const std::vector<std::pair<int, int>>& ends) {
   MatrixXd g = MatrixXd::Zero(static_cast<Eigen::Index>(ends.size()), 2 * nodes.cols());
