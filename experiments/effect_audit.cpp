@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -81,8 +82,19 @@ void set_numbers(const Scene& scene, Row& row) {
   row.set("twist_bending", numbers.twist_bending);
 }
 
+/// The refined scene as it is, which all rows of a scene are compared with; empty where it
+/// does not run: each row then says why.
+std::shared_ptr<const TipPaths> refined_whole(const Scene& scene) {
+  try {
+    return std::make_shared<const TipPaths>(tip_paths(refined(scene), 0));
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 struct Work {
   Scene scene;
+  std::shared_ptr<const TipPaths> fine;
   Ingredient ingredient;  // no name: the scene as it is
   double accuracy;
   int repeat;
@@ -125,8 +137,9 @@ void add_alone(const Work& work, Row& row) {
 }
 
 void measure(const Work& work, Row& row) {
-  const Scene &scene = work.scene, fine = refined(scene);
-  const TipPaths whole = tip_paths(scene, work.repeat), whole_fine = tip_paths(fine, 0);
+  const Scene& scene = work.scene;
+  const TipPaths whole = tip_paths(scene, work.repeat);
+  const TipPaths whole_fine = work.fine ? *work.fine : tip_paths(refined(scene), 0);
   const double discretisation = distance_rel(whole, whole_fine, scene);
   row.set("wall_s", whole.wall_s).set("discretisation_rel", discretisation);
   set_numbers(scene, row);
@@ -161,12 +174,13 @@ std::vector<Case> cases(const CommandLine& line) {
     }
     std::vector<Ingredient> parts = ingredients(scene);
     parts.insert(parts.begin(), Ingredient{});
+    const auto fine = line.dry_run ? nullptr : refined_whole(scene);
     for (const Ingredient& part : parts) {
       Row identity;
       identity.set("scene", scene.name);
       identity.set("effect", part.name.empty() ? "none" : part.name);
       identity.set("accuracy_rel", accuracy);
-      const Work work{scene, part, accuracy, line.repeat};
+      const Work work{scene, fine, part, accuracy, line.repeat};
       all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
     }
   }
