@@ -316,5 +316,29 @@ TEST(PlainRecursion, LosesDigitsThatTheJosephFormKeeps) {
   }
 }
 
+// Under less_implicit nothing of a distal segment's stiffness is handed on, so that what
+// the root's first unknown meets, 1/x of a load on it alone, holds the step's square
+// once, in its own stiffness: it is linear in w.pos. Hair whose stiffness outweighs its
+// inertia a thousandfold at the longest step tells that from any other.
+TEST(LessImplicit, HandsOnNoStiffnessOfDistalSegments) {
+  const auto system = StrandCase{
+      "hair",
+      find_model("super_helix").id,
+      {{"modes", "bend_planar"},
+       {"elements", "6"}}}.make({{"tangent", "less_implicit"}});
+  std::vector<double> q = zeros(*system), v = zeros(*system), a = zeros(*system);
+  system->initial_state(q, v);
+  const auto met = [&](double square) {
+    EXPECT_EQ(system->linearize(0, q, v, a, {1, 0, square}), Status::ok);
+    std::vector<double> b = zeros(*system), x = zeros(*system);
+    b[0] = 1;
+    EXPECT_EQ(system->solve(b, x), Status::ok);
+    return 1 / x[0];
+  };
+  const double inertia = met(0), once = met(0.1), twice = met(0.2);
+  EXPECT_GT(once, 1000 * inertia);
+  EXPECT_NEAR(twice - once, once - inertia, 1e-12 * twice);
+}
+
 }  // namespace
 }  // namespace tress
