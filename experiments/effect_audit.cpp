@@ -82,8 +82,8 @@ void set_numbers(const Scene& scene, Row& row) {
   row.set("twist_bending", numbers.twist_bending);
 }
 
-/// The refined scene as it is, which all rows of a scene are compared with; empty where it
-/// does not run: each row then says why.
+/// The refined scene as it is, which all rows of a scene are compared with; empty where
+/// it does not run: each row then says why.
 std::shared_ptr<const TipPaths> refined_whole(const Scene& scene) {
   try {
     return std::make_shared<const TipPaths>(tip_paths(refined(scene), 0));

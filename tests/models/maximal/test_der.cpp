@@ -144,5 +144,27 @@ TEST(Der, HolonomyIsTheAreaAroundWhichTheTangentWent) {
   }
 }
 
+// Friction strong enough to be a large part of every row, at speeds that count.
+TEST(Der, TangentIsExactForCurlsWithFriction) {
+  for (const char* root : {"shake_rotate", "free"}) {
+    for (const char* stretch : {"extensible", "inextensible"}) {
+      const auto system = make_model("der", {{"elements", "6"},
+                                             {"root", root},
+                                             {"stretch", stretch},
+                                             {"natural_curvature_1_m", "40"},
+                                             {"natural_curvature2_1_m", "10"},
+                                             {"natural_twist_1_m", "20"},
+                                             {"ellipticity", "1.3"},
+                                             {"internal_friction_kg_m3_s", "1e-7"}});
+      States s(*system);
+      for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}}) {
+        s.shake(0.05);
+        EXPECT_LE(tangent_error(*system, *system, s, w), tangent_tolerance)
+            << root << ' ' << stretch;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tress
