@@ -1,13 +1,14 @@
 // Spoils one line of the sources at a time and asks the tests: do they notice?
 //
 //   node run.mjs --check             every mutant of mutants.txt still fits its file
-//   node run.mjs [--only PATTERN]    builds a copy of the sources in build/mutants, spoils
-//                                    and tests it; writes results/mutants.csv
+//   node run.mjs [--all] [--only PATTERN]   builds a copy of the sources in build/mutants,
+//                                    spoils and tests it; writes results/mutants.csv
 //
 // A mutant is killed when one of its tests fails, crashes or runs out of time. The tests are
 // run on the unspoilt copy first: a test that fails there kills nothing. What was found is
-// kept in build/mutants/found.json until sources or tests change, so an interrupted run goes
-// on where it was. Exit codes: 0 at least 95 % are killed, 2 a mutant does not fit, 3 too few
+// kept in build/mutants/found.json: a mutant that was killed is asked about again when its
+// file changes or with --all (after tests were taken away), one that survived when anything
+// changes. So an interrupted run goes on where it was. Exit codes: 0 at least 95 % are killed, 2 a mutant does not fit, 3 too few
 // are killed or one does not compile.
 import { execFileSync, spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -59,6 +60,17 @@ function lineOf(file, text, place) {
       'give a line that stands there once');
   }
   return found[0];
+}
+
+const hash_of = (text) => createHash('sha256').update(text).digest('hex');
+
+/// What was found of a mutant, unless what it was found on has changed.
+function still_true(kept, mutant, sources) {
+  if (!kept) return undefined;
+  const same = kept.outcome.startsWith('killed')
+    ? kept.file === hash_of(fs.readFileSync(path.join(root, mutant.file)))
+    : kept.sources === sources;
+  return same ? kept : undefined;
 }
 
 function spoil({ file, line, after }) {
@@ -163,29 +175,40 @@ async function main(args) {
     console.log(`${mutants.length} mutants fit`);
     return 0;
   }
-  if (args.length > 0 && (args.length !== 2 || args[0] !== '--only')) {
-    throw new Misfit(`unknown argument '${args[0]}' (command line): give --only PATTERN or none`);
+  const all = args[0] === '--all';
+  const [option, pattern, ...rest] = all ? args.slice(1) : args;
+  if (rest.length > 0 || (option && (option !== '--only' || !pattern))) {
+    throw new Misfit(`unknown argument '${rest[0] ?? option}' (command line): ` +
+      'give --all, --only PATTERN or none');
   }
-  const chosen = mutants.filter(({ file, after }) => !args[1] ||
-    file.includes(args[1]) || after.includes(args[1]));
+  const chosen = mutants.filter(({ file, after }) => !pattern ||
+    file.includes(pattern) || after.includes(pattern));
   fs.mkdirSync(copy, { recursive: true });
   const sources = copySources();
   const kept = path.join(copy, 'found.json');
-  let found = {};
+  let last = {};
   try {
-    const last = JSON.parse(fs.readFileSync(kept, 'utf8'));
-    if (last.sources === sources) found = last.found;
+    if (!all) last = JSON.parse(fs.readFileSync(kept, 'utf8'));
   } catch { /* the first run */ }
-  const key = ({ file, line, after }) => `${file}:${line}: ${after}`;
+  const key = ({ file, before, after }) => `${file}: ${before} -> ${after}`;
+  const found = {};
+  for (const mutant of mutants) {
+    const before = still_true(last[key(mutant)], mutant, sources);
+    if (before) found[key(mutant)] = before;
+  }
   if (chosen.some((mutant) => !found[key(mutant)])) await prepare(chosen);
   for (const [index, mutant] of chosen.entries()) {
-    found[key(mutant)] ??= await judge(mutant);
-    fs.writeFileSync(kept, JSON.stringify({ sources, found }, null, 1));
+    found[key(mutant)] ??= {
+      outcome: await judge(mutant),
+      file: hash_of(fs.readFileSync(path.join(root, mutant.file))),
+      sources,
+    };
+    fs.writeFileSync(kept, JSON.stringify(found, null, 1));
     console.error(`mutants: ${index + 1}/${chosen.length} ${mutant.file}:${mutant.line} ` +
-      found[key(mutant)]);
+      found[key(mutant)].outcome);
   }
-  const rows = chosen.map((mutant) => ({ ...mutant, outcome: found[key(mutant)] }));
-  if (!args[1]) writeTable(rows);
+  const rows = chosen.map((mutant) => ({ ...mutant, outcome: found[key(mutant)].outcome }));
+  if (!pattern) writeTable(rows);
   const killed = rows.filter(({ outcome }) => outcome.startsWith('killed')).length;
   for (const { file, line, before, after, outcome } of rows) {
     if (!outcome.startsWith('killed')) {
