@@ -56,7 +56,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
-                 "per row: 30s, 10m, 2h (default 10m; with --quick seconds)");
+                 "per row: 30s, 10m, 2h (default 10m; with --quick 1m): for hangs, work "
+                 "bounds a row");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
   app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");

@@ -25,6 +25,8 @@ constexpr double far = 1e-3;         // corrections that change a section's curv
 constexpr double longest = 1.5;      // correction, in typical sizes
 constexpr double largest_ratio = 3;  // of two loads
 constexpr double least_ratio = 1.003;
+// Of all steps of one strand, cubes of the number of unknowns: about half a minute.
+constexpr double most_work = 2e11;
 
 Effects loads(const Vec& gravity, std::shared_ptr<const Effect> tip, Effects others) {
   others.push_back(std::make_shared<Weight>(gravity));
@@ -142,6 +144,8 @@ double Statics::newton_step() {
   const Conditions now = conditions();
   const Index n = now.rows.cols(), m = lambda_.size(), rows = now.rows.rows();
   const Index sections = conditions_->rows() - conditions_->places();
+  work_ += std::pow(static_cast<double>(n + rows), 3);
+  if (work_ > most_work) throw std::runtime_error("it takes more work than it may");
 
   VectorXd right(n + rows);
   right.head(n) = residual(*system_, t_, q_);

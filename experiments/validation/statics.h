@@ -74,6 +74,7 @@ class Statics {
   Eigen::VectorXd lambda_, holding_;
   Eigen::MatrixXd curvature_;  // of the held section, as last taken
   double t_ = 0;
+  double work_ = 0;  // of all steps, (unknowns)^3 each
 };
 
 }  // namespace tress
