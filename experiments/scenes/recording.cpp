@@ -2,8 +2,8 @@
 
 #include <fcntl.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "experiments/harness/csv.h"
@@ -31,7 +31,8 @@ class Bytes {
   bool take(std::vector<T>& x, std::size_t count) {
     if (count > (text_.size() - at_) / sizeof(T)) return false;
     x.resize(count);
-    std::memcpy(x.data(), text_.data() + at_, sizeof(T) * count);
+    // None of no numbers: memcpy would not take the null pointer of an empty vector.
+    std::copy_n(text_.data() + at_, sizeof(T) * count, reinterpret_cast<char*>(x.data()));
     at_ += sizeof(T) * count;
     return true;
   }
