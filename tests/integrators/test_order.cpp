@@ -175,6 +175,29 @@ TEST(Bdf2, ErrorFallsAtOrder2AtUnevenSteps) {
   }
 }
 
+TEST(MaxWork, EndsARunOfEveryMethodWithThatReason) {
+  for (const bool adaptive : {false, true}) {
+    for (const Method& method : methods(adaptive)) {
+      const auto system = bead(method.formulation);
+      Options options;
+      options.formulation = method.formulation;
+      options.max_work = 3000;
+      const auto integrator = make_integrator(method.entry->id, *system, options);
+      const auto n = static_cast<std::size_t>(system->layout().coordinates);
+      std::vector<double> q(n), v(n);
+      system->initial_state(q, v);
+      ASSERT_EQ(integrator->start(0, q, v), Status::ok) << method.name();
+      EXPECT_EQ(integrator->advance(100), Status::fatal) << method.name();
+      EXPECT_NE(integrator->failure().find("max_work"), std::string::npos)
+          << method.name() << ": " << integrator->failure();
+      const int coordinates = system->layout().coordinates;
+      EXPECT_GE(total_work(integrator->stats(), coordinates), options.max_work)
+          << method.name();
+      EXPECT_GT(integrator->time(), 0) << method.name();
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Catalogue, FixedStepOrder, testing::ValuesIn(methods(false)),
                          [](const auto& test) { return test.param.name(); });
 
