@@ -54,6 +54,9 @@ std::string remedy(std::string_view integrator, const Options& options,
                 : fmt::format("try a longer step than {:g} s", options.step)) +
            fmt::format(", or more than max_steps = {}", options.max_steps);
   }
+  if (failure.find("max_work") != failure.npos) {
+    return fmt::format("try more than max_work = {:g}", options.max_work);
+  }
   if (adaptive) {
     return fmt::format("try a smaller tolerance than rtol = {:g}", options.rtol);
   }

@@ -57,10 +57,16 @@ void World::advance(Body& body, double t, bool last) {
   const bool again = !find_integrator(integrator_).adaptive &&
                      count <= static_cast<double>(options_.max_steps);
   Integrator& method = *body.integrator;
+  // Shorter steps would only take more of it.
+  const auto used_up = [&] {
+    return options_.max_work > 0 &&
+           total_work(method.stats(), static_cast<int>(method.q().size())) >=
+               options_.max_work;
+  };
   body.keep(t_, method.q(), method.v());
   body.status = method.advance(t, body.observer());
   while (again && body.status != Status::ok && !body.breached() && !body.gave_up &&
-         body.shortened++ < most_shortened) {
+         !used_up() && body.shortened++ < most_shortened) {
     const double end = body.t + span / count;
     body.status = shorter_steps(body, end < t - 1e-6 * span / count ? end : t);
     if (body.status == Status::ok) body.status = method.advance(t, body.observer());

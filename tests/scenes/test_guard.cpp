@@ -53,6 +53,13 @@ TEST(Guard, EndsAPassiveSceneThatGainsEnergy) {
   EXPECT_TRUE(says(why, "try a step of 0.0011 s")) << why;
 }
 
+TEST(Guard, AdvisesMoreWorkWhereThatIsUsedUp) {
+  Options options;
+  options.max_work = 5e4;
+  EXPECT_EQ(remedy("implicit_midpoint", options, "max_work used up at t = 0.1 s"),
+            "try more than max_work = 50000");
+}
+
 TEST(Guard, AdvisesAgainstTooManySteps) {
   const std::string tight = "1e-3\nmax_steps = 5";
   const std::string adaptive = ending(scene({"der", "gsl_rkf45", tight, ""}));
