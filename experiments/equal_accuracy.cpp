@@ -52,7 +52,7 @@ constexpr double t_end = 0.25, length = 0.1;  // s, m
 constexpr int samples = 5;
 constexpr int ladder[] = {3, 5, 7, 10, 14, 20, 28, 40, 56};
 constexpr double coarsest = 1 / 60.0, finest = 1e-4;  // s
-constexpr double quick_work = 2e7, usual_work = 1e9;  // of a row's search
+constexpr double quick_work = 1e7, usual_work = 1e9;  // of a row's search
 constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "implicit_midpoint",
                                       "generalized_alpha",

@@ -134,7 +134,7 @@ void measure(const Work& work, Row& row) {
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, scaling_settings());
   const double chosen = settings.experiment().number("row_s");
-  const double time_s = chosen > 0 ? chosen : line.quick ? 0.05 : 1;
+  const double time_s = chosen > 0 ? chosen : line.quick ? 0.02 : 1;
   std::vector<Case> all;
   for (const ScalingCase& c : scaling_cases(line, settings)) {
     const Work work{c, c.parameters(settings), time_s, line.repeat};

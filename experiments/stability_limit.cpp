@@ -48,11 +48,14 @@ double row_work(const CommandLine& line, const Parameters& rows) {
   return line.quick ? 4e6 : line.full ? 1e8 : 2e7;
 }
 
-StepSearch step_search(const Parameters& rows, const StrandScene& scene) {
+StepSearch step_search(const CommandLine& line, const Parameters& rows,
+                       const StrandScene& scene) {
+  const double usual_depth = line.quick ? 10 : 30;
+  const double depth = rows.number("depth");
   return {.coarsest = std::min(rows.number("cap_s"), scene.coarsest),
           .finest = rows.number("floor_s"),
           .resolution = rows.number("resolution"),
-          .depth = rows.number("depth")};
+          .depth = depth > 0 ? std::max(depth, 1.0) : usual_depth};
 }
 
 /// Wall time (s) of a step, over at most so many steps that a row does not take long.
@@ -131,7 +134,7 @@ std::vector<Case> cases(const CommandLine& line) {
     const Work work{c,
                     c.parameters(settings),
                     settings.options(),
-                    step_search(rows, *c.scene),
+                    step_search(line, rows, *c.scene),
                     row_work(line, rows),
                     line.repeat};
     all.push_back(

@@ -51,7 +51,7 @@ constexpr Column columns[] = {
      "no other run of the scene and kind of error is both faster and more accurate"},
 };
 
-constexpr double quick_work = 4e7;  // of a run
+constexpr double quick_work = 1e7;  // of a run
 
 struct Work {
   const Problem& problem;
@@ -139,7 +139,7 @@ std::vector<Case> cases(const CommandLine& line) {
           // The finest steps add nothing to a total error.
           const bool total = problem.error_kind == "total";
           const int points = line.full    ? (total ? 8 : 10)
-                             : line.quick ? (total ? 4 : 6)
+                             : line.quick ? (total ? 3 : 6)
                                           : (total ? 5 : 7);
           for (int level = 0; level < points; ++level) {
             Work work{problem, entry.id, solver, base, line.repeat};

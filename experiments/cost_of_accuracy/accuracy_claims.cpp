@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -10,8 +9,6 @@
 
 namespace tress {
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// A comparison with what is not a number must not pass.
 double shown(double value) { return std::isfinite(value) ? value : never; }

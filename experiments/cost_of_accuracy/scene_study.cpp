@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -94,7 +93,6 @@ class SearchProgress {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds between{2};
-  static constexpr double never = std::numeric_limits<double>::infinity();
 
   const Study& study_;
   double target_;

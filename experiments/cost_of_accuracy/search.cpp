@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tress {
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Steps half as long that gain less than a fifth: what is left is not of time.
 constexpr double little_gain = 0.8;

@@ -1,12 +1,9 @@
 #include "experiments/cost_of_accuracy/trial.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tress {
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Of two runs on the front the cheaper stands for both when the other gains less.
 constexpr double front_gain = 0.9;

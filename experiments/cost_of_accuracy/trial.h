@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace tress {
@@ -12,6 +13,9 @@ inline constexpr double neighbour_allowance = 1.5;
 /// The search resolves elements and steps to a tenth: of two runs whose times differ by
 /// less, either could have come out cheaper on a finer grid.
 inline constexpr double resolution = 1.1;
+
+/// The error of what cannot be run, and the time of what never gets there.
+inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// One run that was measured. A method is a model with its options and an integrator,
 /// known here by its number alone.

@@ -29,22 +29,23 @@ constexpr int pairs = 5;  // of timed runs, one of each model in turn
 constexpr int least_finest_elements = 60;
 constexpr double finest_step = 1 / 960.0;  // s
 
-Options options_at(double dt) {
+Options options_at(System& system, double dt) {
   Options options;
   options.step = dt;
+  options.max_work = enough_work(system, t_end, dt);
   options.newton_tolerance = 1e-5;  // of the typical size
   return options;
 }
 
 TipRun run_of(const Hair& hair, std::string_view model, int elements, double dt) {
   const auto system = make_system(hair, model, elements);
-  return run_tip(integrator, *system, options_at(dt), t_end, samples);
+  return run_tip(integrator, *system, options_at(*system, dt), t_end, samples);
 }
 
 TipRun watched_run_of(const Hair& hair, std::string_view model, int elements, double dt) {
   const auto system = make_system(hair, model, elements);
   Guard guard = make_guard(hair, model, elements, *system);
-  return run_tip(integrator, *system, options_at(dt), t_end, samples, 0, &guard);
+  return run_tip(integrator, *system, options_at(*system, dt), t_end, samples, 0, &guard);
 }
 
 std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In limit) {

@@ -1,12 +1,18 @@
 #include "experiments/family/study.h"
 
 #include <array>
+#include <cmath>
 
 namespace tress::family {
 
 std::span<const Study> studies() {
   static const std::array all{stable_steps, twist, bdf_order, equal_accuracy};
   return all;
+}
+
+double enough_work(System& system, double t_end, double dt) {
+  constexpr double calls = 10 * (5 * 3 + 1);  // residual, matrix and solve; and the step
+  return calls * std::ceil(t_end / dt) * (system.layout().coordinates + 10);
 }
 
 Row answer(Row row, const Claim& claim, double value, bool holds) {

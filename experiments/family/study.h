@@ -27,6 +27,10 @@ struct Study {
 
 std::span<const Study> studies();
 
+/// Options::max_work of a run: ten times what Newton's method takes that needs five
+/// iterations in every step. What goes beyond counts as a run without an answer.
+double enough_work(System& system, double t_end, double dt);
+
 /// A row that answers `claim`: its value, and whether the claim holds for this hair.
 Row answer(Row row, const Claim& claim, double value, bool holds);
 

@@ -13,7 +13,7 @@
 namespace tress {
 namespace {
 
-enum State : int { unknown, in_work, known };
+enum Stage : int { unknown, in_work, known };
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 namespace tress {
 namespace {
 
-constexpr const char* remedy = "repair or delete the file; it must be RFC 4180 CSV";
+constexpr const char* repair = "repair or delete the file; it must be RFC 4180 CSV";
 
 class Reader {
  public:
@@ -36,7 +36,7 @@ class Reader {
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw InputError(problem, fmt::format("{}:{}:{}", file_, line_, column_), remedy);
+    throw InputError(problem, fmt::format("{}:{}:{}", file_, line_, column_), repair);
   }
 
  private:
@@ -122,7 +122,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
     const auto rest = table.header.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     if (std::find(rest, table.header.end(), table.header[i]) != table.header.end()) {
       throw InputError("column '" + table.header[i] + "' appears twice", file + ":1",
-                       remedy);
+                       repair);
     }
   }
   while (!reader.done()) {

@@ -302,15 +302,16 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   SweepEnd end = SweepEnd::complete;
   {
     Progress progress(line.progress, experiment.name, todo.size());
-    end = sweep(todo, line.jobs, line.timeout_s, [&](std::size_t, std::vector<Row> of) {
-      progress.finished(of.front());
+    const auto keep = [&](std::vector<Row> of, double seconds) {
+      progress.finished(of.front(), seconds);
       // A case's first row comes last: where it is there, all of them are.
       for (std::size_t i = of.size(); i-- > 0;) {
         static_cast<void>(in_order(of[i], columns));  // an undeclared column: our mistake
         if (journal) journal->append(of[i]);
         rows.keep(std::move(of[i]));
       }
-    });
+    };
+    end = sweep(todo, line.jobs, line.timeout_s, keep);
   }
   if (end == SweepEnd::interrupted) {
     const std::string remedy =

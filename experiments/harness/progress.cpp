@@ -43,7 +43,7 @@ Progress::~Progress() {
   if (style_ == Style::bar) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::finished(const Row& row) {
+void Progress::finished(const Row& row, double seconds) {
   ++done_;
   failed_ += row.ok() ? 0 : 1;
   const auto now = Clock::now();
@@ -51,10 +51,11 @@ void Progress::finished(const Row& row) {
   const double left_s =
       elapsed_s * static_cast<double>(rows_ - done_) / static_cast<double>(done_);
   if (style_ == Style::json) {
-    const nlohmann::json event{
-        {"event", "row"},  {"experiment", name_},    {"done", done_},
-        {"total", rows_},  {"failed", failed_},      {"elapsed_s", elapsed_s},
-        {"eta_s", left_s}, {"status", row.status()}, {"run_id", row.text("run_id")}};
+    const nlohmann::json event{{"event", "row"},         {"experiment", name_},
+                               {"done", done_},          {"total", rows_},
+                               {"failed", failed_},      {"elapsed_s", elapsed_s},
+                               {"eta_s", left_s},        {"seconds", seconds},
+                               {"status", row.status()}, {"run_id", row.text("run_id")}};
     tell("{}\n", event.dump());
     return;
   }

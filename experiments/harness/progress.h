@@ -18,7 +18,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void finished(const Row& row);
+  /// A row that took so long.
+  void finished(const Row& row, double seconds);
 
  private:
   enum class Style { bar, lines, json, none };

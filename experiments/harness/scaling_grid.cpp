@@ -26,7 +26,7 @@ constexpr Parameter settings_of_rows[] = {
      .help = "rows of strands with these modes",
      .choices = "all|bend_twist|bend|bend_planar"},
     {.name = "row_s",
-     .help = "time to measure the step of one row (s), 0: 1, with --quick 0.05",
+     .help = "time to measure the step of one row (s), 0: 1, with --quick 0.02",
      .number = 0,
      .min = 0},
 };

@@ -67,9 +67,9 @@ void read_settings(const toml::node& node, const std::string& where,
   }
 }
 
-using Reader = void (*)(const toml::node&, const std::string& where, CommandLine&);
+using ReadOption = void (*)(const toml::node&, const std::string& where, CommandLine&);
 
-constexpr std::pair<std::string_view, Reader> readers[] = {
+constexpr std::pair<std::string_view, ReadOption> readers[] = {
     {"title", [](const toml::node& n, const std::string& where,
                  CommandLine&) { static_cast<void>(word(n, where)); }},
     {"models",

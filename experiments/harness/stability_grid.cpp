@@ -31,9 +31,10 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
     {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-6, .min = 1e-12},
     {.name = "depth",
-     .help = "test below a stable step until this factor is stable",
-     .number = 30,
-     .min = 1},
+     .help = "test below a stable step until this factor is stable, 0: 30, with --quick "
+             "10",
+     .number = 0,
+     .min = 0},
     {.name = "resolution",
      .help = "bisect until unstable over stable step is this",
      .number = 1.05,

@@ -68,13 +68,13 @@ void wait_for_news(const std::vector<Worker>& workers, int interrupts) {
 }  // namespace
 
 SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
-               const std::function<void(std::size_t index, std::vector<Row>)>& finished) {
+               const std::function<void(std::vector<Row>, double seconds)>& finished) {
   const Interrupts interrupts;
   std::vector<Worker> workers;
   std::size_t next = 0;
   while (next < cases.size() || !workers.empty()) {
     while (next < cases.size() && workers.size() < static_cast<std::size_t>(jobs)) {
-      workers.emplace_back(cases[next], next, timeout_s);
+      workers.emplace_back(cases[next], timeout_s);
       ++next;
     }
     wait_for_news(workers, interrupts.descriptor());
@@ -82,7 +82,7 @@ SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
     std::vector<Worker> running;
     for (Worker& worker : workers) {
       if (std::optional<std::vector<Row>> rows = worker.poll()) {
-        finished(worker.index(), std::move(*rows));
+        finished(std::move(*rows), worker.seconds());
       } else {
         running.push_back(std::move(worker));
       }

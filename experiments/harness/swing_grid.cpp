@@ -115,8 +115,8 @@ struct Ladder {
   int rungs;
 };
 
-Ladder ladder(const IntegratorEntry& entry, bool implicit, bool full) {
-  const int more = full ? 3 : 0;
+Ladder ladder(const IntegratorEntry& entry, bool implicit, const CommandLine& line) {
+  const int more = line.full ? 3 : line.quick ? -1 : 0;
   if (entry.adaptive) {
     return implicit ? Ladder{0.1, 10, 0.5, 5 + 2 * more} : Ladder{0.1, 10, 1, 3 + more};
   }
@@ -206,7 +206,7 @@ class Grid {
     c.options.refresh = m.newton.refresh;
     if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
     c.options = settings_.options(c.options);
-    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_.full);
+    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_);
     for (int i = 0; i < rungs.rungs; ++i) {
       const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
       if (error == "total" && !entry.adaptive && !balanced(x, elements)) continue;

@@ -74,11 +74,11 @@ std::vector<Row> measured(const Case& work, const Deadline& deadline) {
 
 }  // namespace
 
-Worker::Worker(const Case& work, std::size_t index, double timeout_s)
+Worker::Worker(const Case& work, double timeout_s)
     : work_(&work),
-      index_(index),
       timeout_s_(timeout_s),
-      kill_at_(Clock::now() +
+      begun_(Clock::now()),
+      kill_at_(begun_ +
                std::chrono::duration_cast<Clock::duration>(
                    std::chrono::duration<double>(timeout_s + grace_s(timeout_s)))) {
   int ends[2];
@@ -102,8 +102,8 @@ Worker::Worker(const Case& work, std::size_t index, double timeout_s)
 
 Worker::Worker(Worker&& other) noexcept
     : work_(other.work_),
-      index_(other.index_),
       timeout_s_(other.timeout_s_),
+      begun_(other.begun_),
       kill_at_(other.kill_at_),
       process_(std::exchange(other.process_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
@@ -115,6 +115,10 @@ Worker::~Worker() {
     waitpid(process_, nullptr, 0);
   }
   if (pipe_ >= 0) ::close(pipe_);
+}
+
+double Worker::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - begun_).count();
 }
 
 void Worker::drain() {

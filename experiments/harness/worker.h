@@ -18,12 +18,12 @@ class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
-  Worker(const Case& work, std::size_t index, double timeout_s);
+  Worker(const Case& work, double timeout_s);
   ~Worker();  // kills what still runs
   Worker(Worker&& other) noexcept;
   Worker& operator=(Worker&&) = delete;
 
-  std::size_t index() const { return index_; }
+  double seconds() const;             // since it began
   int pipe() const { return pipe_; }  // -1 once the far end is closed
   Clock::time_point killed_at() const { return kill_at_; }
 
@@ -36,9 +36,8 @@ class Worker {
   std::vector<Row> result(int wait_status, bool timed_out) const;
 
   const Case* work_;
-  std::size_t index_;
   double timeout_s_;
-  Clock::time_point kill_at_;
+  Clock::time_point begun_, kill_at_;
   pid_t process_ = -1;
   int pipe_ = -1;
   std::string received_;

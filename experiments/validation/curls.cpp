@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr Vec down{0, 0, -1};
+constexpr Vec downwards{0, 0, -1};
 
 double distance(const Vec& x, const Vec& y) { return std::sqrt(dot(x - y, x - y)); }
 
@@ -43,7 +43,7 @@ double measure_curly_hair(const ModelTrial& trial) {
   TestRod rod{.poisson_ratio = 0.4};
   rod.natural = uniform_shape((1 / rod.length) * Vec{curly_twist, 0, curly_curvature});
   Statics statics(trial.variant, rod.strand(trial.elements, hanging_clamp()),
-                  rod.gravity(curly_gamma) * down);
+                  rod.gravity(curly_gamma) * downwards);
   statics.follow(0.01, 1);
   return 1 + distance((1 / rod.length) * statics.tip(), curly_tip);
 }
@@ -88,7 +88,7 @@ double measure_curl(const ModelTrial& trial) {
   rod.natural = uniform_shape({0, phi / rod.length, 0});
   rod.initial = uniform_shape(Vec{});
   Statics statics(trial.variant, rod.strand(trial.elements, hanging_clamp()),
-                  rod.gravity(std::pow(start * phi, 3)) * down);
+                  rod.gravity(std::pow(start * phi, 3)) * downwards);
   const auto load = [](double ratio) { return std::pow(ratio / start, 3); };
   double at = 0.9;
   statics.follow(1, load(at));

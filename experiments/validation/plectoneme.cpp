@@ -192,6 +192,8 @@ std::vector<ValidationTest> plectoneme_tests() {
       .claimed = {"der", "corde"},
       .reference = [](double) { return 1.0; },
       .refusal = no_twist,
+      // A full matrix of 375 unknowns, factored in every step.
+      .slow = {"super_helix", "articulated_chain", "force_transport"},
       .measure = measured_angle,
   }};
 }

@@ -15,8 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-const double length = TestRod().length;  // m
-constexpr double bent = 0.05;            // rad, the largest curvature or twist times L
+const double beam_length = TestRod().length;  // m
+constexpr double bent = 0.05;  // rad, the largest curvature or twist times L
 
 /// A straight hair that is not at rest there.
 Strand hair(int elements, const Shape& initial) {
@@ -31,7 +31,7 @@ double bending_rate() { return first_mode * first_mode * TestRod().rate(); }
 
 /// Curvature of the first mode of a clamped rod, 1 at the clamp.
 double mode_curvature(double s) {
-  const double b = first_mode, x = b * s / length;
+  const double b = first_mode, x = b * s / beam_length;
   const double mixed = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
   return (std::cosh(x) + std::cos(x) - mixed * (std::sinh(x) + std::sin(x))) / 2;
 }
@@ -40,7 +40,7 @@ double decay(double damping_ratio) { return damping_ratio * bending_rate(); }
 
 double measured_decay(const ModelTrial& trial) {
   Strand strand = hair(trial.elements, [](double s) {
-    return Vec{0, bent / length * mode_curvature(s), 0};
+    return Vec{0, bent / beam_length * mode_curvature(s), 0};
   });
   strand.material.internal_friction =
       2 * trial.parameter * TestRod().bending() / bending_rate();
@@ -53,16 +53,16 @@ double measured_decay(const ModelTrial& trial) {
 double torsion_rate(double mode) {
   const Material material = hair(1, {}).material;
   const double speed = std::sqrt(material.shear_modulus / material.density);
-  return (2 * mode - 1) * pi / 2 * speed / length;
+  return (2 * mode - 1) * pi / 2 * speed / beam_length;
 }
 
 double measured_torsion(const ModelTrial& trial) {
-  const double wave = (2 * trial.parameter - 1) * pi / (2 * length);
+  const double wave = (2 * trial.parameter - 1) * pi / (2 * beam_length);
   const auto system =
       on_strand(trial.variant,
                 hair(trial.elements,
                      [wave](double s) {
-                       return Vec{bent / length * std::cos(wave * s), 0, 0};
+                       return Vec{bent / beam_length * std::cos(wave * s), 0, 0};
                      }),
                 {});
   const State start = initial_state(*system);

@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 constexpr double pitch_angle = 0.15;  // rad
 
-double radius(double turns) {
+double coil_radius(double turns) {
   return TestRod().length * std::cos(pitch_angle) / (2 * pi * turns);
 }
 
@@ -35,7 +35,7 @@ Look middle_height(System& system) {
 
 double measured_rate(const ModelTrial& trial) {
   const double sine = std::sin(pitch_angle), cosine = std::cos(pitch_angle);
-  const double r = radius(trial.parameter);
+  const double r = coil_radius(trial.parameter);
   TestRod rod;
   rod.natural = uniform_shape({sine * cosine / r, cosine * cosine / r, 0});
   // The axis of the helix, sine e0 + cosine e1, points down.
@@ -58,7 +58,7 @@ double measured_rate(const ModelTrial& trial) {
 }  // namespace
 
 SpringModes spring_modes(double turns) {
-  const double r = radius(turns), p = std::sin(pitch_angle);
+  const double r = coil_radius(turns), p = std::sin(pitch_angle);
   const double c = std::cos(pitch_angle), w = c / r;
   const double bending = TestRod().bending(), twisting = TestRod().twisting();
   const double j[2][2] = {{-w * p / c, c}, {w, p}};  // d(curvature, twist)/d(p, w)

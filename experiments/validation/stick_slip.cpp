@@ -14,22 +14,22 @@
 namespace tress {
 namespace {
 
-const double length = TestRod().length;  // m
+const double rod_length = TestRod().length;  // m
 
-const double away = 0.05 * length;  // where a tip is that slipped, m
+const double away = 0.05 * rod_length;  // where a tip is that slipped, m
 
 /// The clamp goes down by eps L in the first 70 % of the time and then waits. The time is
 /// 56 periods of the strand, which drag damps to 0.7 of critical.
 bool slips(const ModelVariant& variant, const Strand& strand, double height,
            double friction) {
-  const double t_end = 100 / TestRod().rate(), depth = 1e-4 * length;
+  const double t_end = 100 / TestRod().rate(), depth = 1e-4 * rod_length;
   // The last node carries half a segment.
   const Segment& last = strand.segments.back();
   const double touching = last.length / 2, radius = last.section.a1;
   const BodyContact law{.stiffness = 22 * TestRod().force() / (depth * touching),
                         .damping = 0,
                         .friction = friction,
-                        .slip = 3e-3 * length / t_end,
+                        .slip = 3e-3 * rod_length / t_end,
                         .offset = radius};
   const StrandPlace plane{{0, 0, height - radius}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   const auto system = on_strand(variant, strand,
@@ -59,7 +59,7 @@ double measured_friction(const ModelTrial& trial) {
   Strand strand =
       TestRod().strand(trial.elements, rotation({0, 1, 0}, 5e-4) * hanging_clamp());
   const double height = lowest_point(trial.variant, strand);
-  const double down = trial.parameter * length;
+  const double down = trial.parameter * rod_length;
   strand.root.translations.push_back(
       {{0, 0, -1}, smooth_step(down, 0, 70 / TestRod().rate())});
   const auto slipped = [&](double friction) {

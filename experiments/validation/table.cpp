@@ -135,7 +135,12 @@ std::vector<Case> validation_cases(const CommandLine& line, const Settings& sett
     for (const ModelVariant& variant : length_variants()) {
       if (!wanted(line.models, variant.model->id)) continue;
       const Row name = identity(*test, variant);
-      const std::string reason = test->refusal ? test->refusal(variant) : "";
+      std::string reason = test->refusal ? test->refusal(variant) : "";
+      const bool slow =
+          std::ranges::find(test->slow, variant.model->id) != test->slow.end();
+      if (reason.empty() && slow && line.quick && line.models.empty()) {
+        reason = "takes minutes: left out by --quick";
+      }
       if (!reason.empty()) {
         all.push_back({name, [reason](Row& row, const Deadline&) {
                          row.failed("refused", reason);

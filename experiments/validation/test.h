@@ -55,6 +55,8 @@ struct ValidationTest {
   /// Why the test says nothing about a model, empty where it does: "planar", "no twist".
   /// None: it suits every model.
   std::function<std::string(const ModelVariant&)> refusal = {};
+  /// Models that take minutes for it: --quick leaves them out unless they are named.
+  std::vector<std::string_view> slow = {};
   /// Throws InputError where the model refuses the rod (a row `refused`), and
   /// std::runtime_error where it finds no answer (a row `failed`).
   std::function<double(const ModelTrial&)> measure;

@@ -8,13 +8,15 @@ repository=$1
 shift
 found=0
 
-# What a source file keeps to itself lies in an anonymous namespace; a nested class belongs
-# to the header that declares it. clang-format puts what is at namespace scope in column 1.
+# What a source file keeps to itself lies in an anonymous namespace, a test's in one of the
+# name of its file, for tests are compiled several at a time; a nested class belongs to the
+# header that declares it. clang-format puts what is at namespace scope in column 1.
 # shellcheck disable=SC2016  # awk expands it
 outside=$(cd "$repository" && find models integrators experiments tests -name node_modules \
   -prune -o -name '*.cpp' -print0 | xargs -0 awk '
     FNR == 1 || /^}  \/\/ namespace$/ { anonymous = 0 }
     /^namespace \{/ { anonymous = 1 }
+    /^namespace tress::test_/ && FILENAME ~ ("/" substr($2, 8) "[.]cpp$") { anonymous = 1 }
     anonymous { next }
     /^(template <.*> )?(class|struct|union|enum( class)?) [A-Za-z0-9_]+( final)?( :.*)?( \{|$)/ ||
     /^inline [^(]* [A-Za-z0-9_]+\(/ { print FILENAME ":" FNR ": " $0 }')

@@ -7,8 +7,7 @@
 #include "models/catalogue.h"
 #include "models/strand/strand.h"
 
-namespace tress {
-namespace {
+namespace tress::test_effect_cost {
 
 struct Seen {
   int calls = 0;
@@ -111,5 +110,4 @@ INSTANTIATE_TEST_SUITE_P(Models, EffectCost, testing::ValuesIn(on_strands()),
                            return std::string(tested.param->id);
                          });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_effect_cost

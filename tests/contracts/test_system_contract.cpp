@@ -3,8 +3,7 @@
 #include "integrators/formulation/projection.h"
 #include "tests/support/compliance.h"
 
-namespace tress {
-namespace {
+namespace tress::test_system_contract {
 
 using namespace testing_support;
 
@@ -361,5 +360,4 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, SystemContract, testing::ValuesIn(catalogue_
                            return name;
                          });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_system_contract

@@ -8,8 +8,7 @@
 #include "experiments/scenes/world.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_advise {
 
 using testing::HasSubstr;
 
@@ -109,5 +108,4 @@ TEST(Advise, RefusesWhatItCannotDo) {
   EXPECT_EQ(process.run("--budget -1" + small).code, 2);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_advise

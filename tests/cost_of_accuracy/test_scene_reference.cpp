@@ -10,8 +10,7 @@
 #include "experiments/scenes/typical_strands.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
-namespace tress {
-namespace {
+namespace tress::test_scene_reference {
 
 const char* const sagging = R"(
 title = "a hair sags"
@@ -215,5 +214,4 @@ TEST(ChangedData, MoveTheTipAsTheRodItself) {
                              reference_key(scene, compare, cut.halved())));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_scene_reference

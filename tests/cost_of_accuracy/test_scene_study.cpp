@@ -14,8 +14,7 @@
 #include "integrators/error_indicator.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
-namespace tress {
-namespace {
+namespace tress::test_scene_study {
 
 const char* const sagging = R"(
 title = "a hair sags"
@@ -291,5 +290,4 @@ TEST(AccuracyClaims, TellOfTimesWithoutAVerdict) {
   EXPECT_DOUBLE_EQ(figure.value, 0.5 * std::max(toss_up, 1.3));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_scene_study

@@ -8,8 +8,7 @@
 #include "models/input_error.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
-namespace tress {
-namespace {
+namespace tress::test_scene_text {
 
 const char* const curly = R"(
 title = "curly # not a comment"
@@ -156,5 +155,4 @@ TEST(Methods, AreThoseAskedFor) {
             4u);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_scene_text

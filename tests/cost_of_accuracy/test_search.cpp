@@ -8,8 +8,7 @@
 
 #include "experiments/cost_of_accuracy/search.h"
 
-namespace tress {
-namespace {
+namespace tress::test_search {
 
 /// A method whose error and cost are known: a (1/n)^p + b (1/k)^q at cost c n k.
 struct Known {
@@ -300,5 +299,4 @@ TEST(Runs, BudgetAndTargetAgree) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_search

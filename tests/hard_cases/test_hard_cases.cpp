@@ -11,8 +11,7 @@
 #include "models/effects/body.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_hard_cases {
 
 using testing::HasSubstr;
 
@@ -363,5 +362,4 @@ TEST(HardCaseClaims, KnownLimitsAlarmWhenTheyChange) {
   EXPECT_NE(judged(held, "million_steps").reason.find("take it off"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_hard_cases

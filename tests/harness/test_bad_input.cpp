@@ -3,8 +3,7 @@
 
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_bad_input {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -113,5 +112,4 @@ TEST(BadInput, FullDeviceOnStandardOutputIsSeenBeforeAnyWork) {
   EXPECT_THAT(toy.executed(), IsEmpty());
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_bad_input

@@ -16,8 +16,7 @@
 #include "experiments/harness/tip_signal.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_calibrate {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -300,5 +299,4 @@ TEST(LeastSquares, ExceptionsComeThrough) {
                InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_calibrate

@@ -7,8 +7,7 @@
 #include "experiments/harness/settings.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_command_line {
 
 using testing::ElementsAre;
 
@@ -179,5 +178,4 @@ TEST(Settings, OptionsKeepWhatTheExperimentPresets) {
   EXPECT_EQ(settings.options(start).beta, 7);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_command_line

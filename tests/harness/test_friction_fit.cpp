@@ -14,8 +14,7 @@
 #include "experiments/harness/tip_signal.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_friction_fit {
 
 using testing::HasSubstr;
 
@@ -350,5 +349,4 @@ TEST(ShippedRecords, TheTruthIsInsideTheIntervalOfOtherSamples) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_friction_fit

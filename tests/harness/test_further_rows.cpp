@@ -7,8 +7,7 @@
 #include "experiments/harness/csv.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_further_rows {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -67,5 +66,4 @@ TEST(OwnOptions, SayWhatSetSays) {
   EXPECT_THAT(wrong.err, HasSubstr("--pause"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_further_rows

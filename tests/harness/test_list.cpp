@@ -7,8 +7,7 @@
 
 #include "experiments/harness/list.h"
 
-namespace tress {
-namespace {
+namespace tress::test_list {
 
 using testing::HasSubstr;
 
@@ -84,5 +83,4 @@ TEST(List, ShowsModelsWithParametersAndIntegratorsWithOrder) {
   EXPECT_THAT(text, HasSubstr("order 2, adaptive, drives none [p] (Gear 1971)"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_list

@@ -16,8 +16,7 @@
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_scaling {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
@@ -231,5 +230,4 @@ TEST(ReleaseBounds, RefuseWhatTheirStepsDoNotResolve) {
   EXPECT_THROW((void)release_bounds(*system, start, 0.1), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_scaling

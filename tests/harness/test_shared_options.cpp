@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tress {
-namespace {
+namespace tress::test_shared_options {
 
 std::string contents(const std::string& file) {
   std::ifstream stream(file);
@@ -112,5 +111,4 @@ TEST_P(SharedOptions, SeedAndRepeatAreReadOrRefused) {
 INSTANTIATE_TEST_SUITE_P(Experiments, SharedOptions, testing::ValuesIn(experiments()),
                          [](const auto& tested) { return tested.param; });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_shared_options

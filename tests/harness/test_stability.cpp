@@ -8,8 +8,7 @@
 #include "models/input_error.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_stability {
 
 using testing_support::AnglePendulum;
 
@@ -358,5 +357,4 @@ TEST(StepSearch, GivenUpItKeepsWhatItKnows) {
   EXPECT_GT(bisected.unstable, 4e-2);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_stability

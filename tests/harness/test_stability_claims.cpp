@@ -6,8 +6,7 @@
 #include "experiments/harness/drift_claims.h"
 #include "experiments/harness/stability_claims.h"
 
-namespace tress {
-namespace {
+namespace tress::test_stability_claims {
 
 Row row(std::string_view scene, std::string_view integrator, std::string_view solver,
         std::string_view tangent, double stable, double unstable) {
@@ -143,5 +142,4 @@ TEST(DriftClaims, ARunThatStoppedIsNotPassedOver) {
   EXPECT_EQ(state("inextensible_strand", ""), Verdicts::State::known_limit);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_stability_claims

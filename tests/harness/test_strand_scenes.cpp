@@ -8,8 +8,7 @@
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_strand_scenes {
 
 Parameters scene_parameters(const StrandScene& scene, std::string_view model,
                             int elements) {
@@ -66,5 +65,4 @@ TEST(StrandScenes, LongestStepsMeetTheDrive) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_strand_scenes

@@ -11,8 +11,7 @@
 #include "experiments/harness/csv.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_sweep {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -369,5 +368,4 @@ TEST(Sweep, SceneFileSuppliesOptionsAndTheCommandLineWins) {
   EXPECT_EQ(nlohmann::json::parse(toy.read("toy.meta.json")).at("seed"), 7);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_sweep

@@ -16,8 +16,7 @@
 #include "experiments/peers/swing.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_swing {
 
 // ---- the track of a tip -----------------------------------------------------------
 
@@ -347,5 +346,4 @@ TEST(SwingClaims, ReferencesMustAgree) {
   EXPECT_EQ(swing.of("time:").state, State::not_judged);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_swing

@@ -12,8 +12,7 @@
 #include "experiments/harness/timing.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_tables {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -159,5 +158,4 @@ TEST(SundialsSpeed, RatioIsAPositiveNumber) {
   EXPECT_GT(ratio, 0);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_tables

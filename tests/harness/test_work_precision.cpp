@@ -8,8 +8,7 @@
 #include "experiments/harness/strand_problems.h"
 #include "experiments/harness/work_precision_series.h"
 
-namespace tress {
-namespace {
+namespace tress::test_work_precision {
 
 Row run(std::string_view kind, std::string_view solver, int elements, double dt,
         double error, double wall = 1) {
@@ -113,5 +112,4 @@ TEST(StrandProblems, TotalErrorsFallWithElements) {
   EXPECT_LE(errors[1], errors[0] / 2);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_work_precision

@@ -4,8 +4,7 @@
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_inexact_tangent {
 
 using testing_support::AngleChain;
 using testing_support::Drive;
@@ -97,5 +96,4 @@ TEST(LinearlyImplicitMidpoint, ExtrapolatesOverUnequalSteps) {
   EXPECT_NEAR(drive.integrator->v()[0], t * t / 2, 1e-9);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_inexact_tangent

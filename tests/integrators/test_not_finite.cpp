@@ -12,8 +12,7 @@
 #include "models/strand/strand_parameters.h"
 
 // Where numbers stop being finite is named: which term, which place, which step.
-namespace tress {
-namespace {
+namespace tress::test_not_finite {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -141,5 +140,4 @@ TEST_P(NotFinite, OfAnElasticOrInertialTermIsNoEffect) {
   EXPECT_THAT(system->not_finite(0, start.q, start.v), HasSubstr("elasticity"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_not_finite

@@ -12,8 +12,7 @@
 #include "models/catalogue.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_order {
 
 // The circle bead is the plane pendulum: an exact solution, in one coordinate
 // (parametric) and with multipliers (every other formulation).
@@ -301,5 +300,4 @@ std::vector<Method> holding() {
 INSTANTIATE_TEST_SUITE_P(Catalogue, HeldConstraints, testing::ValuesIn(holding()),
                          [](const auto& test) { return test.param.name(); });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_order

@@ -9,8 +9,7 @@
 #include "integrators/formulation/relaxation.h"
 #include "models/math/vec3.h"
 
-namespace tress {
-namespace {
+namespace tress::test_predictor_corrector {
 
 constexpr double length = 0.1;  // m
 
@@ -159,5 +158,4 @@ TEST(Relaxation, RefusesWhatIsNotNearTheConstraints) {
   EXPECT_EQ(Relaxation(*strand, 1e-8).positions(0, q), Status::retry);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_predictor_corrector

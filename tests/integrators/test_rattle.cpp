@@ -7,8 +7,7 @@
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 
-namespace tress {
-namespace {
+namespace tress::test_rattle {
 
 struct Motion {
   std::vector<double> q, v;
@@ -52,5 +51,4 @@ TEST(Rattle, GoesBackTheWayItCame) {
   EXPECT_GT(moved, 0.1);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_rattle

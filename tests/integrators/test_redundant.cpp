@@ -7,8 +7,7 @@
 #include "experiments/harness/drift_monitor.h"
 #include "experiments/harness/simulation.h"
 
-namespace tress {
-namespace {
+namespace tress::test_redundant {
 
 /// A truss of one bay: 12 bars where 9 would do, so G lacks rank by 3 at every state.
 const ModelSettings one_bay{{"structure", "truss"}, {"size", "1"}};
@@ -68,5 +67,4 @@ TEST_P(RedundantConstraints, AreReportedAndSolvedAround) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, RedundantConstraints, testing::ValuesIn(methods()),
                          [](const auto& test) { return test.param.name(); });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_redundant

@@ -7,8 +7,7 @@
 #include "integrators/stage.h"
 #include "tests/support/catalogue_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_stage {
 
 using namespace testing_support;
 
@@ -258,5 +257,4 @@ TEST(StageSingleStep, TakesItsMatrixAtTheAccelerationGiven) {
   EXPECT_DOUBLE_EQ(stage.q()[0], 0.5 + 0.25 * a[0]);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_stage

@@ -9,8 +9,7 @@
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
 
-namespace tress {
-namespace {
+namespace tress::test_strands {
 
 using testing_support::Drive;
 
@@ -157,5 +156,4 @@ TEST_P(AdaptiveOnStrands, ErrorFollowsTheTolerance) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveOnStrands, testing::ValuesIn(methods(true)),
                          [](const auto& test) { return test.param.name(); });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_strands

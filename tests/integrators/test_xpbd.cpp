@@ -9,8 +9,7 @@
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_xpbd {
 
 using namespace testing_support;
 
@@ -258,5 +257,4 @@ TEST(Xpbd, IsRefusedWhereThereAreNoCompliances) {
   EXPECT_EQ(refusal(xpbd, *make_model("xpbd_cosserat"), Formulation::parametric), "");
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_xpbd

@@ -4,8 +4,7 @@
 #include "models/input_error.h"
 #include "models/parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_parameters {
 
 constexpr Parameter declared[] = {
     {.name = "links",
@@ -56,5 +55,4 @@ TEST(Parameters, BadInputNamesPlaceAndRemedy) {
   EXPECT_THAT(message_of("curve", "square"), HasSubstr("circle, ellipse, helix"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_parameters

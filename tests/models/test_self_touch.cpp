@@ -5,8 +5,7 @@
 #include "tests/models/reduced/strand_cases.h"
 
 // The tangent of a strand that touches itself, where loads depend on distant points.
-namespace tress {
-namespace {
+namespace tress::test_self_touch {
 
 using namespace testing_support;
 
@@ -129,5 +128,4 @@ INSTANTIATE_TEST_SUITE_P(
         Spiral{"dynamic_spline", {{"root", "shake_rotate"}}, 1e6},
         Spiral{"mass_spring", {{"root", "shake_rotate"}}, 1e6}));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_self_touch

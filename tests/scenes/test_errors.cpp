@@ -8,8 +8,7 @@
 #include "models/input_error.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_errors {
 
 using testing::HasSubstr;
 
@@ -155,5 +154,4 @@ TEST(SceneErrors, OnlyRegularFilesOfLimitedSizeAreRead) {
   EXPECT_THAT(refusal_of_file(folder.path("none")), HasSubstr("No such file"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_errors

@@ -12,8 +12,7 @@
 #include "experiments/scenes/smooth_lines.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_export {
 
 using testing::HasSubstr;
 
@@ -160,5 +159,4 @@ TEST(Pictures, AndProgressBearAnyName) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_export

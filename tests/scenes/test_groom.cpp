@@ -9,8 +9,7 @@
 #include "experiments/scenes/cap.h"
 #include "experiments/scenes/scene.h"
 
-namespace tress {
-namespace {
+namespace tress::test_groom {
 
 using std::numbers::pi;
 
@@ -104,5 +103,4 @@ TEST(Groom, CombsDownAndAwayFromTheParting) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_groom

@@ -10,8 +10,7 @@
 
 #include "experiments/scenes/world.h"
 
-namespace tress {
-namespace {
+namespace tress::test_guard {
 
 struct Said {
   std::string model, integrator, dt, more, root = "motion = \"fixed\"\n",
@@ -177,5 +176,4 @@ TEST(Guard, LeavesHonestScenesAlone) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_guard

@@ -9,8 +9,7 @@
 #include "experiments/scenes/guide_hair.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_guide_hair {
 
 constexpr std::size_t points = 11;
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -310,5 +309,4 @@ TEST(GuideHair, RefusesWhatMakesNoSense) {
   EXPECT_THROW(hair.grow(right, {}, wrong), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_guide_hair

@@ -20,8 +20,7 @@
 #include "experiments/harness/run_key.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_interrupted {
 
 using testing::HasSubstr;
 
@@ -236,5 +235,4 @@ TEST(Checksum, IsFnv1a) {
   EXPECT_EQ(checksum("foobar"), "85944171f73967e8");
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_interrupted

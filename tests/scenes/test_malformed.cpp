@@ -12,8 +12,7 @@
 #include "tests/harness/toy_process.h"
 #include "tests/scenes/mutations.h"
 
-namespace tress {
-namespace {
+namespace tress::test_malformed {
 
 std::vector<std::string> shipped_texts() {
   std::vector<std::filesystem::path> files;
@@ -62,5 +61,4 @@ TEST(MalformedScenes, TwoHundredAreEachRefusedWithPlaceAndRemedy) {
   EXPECT_EQ(refused, 200);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_malformed

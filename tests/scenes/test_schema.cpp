@@ -8,8 +8,7 @@
 #include "experiments/scenes/scene_tables.h"
 #include "experiments/scenes/schema.h"
 
-namespace tress {
-namespace {
+namespace tress::test_schema {
 
 TEST(SceneSchema, IsThePageInTheScenesFolder) {
   EXPECT_EQ(read_file(TRESS_SCENES "/README.md"), scene_schema())
@@ -90,5 +89,4 @@ TEST(SceneTables, TakeEveryWordWithItsKeys) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_schema

@@ -9,8 +9,7 @@
 #include "experiments/scenes/shapes.h"
 #include "models/strand/geometry.h"
 
-namespace tress {
-namespace {
+namespace tress::test_shapes {
 
 using std::numbers::pi;
 
@@ -153,5 +152,4 @@ stiffness_n_m = 2
   EXPECT_GT(std::abs(x.value), 1e-4);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_shapes

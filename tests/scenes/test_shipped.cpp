@@ -9,8 +9,7 @@
 #include "experiments/scenes/scene.h"
 #include "integrators/catalogue.h"
 
-namespace tress {
-namespace {
+namespace tress::test_shipped {
 
 std::vector<std::string> shipped() {
   std::vector<std::string> files;
@@ -51,5 +50,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ShippedSceneTest, testing::ValuesIn(shipped()),
                            return std::filesystem::path(tested.param).stem().string();
                          });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_shipped

@@ -11,8 +11,7 @@
 #include "experiments/harness/csv.h"
 #include "tests/harness/toy_process.h"
 
-namespace tress {
-namespace {
+namespace tress::test_simulate {
 
 /// One hair that falls, with frames until 1 s.
 std::string falling(const std::string& model, const std::string& more = "") {
@@ -225,5 +224,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_simulate

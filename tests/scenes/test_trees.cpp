@@ -7,8 +7,7 @@
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
-namespace {
+namespace tress::test_trees {
 
 const std::filesystem::path scenes = TRESS_SCENES;
 
@@ -38,5 +37,4 @@ INSTANTIATE_TEST_SUITE_P(Trees, TreeSceneTest,
                                          "willow"),
                          [](const auto& tested) { return tested.param; });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_trees

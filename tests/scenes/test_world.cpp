@@ -13,8 +13,7 @@
 #include "experiments/scenes/world.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_world {
 
 Scene pair(const std::string& model, const std::string& coupling) {
   const std::string strand = "length_m = 0.1\nelements = 10\nshape = \"helix\"\n";
@@ -154,5 +153,4 @@ TEST(World, TooManyStrandsForTheMemoryAreRefusedWithTheFigure) {
 }
 #endif
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_world

@@ -4,7 +4,7 @@
 
 #include "models/math/dual.h"
 
-namespace tress::testing {
+namespace tress::testing_support {
 
 /// x as the i-th of n independent variables, for first derivatives.
 template <int n>
@@ -25,4 +25,4 @@ Dual2<n> variable2(double x, std::size_t i) {
   return r;
 }
 
-}  // namespace tress::testing
+}  // namespace tress::testing_support

@@ -14,8 +14,7 @@
 #include "experiments/validation/stick_slip.h"
 #include "experiments/validation/wisp.h"
 
-namespace tress {
-namespace {
+namespace tress::test_in_time {
 
 ModelVariant model(std::string_view id) { return {&find_model(id), {}, ""}; }
 
@@ -132,5 +131,4 @@ TEST(ValidationInTime, WhatDoesNotTwistIsRefusedTorsion) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_in_time

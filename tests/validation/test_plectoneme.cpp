@@ -5,8 +5,7 @@
 
 #include "experiments/validation/plectoneme.h"
 
-namespace tress {
-namespace {
+namespace tress::test_plectoneme {
 
 // Small angles: T = (3/2) a^4 (1 - 2 a^2/3 + 4 a^2/3 + ...), so a is (2 T/3)^(1/4) but
 // for a^2/6, and more with a^4.
@@ -46,5 +45,4 @@ TEST(Ply, OfAStraightLineIsNone) {
   EXPECT_EQ(ply(x, 1e-3, 0.03, 0.01).pairs, 0);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_plectoneme

@@ -13,8 +13,7 @@
 
 /// References against values computed independently of this code: boundary-value problems
 /// on two meshes that agree to 1e-12, and published zeros.
-namespace tress {
-namespace {
+namespace tress::test_references {
 
 TEST(MasterCurve, IsThatOfTheElastica) {
   constexpr double height_over_width[][2] = {
@@ -138,5 +137,4 @@ TEST(LocalisedHelix, CurvesAsItsForcesSay) {
   EXPECT_NEAR(y[5], std::sin(helix.turning()), 2 * off);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_references

@@ -7,8 +7,7 @@
 
 #include "experiments/validation/signals.h"
 
-namespace tress {
-namespace {
+namespace tress::test_signals {
 
 constexpr double rate = 7, step = 0.005;  // rad/s, s
 constexpr double coarse = rate * step;    // omega h = 0.035
@@ -63,5 +62,4 @@ TEST(Signals, DecayIsThatOfAnExponential) {
   EXPECT_NEAR(decay_rate(dying), decay, 12 * std::pow(coarse, 4) / duration);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_signals

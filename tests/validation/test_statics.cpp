@@ -7,8 +7,7 @@
 #include "models/input_error.h"
 #include "models/math/gauss_legendre.h"
 
-namespace tress {
-namespace {
+namespace tress::test_statics {
 
 constexpr Vec axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};
 
@@ -189,5 +188,4 @@ TEST(EndConditions, DifferentiateTheSection) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_statics

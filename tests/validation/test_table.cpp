@@ -6,8 +6,7 @@
 #include "experiments/validation/table.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_table {
 
 Row row(std::string_view model, int elements, double error, bool judged) {
   Row r;
@@ -114,5 +113,4 @@ TEST(ValidationTable, ReferencesAreWhatTestsHangOn) {
       measured.number("tolerance"));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_table

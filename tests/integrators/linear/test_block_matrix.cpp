@@ -3,8 +3,7 @@
 #include "integrators/linear/block_matrix.h"
 #include "tests/integrators/linear/matrices.h"
 
-namespace tress {
-namespace {
+namespace tress::test_block_matrix {
 
 using testing_matrices::dense;
 using testing_matrices::Random;
@@ -65,5 +64,4 @@ TEST(BlockMatrix, RefusesABlockThatSticksOut) {
   EXPECT_THROW(matrix.add_block(identity_pattern(3), 0, -1), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_block_matrix

@@ -4,8 +4,7 @@
 
 #include "tests/integrators/linear/kkt_case.h"
 
-namespace tress {
-namespace {
+namespace tress::test_kkt {
 
 using namespace testing_matrices;
 
@@ -153,5 +152,4 @@ TEST(Kkt, BandedAndKluAgreeOnALongChain) {
   EXPECT_LE((y[0] - y[1]).norm(), bound * y[0].norm());
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_kkt

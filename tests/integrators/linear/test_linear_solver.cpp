@@ -8,8 +8,7 @@
 #include "tests/integrators/linear/matrices.h"
 #include "tests/support/dense.h"
 
-namespace tress {
-namespace {
+namespace tress::test_linear_solver {
 
 using testing_matrices::kind_name;
 using testing_matrices::Random;
@@ -312,5 +311,4 @@ TEST(Automatic, RefusesARectangle) {
                std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_linear_solver

@@ -2,8 +2,7 @@
 
 #include "tests/integrators/linear/kkt_case.h"
 
-namespace tress {
-namespace {
+namespace tress::test_redundant {
 
 using namespace testing_matrices;
 
@@ -123,5 +122,4 @@ TEST_P(KktRedundant, AsksForARetryWhenRedundantAndSingularOtherwise) {
   EXPECT_EQ(factor(p), Status::retry);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_redundant

@@ -4,8 +4,7 @@
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_accuracy {
 
 using namespace testing_support;
 
@@ -165,5 +164,4 @@ INSTANTIATE_TEST_SUITE_P(Sundials, Newton,
                                          Case{"ida"}),
                          case_name);
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_accuracy

@@ -4,8 +4,7 @@
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_constraints {
 
 using namespace testing_support;
 
@@ -187,5 +186,4 @@ TEST(CvodeBdfProjection, RecoversFromAStartThatViolates) {
   EXPECT_LE(PointPendulum::violation(run.integrator->q()), 1e-12);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_constraints

@@ -7,8 +7,7 @@
 #include "integrators/sundials/first_order.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_newton_matrix {
 
 using namespace testing_support;
 using Vector = std::vector<double>;
@@ -130,5 +129,4 @@ TEST(FirstOrder, SolvesWithTheDerivativeOfTheRate_Constrained) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_newton_matrix

@@ -6,8 +6,7 @@
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
-namespace tress {
-namespace {
+namespace tress::test_outcomes {
 
 using namespace testing_support;
 using testing::HasSubstr;
@@ -226,5 +225,4 @@ TEST(CvodeAdams, RefusesProjectionAndNamesWhoCan) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_outcomes

@@ -6,7 +6,7 @@
 #include "models/system.h"
 #include "tests/support/dense.h"
 
-namespace tress::testing {
+namespace tress::testing_support {
 
 inline In view(const Eigen::VectorXd& x) { return {x.data(), std::size_t(x.size())}; }
 inline Out view(Eigen::VectorXd& x) { return {x.data(), std::size_t(x.size())}; }
@@ -76,4 +76,4 @@ struct Oracle {
   }
 };
 
-}  // namespace tress::testing
+}  // namespace tress::testing_support

@@ -6,11 +6,10 @@
 #include "models/input_error.h"
 #include "tests/models/constrained/dynamics.h"
 
-namespace tress {
-namespace {
+namespace tress::test_bead {
 
-using testing::Oracle;
-using testing::view;
+using testing_support::Oracle;
+using testing_support::view;
 using Setting = std::pair<const char*, const char*>;
 
 std::unique_ptr<System> bead(std::string_view curve, std::string_view form,
@@ -186,5 +185,4 @@ TEST(Bead, RefusesMassesAndCurvesThatDoNotMove) {
   EXPECT_THROW(BeadOnWire(setup, {}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_bead

@@ -9,11 +9,10 @@
 #include "models/input_error.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_constraint_set {
 
-using testing::Dual2;
-using testing::variable2;
+using testing_support::Dual2;
+using testing_support::variable2;
 
 constexpr Node particle0{Node::Kind::particle, 0};
 constexpr Node particle1{Node::Kind::particle, 1};
@@ -218,5 +217,4 @@ TEST(Modules, RefuseShapesThatDoNotExist) {
   EXPECT_THROW((void)point_on_curve(particle0, particle1, trefoil(1)), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_constraint_set

@@ -7,11 +7,10 @@
 #include "models/constrained/on_curve.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_kernels {
 
-using testing::Dual2;
-using testing::variable2;
+using testing_support::Dual2;
+using testing_support::variable2;
 
 // Hand-written derivatives and derivative numbers differ by the rounding of a few hundred
 // operations on numbers of size `size`: 1e3 eps = 2e-13, kept at 1e-12.
@@ -186,5 +185,4 @@ TEST(Angle, IsTheErrorInRadiansToFirstOrder) {
   EXPECT_NEAR(c, tilt, tilt * tilt);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_kernels

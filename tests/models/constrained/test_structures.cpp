@@ -8,11 +8,10 @@
 #include "models/input_error.h"
 #include "tests/models/constrained/dynamics.h"
 
-namespace tress {
-namespace {
+namespace tress::test_structures {
 
-using testing::Oracle;
-using testing::view;
+using testing_support::Oracle;
+using testing_support::view;
 
 struct Case {
   const char* name;
@@ -220,5 +219,4 @@ TEST(Catalogue, BuildersRefuseSizesTheyDoNotHave) {
   EXPECT_THROW(p.set("length_m", "-1"), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_structures

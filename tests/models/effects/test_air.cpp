@@ -10,8 +10,7 @@
 #include "models/input_error.h"
 #include "tests/models/effects/settle.h"
 
-namespace tress {
-namespace {
+namespace tress::test_air {
 
 using std::numbers::pi;
 using testing_support::Cloud;
@@ -213,5 +212,4 @@ TEST(Gusts, AreTheSameForEqualSeedsOnly) {
   EXPECT_NE(at(1).x, at(2).x);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_air

@@ -7,8 +7,7 @@
 #include "tests/models/effects/settle.h"
 #include "tests/models/effects/sphere_grid.h"
 
-namespace tress {
-namespace {
+namespace tress::test_body {
 
 using testing_support::Cloud;
 using testing_support::FreePoints;
@@ -238,5 +237,4 @@ TEST(Body, RefusesWhatHasNoMeaning) {
   EXPECT_THROW(make_body(none, {}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_body

@@ -5,8 +5,7 @@
 #include "models/effects/body_shapes.h"
 #include "tests/models/effects/cloud.h"
 
-namespace tress {
-namespace {
+namespace tress::test_body_shapes {
 
 using testing_support::Cloud;
 
@@ -147,5 +146,4 @@ TEST(BodyShapes, DeepestInsideIsTheLeastHalfAxis) {
   EXPECT_EQ(sphere.distance({0, 0, 0}).value, -0.6);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_body_shapes

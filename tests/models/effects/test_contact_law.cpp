@@ -9,8 +9,7 @@
 #include "models/input_error.h"
 #include "tests/support/catalogue_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_contact_law {
 
 using namespace testing_support;
 
@@ -117,5 +116,4 @@ TEST(ContactLaw, RefusesRadiiThatLeaveNoRoom) {
   EXPECT_THROW(ContactLaw(bad, "test"), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_contact_law

@@ -6,8 +6,7 @@
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
 
-namespace tress {
-namespace {
+namespace tress::test_distance_grid {
 
 using testing::HasSubstr;
 using testing_support::as_text;
@@ -134,5 +133,4 @@ TEST(DistanceGrid, NamesTheLineOfWhatItCannotRead) {
   EXPECT_THROW(read_distance_grid("/nowhere/at/all.sdf"), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_distance_grid

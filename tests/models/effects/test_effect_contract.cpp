@@ -9,8 +9,7 @@
 #include "tests/models/effects/sphere_grid.h"
 
 // What every effect of the catalogue keeps, with every word of every choice.
-namespace tress {
-namespace {
+namespace tress::test_effect_contract {
 
 using testing_support::as_text;
 using testing_support::Cloud;
@@ -336,5 +335,4 @@ TEST_P(EffectContract, WhatDissipatesInAFieldAtRestTakesEnergyFromEveryPoint) {
   EXPECT_LT(all, -1e-3);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_effect_contract

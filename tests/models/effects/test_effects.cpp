@@ -7,8 +7,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/input_error.h"
 
-namespace tress {
-namespace {
+namespace tress::test_effects {
 
 struct Sample {
   std::vector<double> x{0.1, -0.4, 2.0, 1.0, 0.5, -0.3};
@@ -111,5 +110,4 @@ TEST(Effects, RefuseNumbersOutsideTheirMeaning) {
   EXPECT_THROW(Gravity({0, std::nan(""), 0}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_effects

@@ -10,8 +10,7 @@
 // Every model of a strand under effects that depend on place, velocity and time: the
 // blocks of the effects must arrive in the tangent, their power and potential in the
 // energy.
-namespace tress {
-namespace {
+namespace tress::test_effects_on_models {
 
 using namespace testing_support;
 
@@ -245,5 +244,4 @@ TEST_P(EffectsOnModels, TheEnergyHoldsTheirPotentialAndPower) {
   EXPECT_NEAR(rate, expected, 1e-10 * (scale / time + work));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_effects_on_models

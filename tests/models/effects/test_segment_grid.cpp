@@ -8,8 +8,7 @@
 #include "models/effects/segment_grid.h"
 #include "tests/models/effects/polylines.h"
 
-namespace tress {
-namespace {
+namespace tress::test_segment_grid {
 
 using namespace testing_support;
 
@@ -106,5 +105,4 @@ TEST(SegmentGrid, SurvivesPlacesThatAreNoPlaces) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_segment_grid

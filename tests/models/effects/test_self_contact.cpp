@@ -9,8 +9,7 @@
 #include "models/input_error.h"
 #include "tests/support/catalogue_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_self_contact {
 
 using namespace testing_support;
 
@@ -208,5 +207,4 @@ TEST(SelfContact, RefusesPartsThatAreNeverApart) {
   EXPECT_THROW(entry.make(parameters, {}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_self_contact

@@ -10,8 +10,7 @@
 #include "tests/models/effects/polylines.h"
 #include "tests/support/catalogue_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_strand_interaction {
 
 using namespace testing_support;
 
@@ -317,5 +316,4 @@ TEST(StrandInteraction, RefusesStrandsWithoutSegmentsAndTableEntriesThatAreNone)
   EXPECT_THROW(StrandInteraction(parameters, {5, 5}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_strand_interaction

@@ -4,8 +4,7 @@
 #include "models/input_error.h"
 #include "tests/models/effects/settle.h"
 
-namespace tress {
-namespace {
+namespace tress::test_tether {
 
 using testing_support::Cloud;
 using testing_support::FreePoints;
@@ -107,5 +106,4 @@ TEST(Tether, RefusesNumbersOutsideTheirMeaning) {
   EXPECT_THROW(Tether({.target = {0, std::nan(""), 0}}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_tether

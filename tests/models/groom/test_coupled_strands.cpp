@@ -8,8 +8,7 @@
 #include "tests/models/groom/strands.h"
 #include "tests/support/tangent.h"
 
-namespace tress {
-namespace {
+namespace tress::test_coupled_strands {
 
 using namespace testing_support;
 
@@ -194,5 +193,4 @@ TEST(CoupledStrands, RefuseModelsThatHaveNoSparseTangentOfPoints) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_coupled_strands

@@ -9,8 +9,7 @@
 #include "tests/models/groom/strands.h"
 #include "tests/support/drive.h"
 
-namespace tress {
-namespace {
+namespace tress::test_coupling {
 
 using namespace testing_support;
 
@@ -119,5 +118,4 @@ TEST(Coupling, LaggedApproachesMonolithicAtFirstOrderAndOnlyThatKeepsMomentum) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_coupling

@@ -9,8 +9,7 @@
 #include "models/math/dual.h"
 #include "models/math/helix.h"
 
-namespace tress {
-namespace {
+namespace tress::test_helix {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr int count = 9;
@@ -225,5 +224,4 @@ TEST(HelixFunctions, LanesEqualScalars) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_helix

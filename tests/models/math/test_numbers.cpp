@@ -7,8 +7,7 @@
 #include "models/math/pack.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_numbers {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
@@ -67,8 +66,8 @@ TEST(Dual, OfPacksHoldsADualInEveryLane) {
   const P got = rational(x, y);
   for (int lane = 0; lane < Pack::lanes; ++lane) {
     const auto k = static_cast<std::size_t>(lane);
-    const Dual<2> one =
-        rational(testing::variable<2>(xs[k], 0), testing::variable<2>(ys[k], 1));
+    const Dual<2> one = rational(testing_support::variable<2>(xs[k], 0),
+                                 testing_support::variable<2>(ys[k], 1));
     EXPECT_NEAR(got.value[lane], one.value, 60 * eps * (1 + std::abs(one.value)));
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR(got.part[i][lane], one.part[i], 60 * eps * (1 + std::abs(one.part[i])));
@@ -79,7 +78,8 @@ TEST(Dual, OfPacksHoldsADualInEveryLane) {
 
 TEST(Dual, TakesTheFirstDerivatives) {
   const double x = 1.7, y = 0.6;
-  const auto f = rational(testing::variable<2>(x, 0), testing::variable<2>(y, 1));
+  const auto f =
+      rational(testing_support::variable<2>(x, 0), testing_support::variable<2>(y, 1));
   const double z = x * y - 2 / x + y * y / 2 - 3 * x;
   const double d = 1 + x * x;
   EXPECT_NEAR(f.value, -z / d, 8 * eps);
@@ -89,8 +89,10 @@ TEST(Dual, TakesTheFirstDerivatives) {
 
 TEST(Dual, NestedTakesTheSecondDerivatives) {
   const double x = 0.8, y = 1.9;
-  const auto f = sin(testing::variable2<2>(x, 0)) * sqrt(testing::variable2<2>(y, 1)) +
-                 cos(testing::variable2<2>(x, 0)) / testing::variable2<2>(y, 1);
+  const auto f =
+      sin(testing_support::variable2<2>(x, 0)) *
+          sqrt(testing_support::variable2<2>(y, 1)) +
+      cos(testing_support::variable2<2>(x, 0)) / testing_support::variable2<2>(y, 1);
   const double sine = std::sin(x), cosine = std::cos(x), root = std::sqrt(y);
   EXPECT_NEAR(f.value.value, sine * root + cosine / y, 8 * eps);
   EXPECT_NEAR(f.part[0].value, cosine * root - sine / y, 8 * eps);
@@ -101,5 +103,4 @@ TEST(Dual, NestedTakesTheSecondDerivatives) {
               8 * eps);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_numbers

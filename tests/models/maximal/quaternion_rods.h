@@ -52,7 +52,7 @@ void expect_forces_of_energy(const Edge& edge) {
     for (std::size_t k = 0; k < size; ++k) {
       using T = Dual<1>;
       std::vector<T> y(z.begin(), z.end());
-      y[k] = testing::variable<1>(z[k], 0);
+      y[k] = testing_support::variable<1>(z[k], 0);
       T energy(0), x[8];
       QuaternionOf<T> before{T(wall.w), Vec3<T>(wall.v)};
       for (std::size_t i = 0; i < edges; ++i) {

@@ -8,8 +8,7 @@
 #include "tests/models/reduced/strand_cases.h"
 #include "tests/support/tangent.h"
 
-namespace tress {
-namespace {
+namespace tress::test_clamp {
 
 using namespace testing_support;
 
@@ -128,5 +127,4 @@ TEST(TurningClamp, FrictionLeavesAloneWhatTurnsWithIt) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_clamp

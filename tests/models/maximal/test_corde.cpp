@@ -8,8 +8,7 @@
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"
 
-namespace tress {
-namespace {
+namespace tress::test_corde {
 
 using namespace testing_support;
 
@@ -64,5 +63,4 @@ TEST(Corde, CouplingLowersTheTipByItsShear) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_corde

@@ -9,8 +9,7 @@
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/thin_rod.h"
 
-namespace tress {
-namespace {
+namespace tress::test_der {
 
 using namespace testing_support;
 
@@ -166,5 +165,4 @@ TEST(Der, TangentIsExactForCurlsWithFriction) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_der

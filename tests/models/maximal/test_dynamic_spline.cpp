@@ -13,11 +13,10 @@
 #include "tests/models/reduced/kirchhoff.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_dynamic_spline {
 
 using namespace testing_support;
-using testing::variable;
+using testing_support::variable;
 
 // A cubic is in the space, with its derivatives: exact to rounding of N'' ~ 1/h^2 = 100.
 TEST(CubicSpline, HoldsCubicsOnUnevenSpans) {
@@ -175,5 +174,4 @@ TEST(DynamicSpline, FollowsATurningClamp) {
   EXPECT_LE(dot(moved, moved), 1e-5 * 1e-5);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_dynamic_spline

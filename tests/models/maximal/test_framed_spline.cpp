@@ -15,8 +15,7 @@
 #include "tests/models/reduced/kirchhoff.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_framed_spline {
 
 using namespace testing_support;
 
@@ -36,10 +35,10 @@ void expect_derivatives(Part part) {
     store3(references[side].e0 + load3(x + 4 * side), x + 4 * side);
   }
   if constexpr (size > 8) x[8] += 1;
-  using T = testing::Dual2<size>;
+  using T = testing_support::Dual2<size>;
   T y[size], strain[Part::strains];
   for (int k = 0; k < size; ++k) {
-    y[k] = testing::variable2<size>(x[k], static_cast<std::size_t>(k));
+    y[k] = testing_support::variable2<size>(x[k], static_cast<std::size_t>(k));
   }
   part.strain(y, strain);
   double gradient[Part::strains][size], second[size][size] = {};
@@ -270,5 +269,4 @@ TEST(FramedStrands, CountTheSpinOfSectionsInTheMomentum) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_framed_spline

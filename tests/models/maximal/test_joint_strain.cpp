@@ -8,8 +8,7 @@
 
 // Strains of a discrete rod against derivative numbers.
 
-namespace tress {
-namespace {
+namespace tress::test_joint_strain {
 
 std::mt19937 source(3);
 double uniform() { return std::uniform_real_distribution<double>(-1, 1)(source); }
@@ -146,5 +145,4 @@ TEST(EdgeTurn, IsTheTurnOfTheMaterialFrame) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_joint_strain

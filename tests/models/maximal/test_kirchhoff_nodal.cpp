@@ -10,8 +10,7 @@
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"
 
-namespace tress {
-namespace {
+namespace tress::test_kirchhoff_nodal {
 
 using namespace testing_support;
 
@@ -276,5 +275,4 @@ TEST(KirchhoffNodal, RefusesWhatIsNoClampedChain) {
   EXPECT_THROW((void)kirchhoff_nodal(branched, {}, {}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_kirchhoff_nodal

@@ -8,8 +8,7 @@
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/thin_rod.h"
 
-namespace tress {
-namespace {
+namespace tress::test_mass_spring {
 
 using namespace testing_support;
 
@@ -165,5 +164,4 @@ TEST(MassSpring, FilteredTangentIsPositiveSemidefiniteUnderCompression) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_mass_spring

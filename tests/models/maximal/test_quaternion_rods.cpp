@@ -9,8 +9,7 @@
 #include "tests/models/reduced/kirchhoff.h"
 
 // What holds of every rod of models/maximal/quaternion_rod.h.
-namespace tress {
-namespace {
+namespace tress::test_quaternion_rods {
 
 using namespace testing_support;
 
@@ -126,5 +125,4 @@ INSTANTIATE_TEST_SUITE_P(Maximal, QuaternionRods,
                                          Rod{"xpbd_cosserat", 4 / (0.9 * 4e6 / 2.8)}),
                          [](const auto& test) { return std::string(test.param.model); });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_quaternion_rods

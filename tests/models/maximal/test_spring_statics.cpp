@@ -7,8 +7,7 @@
 
 // Strands of springs at rest under gravity.
 
-namespace tress {
-namespace {
+namespace tress::test_spring_statics {
 
 using namespace testing_support;
 
@@ -132,5 +131,4 @@ TEST(MassSpring, CurlyHairWithAltitudesStaysBesideKirchhoffsRod) {
   EXPECT_NEAR(step(2) / step(3) / 4, 1, 0.05);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_spring_statics

@@ -5,11 +5,10 @@
 #include "models/maximal/spring_strain.h"
 #include "tests/support/variable.h"
 
-namespace tress {
-namespace {
+namespace tress::test_spring_strain {
 
-using testing::Dual2;
-using testing::variable2;
+using testing_support::Dual2;
+using testing_support::variable2;
 
 template <class Strain>
 class SpringStrain : public ::testing::Test {};
@@ -102,9 +101,9 @@ TEST(Hinge, MetricIsThatOfTheCurvatureBinormal) {
     edges_of(bent, random, e);
     Vec3<Dual<6>> y[2];
     for (std::size_t k = 0; k < 2; ++k) {
-      y[k] = {testing::variable<6>(e[k].x, 3 * k),
-              testing::variable<6>(e[k].y, 3 * k + 1),
-              testing::variable<6>(e[k].z, 3 * k + 2)};
+      y[k] = {testing_support::variable<6>(e[k].x, 3 * k),
+              testing_support::variable<6>(e[k].y, 3 * k + 1),
+              testing_support::variable<6>(e[k].z, 3 * k + 2)};
     }
     const Dual<6> c = sqrt(dot(y[0], y[0]) * dot(y[1], y[1])) + dot(y[0], y[1]);
     const Vec3<Dual<6>> kb = (Dual<6>(2.0) / c) * cross(y[0], y[1]);
@@ -128,5 +127,4 @@ TEST(Altitude, IsTheDistanceOfTheDiagonals) {
   EXPECT_NEAR(std::abs(Altitude{1e-20}.value(e)), 2, 1e-14);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_spring_strain

@@ -7,8 +7,7 @@
 #include "tests/models/reduced/kirchhoff.h"
 #include "tests/support/compliance.h"
 
-namespace tress {
-namespace {
+namespace tress::test_xpbd_cosserat {
 
 using namespace testing_support;
 
@@ -71,5 +70,4 @@ TEST(XpbdCosserat, ComplianceFormIsTheResidualWithFrictionOnATurningRoot) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_xpbd_cosserat

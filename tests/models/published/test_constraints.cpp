@@ -5,8 +5,7 @@
 #include "tests/models/published/support.h"
 #include "tests/support/dense.h"
 
-namespace tress {
-namespace {
+namespace tress::test_constraints {
 
 class PublishedConstraints : public testing::TestWithParam<const char*> {
  protected:
@@ -130,5 +129,4 @@ TEST(SliderCrank, RigidStartIsConsistent) {
   EXPECT_NEAR(s.v[1], -75, 1e-12);  // the Test Set's value
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_constraints

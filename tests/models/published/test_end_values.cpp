@@ -10,8 +10,7 @@
 #include "models/published/references.h"
 #include "tests/models/published/support.h"
 
-namespace tress {
-namespace {
+namespace tress::test_end_values {
 
 // First-order form y = (q, v) of a model, v' from its explicit form or from the dense
 // index-1 system [M, -G^T; G, 0] (a, lambda) = (f, -bias).
@@ -193,5 +192,4 @@ TEST(PublishedEnd, IsNullForAModelWithoutOne) {
   EXPECT_EQ(published_end("double_pendulum"), nullptr);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_end_values

@@ -4,8 +4,7 @@
 
 #include "tests/models/published/support.h"
 
-namespace tress {
-namespace {
+namespace tress::test_energy {
 
 // Along any motion, dE/dt = v . r + power: the residual does the work that is missing.
 // Differences as in test_constraints.cpp; terms are of size |v| |r|.
@@ -107,5 +106,4 @@ TEST(DoublePendulum, SmallOscillationsHaveTheTextbookFrequencies) {
   EXPECT_NEAR(squares[1], (2 + std::sqrt(2)) * 9.81, 1e-12);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_energy

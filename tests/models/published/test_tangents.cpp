@@ -5,8 +5,7 @@
 
 #include "tests/models/published/support.h"
 
-namespace tress {
-namespace {
+namespace tress::test_tangents {
 
 constexpr Weights method_weights[] = {
     {1, 0, 0},           // mass alone
@@ -159,5 +158,4 @@ TEST(Beam, ResidualIsThePrintedEquation) {
   EXPECT_LE((residual_of(*system, s) - r).norm(), 1e-13 * (r.norm() + n));
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_tangents

@@ -6,8 +6,7 @@
 #include "models/reduced/super_helix.h"
 #include "tests/models/reduced/batch_strands.h"
 
-namespace tress {
-namespace {
+namespace tress::test_batch {
 
 using namespace testing_support;
 
@@ -207,5 +206,4 @@ std::vector<BatchCase> batch_cases() {
 INSTANTIATE_TEST_SUITE_P(Sizes, Batch, testing::ValuesIn(batch_cases()),
                          [](const auto& test) { return test.param.name; });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_batch

@@ -2,8 +2,7 @@
 #include "models/input_error.h"
 #include "tests/models/reduced/batch_strands.h"
 
-namespace tress {
-namespace {
+namespace tress::test_batch_strands {
 
 using namespace testing_support;
 
@@ -102,5 +101,4 @@ TEST_F(BatchOf, TreesIsThatOfTheTrees) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_batch_strands

@@ -5,8 +5,7 @@
 
 // A chain written as a tree gives the chain's numbers.
 
-namespace tress {
-namespace {
+namespace tress::test_branching {
 
 using namespace testing_support;
 
@@ -232,5 +231,4 @@ TEST(ForkOfHalves, MovesAsTheWholeInItsPlane) {
   }
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_branching

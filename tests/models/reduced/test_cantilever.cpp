@@ -3,8 +3,7 @@
 #include "experiments/harness/fit.h"
 #include "tests/models/reduced/kirchhoff.h"
 
-namespace tress {
-namespace {
+namespace tress::test_cantilever {
 
 using namespace testing_support;
 
@@ -77,5 +76,4 @@ TEST_P(CurlyHair, ApproachesKirchhoffsRodAtOrder2) {
 INSTANTIATE_TEST_SUITE_P(Reduced, CurlyHair,
                          testing::Values("super_helix", "articulated_chain"));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_cantilever

@@ -5,8 +5,7 @@
 #include "experiments/harness/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_conservation {
 
 using namespace testing_support;
 
@@ -204,5 +203,4 @@ TEST_P(MomentumToTolerance, OfAnAdaptiveIntegrator) {
 INSTANTIATE_TEST_SUITE_P(Reduced, MomentumToTolerance,
                          testing::Values("cvode_bdf", "arkode_dirk"));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_conservation

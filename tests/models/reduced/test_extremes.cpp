@@ -5,8 +5,7 @@
 #include "models/math/frame.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
-namespace tress {
-namespace {
+namespace tress::test_extremes {
 
 using namespace testing_support;
 using std::numbers::pi;
@@ -230,5 +229,4 @@ std::vector<Size> sizes() {
 
 INSTANTIATE_TEST_SUITE_P(Reduced, Sizes, testing::ValuesIn(sizes()));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_extremes

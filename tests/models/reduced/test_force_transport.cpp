@@ -7,8 +7,7 @@
 #include "models/input_error.h"
 #include "tests/models/reduced/kirchhoff.h"
 
-namespace tress {
-namespace {
+namespace tress::test_force_transport {
 
 using namespace testing_support;
 
@@ -280,5 +279,4 @@ TEST(ForceTransport, RefusesAFreeRoot) {
   EXPECT_THROW(make_model("force_transport", {{"root", "free"}}), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_force_transport

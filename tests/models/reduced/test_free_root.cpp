@@ -4,8 +4,7 @@
 
 #include "models/reduced/free_root.h"
 
-namespace tress {
-namespace {
+namespace tress::test_free_root {
 
 void expect_near(const Vec& a, const Vec& b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
@@ -46,5 +45,4 @@ TEST(FreeRoot, ReferenceStaysWhileTheAngleIsSmall) {
   EXPECT_EQ(q[3], 0.4);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_free_root

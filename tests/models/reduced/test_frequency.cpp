@@ -8,8 +8,7 @@
 #include "experiments/harness/fit.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
-namespace tress {
-namespace {
+namespace tress::test_frequency {
 
 using namespace testing_support;
 
@@ -79,5 +78,4 @@ TEST_P(Frequency, ScalesWithLengthSectionAndMaterial) {
 INSTANTIATE_TEST_SUITE_P(Reduced, Frequency,
                          testing::Values("super_helix", "articulated_chain"));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_frequency

@@ -7,8 +7,7 @@
 #include "experiments/harness/strand_scenes.h"
 #include "tests/models/reduced/strand_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_newton {
 
 using namespace testing_support;
 
@@ -184,5 +183,4 @@ TEST_P(LargeSteps, OfTheSemiImplicitMethodAreNot) {
 INSTANTIATE_TEST_SUITE_P(Reduced, LargeSteps,
                          testing::Values("super_helix", "articulated_chain"));
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_newton

@@ -3,8 +3,7 @@
 #include "experiments/harness/strand_scenes.h"
 #include "tests/models/reduced/strand_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_planar {
 
 using namespace testing_support;
 
@@ -87,5 +86,4 @@ std::vector<Plane> planes() {
 INSTANTIATE_TEST_SUITE_P(Reduced, InThePlane, testing::ValuesIn(planes()),
                          [](const auto& tested) { return tested.param.name; });
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_planar

@@ -10,8 +10,7 @@
 #include "models/reduced/reduced_strand.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
-namespace tress {
-namespace {
+namespace tress::test_quadrature {
 
 using namespace testing_support;
 using std::numbers::pi;
@@ -117,5 +116,4 @@ TEST(Quadrature, TableOfErrors) {
   std::printf("\n");
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_quadrature

@@ -10,8 +10,7 @@
 #include "models/reduced/super_helix.h"
 #include "tests/models/reduced/strand_cases.h"
 
-namespace tress {
-namespace {
+namespace tress::test_solvers {
 
 using namespace testing_support;
 
@@ -340,5 +339,4 @@ TEST(LessImplicit, HandsOnNoStiffnessOfDistalSegments) {
   EXPECT_NEAR(twice - once, once - inertia, 1e-12 * twice);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_solvers

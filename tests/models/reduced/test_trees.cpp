@@ -12,8 +12,7 @@
 #include "models/reduced/trees.h"
 #include "tests/models/reduced/placed_tree.h"
 
-namespace tress {
-namespace {
+namespace tress::test_trees {
 
 using std::numbers::pi;
 
@@ -241,5 +240,4 @@ TEST(Trees, AllChoicesAreFoundAndOthersRefused) {
   EXPECT_THROW((void)tree_material("oak"), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_trees

@@ -8,8 +8,7 @@
 #include "models/strand/root_motion.h"
 #include "tests/models/strand/parameters_for.h"
 
-namespace tress {
-namespace {
+namespace tress::test_root_motion {
 
 using std::numbers::pi;
 using testing_support::root_choices;
@@ -200,5 +199,4 @@ TEST(RootMotion, RefusesWhatIsNoMotion) {
   EXPECT_THROW(stop(1, 0, -1), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_root_motion

@@ -7,8 +7,7 @@
 #include "models/input_error.h"
 #include "models/strand/signals.h"
 
-namespace tress {
-namespace {
+namespace tress::test_signals {
 
 using std::numbers::pi;
 
@@ -133,5 +132,4 @@ TEST(ThereAndBack, ReturnsToRest) {
   EXPECT_EQ(x(1).rate, 0);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_signals

@@ -7,8 +7,7 @@
 #include "models/input_error.h"
 #include "models/strand/strand.h"
 
-namespace tress {
-namespace {
+namespace tress::test_strand {
 
 using std::numbers::pi;
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -265,5 +264,4 @@ TEST(Strand, RefusesBadMaterialAndRoot) {
       "free root");
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_strand

@@ -8,8 +8,7 @@
 #include "models/strand/strand_parameters.h"
 #include "tests/models/strand/parameters_for.h"
 
-namespace tress {
-namespace {
+namespace tress::test_strand_parameters {
 
 using std::numbers::pi;
 using testing_support::root_choices;
@@ -234,5 +233,4 @@ TEST(StrandParameters, RefuseNumbersOutsideTheirMeaning) {
   EXPECT_THROW(strand(strand_parameters({{"poisson_ratio", "-1"}})), InputError);
 }
 
-}  // namespace
-}  // namespace tress
+}  // namespace tress::test_strand_parameters
