@@ -1,12 +1,17 @@
 # `cmake --install` and `find_package(tress)`. Headers keep their paths below include/tress,
-# so that #include "models/system.h" reads the same inside and outside this repository.
+# so that #include "contract/system.h" reads the same inside and outside this repository.
 # Nothing installed names a folder of the build: the libraries that static linking needs are
 # found again by tressConfig.cmake, and Eigen is used in our .cpp files only.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS tress_models tress_linear tress_integrators EXPORT tressTargets)
-install(DIRECTORY models integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
+set(tress_rooms math contract linear models integrators)
+if(TARGET tress_simulation)
+  list(APPEND tress_rooms simulation)
+endif()
+list(TRANSFORM tress_rooms PREPEND tress_ OUTPUT_VARIABLE tress_libraries)
+install(TARGETS ${tress_libraries} EXPORT tressTargets)
+install(DIRECTORY ${tress_rooms} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
         FILES_MATCHING PATTERN "*.h")
 
 set(tress_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tress)

@@ -90,7 +90,7 @@ function(tress_test name)
   endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "")
   add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(test_${name} PRIVATE tress_harness tress::integrators tress::models
+  target_link_libraries(test_${name} PRIVATE tress_numerics tress::integrators tress::models
                         GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE
                              TRESS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

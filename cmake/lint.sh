@@ -5,7 +5,7 @@ set -euo pipefail
 cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.."
 
 sources() {
-  find models integrators experiments tests -name node_modules -prune -o \
+  find math contract linear models integrators simulation experiments tests -name node_modules -prune -o \
     \( -name '*.h' -o -name '*.cpp' \) -print0
 }
 
@@ -18,6 +18,6 @@ case ${1:-} in
     run-clang-tidy -quiet -p "${2:?build tree}" \
       -extra-arg=-Wno-unknown-warning-option -extra-arg=-Wno-unused-command-line-argument \
       -extra-arg=-Wno-sign-conversion \
-      "$PWD/(models|integrators|experiments|tests)/" ;;
+      "$PWD/(math|contract|linear|models|integrators|simulation|experiments|tests)/" ;;
   *) echo "usage: cmake/lint.sh format|fix|shellcheck|tidy BUILD_TREE" >&2; exit 2 ;;
 esac

@@ -4,11 +4,11 @@
 #include <array>
 #include <vector>
 
+#include "contract/input_error.h"
+#include "contract/parameters.h"
 #include "integrators/formulation/relaxation.h"
 #include "integrators/methods.h"
 #include "integrators/sundials/factories.h"
-#include "models/input_error.h"
-#include "models/parameters.h"
 
 namespace tress {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "integrators/integrator.h"
+#include "contract/integrator.h"
 
 namespace tress {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrators/integrator.h"
+#include "contract/integrator.h"
 
 namespace tress {
 

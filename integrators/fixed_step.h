@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "contract/integrator.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/integrator.h"
 
 namespace tress {
 

@@ -7,9 +7,9 @@
 
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/linear/finite.h"
 #include "integrators/methods.h"
 #include "integrators/vector_ops.h"
+#include "linear/finite.h"
 
 namespace tress {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "integrators/integrator.h"
+#include "contract/integrator.h"
 
 /// The factories of our fixed-step methods, each in the file of its name. Order p means
 /// an error O(h^p) at a fixed time. z = h omega on the imaginary axis for stability

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "models/system.h"
+#include "contract/system.h"
 
 namespace tress {
 

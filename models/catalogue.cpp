@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/constrained/bead_on_wire.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/tinkertoys.h"
-#include "models/input_error.h"
-#include "models/maximal/corde.h"
 #include "models/maximal/der.h"
-#include "models/maximal/dynamic_spline.h"
 #include "models/maximal/kirchhoff_nodal.h"
 #include "models/maximal/mass_spring.h"
-#include "models/maximal/xpbd_cosserat.h"
 #include "models/published/andrews_squeezer.h"
 #include "models/published/beam.h"
 #include "models/published/double_pendulum.h"
 #include "models/published/slider_crank.h"
+#include "models/quaternion_rods/corde.h"
+#include "models/quaternion_rods/xpbd_cosserat.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
+#include "models/splines/dynamic_spline.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {

@@ -4,9 +4,9 @@
 #include <span>
 #include <string_view>
 
+#include "contract/parameters.h"
+#include "contract/system.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
-#include "models/system.h"
 
 namespace tress {
 

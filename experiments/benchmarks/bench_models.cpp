@@ -1,4 +1,4 @@
-// Every call of the contract (models/system.h) on every model of the catalogue: the
+// Every call of the contract (contract/system.h) on every model of the catalogue: the
 // chain, the beam and the strands over sizes, the others as they come. A new model is
 // measured by itself.
 #include <algorithm>

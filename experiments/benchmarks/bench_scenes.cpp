@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "experiments/benchmarks/fixture.h"
-#include "experiments/harness/timing.h"
-#include "experiments/scenes/world.h"
 #include "models/effects/gravity.h"
+#include "simulation/run/timing.h"
+#include "simulation/run/world.h"
 
 namespace tress {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "experiments/benchmarks/fixture.h"
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/problems/strand_scenes.h"
 #include "models/catalogue.h"
 #include "models/reduced/arc.h"
 #include "models/reduced/articulated_chain.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "experiments/harness/machine.h"
-#include "experiments/harness/sundials_speed.h"
+#include "experiments/run/machine.h"
+#include "experiments/run/sundials_speed.h"
 #include "integrators/formulation/dynamics.h"
 
 namespace tress {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/simulation.h"
+#include "simulation/run/simulation.h"
 
 /// What the benchmark programs share: systems in motion, and one way to run and report.
 namespace tress {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "experiments/cost_of_accuracy/study_table.h"
-#include "experiments/harness/strand_models.h"
+#include "experiments/problems/strand_models.h"
 
 namespace tress {
 namespace {

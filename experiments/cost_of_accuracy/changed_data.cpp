@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "experiments/harness/tip_track.h"
-#include "experiments/scenes/variants.h"
+#include "experiments/numerics/tip_track.h"
+#include "simulation/run/variants.h"
 
 namespace tress {
 

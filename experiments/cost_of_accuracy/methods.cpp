@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "experiments/harness/command_line.h"
-#include "experiments/harness/formulations.h"
-#include "experiments/harness/strand_models.h"
-#include "experiments/scenes/scene_tables.h"
-#include "experiments/scenes/world.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/run/command_line.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/scene_tables.h"
 
 namespace tress {
 namespace {

@@ -4,9 +4,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "experiments/harness/tip_track.h"
-#include "experiments/scenes/variants.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/tip_track.h"
+#include "simulation/run/variants.h"
 
 namespace tress {
 namespace {

@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "experiments/harness/csv.h"
-#include "experiments/harness/files.h"
-#include "experiments/harness/message.h"
-#include "experiments/harness/tip_track.h"
-#include "experiments/scenes/typical_strands.h"
-#include "experiments/scenes/variants.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/tip_track.h"
+#include "experiments/run/message.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/files.h"
+#include "simulation/run/typical_strands.h"
+#include "simulation/run/variants.h"
 
 namespace tress {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/cost_of_accuracy/scene_text.h"
-#include "experiments/harness/strand_reference.h"
+#include "experiments/problems/strand_reference.h"
 
 namespace tress {
 

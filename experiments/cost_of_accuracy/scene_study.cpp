@@ -8,14 +8,14 @@
 #include <optional>
 #include <stdexcept>
 
+#include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/advice.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_rows.h"
-#include "experiments/harness/message.h"
-#include "experiments/scenes/scene_tables.h"
-#include "models/input_error.h"
+#include "experiments/run/message.h"
+#include "simulation/scene/scene_tables.h"
 
 namespace tress {
 namespace {

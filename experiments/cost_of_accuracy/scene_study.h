@@ -5,7 +5,7 @@
 
 #include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
-#include "experiments/harness/experiment.h"
+#include "experiments/run/experiment.h"
 
 namespace tress {
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "experiments/harness/toml_text.h"
-#include "models/input_error.h"
-#include "models/read_file.h"
+#include "contract/input_error.h"
+#include "contract/read_file.h"
+#include "simulation/files/toml_text.h"
 
 namespace tress {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/simulation.h"
-#include "experiments/scenes/scene.h"
+#include "simulation/run/simulation.h"
+#include "simulation/scene/scene.h"
 
 namespace tress {
 

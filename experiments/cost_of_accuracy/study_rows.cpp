@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/cost_of_accuracy/study_table.h"
-#include "experiments/scenes/scene_tables.h"
+#include "simulation/scene/scene_tables.h"
 
 namespace tress {
 namespace {

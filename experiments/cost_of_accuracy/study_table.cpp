@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/harness/parse.h"
-#include "experiments/harness/strand_models.h"
+#include "experiments/problems/strand_models.h"
+#include "simulation/files/parse.h"
 
 namespace tress {
 namespace {

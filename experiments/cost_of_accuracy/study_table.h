@@ -3,7 +3,7 @@
 #include <span>
 
 #include "experiments/cost_of_accuracy/scene_text.h"
-#include "experiments/harness/row.h"
+#include "simulation/files/row.h"
 
 namespace tress {
 

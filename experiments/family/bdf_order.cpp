@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "experiments/family/study.h"
-#include "experiments/harness/tip_track.h"
+#include "experiments/numerics/tip_track.h"
 
 namespace tress::family {
 namespace {

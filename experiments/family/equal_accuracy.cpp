@@ -8,9 +8,9 @@
 #include <string>
 
 #include "experiments/family/study.h"
-#include "experiments/harness/cheapest_run.h"
-#include "experiments/harness/strand_reference.h"
-#include "experiments/harness/timing.h"
+#include "experiments/numerics/cheapest_run.h"
+#include "experiments/problems/strand_reference.h"
+#include "simulation/run/timing.h"
 
 namespace tress::family {
 namespace {

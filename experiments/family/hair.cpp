@@ -8,11 +8,11 @@
 #include <numeric>
 #include <string>
 
-#include "experiments/harness/strand_models.h"
-#include "experiments/scenes/random.h"
+#include "experiments/problems/strand_models.h"
 #include "models/catalogue.h"
 #include "models/effects/wind.h"
 #include "models/strand/strand_parameters.h"
+#include "simulation/scene/random.h"
 
 namespace tress::family {
 namespace {

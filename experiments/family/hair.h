@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/guard.h"
-#include "experiments/harness/row.h"
-#include "models/parameters.h"
-#include "models/system.h"
+#include "contract/parameters.h"
+#include "contract/system.h"
+#include "simulation/files/row.h"
+#include "simulation/run/guard.h"
 
 namespace tress::family {
 

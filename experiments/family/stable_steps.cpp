@@ -7,8 +7,8 @@
 #include <string>
 
 #include "experiments/family/study.h"
-#include "experiments/harness/stability.h"
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/numerics/stability.h"
+#include "experiments/problems/strand_scenes.h"
 
 namespace tress::family {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/family/hair.h"
-#include "experiments/harness/row.h"
+#include "simulation/files/row.h"
 
 namespace tress::family {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/row.h"
+#include "simulation/files/row.h"
 
 namespace tress::family {
 

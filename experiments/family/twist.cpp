@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "experiments/family/study.h"
-#include "experiments/harness/tip_track.h"
+#include "experiments/numerics/tip_track.h"
 
 namespace tress::family {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "experiments/harness/row.h"
-#include "experiments/harness/verdicts.h"
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
 
 namespace tress {
 

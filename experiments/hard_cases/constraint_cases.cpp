@@ -2,7 +2,7 @@
 #include <set>
 
 #include "experiments/hard_cases/gauges.h"
-#include "experiments/harness/strand_models.h"
+#include "experiments/problems/strand_models.h"
 
 namespace tress {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/harness/drift_monitor.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/drift_monitor.h"
+#include "math/closest.h"
 #include "models/effects/body.h"
-#include "models/input_error.h"
-#include "models/math/closest.h"
 
 namespace tress {
 namespace {

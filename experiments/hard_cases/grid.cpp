@@ -4,10 +4,10 @@
 #include <map>
 #include <string>
 
-#include "experiments/harness/model_variants.h"
-#include "experiments/harness/strand_models.h"
+#include "contract/input_error.h"
+#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

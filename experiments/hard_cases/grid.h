@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "experiments/hard_cases/survival.h"
-#include "experiments/harness/command_line.h"
-#include "experiments/harness/row.h"
-#include "experiments/harness/settings.h"
+#include "experiments/run/command_line.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/row.h"
 
 namespace tress {
 

@@ -1,8 +1,8 @@
 #include "experiments/hard_cases/hard_case.h"
 
-#include "experiments/harness/strand_models.h"
-#include "experiments/harness/strand_scenes.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/problems/strand_scenes.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress {

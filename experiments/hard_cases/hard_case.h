@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/simulation.h"
-#include "experiments/harness/stability.h"
+#include "experiments/numerics/stability.h"
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
+#include "simulation/run/simulation.h"
 
 namespace tress {
 

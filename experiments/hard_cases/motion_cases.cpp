@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "experiments/hard_cases/gauges.h"
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/problems/strand_scenes.h"
 #include "models/effects/tether.h"
 
 namespace tress {

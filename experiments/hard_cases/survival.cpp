@@ -5,10 +5,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "experiments/harness/formulations.h"
-#include "experiments/harness/method_run.h"
-#include "experiments/harness/tip_track.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/tip_track.h"
+#include "experiments/problems/formulations.h"
+#include "simulation/run/method_run.h"
 
 namespace tress {
 namespace {

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/experiment.h"
-#include "experiments/harness/message.h"
-#include "experiments/harness/settings.h"
-#include "experiments/harness/timing.h"
+#include "contract/input_error.h"
 #include "experiments/peers/peer.h"
-#include "models/input_error.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/message.h"
+#include "experiments/run/settings.h"
+#include "simulation/run/timing.h"
 
 namespace tress {
 namespace {

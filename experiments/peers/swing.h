@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 
 namespace tress::peers {
 

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/numerics.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/numerics.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 #include "models/effects/tether.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

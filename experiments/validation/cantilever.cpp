@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/validation/master_curve.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
+#include "experiments/validation/rods/master_curve.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 
 namespace tress {
 namespace {

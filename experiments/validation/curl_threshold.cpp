@@ -4,8 +4,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/numerics.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/numerics.h"
 
 namespace tress {
 namespace {

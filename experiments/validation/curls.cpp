@@ -6,9 +6,9 @@
 
 #include "experiments/validation/curl_threshold.h"
 #include "experiments/validation/helical_spring.h"
-#include "experiments/validation/numerics.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
+#include "experiments/validation/rods/numerics.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 
 namespace tress {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/validation/numerics.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/numerics.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 
 namespace tress {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/validation/numerics.h"
+#include "experiments/validation/rods/numerics.h"
 
 namespace tress {
 

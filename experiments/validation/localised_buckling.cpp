@@ -4,8 +4,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 
 namespace tress {
 namespace {

@@ -4,11 +4,11 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/validation/motion.h"
-#include "experiments/validation/numerics.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/signals.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/numerics.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/signals.h"
 
 namespace tress {
 namespace {

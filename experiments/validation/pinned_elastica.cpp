@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/validation/numerics.h"
+#include "experiments/validation/rods/numerics.h"
 
 namespace tress {
 

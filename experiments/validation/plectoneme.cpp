@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiments/validation/motion.h"
-#include "experiments/validation/numerics.h"
-#include "experiments/validation/rod.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/numerics.h"
+#include "experiments/validation/rods/rod.h"
 #include "models/effects/linear_drag.h"
 #include "models/effects/self_contact.h"
 #include "models/effects/tether.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

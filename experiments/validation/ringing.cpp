@@ -4,11 +4,11 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/harness/simulation.h"
-#include "experiments/validation/motion.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/signals.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/signals.h"
+#include "simulation/run/simulation.h"
 
 namespace tress {
 namespace {

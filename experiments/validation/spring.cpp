@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/validation/motion.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/signals.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/signals.h"
 #include "models/effects/gravity.h"
 
 namespace tress {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/parse.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/fit.h"
+#include "simulation/files/parse.h"
 
 namespace tress {
 namespace {

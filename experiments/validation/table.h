@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "experiments/harness/experiment.h"
-#include "experiments/harness/settings.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
 #include "experiments/validation/test.h"
 
 /// The table of validation: which rows there are and what they must show.

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/experiment.h"
-#include "experiments/harness/model_variants.h"
+#include "experiments/problems/model_variants.h"
+#include "experiments/run/experiment.h"
 
 namespace tress {
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include "contract/input_error.h"
+#include "contract/parameters.h"
 #include "experiments/validation/buckling.h"
 #include "experiments/validation/cantilever.h"
 #include "experiments/validation/chain.h"
@@ -14,8 +16,6 @@
 #include "experiments/validation/test.h"
 #include "experiments/validation/vibration.h"
 #include "experiments/validation/wisp.h"
-#include "models/input_error.h"
-#include "models/parameters.h"
 
 namespace tress {
 

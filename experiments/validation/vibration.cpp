@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/validation/beam_modes.h"
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
+#include "experiments/validation/rods/beam_modes.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
 
 namespace tress {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/validation/motion.h"
 #include "experiments/validation/pinned_elastica.h"
-#include "experiments/validation/rod.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/rod.h"
 #include "models/effects/linear_drag.h"
 #include "models/effects/tether.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/linear/finite.h"
+#include "linear/finite.h"
 
 namespace tress {
 namespace {

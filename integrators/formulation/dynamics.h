@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "integrators/integrator.h"
-#include "integrators/linear/kkt.h"
+#include "contract/integrator.h"
+#include "linear/kkt.h"
 
 namespace tress {
 

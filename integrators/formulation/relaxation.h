@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "integrators/integrator.h"
+#include "contract/integrator.h"
 
 namespace tress {
 

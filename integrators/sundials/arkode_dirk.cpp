@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "contract/input_error.h"
 #include "integrators/sundials/factories.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "integrators/linear/block_matrix.h"
-#include "integrators/linear/rank.h"
 #include "integrators/sundials/dae_form.h"
 #include "integrators/sundials/linear_adapter.h"
+#include "linear/block_matrix.h"
+#include "linear/rank.h"
 
 namespace tress {
 

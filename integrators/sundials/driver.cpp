@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 namespace {

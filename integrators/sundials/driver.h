@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "contract/integrator.h"
 #include "integrators/formulation/dynamics.h"
-#include "integrators/integrator.h"
 #include "integrators/sundials/sundials.h"
 
 namespace tress {

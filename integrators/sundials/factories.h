@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "integrators/integrator.h"
+#include "contract/integrator.h"
 
 /// The SUNDIALS integrators, for catalogue.cpp. Each throws InputError on options that it
 /// does not have (order, table, formulation).

@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "models/system.h"
+#include "contract/system.h"
 
 /// Ownership and return codes of SUNDIALS in one place. Everything that differs between
 /// 6.4 and 7.x stands below; the rest of this folder is written for both.

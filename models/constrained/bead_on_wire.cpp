@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 

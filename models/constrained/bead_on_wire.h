@@ -4,10 +4,10 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
 #include "models/constrained/curve.h"
 #include "models/constrained/particles.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
 
 namespace tress {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "models/system.h"
+#include "contract/system.h"
 
 namespace tress {
 

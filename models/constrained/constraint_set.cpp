@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "integrators/linear/sparse_pattern.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "linear/sparse_pattern.h"
 
 namespace tress {
 

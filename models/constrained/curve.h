@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 
 namespace tress {
 

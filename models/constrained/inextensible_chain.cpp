@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/input_error.h"
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "math/vec3.h"
 #include "models/constrained/constraint.h"
-#include "models/math/vec3.h"
 
 namespace tress {
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "math/vec3.h"
 #include "models/constrained/constraint.h"
 #include "models/constrained/curve.h"
-#include "models/math/vec3.h"
 
 namespace tress {
 

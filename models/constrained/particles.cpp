@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "integrators/linear/finite.h"
-#include "integrators/linear/sparse_pattern.h"
-#include "models/input_error.h"
-#include "models/not_finite.h"
+#include "contract/input_error.h"
+#include "linear/finite.h"
+#include "linear/sparse_pattern.h"
+#include "models/strand/not_finite.h"
 
 namespace tress {
 namespace {

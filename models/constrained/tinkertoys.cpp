@@ -6,11 +6,11 @@
 #include <numbers>
 #include <string>
 
+#include "contract/input_error.h"
 #include "models/constrained/angles.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

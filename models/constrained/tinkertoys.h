@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
 #include "models/constrained/particles.h"
-#include "models/parameters.h"
 
 namespace tress {
 

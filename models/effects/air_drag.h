@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
+#include "contract/parameters.h"
 #include "models/effects/air_law.h"
 #include "models/effects/effect.h"
 #include "models/effects/wind_field.h"
-#include "models/parameters.h"
 
 namespace tress {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "math/mat3.h"
 #include "models/effects/effect.h"
-#include "models/math/mat3.h"
 
 /// Laws of the force that air exerts on point i of a strand moving at u (m/s) relative to
 /// it. `slope` is dforce/du at a fixed tangent, `by_tangent` dforce/dt at a fixed u. A

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 namespace {

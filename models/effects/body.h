@@ -3,13 +3,12 @@
 #include <optional>
 #include <variant>
 
+#include "contract/parameters.h"
 #include "models/effects/body_contact.h"
 #include "models/effects/body_shapes.h"
 #include "models/effects/distance_grid.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
-#include "models/strand/geometry.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/mat3.h"
 #include "models/effects/body_shapes.h"
-#include "models/math/mat3.h"
 
 namespace tress {
 

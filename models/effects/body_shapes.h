@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/math/mat3.h"
+#include "math/mat3.h"
 
 /// Surfaces of bodies in their own frames, by the signed distance phi(x) from them (m,
 /// < 0 inside), its gradient (of length 1) and its second derivatives. All are finite

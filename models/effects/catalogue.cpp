@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/effects/constant_force.h"
 #include "models/effects/gravity.h"
@@ -12,7 +13,6 @@
 #include "models/effects/self_contact.h"
 #include "models/effects/tether.h"
 #include "models/effects/wind.h"
-#include "models/input_error.h"
 
 namespace tress {
 

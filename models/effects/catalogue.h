@@ -4,8 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
 
 namespace tress {
 

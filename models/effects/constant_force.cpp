@@ -1,6 +1,6 @@
 #include "models/effects/constant_force.h"
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 namespace {

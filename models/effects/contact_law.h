@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "models/math/vec3.h"
-#include "models/parameters.h"
+#include "contract/parameters.h"
+#include "math/vec3.h"
 
 namespace tress {
 

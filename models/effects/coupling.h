@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 
 namespace tress {
 

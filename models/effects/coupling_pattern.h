@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "contract/system.h"
 #include "models/effects/coupling.h"
-#include "models/system.h"
 
 namespace tress {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
-#include "models/input_error.h"
-#include "models/read_file.h"
+#include "contract/input_error.h"
+#include "contract/read_file.h"
 
 namespace tress {
 namespace {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/system.h"
+#include "math/vec3.h"
 #include "models/effects/coupling.h"
-#include "models/math/vec3.h"
-#include "models/system.h"
 
 namespace tress {
 

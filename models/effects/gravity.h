@@ -1,9 +1,9 @@
 #pragma once
 
+#include "contract/parameters.h"
+#include "math/vec3.h"
 #include "models/effects/effect.h"
-#include "models/math/vec3.h"
-#include "models/parameters.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 

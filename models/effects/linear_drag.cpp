@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "models/input_error.h"
-#include "models/math/vec3.h"
+#include "contract/input_error.h"
+#include "math/vec3.h"
 
 namespace tress {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 

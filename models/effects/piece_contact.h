@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "math/closest.h"
 #include "models/effects/contact_law.h"
 #include "models/effects/coupling.h"
-#include "models/math/closest.h"
 
 namespace tress {
 

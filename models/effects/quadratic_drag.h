@@ -3,9 +3,9 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 

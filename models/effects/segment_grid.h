@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "models/math/closest.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "math/closest.h"
 
 namespace tress {
 

@@ -3,11 +3,11 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
 #include "models/effects/contact_law.h"
 #include "models/effects/effect.h"
 #include "models/effects/piece_contact.h"
-#include "models/parameters.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 namespace {

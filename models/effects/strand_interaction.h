@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "contract/parameters.h"
 #include "models/effects/contact_law.h"
 #include "models/effects/effect.h"
 #include "models/effects/segment_grid.h"
-#include "models/parameters.h"
 
 namespace tress {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/input_error.h"
-#include "models/math/mat3.h"
+#include "contract/input_error.h"
+#include "math/mat3.h"
 
 namespace tress {
 namespace {

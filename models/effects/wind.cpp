@@ -1,7 +1,7 @@
 #include "models/effects/wind.h"
 
+#include "contract/input_error.h"
 #include "models/effects/air_drag.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "models/math/mat3.h"
+#include "math/mat3.h"
 
 /// Velocity fields of the air, w(t, x) in m/s. at(t) is the flow at one instant;
 /// a uniform flow never looks at x.

@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
-#include "integrators/linear/finite.h"
+#include "contract/input_error.h"
+#include "linear/finite.h"
 #include "models/effects/coupling_pattern.h"
-#include "models/input_error.h"
 
 namespace tress {
 namespace {

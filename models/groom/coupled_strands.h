@@ -3,11 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/block_matrix.h"
-#include "integrators/linear/linear_solver.h"
+#include "contract/parameters.h"
+#include "contract/system.h"
+#include "linear/block_matrix.h"
+#include "linear/linear_solver.h"
 #include "models/groom/strand_contacts.h"
-#include "models/parameters.h"
-#include "models/system.h"
 
 namespace tress {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "integrators/linear/finite.h"
+#include "linear/finite.h"
 
 namespace tress {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/block_matrix.h"
-#include "integrators/linear/linear_solver.h"
+#include "linear/block_matrix.h"
+#include "linear/linear_solver.h"
 #include "models/effects/coupling_pattern.h"
 
 namespace tress {

@@ -1,9 +1,9 @@
 #include "models/maximal/der.h"
 
+#include "contract/tangent_choice.h"
 #include "models/maximal/der_elasticity.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/strand/strand_parameters.h"
-#include "models/tangent_choice.h"
 
 namespace tress {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
 #include "models/maximal/maximal_system.h"
-#include "models/parameters.h"
 #include "models/strand/strand.h"
 
 namespace tress {

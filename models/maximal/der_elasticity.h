@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/math/pack.h"
+#include "math/pack.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "models/maximal/groups.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 
 namespace tress {
 
@@ -15,7 +15,7 @@ struct Placement {
 };
 
 /// The energy and friction of an Elasticity as those of strains s(z, clamp), for the
-/// ComplianceForm of models/system.h.
+/// ComplianceForm of contract/system.h.
 class StrainForm {
  public:
   virtual ~StrainForm() = default;

@@ -1,6 +1,6 @@
 #include "models/maximal/groups.h"
 
-#include "integrators/linear/sparse_pattern.h"
+#include "linear/sparse_pattern.h"
 
 namespace tress {
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "models/math/pack.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "math/pack.h"
 
 namespace tress {
 

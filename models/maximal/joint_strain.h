@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "models/math/frame.h"
-#include "models/math/pack.h"
+#include "math/frame.h"
+#include "math/pack.h"
 
 namespace tress {
 

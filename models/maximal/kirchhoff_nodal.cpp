@@ -1,11 +1,11 @@
 #include "models/maximal/kirchhoff_nodal.h"
 
-#include "models/input_error.h"
-#include "models/math/quaternion.h"
+#include "contract/input_error.h"
+#include "contract/tangent_choice.h"
+#include "math/quaternion.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/maximal/nodal_system.h"
 #include "models/strand/strand_parameters.h"
-#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <span>
 
+#include "contract/parameters.h"
+#include "contract/system.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
 #include "models/strand/strand.h"
-#include "models/system.h"
 
 namespace tress {
 

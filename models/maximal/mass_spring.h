@@ -4,10 +4,10 @@
 #include <span>
 #include <string>
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/spring_elasticity.h"
-#include "models/parameters.h"
 #include "models/strand/strand.h"
 
 namespace tress {

@@ -1,7 +1,7 @@
 // The ComplianceForm of maximal_system.h.
 #include <algorithm>
 
-#include "integrators/linear/finite.h"
+#include "linear/finite.h"
 #include "models/maximal/maximal_system.h"
 
 namespace tress {

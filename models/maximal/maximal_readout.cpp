@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "models/maximal/maximal_system.h"
-#include "models/not_finite.h"
+#include "models/strand/not_finite.h"
 
 namespace tress {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "integrators/linear/finite.h"
-#include "integrators/linear/sparse_pattern.h"
+#include "linear/finite.h"
+#include "linear/sparse_pattern.h"
 
 namespace tress {
 namespace {

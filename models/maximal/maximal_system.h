@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/kkt.h"
-#include "integrators/linear/linear_solver.h"
+#include "linear/kkt.h"
+#include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
 #include "models/maximal/coupled_solver.h"
@@ -46,7 +46,7 @@ struct MaximalStrand {
       Tangent::exact;  // stiff: loads as if the strand's tangent stood still
 };
 
-/// A strand of redundant coordinates behind the contract of models/system.h:
+/// A strand of redundant coordinates behind the contract of contract/system.h:
 ///
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///

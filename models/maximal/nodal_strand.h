@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "contract/parameters.h"
 #include "models/maximal/maximal_system.h"
-#include "models/parameters.h"
 #include "models/strand/geometry.h"
 #include "models/strand/strand.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "integrators/linear/finite.h"
-#include "integrators/linear/sparse_pattern.h"
-#include "models/not_finite.h"
+#include "linear/finite.h"
+#include "linear/sparse_pattern.h"
+#include "models/strand/not_finite.h"
 
 namespace tress {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/linear_solver.h"
+#include "linear/linear_solver.h"
+#include "math/dual.h"
 #include "models/effects/effect.h"
-#include "models/math/dual.h"
 #include "models/maximal/staggered_rod.h"
 
 namespace tress {
@@ -21,7 +21,7 @@ struct NodalParts {
   Effects effects;
 };
 
-/// Kirchhoff's equations in curvatures behind the contract of models/system.h.
+/// Kirchhoff's equations in curvatures behind the contract of contract/system.h.
 class NodalSystem final : public System,
                           private ExplicitForm,
                           private Energetics,

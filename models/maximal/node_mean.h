@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "models/math/vec3.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "math/vec3.h"
 
 namespace tress {
 

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "models/math/mat3.h"
+#include "math/mat3.h"
 
 namespace tress {
 

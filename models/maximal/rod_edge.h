@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "models/math/frame.h"
-#include "models/math/pack.h"
+#include "math/frame.h"
+#include "math/pack.h"
 
 namespace tress {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/math/frame.h"
+#include "math/frame.h"
 
 /// What the springs of a chain of points measure, each a function of neighbouring edges e
 /// (m). `value` is the definition, for any scalar; `gradient` and `hessian` are its

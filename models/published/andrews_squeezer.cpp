@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "contract/tangent_choice.h"
 #include "models/published/dense_system.h"
 #include "models/published/loop_closure.h"
-#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "models/math/banded_lu.h"
-#include "models/tangent_choice.h"
+#include "contract/tangent_choice.h"
+#include "math/banded_lu.h"
 
 namespace tress {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/math/dual.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "math/dual.h"
 
 namespace tress {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "models/system.h"
+#include "contract/system.h"
 
 namespace tress {
 

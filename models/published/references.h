@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "models/system.h"
+#include "contract/system.h"
 
 namespace tress {
 

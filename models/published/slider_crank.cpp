@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/tangent_choice.h"
 #include "models/published/dense_system.h"
-#include "models/tangent_choice.h"
 
 namespace tress {
 namespace {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
-#include "models/parameters.h"
-#include "models/system.h"
+#include "contract/parameters.h"
+#include "contract/system.h"
 
 namespace tress {
 

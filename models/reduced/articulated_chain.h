@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
+#include "contract/system.h"
 #include "models/reduced/reduced_strand.h"
-#include "models/system.h"
 
 namespace tress {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <type_traits>
 
-#include "models/math/lanes.h"
+#include "math/lanes.h"
 
 namespace tress {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/system.h"
+#include "contract/system.h"
 
 namespace tress {
 

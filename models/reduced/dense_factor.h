@@ -2,8 +2,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "integrators/linear/dense_lu.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "linear/dense_lu.h"
 
 namespace tress {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
+#include "contract/system.h"
 #include "models/reduced/reduced_strand.h"
-#include "models/system.h"
 
 namespace tress {
 
@@ -42,7 +42,8 @@ namespace tress {
 /// - M_ft^-1 K is far from normal: without gravity every mode keeps its size, and yet
 /// small
 ///   random motions of a straight hair in the plane gain energy by 25 times at 5
-///   segments, 400 at 10, a million at 40 within 0.1 s (experiments/force_transport.cpp);
+///   segments, 400 at 10, a million at 40 within 0.1 s
+///   (experiments/force_transport/main.cpp);
 /// - under gravity small oscillations about rest grow: two hanging links without springs
 ///   have omega^2 = (0.89 +- 0.22 i) g/l. No step size helps; damping has to.
 ///

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "contract/system.h"
 #include "models/reduced/helix.h"
 #include "models/strand/strand.h"
-#include "models/system.h"
 
 namespace tress {
 

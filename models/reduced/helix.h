@@ -1,7 +1,7 @@
 #pragma once
 
-#include "models/math/frame.h"
-#include "models/math/helix.h"
+#include "math/frame.h"
+#include "math/helix.h"
 
 namespace tress {
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <vector>
 
-#include "models/math/lanes.h"
+#include "contract/system.h"
+#include "math/lanes.h"
 #include "models/reduced/free_root.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/shapes.h"
 #include "models/strand/strand.h"
-#include "models/system.h"
 
 namespace tress {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "models/math/frame.h"
-#include "models/math/lanes.h"
+#include "math/frame.h"
+#include "math/lanes.h"
 
 namespace tress {
 

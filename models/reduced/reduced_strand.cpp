@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "models/input_error.h"
-#include "models/math/gauss_legendre.h"
+#include "contract/input_error.h"
+#include "math/gauss_legendre.h"
 #include "models/strand/geometry.h"
 
 namespace tress {

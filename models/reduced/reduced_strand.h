@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/parameters.h"
+#include "math/pack.h"
 #include "models/effects/effect.h"
-#include "models/math/pack.h"
-#include "models/parameters.h"
 #include "models/reduced/tree_solver.h"
 #include "models/strand/strand.h"
 

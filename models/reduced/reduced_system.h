@@ -4,17 +4,17 @@
 #include <cmath>
 #include <memory>
 
-#include "models/not_finite.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/tree_solver.h"
+#include "models/strand/not_finite.h"
 
 namespace tress {
 
 /// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
-/// BallLink), behind the contract of models/system.h. residual: Newton-Euler, O(N).
+/// BallLink), behind the contract of contract/system.h. residual: Newton-Euler, O(N).
 /// linearize and solve: the mass tangent, or the exact one, by the chosen method, or by
 /// `composite` where the strand touches itself. The acceleration of the explicit form
 /// comes from the recursion whatever the method.

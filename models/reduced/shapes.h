@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 #include "models/reduced/tree_tangent.h"
 
 namespace tress {

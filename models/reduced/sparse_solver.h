@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "integrators/linear/klu.h"
+#include "linear/klu.h"
 #include "models/reduced/tree_solver.h"
 
 namespace tress {

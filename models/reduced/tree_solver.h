@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "contract/system.h"
 #include "models/reduced/tree_tangent.h"
-#include "models/system.h"
 
 namespace tress {
 

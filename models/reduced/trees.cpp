@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "models/input_error.h"
-#include "models/math/helix.h"
-#include "models/parameters.h"
+#include "contract/input_error.h"
+#include "contract/parameters.h"
+#include "math/helix.h"
 
 namespace tress {
 namespace {

@@ -1,7 +1,7 @@
 #include "models/strand/geometry.h"
 
-#include "models/input_error.h"
-#include "models/math/helix.h"
+#include "contract/input_error.h"
+#include "math/helix.h"
 
 namespace tress {
 namespace {

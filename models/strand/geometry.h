@@ -6,13 +6,6 @@
 
 namespace tress {
 
-/// A cross-section of a strand in space: its centre (m) and its material frame, e0 the
-/// tangent.
-struct StrandPlace {
-  Vec x;
-  Frame frame;
-};
-
 /// The frame at `s` (m) of a helix of constant Darboux vector (1/m), in the components of
 /// the one at 0.
 Frame helix_turn(const Vec& darboux, double s);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 
 namespace tress {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 
 namespace tress {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "models/math/frame.h"
+#include "math/frame.h"
+#include "models/motion/root_motion.h"
 #include "models/strand/material.h"
-#include "models/strand/root_motion.h"
 
 namespace tress {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/input_error.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/input_error.h"
-#include "models/strand/signals.h"
+#include "models/motion/signals.h"
 
 namespace tress {
 namespace {

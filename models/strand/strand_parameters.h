@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/parameters.h"
 #include "models/effects/effect.h"
-#include "models/parameters.h"
 #include "models/strand/strand.h"
 
 namespace tress {

@@ -12,7 +12,7 @@ found=0
 # name of its file, for tests are compiled several at a time; a nested class belongs to the
 # header that declares it. clang-format puts what is at namespace scope in column 1.
 # shellcheck disable=SC2016  # awk expands it
-outside=$(cd "$repository" && find models integrators experiments tests -name node_modules \
+outside=$(cd "$repository" && find math contract linear models integrators simulation experiments tests -name node_modules \
   -prune -o -name '*.cpp' -print0 | xargs -0 awk '
     FNR == 1 || /^}  \/\/ namespace$/ { anonymous = 0 }
     /^namespace \{/ { anonymous = 1 }

@@ -5,9 +5,9 @@
 #include "integrators/catalogue.h"
 #include "integrators/formulation/dynamics.h"
 #include "models/effects/linear_drag.h"
+#include "models/motion/root_motion.h"
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
-#include "models/strand/root_motion.h"
 #include "tests/support/catalogue_cases.h"
 
 // Counts heap allocations by standing in for malloc and realloc; the sanitizers have

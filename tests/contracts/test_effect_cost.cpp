@@ -2,10 +2,10 @@
 // what it asks for, and nothing when there is none.
 #include <gtest/gtest.h>
 
-#include "experiments/harness/simulation.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/strand/strand.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::test_effect_cost {
 

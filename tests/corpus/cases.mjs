@@ -9,7 +9,8 @@ import {
 const readersOfScenes = {
   simulate: (file) => [file, '--out', 'out'],
   cost_of_accuracy: (file) => ['--scene', file, '--out', 't.csv'],
-  effect_audit: (file) => ['--set', `scenes=${file}`, '--out', 't.csv'],
+  stability_limit: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
 };
 const advise = (file) => ['--advise', file, '--out', 't.csv'];
 
@@ -92,11 +93,11 @@ function* options(programs) {
       '[settings]\nstep = nan', '[settings]\nstep = -1', '[settings]\nnone_such = 1',
       'quick = true\nfull = true', 'jobs = 3'].map((text) => [text, `${text}\n`])];
   for (const program of programs) {
-    if (program in readersOfScenes && program !== 'effect_audit') continue;
+    if (program === 'simulate') continue;  // has options of its own
     for (const [name, what] of wrong) {
       if (['nothing', 'blanks', 'a byte order mark'].includes(name)) continue;  // legal
       yield { program, kind: 'options file', name, files: { 'options.toml': what },
-        args: ['--scene', 'options.toml', '--out', 't.csv'] };
+        args: ['--options', 'options.toml', '--out', 't.csv'] };
     }
   }
 }
@@ -112,7 +113,7 @@ const ofAll = ['--elments 3', '--set', '--set x', '--set =1', '--set none_such=1
   '--timeout 1e-300', '--progress loud', '--quick --full', '--retry-failed', 'stray',
   '--out .', '--out none/t.csv', '--out /proc/t.csv', '--out /dev/full', '--out /dev/null',
   '--out loop', '--out loop/t.csv', '--out pipe', '--out file/t.csv', `--out ${'n'.repeat(300)}`,
-  '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--scene', '-x', '--', '-'];
+  '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--options', '-x', '--', '-'];
 const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads nan',
   '--hairs -1', '--hairs 1e308', '--hairs nan', '--progress loud', '--elments 3', '-x', '--out',
   'none.toml', 'scene.toml none.toml', 'scene.toml --out file', 'scene.toml --out loop',

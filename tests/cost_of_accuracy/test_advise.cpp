@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "experiments/harness/csv.h"
-#include "experiments/scenes/scene.h"
-#include "experiments/scenes/world.h"
+#include "simulation/files/csv.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/scene.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_advise {

@@ -6,8 +6,8 @@
 
 #include "experiments/cost_of_accuracy/changed_data.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
-#include "experiments/harness/tip_track.h"
-#include "experiments/scenes/typical_strands.h"
+#include "experiments/numerics/tip_track.h"
+#include "simulation/run/typical_strands.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_reference {

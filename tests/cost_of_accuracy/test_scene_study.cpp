@@ -9,9 +9,9 @@
 #include "experiments/cost_of_accuracy/advice.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/scene_study.h"
-#include "experiments/harness/tip_track.h"
-#include "experiments/scenes/variants.h"
+#include "experiments/numerics/tip_track.h"
 #include "integrators/error_indicator.h"
+#include "simulation/run/variants.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_study {

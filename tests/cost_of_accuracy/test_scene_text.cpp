@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/methods.h"
-#include "models/input_error.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_text {

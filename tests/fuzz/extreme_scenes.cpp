@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "experiments/harness/exit_code.h"
-#include "experiments/harness/files.h"
+#include "experiments/run/exit_code.h"
+#include "simulation/files/files.h"
 #include "tests/fuzz/limited_run.h"
 #include "tests/fuzz/random_scene.h"
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/files.h"
-#include "experiments/scenes/scene.h"
-#include "models/input_error.h"
-#include "tests/scenes/mutations.h"
+#include "contract/input_error.h"
+#include "simulation/files/files.h"
+#include "simulation/scene/scene.h"
+#include "tests/simulation/mutations.h"
 
 // fuzz_scene SECONDS SEED FOLDER: spoils the scenes of a folder, again and again, and
 // reads them. Ends with 1 on anything but a scene or an InputError; a crash or a hang (10

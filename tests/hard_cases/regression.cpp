@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "experiments/hard_cases/grid.h"
-#include "experiments/harness/csv.h"
-#include "experiments/harness/exit_code.h"
-#include "experiments/harness/files.h"
+#include "experiments/run/exit_code.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/files.h"
 
 namespace tress {
 namespace {

@@ -5,11 +5,11 @@
 #include <set>
 #include <string>
 
+#include "contract/input_error.h"
 #include "experiments/hard_cases/claims.h"
 #include "experiments/hard_cases/gauges.h"
 #include "experiments/hard_cases/grid.h"
 #include "models/effects/body.h"
-#include "models/input_error.h"
 
 namespace tress::test_hard_cases {
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/files.h"
-#include "experiments/harness/friction_fit.h"
-#include "experiments/harness/least_squares.h"
-#include "experiments/harness/records.h"
-#include "experiments/harness/tip_signal.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/calibrate/friction_fit.h"
+#include "experiments/calibrate/records.h"
+#include "experiments/numerics/least_squares.h"
+#include "experiments/numerics/tip_signal.h"
+#include "simulation/files/files.h"
 
 namespace tress::test_calibrate {
 

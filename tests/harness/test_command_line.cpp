@@ -1,11 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/harness/command_line.h"
-#include "experiments/harness/integrator_options.h"
-#include "experiments/harness/parse.h"
-#include "experiments/harness/settings.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/run/command_line.h"
+#include "experiments/run/settings.h"
+#include "integrators/integrator_options.h"
+#include "simulation/files/parse.h"
 
 namespace tress::test_command_line {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/friction_fit.h"
-#include "experiments/harness/friction_start.h"
-#include "experiments/harness/shipped_records.h"
-#include "experiments/harness/strand_models.h"
-#include "experiments/harness/tip_signal.h"
+#include "experiments/calibrate/friction_fit.h"
+#include "experiments/calibrate/friction_start.h"
+#include "experiments/calibrate/shipped_records.h"
+#include "experiments/numerics/tip_signal.h"
+#include "experiments/problems/strand_models.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress::test_friction_fit {

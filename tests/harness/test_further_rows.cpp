@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/csv.h"
+#include "simulation/files/csv.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_further_rows {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "experiments/harness/list.h"
+#include "experiments/run/list.h"
 
 namespace tress::test_list {
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/scaling_claims.h"
-#include "experiments/harness/scaling_grid.h"
-#include "experiments/harness/strand_models.h"
-#include "experiments/harness/strand_scenes.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/fit.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/problems/strand_scenes.h"
+#include "experiments/scaling/scaling_claims.h"
+#include "experiments/scaling/scaling_grid.h"
 #include "models/catalogue.h"
-#include "models/input_error.h"
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 

@@ -100,7 +100,7 @@ TEST_P(SharedOptions, ChooseRowsOrAreRefused) {
 
 TEST_P(SharedOptions, SeedAndRepeatAreReadOrRefused) {
   const std::string folder = TRESS_SOURCE_DIR "/experiments/";
-  const std::string source = contents(folder + GetParam() + ".cpp");
+  const std::string source = contents(folder + GetParam() + "/main.cpp");
   for (const Option& option : {Option{"seed", "2", ""}, Option{"repeat", "2", ""}}) {
     if (source.find("line." + option.name) != std::string::npos) continue;
     EXPECT_TRUE(refused(plan(GetParam(), "--" + option.name + " 2"), option))

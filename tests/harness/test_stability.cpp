@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "experiments/harness/stability.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/stability.h"
 #include "tests/support/small_systems.h"
 
 namespace tress::test_stability {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/drift_claims.h"
-#include "experiments/harness/stability_claims.h"
+#include "experiments/constraint_drift/drift_claims.h"
+#include "experiments/stability_limit/stability_claims.h"
 
 namespace tress::test_stability_claims {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/problems/strand_scenes.h"
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "experiments/harness/checksum.h"
-#include "experiments/harness/csv.h"
+#include "simulation/files/checksum.h"
+#include "simulation/files/csv.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_sweep {
@@ -362,7 +362,7 @@ TEST(Sweep, SceneFileSuppliesOptionsAndTheCommandLineWins) {
   Toy toy;
   toy.write("scene.toml",
             "title = \"two\"\nseed = 7\n[settings]\nparticles = 2\ndt = 0.25\n");
-  ASSERT_EQ(toy.run("--scene scene.toml --set dt=0.5 --out toy.csv").code, 0);
+  ASSERT_EQ(toy.run("--options scene.toml --set dt=0.5 --out toy.csv").code, 0);
   const CsvTable rows = table(toy, "toy.csv");
   EXPECT_THAT(cells(rows, "dt_s"), ElementsAre("0.5", "0.5"));
   EXPECT_EQ(nlohmann::json::parse(toy.read("toy.meta.json")).at("seed"), 7);

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/pareto.h"
-#include "experiments/harness/simulation.h"
-#include "experiments/harness/strand_reference.h"
-#include "experiments/harness/strand_scenes.h"
-#include "experiments/harness/swing_claims.h"
-#include "experiments/harness/swing_grid.h"
-#include "experiments/harness/tip_track.h"
+#include "experiments/numerics/pareto.h"
+#include "experiments/numerics/tip_track.h"
 #include "experiments/peers/swing.h"
+#include "experiments/problems/strand_reference.h"
+#include "experiments/problems/strand_scenes.h"
+#include "experiments/swing/swing_claims.h"
+#include "experiments/swing/swing_grid.h"
 #include "models/strand/strand_parameters.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::test_swing {
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/harness/csv.h"
-#include "experiments/harness/journal.h"
-#include "experiments/harness/reference.h"
-#include "experiments/harness/sundials_speed.h"
-#include "experiments/harness/timing.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/problems/reference.h"
+#include "experiments/run/journal.h"
+#include "experiments/run/sundials_speed.h"
+#include "simulation/files/csv.h"
+#include "simulation/run/timing.h"
 
 namespace tress::test_tables {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/strand_problems.h"
-#include "experiments/harness/work_precision_series.h"
+#include "experiments/problems/strand_problems.h"
+#include "experiments/work_precision/work_precision_series.h"
 
 namespace tress::test_work_precision {
 

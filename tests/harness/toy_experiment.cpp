@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "experiments/harness/experiment.h"
-#include "experiments/harness/message.h"
-#include "experiments/harness/settings.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/message.h"
+#include "experiments/run/settings.h"
 
 namespace tress {
 namespace {

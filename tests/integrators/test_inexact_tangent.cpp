@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/harness/formulations.h"
-#include "experiments/harness/simulation.h"
-#include "experiments/harness/strand_models.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/strand/strand_parameters.h"
+#include "simulation/run/simulation.h"
 
 // Where numbers stop being finite is named: which term, which place, which step.
 namespace tress::test_not_finite {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/pendulum_reference.h"
+#include "experiments/numerics/fit.h"
+#include "experiments/problems/pendulum_reference.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "tests/support/small_systems.h"

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <string_view>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/simulation.h"
+#include "experiments/numerics/fit.h"
 #include "integrators/formulation/projection.h"
 #include "integrators/formulation/relaxation.h"
-#include "models/math/vec3.h"
+#include "math/vec3.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::test_predictor_corrector {
 

@@ -4,8 +4,8 @@
 #include <ostream>
 #include <vector>
 
-#include "experiments/harness/drift_monitor.h"
-#include "experiments/harness/simulation.h"
+#include "experiments/numerics/drift_monitor.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::test_redundant {
 

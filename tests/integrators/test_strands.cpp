@@ -4,8 +4,8 @@
 #include <map>
 #include <ostream>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/strand_models.h"
+#include "experiments/numerics/fit.h"
+#include "experiments/problems/strand_models.h"
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
 

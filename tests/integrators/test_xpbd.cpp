@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/simulation.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/fit.h"
+#include "simulation/run/simulation.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "models/input_error.h"
-#include "models/parameters.h"
+#include "contract/input_error.h"
+#include "contract/parameters.h"
 
 namespace tress::test_parameters {
 

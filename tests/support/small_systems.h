@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/linear/linear_solver.h"
-#include "models/system.h"
+#include "contract/system.h"
+#include "linear/linear_solver.h"
 
 /// Systems small enough to check by hand, for tests of integrators.
 namespace tress::testing_support {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "models/math/dual.h"
+#include "math/dual.h"
 
 namespace tress::testing_support {
 

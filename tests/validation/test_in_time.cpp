@@ -9,7 +9,7 @@
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/pinned_elastica.h"
 #include "experiments/validation/ringing.h"
-#include "experiments/validation/rod.h"
+#include "experiments/validation/rods/rod.h"
 #include "experiments/validation/spring.h"
 #include "experiments/validation/stick_slip.h"
 #include "experiments/validation/wisp.h"

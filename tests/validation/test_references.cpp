@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/validation/beam_modes.h"
+#include "contract/input_error.h"
 #include "experiments/validation/curl_threshold.h"
 #include "experiments/validation/helical_spring.h"
 #include "experiments/validation/localised_buckling.h"
-#include "experiments/validation/master_curve.h"
-#include "experiments/validation/numerics.h"
-#include "models/input_error.h"
+#include "experiments/validation/rods/beam_modes.h"
+#include "experiments/validation/rods/master_curve.h"
+#include "experiments/validation/rods/numerics.h"
 
 /// References against values computed independently of this code: boundary-value problems
 /// on two meshes that agree to 1e-12, and published zeros.

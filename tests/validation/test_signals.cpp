@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/signals.h"
+#include "experiments/validation/rods/signals.h"
 
 namespace tress::test_signals {
 

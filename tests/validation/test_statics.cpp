@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "experiments/validation/rod.h"
-#include "experiments/validation/statics.h"
-#include "models/input_error.h"
-#include "models/math/gauss_legendre.h"
+#include "contract/input_error.h"
+#include "experiments/validation/rods/rod.h"
+#include "experiments/validation/rods/statics.h"
+#include "math/gauss_legendre.h"
 
 namespace tress::test_statics {
 

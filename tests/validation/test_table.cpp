@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "contract/input_error.h"
 #include "experiments/validation/table.h"
-#include "models/input_error.h"
 
 namespace tress::test_table {
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "integrators/sundials/factories.h"
-#include "models/input_error.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 

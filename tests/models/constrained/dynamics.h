@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/system.h"
+#include "contract/system.h"
 #include "tests/support/dense.h"
 
 namespace tress::testing_support {

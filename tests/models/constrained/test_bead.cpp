@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "models/catalogue.h"
 #include "models/constrained/bead_on_wire.h"
 #include "models/effects/linear_drag.h"
-#include "models/input_error.h"
 #include "tests/models/constrained/dynamics.h"
 
 namespace tress::test_bead {

@@ -3,10 +3,10 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "contract/input_error.h"
 #include "models/constrained/angles.h"
 #include "models/constrained/constraint_set.h"
 #include "models/constrained/on_curve.h"
-#include "models/input_error.h"
 #include "tests/support/variable.h"
 
 namespace tress::test_constraint_set {

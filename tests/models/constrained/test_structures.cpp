@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "models/catalogue.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/joints.h"
 #include "models/constrained/tinkertoys.h"
 #include "models/effects/gravity.h"
-#include "models/input_error.h"
 #include "tests/models/constrained/dynamics.h"
 
 namespace tress::test_structures {

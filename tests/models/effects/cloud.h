@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
+#include "math/mat3.h"
 #include "models/effects/effect.h"
-#include "models/math/mat3.h"
 
 namespace tress::testing_support {
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 
 /// Strands as wandering polylines that drift along, for tests of what they do to each
 /// other.

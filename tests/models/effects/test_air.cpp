@@ -3,11 +3,11 @@
 #include <map>
 #include <numbers>
 
+#include "contract/input_error.h"
 #include "models/effects/air_drag.h"
 #include "models/effects/gravity.h"
 #include "models/effects/quadratic_drag.h"
 #include "models/effects/wind.h"
-#include "models/input_error.h"
 #include "tests/models/effects/settle.h"
 
 namespace tress::test_air {

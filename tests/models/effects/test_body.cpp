@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/input_error.h"
 #include "tests/models/effects/settle.h"
 #include "tests/models/effects/sphere_grid.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/effects/contact_law.h"
-#include "models/input_error.h"
 #include "tests/support/catalogue_cases.h"
 
 namespace tress::test_contact_law {

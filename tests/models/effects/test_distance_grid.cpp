@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "models/effects/distance_grid.h"
-#include "models/input_error.h"
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "models/effects/catalogue.h"
-#include "models/strand/root_motion.h"
+#include "models/motion/root_motion.h"
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/input_error.h"
 
 namespace tress::test_effects {
 

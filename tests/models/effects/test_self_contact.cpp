@@ -4,9 +4,9 @@
 #include <numbers>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/effects/catalogue.h"
 #include "models/effects/self_contact.h"
-#include "models/input_error.h"
 #include "tests/support/catalogue_cases.h"
 
 namespace tress::test_self_contact {

@@ -5,8 +5,8 @@
 #include <thread>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/effects/strand_interaction.h"
-#include "models/input_error.h"
 #include "tests/models/effects/polylines.h"
 #include "tests/support/catalogue_cases.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "contract/input_error.h"
 #include "models/effects/tether.h"
-#include "models/input_error.h"
 #include "tests/models/effects/settle.h"
 
 namespace tress::test_tether {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "contract/input_error.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
-#include "models/input_error.h"
 #include "tests/models/groom/strands.h"
 #include "tests/support/tangent.h"
 

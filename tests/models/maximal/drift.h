@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "models/math/frame.h"
-#include "models/maximal/quaternion_rod.h"
+#include "math/frame.h"
+#include "models/quaternion_rods/quaternion_rod.h"
 #include "tests/support/variable.h"
 
 namespace tress::testing_support {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 #include "tests/support/tangent.h"
 

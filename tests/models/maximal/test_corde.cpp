@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "models/maximal/corde_edge.h"
+#include "models/quaternion_rods/corde_edge.h"
 #include "tests/models/maximal/quaternion_rods.h"
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
 #include "tests/models/maximal/clamped_modes.h"

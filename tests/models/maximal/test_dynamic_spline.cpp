@@ -2,10 +2,10 @@
 
 #include <cstdio>
 
-#include "experiments/harness/fit.h"
-#include "models/input_error.h"
-#include "models/maximal/cubic_spline.h"
-#include "models/maximal/spline_elasticity.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/fit.h"
+#include "models/splines/cubic_spline.h"
+#include "models/splines/spline_elasticity.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/points_after.h"

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "experiments/harness/dense_algebra.h"
-#include "experiments/harness/fit.h"
-#include "models/maximal/spline_strain.h"
+#include "experiments/numerics/dense_algebra.h"
+#include "experiments/numerics/fit.h"
+#include "models/splines/spline_strain.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/points_after.h"

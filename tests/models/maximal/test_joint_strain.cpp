@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "models/math/dual.h"
+#include "math/dual.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
 

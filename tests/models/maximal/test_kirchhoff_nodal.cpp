@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
-#include "experiments/harness/dense_algebra.h"
-#include "experiments/harness/fit.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/dense_algebra.h"
+#include "experiments/numerics/fit.h"
 #include "models/maximal/kirchhoff_nodal.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/thin_rod.h"

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "experiments/harness/dense_algebra.h"
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/dense_algebra.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/thin_rod.h"

@@ -2,13 +2,13 @@
 
 #include <cstdio>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/drift.h"
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"
 
-// What holds of every rod of models/maximal/quaternion_rod.h.
+// What holds of every rod of models/quaternion_rods/quaternion_rod.h.
 namespace tress::test_quaternion_rods {
 
 using namespace testing_support;

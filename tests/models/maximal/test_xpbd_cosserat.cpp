@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "experiments/harness/strand_models.h"
-#include "models/maximal/cosserat_edge.h"
+#include "experiments/problems/strand_models.h"
+#include "models/quaternion_rods/cosserat_edge.h"
 #include "tests/models/maximal/quaternion_rods.h"
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"

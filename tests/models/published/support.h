@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "experiments/harness/dense_algebra.h"
+#include "experiments/numerics/dense_algebra.h"
 #include "models/catalogue.h"
 
 namespace tress {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/math/helix.h"
+#include "math/helix.h"
 #include "models/reduced/trees.h"
 
 namespace tress {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "integrators/linear/kkt.h"
+#include "linear/kkt.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/harness/simulation.h"
 #include "models/strand/strand_parameters.h"
+#include "simulation/run/simulation.h"
 #include "tests/support/tangent.h"
 
 /// What the tests of reduced-coordinate strands share.

@@ -1,5 +1,5 @@
 // Which strands a batch takes, and what it makes of those that are not chains.
-#include "models/input_error.h"
+#include "contract/input_error.h"
 #include "tests/models/reduced/batch_strands.h"
 
 namespace tress::test_batch_strands {

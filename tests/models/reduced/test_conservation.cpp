@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::test_conservation {

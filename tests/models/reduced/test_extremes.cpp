@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "models/math/frame.h"
+#include "math/frame.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
 namespace tress::test_extremes {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "experiments/harness/linear_modes.h"
-#include "models/input_error.h"
+#include "contract/input_error.h"
+#include "experiments/numerics/linear_modes.h"
 #include "tests/models/reduced/kirchhoff.h"
 
 namespace tress::test_force_transport {

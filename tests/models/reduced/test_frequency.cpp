@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "experiments/harness/dense_algebra.h"
-#include "experiments/harness/fit.h"
+#include "experiments/numerics/dense_algebra.h"
+#include "experiments/numerics/fit.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
 namespace tress::test_frequency {

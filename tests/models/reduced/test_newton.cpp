@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
-#include "experiments/harness/fit.h"
-#include "experiments/harness/stability.h"
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/numerics/fit.h"
+#include "experiments/numerics/stability.h"
+#include "experiments/problems/strand_scenes.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::test_newton {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/problems/strand_scenes.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::test_planar {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "models/math/vec3.h"
+#include "math/vec3.h"
 #include "models/reduced/reduced_strand.h"
 #include "tests/models/reduced/static_equilibrium.h"
 

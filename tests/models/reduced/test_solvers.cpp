@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "experiments/harness/strand_scenes.h"
+#include "experiments/problems/strand_scenes.h"
 #include "models/effects/body.h"
 #include "models/effects/wind.h"
 #include "models/reduced/super_helix.h"

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 #include "models/reduced/trees.h"
 #include "tests/models/reduced/placed_tree.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/math/frame.h"
+#include "math/frame.h"
 #include "models/strand/geometry.h"
 #include "models/strand/strand_parameters.h"
 #include "tests/models/reduced/strand_cases.h"

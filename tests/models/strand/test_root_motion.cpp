@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "models/input_error.h"
-#include "models/strand/root_motion.h"
+#include "contract/input_error.h"
+#include "models/motion/root_motion.h"
 #include "tests/models/strand/parameters_for.h"
 
 namespace tress::test_root_motion {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "models/input_error.h"
-#include "models/strand/signals.h"
+#include "contract/input_error.h"
+#include "models/motion/signals.h"
 
 namespace tress::test_signals {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "models/input_error.h"
+#include "contract/input_error.h"
 #include "models/strand/strand_parameters.h"
 #include "tests/models/strand/parameters_for.h"
 

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "contract/linear_kind.h"
+#include "contract/system.h"
+
+namespace tress {
+
+/// How constraints enter the equations (shared by all integrators; see formulation/).
+enum class Formulation {
+  parametric,    // the model's coordinates satisfy the constraints, or it has none
+  acceleration,  // g'' = 0: index 1, drifts
+  baumgarte,     // g'' = -alpha g - beta g': index 1 with feedback
+  projection,    // g'' = 0, then q and v are projected after each step
+  index2_ggl,  // g = 0 and g' = 0 with a second multiplier (Gear, Gupta, Leimkuhler 1985)
+  index3,      // g = 0 as it stands
+  rattle,      // g = 0 and g' = 0 by half-step impulses (Andersen 1983)
+  correction,  // a step without constraints, then q moved onto g = 0 (Provot 1995)
+};
+std::string_view name(Formulation formulation);
+
+/// When an implicit method rebuilds its Newton matrix.
+enum class Refresh { every_iteration, every_step, when_slow };
+
+/// What moving q onto its constraints does to the velocity: it takes the impulse that
+/// would have moved it there [Bridson et al. 2002], or stays [Provot 1995].
+enum class Correction { impulse, position };
+
+/// In which order xpbd goes through the blocks of a strand: from the root to the tip, or
+/// from both ends in turn, even places upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+enum class SweepOrder { root_to_tip, bilateral };
+
+/// Everything an integrator can be told; each reads what applies to it.
+struct Options {
+  Formulation formulation = Formulation::parametric;
+  double alpha = 0;  // 1/s^2, Baumgarte's position gain
+  double beta = 0;   // 1/s, Baumgarte's velocity gain
+
+  double step = 1e-3;           // s, fixed-step methods
+  double rtol = 1e-6;           // adaptive methods
+  double atol = 1e-8;           // adaptive methods, times System::scale
+  double max_step = 0;          // s, 0: unlimited
+  long max_steps = 10'000'000;  // per advance; beyond it the run fails
+  double max_work = 0;          // since start(), as total_work() counts it; 0: unlimited
+
+  int max_order = 0;  // multistep order or Runge-Kutta order; 0: the method's default
+  std::string table;  // arkode_dirk: a SUNDIALS Butcher table by name; empty: our default
+  double rho_inf = 0.9;  // generalized_alpha: spectral radius at infinity, in [0, 1]
+
+  double newton_tolerance = 1e-10;  // largest correction over System::scale
+  int newton_iterations = 20;
+  Refresh refresh = Refresh::every_iteration;
+  /// IDA, CVODE, ARKODE: how far below the error test Newton's iteration goes. SUNDIALS'
+  /// own defaults (0.33, 0.1, 0.1; ask with 0) leave stale-matrix errors that break the
+  /// error test: on the pendulum 1e-2 is both more accurate and faster.
+  double newton_coefficient = 1e-2;
+
+  Correction correction = Correction::impulse;  // predictor_corrector
+  bool second_filter = true;  // predictor_corrector: the implicit solve that ends a step
+  double correction_tolerance = 1e-8;  // the same: largest |g| left, over its scale
+  int sweeps = 10;                     // xpbd: of Gauss-Seidel per step
+  SweepOrder sweep_order = SweepOrder::root_to_tip;
+
+  bool suppress_algebraic = true;  // IDA: multipliers out of the local error test
+  double multiplier_atol = 1e6;    // IDA: absolute tolerance of multipliers over atol
+
+  LinearKind linear = LinearKind::automatic;
+};
+
+/// Work done since start(); counts that a method does not have stay zero.
+struct Stats {
+  long steps = 0;
+  long rejected = 0;  // error-test and convergence failures that repeated a step
+  long residuals = 0;
+  long linearizations = 0;
+  long solves = 0;
+  long newton_iterations = 0;
+  long sweeps = 0;                   // over constraints that are met one by one
+  std::string_view solver = "none";  // the linear solver in use
+  int rank_deficiency = 0;           // redundant constraints met and solved around
+  double condition = 0;              // largest condition estimate met, 0: not estimated
+};
+
+/// What a run has cost, in a measure that depends on no clock: every residual, matrix,
+/// solve, sweep and step of n coordinates counts n + 10. A million takes
+/// 0.01 to 0.4 s, and some 3 s where the tangent is dense.
+inline double total_work(const Stats& done, int coordinates) {
+  const long calls =
+      done.residuals + done.linearizations + done.solves + done.sweeps + done.steps;
+  return static_cast<double>(calls) * (coordinates + 10.0);
+}
+
+/// Sees every accepted step; returning false stops the run (Status::fatal, "stopped").
+using Observer = std::function<bool(double t, In q, In v)>;
+
+/// One method bound to one system. The system outlives it and is not shared meanwhile.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Takes the state to start from; may be called again. The state need not satisfy the
+  /// constraints (recovery from violation is an experiment).
+  virtual Status start(double t, In q, In v) = 0;
+
+  /// Advances to t_end exactly. Not `ok`: failure() says what happened and when.
+  virtual Status advance(double t_end, const Observer& each_step = {}) = 0;
+
+  virtual double time() const = 0;
+  virtual In q() const = 0;
+  virtual In v() const = 0;
+  virtual Stats stats() const = 0;
+  virtual std::string failure() const = 0;
+};
+
+}  // namespace tress

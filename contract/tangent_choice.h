@@ -1,0 +1,18 @@
+#pragma once
+
+#include "contract/parameters.h"
+#include "contract/system.h"
+
+namespace tress {
+
+/// The catalogue parameter of models whose two tangents differ.
+inline constexpr Parameter tangent_parameter{
+    .name = "tangent",
+    .help = "terms of dr/dq, dr/dv: all, or mass and elastic stiffness only",
+    .choices = "exact|stiff"};
+
+inline Tangent tangent_choice(const Parameters& p) {
+  return p.word("tangent") == "stiff" ? Tangent::stiff : Tangent::exact;
+}
+
+}  // namespace tress

@@ -1,0 +1,46 @@
+#include "experiments/calibrate/calibrate_claims.h"
+
+#include <string>
+
+namespace tress {
+namespace {
+
+using calibrate::damping, calibrate::fitting;
+
+/// Known or inside its interval.
+bool holds(const Row& row, const std::string& name, const std::string& unit) {
+  const double truth = row.number(name + "_true" + unit);
+  return !row.has(name + "_low" + unit) || (row.number(name + "_low" + unit) <= truth &&
+                                            truth <= row.number(name + "_high" + unit));
+}
+
+}  // namespace
+
+void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
+  const std::size_t before = verdicts.all().size();
+  for (const Row& row : rows) {
+    if (!row.has("gamma_true_kg_m3_s") || row.text("model") != "super_helix") continue;
+    const std::string what =
+        std::string(row.text("data")) + ", fit of " + std::string(row.text("fit")) + ": ";
+    if (row.text("integrator") != fitting) {
+      if (row.text("integrator") != damping || row.text("data") != "two_lengths")
+        continue;
+      verdicts.check(what + std::string(row.text("integrator")) +
+                         "'s own damping is seen by halving the step",
+                     row.status() == "time_error", row.number("step_shift"));
+    } else if (row.text("data") == "one_length" && row.text("fit") == "both") {
+      verdicts.check(what + "one length cannot tell gamma from nu, and the row says so",
+                     row.status() == "not_identified", row.number("correlation"));
+    } else {
+      verdicts.check(
+          what + "the truth is inside the interval",
+          row.ok() && holds(row, "gamma", "_kg_m3_s") && holds(row, "nu", "_kg_m_s"),
+          row.number("gamma_kg_m3_s") / row.number("gamma_true_kg_m3_s"));
+    }
+  }
+  if (verdicts.all().size() == before) {
+    verdicts.not_judged("fits of simulated records by super_helix find the truth");
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/calibrate/records.h"
+#include "simulation/run/simulation.h"
+
+namespace tress {
+
+/// Records under experiments/calibrate/data, none of them measured: simulated with known
+/// friction and drag, to which errors were added. The strands are hairs of default
+/// material and section in a default scene but for `strand` and their lengths.
+struct ShippedRecords {
+  std::string_view name;  // experiments/calibrate/data/<name>.csv
+  std::string_view what;
+  Observed observed;
+  std::vector<double> lengths;  // m, one record each
+  ModelSettings strand;
+  bool planar;   // the motion stays in a plane
+  double t_end;  // s
+  int points;    // of each record; of an envelope the first so many swings
+  double sigma;  // m, Gaussian errors of zero mean, independent
+  std::uint64_t seed;
+  double gamma, nu;  // the truth, kg m^3/s and kg/(m s)
+  int made_with;     // elements
+  int elements;      // enough for a fit
+};
+
+std::span<const ShippedRecords> shipped_records();
+
+/// The place of its file in the source tree.
+std::string file_of(const ShippedRecords& shipped);
+
+/// Parameters of super_helix that see the strands of `shipped`, but for what the records
+/// themselves say.
+ModelSettings settings_of(const ShippedRecords& shipped, int elements);
+
+/// How the records came to be: super_helix of more elements than a fit takes by the
+/// implicit midpoint at 0.5 ms, and errors of GSL's mt19937.
+/// Another seed: another sample of the same errors.
+Records synthetic(const ShippedRecords& shipped, std::uint64_t seed);
+
+/// As a file: to 0.1 ms and 1 um.
+std::string csv_of(const ShippedRecords& shipped, const Records& records);
+
+}  // namespace tress

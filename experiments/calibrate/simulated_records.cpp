@@ -1,0 +1,46 @@
+#include "experiments/calibrate/simulated_records.h"
+
+#include "experiments/numerics/tip_signal.h"
+
+namespace tress {
+
+double weight(const Record& record, std::size_t k) {
+  return record.sigma.empty() ? 1 : 1 / (record.sigma[k] * record.sigma[k]);
+}
+
+/// Takes the weighted mean out of values of a record.
+void centre(const Record& record, std::vector<double>& values) {
+  double sum = 0, weights = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    sum += weight(record, k) * values[k];
+    weights += weight(record, k);
+  }
+  for (double& x : values) x -= sum / weights;
+}
+
+std::vector<std::vector<double>> simulated(const Records& records,
+                                           const ModelEntry& model,
+                                           const std::vector<Parameters>& strands,
+                                           const Watch& watch) {
+  // A swing that lasts beyond the last envelope is still seen whole.
+  const double longer = watch.observed == Observed::envelope ? 1.25 : 1;
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < records.all.size(); ++i) {
+    const Record& record = records.all[i];
+    const auto system = model.make(strands[i]);
+    Guard guard(*system, guarded_strands(model, strands[i]));
+    const TipSignal signal = run_tip_signal(watch.integrator, *system, watch.options,
+                                            watch.axis, longer * record.t.back(), &guard);
+    if (signal.status != Status::ok) return {};
+    if (watch.observed == Observed::envelope) {
+      all.push_back(envelope(signal, record.t));
+      if (all.back().empty()) return {};
+    } else {
+      all.push_back(displacement(signal, record.t));
+      centre(record, all.back());
+    }
+  }
+  return all;
+}
+
+}  // namespace tress

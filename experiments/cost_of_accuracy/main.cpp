@@ -1,0 +1,214 @@
+// For this scene and this wanted error: what is the cheapest configuration? And what is
+// the best accuracy for the time per frame that there is? With the price of every choice.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "experiments/cost_of_accuracy/accuracy_claims.h"
+#include "experiments/cost_of_accuracy/advice.h"
+#include "experiments/cost_of_accuracy/scene_study.h"
+#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/message.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/files.h"
+#include "simulation/files/parse.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter own_settings[] = {
+    {.name = "scenes",
+     .help = "scene files, as in scenes/a.toml,scenes/b.toml",
+     .text = true,
+     .fallback = "scenes/cantilever.toml,scenes/curly_clump_oscillation.toml,"
+                 "scenes/accuracy/fall_on_sphere.toml,scenes/accuracy/"
+                 "shaken_friction.toml,scenes/accuracy/side_wind.toml,"
+                 "scenes/accuracy/swing.toml,scenes/accuracy/whip.toml"},
+    {.name = "advise",
+     .help = "one scene file: says what to take, and writes it as a scene",
+     .text = true},
+    {.name = "accuracy",
+     .help = "wanted error over the length, 0: the usual list; with advise 0.01",
+     .number = 0,
+     .min = 0,
+     .max = 1},
+    {.name = "budget_ms",
+     .help = "wall time that there is per frame (ms), 0: not asked",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "fps",
+     .help = "frames per second (1/s)",
+     .number = 60,
+     .min = 1,
+     .max = 1e4},
+    {.name = "horizon_s",
+     .help = "time that is compared, at most the scene's (s)",
+     .number = 0.5,
+     .min = 1e-3,
+     .max = 1e3},
+    {.name = "strands",
+     .help = "of a groom so many typical strands are looked at",
+     .number = 1,
+     .min = 1,
+     .max = 1e4,
+     .whole = true},
+    {.name = "search_work",
+     .help = "of one scene's search, million elements x steps of all runs; 0: 2 with "
+             "--quick, else 30",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "reference_elements",
+     .help = "of the finest run of a reference; refined once more: twice as many",
+     .number = 160,
+     .min = 4,
+     .max = 1e4,
+     .whole = true},
+    {.name = "reference_substeps",
+     .help = "the same of steps per frame",
+     .number = 64,
+     .min = 2,
+     .max = 1e6,
+     .whole = true},
+    {.name = "references",
+     .help = "folder where references are kept",
+     .text = true,
+     .fallback = "results/reference"},
+};
+
+constexpr OwnOption own_options[] = {
+    {"scene", "scenes", "scene file to look at (several: a.toml,b.toml)", true},
+    {"advise", "advise",
+     "scene file: prints what to take, next best and what not to do; writes "
+     "<scene>.advised.toml next to --out",
+     true},
+    {"budget", "budget_ms",
+     "best accuracy for so many ms per frame (--set fps=30: of 30 a second)"},
+};
+
+constexpr double usual_targets[] = {0.1, 0.03, 0.01, 0.003, 0.001};
+constexpr double quick_targets[] = {0.1, 0.03, 0.01};
+constexpr double advised_target = 0.01;
+
+StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
+  StudyPlan plan;
+  const double accuracy = own.number("accuracy");
+  if (accuracy > 0) {
+    plan.targets = {accuracy};
+  } else if (!own.word("advise").empty()) {
+    plan.targets = {advised_target};
+  } else if (line.quick) {
+    plan.targets.assign(std::begin(quick_targets), std::end(quick_targets));
+  } else {
+    plan.targets.assign(std::begin(usual_targets), std::end(usual_targets));
+  }
+  plan.elements = {3, 4, 6, 9, 13, 19, 28, 42, 63};
+  plan.substeps = {1, 2, 4, 8, 16, 32, 64, 128};
+  plan.methods = {line.models, line.integrators, {}};
+  if (line.quick) {
+    if (line.models.empty()) {
+      plan.methods.models = {"super_helix", "articulated_chain", "der", "mass_spring",
+                             "dynamic_spline"};
+    }
+    if (line.integrators.empty()) {
+      plan.methods.integrators = {"semi_implicit_euler", "implicit_midpoint",
+                                  "linearly_implicit_midpoint"};
+    }
+    // Without torsion mass_spring does not hold the direction of curls.
+    plan.methods.options = {"modes=bend", "tangent=stiff", "torsion"};
+  }
+  if (!line.elements.empty()) plan.elements = line.elements;
+  plan.references = own.word("references");
+  plan.reference = {own.whole("reference_elements"), own.whole("reference_substeps")};
+  plan.rate = own.number("fps");
+  plan.horizon = own.number("horizon_s");
+  plan.strands = static_cast<std::size_t>(own.whole("strands"));
+  plan.search_work = 1e6 * own.number("search_work");
+  if (plan.search_work == 0) plan.search_work = line.quick ? 2e6 : 3e7;
+  plan.longest_run = line.quick ? 2048 : 8192;
+  plan.budget_s = 1e-3 * own.number("budget_ms");
+  plan.repeat = line.repeat;
+  // Whoever waits for an answer does not wait for a check of the reference.
+  plan.refine = own.word("advise").empty();
+  plan.report = !plan.refine && line.progress != ProgressMode::none;
+  return plan;
+}
+
+std::vector<std::string> scenes_of(const Parameters& own) {
+  if (!own.word("advise").empty()) return {std::string(own.word("advise"))};
+  return split(own.word("scenes"), ',', "scenes");
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, own_settings);
+  const StudyPlan plan = plan_of(line, settings.experiment());
+  std::vector<Case> all;
+  std::set<std::string> names;
+  for (const std::string& file : scenes_of(settings.experiment())) {
+    const SceneText text(file);
+    if (!names.insert(text.given().name).second) {
+      throw InputError("two scenes of one name", file, "rename one of them");
+    }
+    Row identity;
+    identity.set("scene", text.given().name);
+    all.push_back({identity, {}, [file, plan](const Row& row, const Deadline& deadline) {
+                     return study_scene(file, plan, row, deadline);
+                   }});
+  }
+  return all;
+}
+
+/// That the rod is not known well enough, or that nothing else does, is an answer.
+bool finding(const Row& row) {
+  return row.status() == "below_reference" || row.status() == "not_met" ||
+         row.status() == "diverged";
+}
+
+void advise(const CommandLine& line, const std::vector<Row>& rows) {
+  const Settings settings(line, own_settings);
+  const Parameters& own = settings.experiment();
+  const std::string file(own.word("advise"));
+  if (file.empty()) return;
+  std::string lines;
+  for (const std::string& one : advice(rows)) lines += one + '\n';
+  write_all(1, lines, "standard output");
+  const Row* best = advised(rows);
+  if (best == nullptr || line.out == "-") return;
+  const SceneText text(file);
+  const auto folder = std::filesystem::path(line.out).parent_path();
+  const std::string to = (folder / (text.given().name + ".advised.toml")).string();
+  replace_file(to, advised_text(text, *best, own.number("fps")));
+  tell("cost_of_accuracy: wrote {}\n", to);
+}
+
+constexpr Unused unused[] = {not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "cost_of_accuracy",
+      .question =
+          "for this scene and this wanted error: what is the cheapest "
+          "configuration?",
+      .example = "--advise scenes/cantilever.toml --set accuracy=0.01",
+      .quick_timeout_s = 600,
+      .columns = study_columns(),
+      .settings = own_settings,
+      .options = own_options,
+      .unused = unused,
+      .cases = cases,
+      .checks = check_accuracy_claims,
+      .finding = finding,
+      .conclude = advise};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,253 @@
+// Which effects of a scene change the result, by how much, and what does each cost?
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/parse.h"
+#include "simulation/run/numbers.h"
+#include "simulation/run/variants.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "name of the scene"},
+    {"effect", "what is left out; none: the scene as it is"},
+    {"accuracy_rel", "wanted accuracy of the tips, over the length"},
+    {"error_without_rel",
+     "how far the tips are from those of the whole scene when it is left out: rms over "
+     "frames and strands, over the length"},
+    {"change_error_rel",
+     "by how much that changes with twice the elements, half the step"},
+    {"discretisation_rel",
+     "how far the tips of the whole scene move with twice the elements, half the step"},
+    {"change_over_discretisation", "error_without_rel over discretisation_rel"},
+    {"error_alone_rel", "how far it alone takes the tips from those without any effect"},
+    {"cost_share", "part of the wall time that goes when it is left out", true},
+    {"cost_alone_share", "what it alone adds to the time without any effect", true},
+    {"wall_s",
+     "time of the whole scene: of the processor, or of short ones the median of repeats",
+     true},
+    {"load_over_weight", "its load, rms over frames and points, over the weight"},
+    {"gravito_bending", "rho g S L^3/(EI): weight over bending, first strand"},
+    {"inertia_bending", "rho a S L^3/(EI), a the root's rms acceleration"},
+    {"twist_bending", "GJ/(EI)"},
+    {"verdict", "keep, drop or too close to call, for this accuracy"},
+};
+
+constexpr std::string_view shipped_scenes =
+    "scenes/cantilever.toml,scenes/curly_clump_oscillation.toml,"
+    "scenes/hair_under_wind.toml,scenes/head_shaking.toml,"
+    "scenes/spring_experiment.toml,scenes/twist_experiment.toml";
+
+constexpr Parameter own_settings[] = {
+    {.name = "accuracy",
+     .help = "wanted accuracy of the tips over the length",
+     .number = 0.01,
+     .min = 1e-9,
+     .max = 10},
+    {.name = "strands",
+     .help = "of a groom without interaction so many strands are looked at",
+     .number = 8,
+     .min = 1,
+     .max = 1e6,
+     .whole = true},
+    {.name = "scenes",
+     .help = "scene files, as in scenes/a.toml,scenes/b.toml",
+     .text = true,
+     .fallback = shipped_scenes},
+};
+
+/// An effect is worth its cost when it changes more than is wanted and more than the
+/// discretisation does; the change itself is known as well as a finer run confirms it.
+std::string verdict(double change, double change_error, double discretisation,
+                    double accuracy) {
+  const double threshold = std::max(accuracy, discretisation);
+  if (change - change_error > threshold) return "keep";
+  if (change + change_error < threshold) return "drop";
+  return "too close to call";
+}
+
+constexpr OwnOption own_options[] = {
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+};
+
+void set_numbers(const Scene& scene, Row& row) {
+  const ScaleNumbers numbers = scale_numbers(scene);
+  row.set("gravito_bending", numbers.gravito_bending);
+  row.set("inertia_bending", numbers.inertia_bending);
+  row.set("twist_bending", numbers.twist_bending);
+}
+
+/// The refined scene as it is, which all rows of a scene are compared with; empty where
+/// it does not run: each row then says why.
+std::shared_ptr<const TipPaths> refined_whole(const Scene& scene) {
+  try {
+    return std::make_shared<const TipPaths>(tip_paths(refined(scene), 0));
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+struct Work {
+  Scene scene;
+  std::shared_ptr<const TipPaths> fine;
+  Ingredient ingredient;  // no name: the scene as it is
+  double accuracy;
+  int repeat;
+};
+
+void add_change(const Work& work, const TipPaths& whole, const TipPaths& whole_fine,
+                double discretisation, Row& row) {
+  const Scene& scene = work.scene;
+  const auto& left_out = work.ingredient.without;
+  TipPaths without, without_fine;
+  try {
+    without = tip_paths(left_out(scene), work.repeat);
+    without_fine = tip_paths(left_out(refined(scene)), 0);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& failure) {
+    row.set("verdict", "keep");  // at this step the scene does not even run without it
+    throw;
+  }
+  const double change = distance_rel(whole, without, scene);
+  const double change_error =
+      std::abs(change - distance_rel(whole_fine, without_fine, scene));
+  row.set("error_without_rel", change).set("change_error_rel", change_error);
+  row.set("change_over_discretisation", change / discretisation);
+  row.set("cost_share", 1 - without.wall_s / whole.wall_s);
+  row.set("verdict", verdict(change, change_error, discretisation, work.accuracy));
+}
+
+/// Left empty where the scene without the others does not run: one effect alone is no
+/// scene that anybody asked for.
+void add_alone(const Work& work, Row& row) {
+  if (!work.ingredient.alone) return;
+  try {
+    const TipPaths none = tip_paths(bare(work.scene), work.repeat);
+    const TipPaths alone = tip_paths(work.ingredient.alone(work.scene), work.repeat);
+    row.set("error_alone_rel", distance_rel(none, alone, work.scene));
+    row.set("cost_alone_share", alone.wall_s / none.wall_s - 1);
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void measure(const Work& work, Row& row) {
+  const Scene& scene = work.scene;
+  const TipPaths whole = tip_paths(scene, work.repeat);
+  const TipPaths whole_fine = work.fine ? *work.fine : tip_paths(refined(scene), 0);
+  const double discretisation = distance_rel(whole, whole_fine, scene);
+  row.set("wall_s", whole.wall_s).set("discretisation_rel", discretisation);
+  set_numbers(scene, row);
+  if (work.ingredient.name.empty()) return;
+
+  row.set("load_over_weight", load_over_weight(scene, work.ingredient.name));
+  add_alone(work, row);
+  add_change(work, whole, whole_fine, discretisation, row);
+}
+
+void run(const Work& work, Row& row) {
+  try {
+    measure(work, row);
+  } catch (const InputError& refused) {
+    row.failed("refused", refused.what());
+  } catch (const std::runtime_error& failure) {
+    row.failed("diverged", failure.what());
+  }
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, own_settings);
+  const double accuracy = settings.experiment().number("accuracy");
+  std::vector<Case> all;
+  const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
+  for (const std::string& file :
+       split(settings.experiment().word("scenes"), ',', "scenes")) {
+    const Scene scene = thinned(read_scene(file), strands);
+    if (scene.strands.empty()) {
+      throw InputError("nothing to leave out: the model brings its own effects", file,
+                       "give a scene with [strand] or [groom]");
+    }
+    std::vector<Ingredient> parts = ingredients(scene);
+    parts.insert(parts.begin(), Ingredient{});
+    const auto fine = line.dry_run ? nullptr : refined_whole(scene);
+    for (const Ingredient& part : parts) {
+      Row identity;
+      identity.set("scene", scene.name);
+      identity.set("effect", part.name.empty() ? "none" : part.name);
+      identity.set("accuracy_rel", accuracy);
+      const Work work{scene, fine, part, accuracy, line.repeat};
+      all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+    }
+  }
+  return all;
+}
+
+bool shows_all_shipped(const std::vector<Row>& rows) {
+  return std::ranges::all_of(
+      split(std::string(shipped_scenes), ',', "scenes"), [&](const std::string& file) {
+        const std::string scene = std::filesystem::path(file).stem().string();
+        return std::ranges::any_of(
+            rows, [&](const Row& row) { return row.text("scene") == scene; });
+      });
+}
+
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
+  int kept = 0, dropped = 0;
+  double wrong = 0;
+  for (const Row& row : rows) {
+    if (row.text("verdict") == "keep") ++kept;
+    if (row.text("verdict") != "drop") continue;
+    ++dropped;
+    const double threshold =
+        std::max(row.number("accuracy_rel"), row.number("discretisation_rel"));
+    wrong = std::max(wrong, row.number("error_without_rel") / threshold);
+  }
+  // Of other scenes these need not be true.
+  const bool shipped = shows_all_shipped(rows);
+  verdicts.check_found("some effect has to be kept", kept > 0, shipped, kept);
+  verdicts.check_found("some effect may be dropped", dropped > 0, shipped, dropped);
+  const std::string claim =
+      "none that is dropped changes more than the larger of accuracy and "
+      "discretisation";
+  if (dropped > 0) {
+    verdicts.check(claim, wrong <= 1, wrong);
+  } else {
+    verdicts.not_judged(claim);
+  }
+}
+
+/// A scene that does not run without one of its effects is an answer too.
+bool finding(const Row& row) { return row.text("effect") != "none"; }
+
+constexpr Unused unused[] = {{"models", "the scenes say theirs"},
+                             {"integrators", "the scenes say theirs"},
+                             {"elements", "the scenes say theirs"},
+                             not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "effect_audit",
+      .question = "which effects of a scene change the result, and what does each cost?",
+      .example = "--set scenes=scenes/head_shaking.toml --set accuracy=0.01",
+      .columns = columns,
+      .settings = own_settings,
+      .options = own_options,
+      .unused = unused,
+      .cases = cases,
+      .checks = judge,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,111 @@
+// Do the statements of the README hold for one hair or for hair? Each is tested on a
+// family of hairs over length, thickness, stiffness, section, curl, friction and drive.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/family/study.h"
+#include "experiments/family/summary.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/files.h"
+
+namespace tress::family {
+namespace {
+
+constexpr Parameter settings[] = {
+    {.name = "hairs",
+     .help = "members of the family, 0: 48, with --full 144",
+     .number = 0,
+     .min = 0,
+     .max = 100'000,
+     .whole = true},
+    {.name = "study",
+     .help = "rows of one piece of work",
+     .choices = "all|stable_steps|twist|bdf_order|equal_accuracy"},
+};
+
+std::vector<Column> columns_of_table() {
+  std::vector<Column> all = {{"study", "the piece of work"},
+                             {"claim", "the statement that the row tests"},
+                             {"hair", "number of the hair in the family"}};
+  for (const Column& column : hair_columns()) all.push_back(column);
+  all.insert(all.end(),
+             {{"value", "what decides; family_summary.csv says what it is"},
+              {"holds", "whether the claim holds for this hair"},
+              {"elements", "of all models of the row"},
+              {"reduced",
+               "what value compares, of the model of reduced coordinates: the "
+               "largest stable step (s), or elements"},
+              {"maximal", "the same of der"},
+              {"gap", "what the answer is uncertain by, relative to the length"}});
+  return all;
+}
+
+int hairs_of(const CommandLine& line, const Parameters& own) {
+  if (own.whole("hairs") > 0) return own.whole("hairs");
+  return line.full ? 144 : 48;
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings checked(line, settings);
+  const Parameters& own = checked.experiment();
+  std::vector<Case> all;
+  for (const Study& study : studies()) {
+    if (own.word("study") != "all" && own.word("study") != study.id) continue;
+    for (const Hair& hair : latin_hypercube(hairs_of(line, own), line.seed)) {
+      Row identity;
+      identity.set("study", study.id).set("hair", hair.number);
+      hair.describe(identity);
+      const auto run = study.run;
+      all.push_back({identity, {}, [hair, run](const Row& row, const Deadline&) {
+                       return run(hair, row);
+                     }});
+    }
+  }
+  return all;
+}
+
+void write_summary(const CommandLine& line, const std::vector<Row>& rows) {
+  if (line.out == "-") return;
+  std::vector<std::string> names;
+  for (const Column& column : summary_columns()) names.emplace_back(column.name);
+  std::string csv = csv_line(names);
+  for (const Row& row : summarize(rows)) csv += csv_line(in_order(row, names));
+  replace_file(beside(line.out, "_summary.csv"), csv);
+}
+
+/// Studies whose hairs gave no answer count them.
+bool finding(const Row& row) {
+  constexpr std::array without_answer{"unresolved", "no_reference", "not_met",
+                                      "solver_error"};
+  return std::ranges::find(without_answer, row.status()) != without_answer.end();
+}
+
+constexpr Unused unused[] = {{"models", "each study compares its own"},
+                             {"integrators", "each study compares its own"},
+                             {"elements", "each study compares its own"},
+                             not_repeated};
+
+}  // namespace
+}  // namespace tress::family
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const std::vector<Column> columns = family::columns_of_table();
+  const Experiment experiment{
+      .name = "family",
+      .question = "for which hairs do the statements about one hair hold?",
+      .example = "--set hairs=96 --set study=twist",
+      .timed = false,
+      .quick_timeout_s = 600,  // for hangs only: steps bound the work
+      .columns = columns,
+      .settings = family::settings,
+      .unused = family::unused,
+      .cases = family::cases,
+      .finding = family::finding,
+      .conclude = family::write_summary};
+  return run_experiment(experiment, argc, argv);
+}

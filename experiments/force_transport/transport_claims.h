@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
+
+namespace tress {
+
+/// The models that the experiment force_transport compares, and the second seed's E.
+namespace transport {
+inline constexpr std::string_view ours = "force_transport", theirs = "corde",
+                                  chain = "articulated_chain", rod = "super_helix";
+inline constexpr double seed_hair = 1e6;  // Pa
+}  // namespace transport
+
+/// Fills the columns that compare a row with the same of another model: corde's, the
+/// rod's, articulated_chain's.
+void compare_with_corde(std::vector<Row>& rows);
+
+/// What the table shows of force_transport, claim by claim.
+void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+}  // namespace tress

@@ -1,0 +1,138 @@
+// Which model by which integrator survives which hard case, and at which step? Each case
+// has a reason why it is hard, and a criterion from physics that a right answer meets.
+#include <memory>
+#include <vector>
+
+#include "experiments/hard_cases/claims.h"
+#include "experiments/hard_cases/grid.h"
+#include "experiments/run/experiment.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"case", "name of the situation"},
+    {"model", "catalogue id"},
+    {"variant", "which of its choices: tangent, how it keeps lengths, structure"},
+    {"integrator", "method"},
+    {"dt_s", "its step"},
+    {"formulation", "how constraints enter, where there are some"},
+    {"outcome", "refused, not finished, unstable, stable, stable and accurate"},
+    {"measure_name", "what the criterion looks at"},
+    {"measure", "its value, the largest of the run"},
+    {"limit", "the criterion is measure <= limit"},
+    {"criterion", "the same in words, and why"},
+    {"passed", "stable, at least"},
+    {"error_rel", "of the tip, root mean square over the horizon, over the length"},
+    {"error_limit", "accurate: error <= error_limit"},
+    {"reference_gap", "of the reference to itself at twice the step, as error_rel"},
+    {"why", "it is no better: what was refused, what broke and when"},
+    {"t_s", "time simulated"},
+    {"steps", "steps done"},
+    {"newton_iterations", "linear solves"},
+    {"wall_s", "wall time of the run, and of its reference in the row that made it",
+     true},
+};
+
+/// What a row may do, and within it the reference that it makes for all rows of its case
+/// and model.
+struct Budget {
+  WorkLimit row, reference;
+  double patience;  // s, for a reference that another row makes
+};
+
+Budget budget_of(const CommandLine& line) {
+  const double times = line.quick ? 1 : 120;
+  return {{times * quick_row.most}, {times * quick_reference.most}, 0.6 * line.timeout_s};
+}
+
+void measure(const Cell& cell, References& references, const Budget& budget,
+             double coarser, Row& row) {
+  const HardCase& hard = *cell.attempt.hard;
+  row.set("measure_name", hard.measure);
+  row.set("limit", hard.limit).set("criterion", hard.criterion);
+  row.set("error_limit", largest_error);
+  const Survival s = survive(cell.attempt, budget.row, [&] {
+    return references.get(cell.reference, budget.patience, [&] {
+      return reference(hard, cell.compared, cell.attempt.defaults, cell.attempt.options,
+                       coarser, budget.reference);
+    });
+  });
+  row.set("wall_s", s.wall_s);
+  row.set("outcome", name(s.outcome)).set("passed", passed(s.outcome));
+  if (!s.why.empty()) row.set("why", s.why);
+  if (!s.formulation.empty()) row.set("formulation", s.formulation);
+  if (s.measure) row.set("measure", *s.measure);
+  if (s.error) row.set("error_rel", *s.error);
+  if (s.gap) row.set("reference_gap", *s.gap);
+  if (s.outcome != Outcome::refused) {
+    row.set("t_s", s.t).set("steps", s.stats.steps);
+    row.set("newton_iterations", s.stats.newton_iterations);
+  }
+  if (!passed(s.outcome)) row.failed(name(s.outcome), s.why);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, hard_case_settings());
+  const Grid grid = hard_grid(line, settings);
+  const auto references = std::make_shared<References>(grid.references);
+  const Budget budget = budget_of(line);
+  const double coarser = line.quick ? 2 : 1;
+  std::vector<Case> all;
+  for (const Cell& cell : grid.cells) {
+    all.push_back(
+        {cell.identity(), [cell, references, budget, coarser](Row& row, const Deadline&) {
+           measure(cell, *references, budget, coarser, row);
+         }});
+  }
+  return all;
+}
+
+/// A row that was killed or that crashed says so.
+void fill(std::vector<Row>& rows) {
+  for (Row& row : rows) {
+    if (!row.text("outcome").empty()) continue;
+    const bool late = row.status() == "timeout";
+    row.set("outcome", name(late ? Outcome::not_finished : Outcome::unstable));
+    row.set("passed", false).set("why", row.text("reason"));
+  }
+}
+
+std::vector<Gloss> glossary() {
+  std::vector<Gloss> all;
+  for (const HardCase& hard : hard_cases()) {
+    all.push_back(
+        {"case", hard.name, {{"hard_because", hard.why}, {"criterion", hard.criterion}}});
+  }
+  return all;
+}
+
+/// What does not survive is what is looked for.
+bool finding(const Row& row) { return row.status() != "crashed"; }
+
+constexpr Unused unused[] = {
+    {"elements", "how many there are belongs to each case"}, not_repeated, not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "hard_cases",
+      .question =
+          "which model by which integrator survives which hard case, at which "
+          "step?",
+      .example = "--models super_helix,der --set case=violent_shake",
+      .timed = false,
+      .quick_timeout_s = 120,  // an emergency: its work bounds a row
+      .columns = columns,
+      .settings = hard_case_settings(),
+      .unused = unused,
+      .cases = cases,
+      .derive = fill,
+      .checks = check_hard_cases,
+      .glossary = glossary,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

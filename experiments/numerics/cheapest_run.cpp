@@ -1,0 +1,41 @@
+#include "experiments/numerics/cheapest_run.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tress {
+namespace {
+
+constexpr double little_gain = 0.8;
+
+// Errors this many times the target need not fall with the step yet: all is damped away.
+constexpr double far = 10;
+
+}  // namespace
+
+Cheapest cheapest_run(const CheapSearch& search,
+                      const std::function<CheapRun(int elements, double dt)>& run) {
+  std::optional<CheapRun> best;
+  double spent = 0;
+  for (const int elements : search.elements) {
+    double last = std::numeric_limits<double>::infinity();
+    for (double dt = search.coarsest; dt >= search.finest; dt /= 2) {
+      if (spent >= search.most_work) return {best, false};
+      const CheapRun found = run(elements, dt);
+      spent += found.work;
+      if (!std::isfinite(found.error)) continue;  // too long a step
+      if (found.error <= search.target) {
+        if (!best || found.work < best->work) best = found;
+        break;
+      }
+      const bool too_dear = best && found.work > best->work;
+      const bool of_space =
+          found.error > little_gain * last && found.error < far * search.target;
+      if (too_dear || of_space) break;
+      last = found.error;
+    }
+  }
+  return {best, true};
+}
+
+}  // namespace tress

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "contract/system.h"
+
+namespace tress {
+
+/// Watches a run for what constraints and energy do; an Observer that never allocates.
+/// Parametric systems have no constraints: their violation is zero by construction.
+class DriftMonitor {
+ public:
+  /// `escape` (m): a violation beyond it ends the run as diverged.
+  DriftMonitor(System& system, In q, In v, double escape);
+
+  bool operator()(double t, In q, In v);
+
+  double g_max() const { return g_max_; }
+  double g_final() const { return g_final_; }
+  double g_rate_max() const { return g_rate_max_; }
+  /// Largest |E - E_start| of a conservative system over the
+  /// energy scale (largest kinetic energy met); NaN when the system has no energetics.
+  double energy_drift() const;
+  /// Largest |length/rest - 1| of a piece of the body; NaN when the system does not say.
+  double length_error() const { return length_error_; }
+  bool escaped() const { return escaped_; }
+
+  /// The last time at which the violation was above `threshold`; set before the run.
+  void watch_recovery(double threshold) { threshold_ = threshold; }
+  double recovery_time() const { return recovery_time_; }
+  /// Largest violation of the sign opposite to the initial one, over the initial one.
+  double overshoot() const { return overshoot_; }
+
+ private:
+  ConstraintForm* constraints_;
+  Energetics* energetics_;
+  MaterialPoints* points_;
+  double escape_;
+  std::vector<double> g_, g_dot_, g_start_;
+  double g_max_ = 0, g_final_ = 0, g_rate_max_ = 0;
+  double energy_start_ = 0, energy_error_ = 0, kinetic_max_ = 0;
+  double threshold_ = 0, recovery_time_ = 0, overshoot_ = 0;
+  double length_error_ = 0;
+  bool escaped_ = false;
+};
+
+}  // namespace tress

@@ -1,0 +1,195 @@
+#include "experiments/numerics/least_squares.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit_nlinear.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+namespace tress {
+namespace {
+
+constexpr int most_iterations = 60;
+constexpr double out_of_reach = 1e6;  // a residual where there is none: never accepted
+
+template <class T, void (*release)(T*)>
+struct Release {
+  void operator()(T* pointer) const { release(pointer); }
+};
+using Workspace =
+    std::unique_ptr<gsl_multifit_nlinear_workspace,
+                    Release<gsl_multifit_nlinear_workspace, gsl_multifit_nlinear_free>>;
+using Matrix = std::unique_ptr<gsl_matrix, Release<gsl_matrix, gsl_matrix_free>>;
+using Vector = std::unique_ptr<gsl_vector, Release<gsl_vector, gsl_vector_free>>;
+
+/// What GSL calls; it is C, so exceptions wait until it has returned.
+struct Problem {
+  const ResidualAt& residual;
+  double difference;
+  std::vector<double> x, r, back;
+  int evaluations = 0;
+  std::exception_ptr thrown;
+
+  bool evaluate(Out r_out) {
+    ++evaluations;
+    try {
+      return residual(x, r_out);
+    } catch (...) {
+      thrown = std::current_exception();
+      return false;
+    }
+  }
+  void take(const gsl_vector* from) {
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = gsl_vector_get(from, j);
+  }
+
+  static int value(const gsl_vector* x, void* self_pointer, gsl_vector* f) {
+    auto& self = *static_cast<Problem*>(self_pointer);
+    self.take(x);
+    const bool there = self.evaluate(self.r);
+    if (self.thrown) return GSL_EFAILED;
+    for (std::size_t i = 0; i < self.r.size(); ++i) {
+      gsl_vector_set(f, i, there ? self.r[i] : out_of_reach);
+    }
+    return GSL_SUCCESS;
+  }
+
+  static int slopes(const gsl_vector* x, void* self_pointer, gsl_matrix* jacobian) {
+    auto& self = *static_cast<Problem*>(self_pointer);
+    self.take(x);
+    for (std::size_t j = 0; j < self.x.size(); ++j) {
+      const double at = self.x[j];
+      self.x[j] = at + self.difference;
+      bool there = self.evaluate(self.r);
+      self.x[j] = at - self.difference;
+      there = there && self.evaluate(self.back);
+      self.x[j] = at;
+      if (!there) return GSL_EFAILED;
+      for (std::size_t i = 0; i < self.r.size(); ++i) {
+        gsl_matrix_set(jacobian, i, j,
+                       (self.r[i] - self.back[i]) / (2 * self.difference));
+      }
+    }
+    return GSL_SUCCESS;
+  }
+};
+
+/// (J^T J)^-1 = V S^-2 V^T and the ratio of the singular values S of J = U S V^T.
+void add_covariance(LeastSquares& fit, const gsl_matrix& jacobian) {
+  const std::size_t n = jacobian.size1, p = jacobian.size2;
+  const Matrix u(gsl_matrix_alloc(n, p)), v(gsl_matrix_alloc(p, p));
+  const Vector s(gsl_vector_alloc(p)), work(gsl_vector_alloc(p));
+  gsl_matrix_memcpy(u.get(), &jacobian);
+  gsl_linalg_SV_decomp(u.get(), v.get(), s.get(), work.get());
+  const double largest = gsl_vector_get(s.get(), 0);
+  const double smallest = gsl_vector_get(s.get(), p - 1);
+  const double rounding =
+      largest * static_cast<double>(n) * std::numeric_limits<double>::epsilon();
+  fit.condition = std::numeric_limits<double>::infinity();
+  if (!(smallest > rounding)) return;
+  fit.condition = largest / smallest;
+  fit.covariance.resize(p * p);
+  for (std::size_t i = 0; i < p; ++i) {
+    for (std::size_t j = 0; j < p; ++j) {
+      for (std::size_t k = 0; k < p; ++k) {
+        const double sigma = gsl_vector_get(s.get(), k);
+        fit.covariance[i * p + j] += gsl_matrix_get(v.get(), i, k) *
+                                     gsl_matrix_get(v.get(), j, k) / (sigma * sigma);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> LeastSquares::step(In r) const {
+  const std::size_t p = x.size();
+  std::vector<double> gradient(p), move(p);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    for (std::size_t j = 0; j < p; ++j) gradient[j] += jacobian[i * p + j] * r[i];
+  }
+  for (std::size_t i = 0; i < p; ++i) {
+    for (std::size_t j = 0; j < p; ++j) move[i] -= covariance[i * p + j] * gradient[j];
+  }
+  return move;
+}
+
+std::vector<double> LeastSquares::half_intervals(double degrees,
+                                                 double confidence) const {
+  const double variance =
+      std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0) /
+      degrees;
+  const double t = gsl_cdf_tdist_Pinv((1 + confidence) / 2, degrees);
+  std::vector<double> half(x.size());
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    half[j] = t * std::sqrt(variance * covariance[j * half.size() + j]);
+  }
+  return half;
+}
+
+LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
+                           double difference, double tolerance) {
+  gsl_set_error_handler_off();
+  const std::size_t p = start.size();
+  Problem problem{residual,
+                  difference,
+                  {start.begin(), start.end()},
+                  std::vector<double>(n),
+                  std::vector<double>(n),
+                  0,
+                  {}};
+  gsl_multifit_nlinear_fdf function{};
+  function.f = Problem::value;
+  function.df = Problem::slopes;
+  function.n = n;
+  function.p = p;
+  function.params = &problem;
+  const gsl_multifit_nlinear_parameters parameters =
+      gsl_multifit_nlinear_default_parameters();  // Levenberg-Marquardt, More's scaling
+  const Workspace workspace(
+      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n, p));
+  const gsl_vector_const_view from = gsl_vector_const_view_array(start.data(), p);
+  int code = gsl_multifit_nlinear_init(&from.vector, &function, workspace.get());
+  if (code == GSL_SUCCESS) {
+    int why = 0;
+    double largest = 1;
+    for (const double x : start) largest = std::max(largest, std::abs(x));
+    // GSL's is relative to x; its tests of the gradient and of the sum, which are not
+    // scaled, are left out.
+    code = gsl_multifit_nlinear_driver(most_iterations, tolerance / largest, 0, 0,
+                                       nullptr, nullptr, &why, workspace.get());
+  }
+  if (problem.thrown) std::rethrow_exception(problem.thrown);
+
+  LeastSquares fit;
+  fit.evaluations = problem.evaluations;
+  if (code == GSL_EFAILED) {
+    fit.failure = "no residuals beside a trial value";
+    return fit;
+  }
+  const gsl_vector& x = *gsl_multifit_nlinear_position(workspace.get());
+  const gsl_vector& r = *gsl_multifit_nlinear_residual(workspace.get());
+  const gsl_matrix& jacobian = *gsl_multifit_nlinear_jac(workspace.get());
+  for (std::size_t j = 0; j < p; ++j) fit.x.push_back(gsl_vector_get(&x, j));
+  for (std::size_t i = 0; i < n; ++i) {
+    fit.residual.push_back(gsl_vector_get(&r, i));
+    for (std::size_t j = 0; j < p; ++j) {
+      fit.jacobian.push_back(gsl_matrix_get(&jacobian, i, j));
+    }
+  }
+  add_covariance(fit, jacobian);
+  if (fit.covariance.empty()) return fit;
+  const std::vector<double> left = fit.step(fit.residual);
+  const bool there =
+      std::ranges::all_of(left, [&](double dx) { return std::abs(dx) <= tolerance; });
+  if (!there) fit.failure = "not converged: " + std::string(gsl_strerror(code));
+  return fit;
+}
+
+}  // namespace tress

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/integrator.h"
+#include "math/vec3.h"
+#include "simulation/run/guard.h"
+
+namespace tress {
+
+/// Where a tip, the last material point, is at t_end k / count, k = 1 .. count. Steps do
+/// not land on these times: in between, the tip is on the cubic through its places and
+/// velocities at both ends of a step, whose error falls as the fourth power of the step.
+/// Places are read while the run is there: what q means may change as it goes on
+/// (System::accept).
+class TipSamples {
+ public:
+  /// `growth`: a step is at most so many times as long as the one before.
+  TipSamples(System& system, double t_end, int count, double growth);
+
+  void start(In q, In v);
+  void step_to(double t, In q, In v);
+
+  std::vector<double> tips;  // (3 samples), so far
+
+ private:
+  struct End {
+    double t;
+    Vec x, u;
+  };
+
+  double next() const;
+  End read(double t, In q, In v);
+  void interpolate(const End& now);
+
+  MaterialPoints& points_;
+  double t_end_;
+  int count_;
+  double growth_;
+  std::vector<double> x_;
+  End before_{};
+};
+
+/// One run of a strand from its initial state, seen at its tip.
+struct TipRun {
+  Status status;
+  std::string failure;
+  Stats stats;
+  double wall_s;            // of stepping: setting up and reading the tip are not in it
+  std::vector<double> tip;  // (3 samples) m; fewer when the run failed
+  int unknowns;             // coordinates
+};
+
+/// Runs to t_end; the tip is sampled as TipSamples says. repeat = 0, or a failure: one
+/// run, not timed; else the median, as time_run. `guard` watches the first run, not those
+/// that are timed; what it finds is the run's failure.
+TipRun run_tip(std::string_view integrator, System& system, const Options& options,
+               double t_end, int samples, int repeat = 0, Guard* guard = nullptr);
+
+/// Root mean square distance over the samples, over `length`; infinite when a sample is
+/// missing or not finite.
+double tip_error(In tip, In reference, double length);
+
+}  // namespace tress

@@ -1,0 +1,173 @@
+#include "experiments/problems/problems.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "experiments/problems/pendulum_reference.h"
+#include "experiments/problems/reference.h"
+#include "models/published/references.h"
+
+namespace tress {
+namespace {
+
+using Values = std::vector<double>;
+
+Values coordinates(System&, const State& end) { return end.q; }
+
+/// A bead of 1 m radius released horizontally: x = sin theta, z = -cos theta.
+Problem bead(std::string_view name, const char* form) {
+  Problem problem{.name = name,
+                  .model = "bead_on_wire",
+                  .settings = {{"form", form}},
+                  .t_end = 5,
+                  .coarse_step = 0.02,
+                  .scale = {1},
+                  .reference = checkpoints(5, 10),
+                  // GSL's elliptic functions over a handful of periods: rounding.
+                  .reference_gap = 1e-14,
+                  .compared = points};
+  const PendulumReference exact(std::sqrt(9.81), {M_PI / 2, 0});
+  for (Checkpoint& at : problem.reference) {
+    const double angle = exact.at(at.t).angle;
+    at.values = {std::sin(angle), 0, -std::cos(angle)};
+  }
+  return problem;
+}
+
+/// The end state that the Test Set prints; every angle on its own scale, as its scd does.
+Problem published(std::string_view model, double coarse_step) {
+  const PublishedEnd& end = *published_end(model);
+  Problem problem{.name = model,
+                  .model = model,
+                  .settings = {},
+                  .t_end = end.t,
+                  .coarse_step = coarse_step,
+                  .scale = {end.q.begin(), end.q.end()},
+                  .reference = {{end.t, {end.q.begin(), end.q.end()}}},
+                  .reference_gap = std::pow(10, -end.digits_q),
+                  .compared = coordinates};
+  for (double& entry : problem.scale) entry = std::abs(entry);
+  return problem;
+}
+
+/// The values at every checkpoint of one tight run; throws when it fails, because every
+/// error would then be meaningless.
+std::vector<Checkpoint> tight_run(const Problem& problem, std::string_view integrator,
+                                  Formulation formulation) {
+  const auto system = problem.make();
+  Options options;
+  options.rtol = 1e-13;
+  options.atol = 1e-14;
+  options.formulation = formulation;
+  std::vector<Checkpoint> values = problem.reference;
+  std::size_t next = 0;
+  std::vector<double> stops(values.size());
+  std::ranges::transform(values, stops.begin(), &Checkpoint::t);
+  const Simulation run = simulate(integrator, *system, options, initial_state(*system),
+                                  stops, [&](const State& state) {
+                                    values[next++].values =
+                                        problem.compared(*system, state);
+                                  });
+  if (run.status != Status::ok) {
+    throw std::runtime_error("reference of " + std::string(problem.name) + " by " +
+                             std::string(integrator) + " failed: " + run.failure);
+  }
+  return values;
+}
+
+std::vector<Problem> make_problems() {
+  std::vector<Problem> all{bead("pendulum", "parametric"),
+                           bead("pendulum_constrained", "implicit")};
+  const auto add = [&all](std::string_view name, std::string_view model,
+                          const ModelSettings& settings, double t_end, double coarse_step,
+                          const std::vector<double>& scale, int stops, auto compared,
+                          Formulation runge_kutta, Formulation adams) {
+    all.push_back(computed({.name = name,
+                            .model = model,
+                            .settings = settings,
+                            .t_end = t_end,
+                            .coarse_step = coarse_step,
+                            .scale = scale,
+                            .reference = checkpoints(t_end, stops),
+                            .reference_gap = 0,
+                            .compared = compared},
+                           runge_kutta, adams));
+  };
+  add("double_pendulum", "double_pendulum", {}, 2, 0.01, {1}, 5, coordinates,
+      Formulation::parametric, Formulation::parametric);
+  add("chain_10", "inextensible_chain", {{"links", "10"}}, 0.5, 4e-3, {1}, 5, points,
+      Formulation::projection, Formulation::acceleration);
+  all.push_back(published("andrews_squeezer", 2e-4));
+  // The printed end state has five digits (tests/models/published): our own has more.
+  // Each coordinate on its own scale: the elastic modes are micrometres beside the
+  // crank's turns.
+  add("slider_crank", "slider_crank", {}, 0.1, 1e-3, {}, 1, coordinates,
+      Formulation::projection, Formulation::acceleration);
+  all.push_back(published("beam", 1e-2));
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> points(System& system, const State& state) {
+  MaterialPoints& material = *system.material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(material.count()));
+  material.positions(0, state.q, x);
+  return x;
+}
+
+std::unique_ptr<System> Problem::make(std::string_view solver) const {
+  ModelSettings all = settings;
+  if (!solver.empty()) all.emplace_back("solver", solver);
+  return make_model(model, all);
+}
+
+std::vector<Checkpoint> checkpoints(double t_end, int count) {
+  std::vector<Checkpoint> times(static_cast<std::size_t>(count));
+  for (int k = 1; k <= count; ++k)
+    times[static_cast<std::size_t>(k - 1)].t = t_end * k / count;
+  return times;
+}
+
+Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
+  const auto second = tight_run(problem, "cvode_adams", adams);
+  problem.reference = tight_run(problem, "gsl_rk8pd", runge_kutta);
+  if (problem.scale.empty()) {
+    for (const double entry : problem.reference.back().values) {
+      problem.scale.push_back(std::abs(entry));
+    }
+  }
+  for (std::size_t k = 0; k < second.size(); ++k) {
+    const ReferenceGap gap(problem.reference[k].values, second[k].values, problem.scale);
+    problem.reference_gap = std::max(problem.reference_gap, gap.gap());
+  }
+  return problem;
+}
+
+ProblemRun run_problem(const Problem& problem, std::string_view integrator,
+                       const Options& options, std::string_view solver) {
+  const auto system = problem.make(solver);
+  ProblemError error{0, 16};
+  std::size_t next = 0;
+  std::vector<double> stops;
+  for (const Checkpoint& at : problem.reference) stops.push_back(at.t);
+  Simulation end = simulate(
+      integrator, *system, options, initial_state(*system), stops,
+      [&](const State& state) {
+        const Values x = problem.compared(*system, state);
+        const Values& reference = problem.reference[next++].values;
+        const double relative = error_norms(x, reference, problem.scale).relative;
+        // NaN counts as the largest error.
+        error.relative = relative <= error.relative ? error.relative : relative;
+        error.scd = std::min(error.scd, scd(x, reference));
+      });
+  return {std::move(end), error};
+}
+
+std::span<const Problem> problems() {
+  static const std::vector<Problem> all = make_problems();
+  return all;
+}
+
+}  // namespace tress

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/run/simulation.h"
+
+namespace tress {
+
+struct ProblemError {
+  double relative;  // largest error over the scale of its entry
+  double scd;       // -log10 of the largest entry-wise relative error
+};
+
+/// The state at one time of a run.
+struct Checkpoint {
+  double t;
+  std::vector<double> values;  // of what the problem compares
+};
+
+/// A problem whose end state is known: exactly, as published, or from two integrators of
+/// different families whose disagreement is kept as the reference's own error.
+struct Problem {
+  std::string_view name;
+  std::string_view model;
+  ModelSettings settings;
+  double t_end;                       // s
+  double coarse_step;                 // s, the loosest fixed step worth trying
+  std::vector<double> scale;          // of the compared values: one each, or one for all
+  std::vector<Checkpoint> reference;  // the last one at t_end
+  double reference_gap;               // relative to scale
+
+  /// What is compared: coordinates, or material points where form must not matter.
+  std::function<std::vector<double>(System&, const State&)> compared;
+
+  /// total: the reference is of the continuous body that the model cuts into elements.
+  std::string_view error_kind = "time";
+  int elements = 0;                                // of a strand
+  std::vector<std::string_view> integrators = {};  // to be tried; none: all
+  /// Solvers of the model, the first for every integrator, the others for `comparing`.
+  std::vector<std::string_view> solvers = {}, comparing = {};
+
+  std::unique_ptr<System> make(std::string_view solver = {}) const;
+};
+
+/// The material points of a state, three coordinates each.
+std::vector<double> points(System& system, const State& state);
+
+/// A run that stops at every checkpoint, so that errors which happen to cancel at one
+/// time do not pass for accuracy.
+struct ProblemRun {
+  Simulation end;
+  ProblemError error;  // over all checkpoints reached
+};
+ProblemRun run_problem(const Problem& problem, std::string_view integrator,
+                       const Options& options, std::string_view solver = {});
+
+/// The problem with its reference values filled in by an explicit Runge-Kutta method, and
+/// how far an Adams method is from them, both at 1e-13, with constraints as given.
+Problem computed(Problem problem, Formulation runge_kutta, Formulation adams);
+
+/// t_end k / count for k = 1 .. count, no values yet.
+std::vector<Checkpoint> checkpoints(double t_end, int count);
+
+/// Made once, at the first call; the doubly computed references take about a second.
+std::span<const Problem> problems();
+
+}  // namespace tress

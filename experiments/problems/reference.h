@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "contract/system.h"
+#include "simulation/files/row.h"
+
+namespace tress {
+
+/// Distances between a value and its reference, entry by entry over a typical size.
+struct ErrorNorms {
+  double max = 0;  // largest |value - reference|, in the unit of the entries
+  double rms = 0;
+  double relative = 0;  // largest |value - reference| / scale
+};
+
+/// `scale` has one entry per value (System::scale), or one for all.
+ErrorNorms error_norms(In value, In reference, In scale);
+
+/// Significant correct digits, -log10 of the largest componentwise relative error, as
+/// defined by the Test Set for IVP Solvers (Mazzia and Magherini, Bari, release 2.4);
+/// entries whose reference is zero are left out there and here. At most 16.
+double scd(In value, In reference);
+
+/// Two independent references for one answer and how far apart they are. An error is
+/// believed when it is at least `margin` times the gap.
+class ReferenceGap {
+ public:
+  static constexpr double margin = 10;
+
+  /// `independent` is from another family: of integrators for time error, of models for
+  /// total error. Norm: the largest difference over scale.
+  ReferenceGap(In reference, In independent, In scale);
+
+  double gap() const { return gap_; }
+  bool trusts(double relative_error) const { return relative_error >= margin * gap_; }
+
+  /// Marks an ok row `below_reference` when its error cannot be told from the gap.
+  void mark(Row& row, double relative_error) const;
+
+ private:
+  double gap_;
+};
+
+}  // namespace tress

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "models/catalogue.h"
+#include "simulation/run/simulation.h"
+
+namespace tress {
+
+/// The models of the catalogue that take a strand as models/strand/strand_parameters.h
+/// describes it: every strand scene runs on each of them.
+std::vector<const ModelEntry*> strand_models();
+
+/// The default of a choice, empty where the model has no such parameter.
+std::string_view first_word(const ModelEntry& model, std::string_view key);
+
+bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
+
+/// Of the seeds' semi-implicit step: the stiff tangent, the default of models without.
+std::string_view usual_tangent(const ModelEntry& model);
+
+/// Sets those parameters that the model has.
+void set_known(
+    Parameters& parameters,
+    std::initializer_list<std::pair<std::string_view, std::string_view>> settings);
+
+void set_known(Parameters& parameters, const ModelSettings& settings);
+
+/// The settings whose keys the model knows.
+ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings);
+
+}  // namespace tress

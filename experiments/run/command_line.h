@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tress {
+
+enum class ProgressMode { automatic, none, json };
+
+/// What the user asked for: the command line over the options file over these defaults.
+struct CommandLine {
+  std::vector<std::string> models, integrators;  // empty: the experiment's choice
+  std::vector<int> elements;                     // empty: the experiment's choice
+  std::string options_file;
+  std::vector<std::pair<std::string, std::string>> set;
+  std::string out;                 // "-": standard output
+  std::vector<std::string> merge;  // tables to join instead of running
+  bool quick = false, full = false, resume = false, retry_failed = false;
+  bool list = false, dry_run = false;
+  int jobs = 1, repeat = 3;
+  int shard_index = 1, shard_count = 1;
+  double timeout_s = 600;
+  std::uint64_t seed = 1;
+  ProgressMode progress = ProgressMode::automatic;
+
+  std::vector<std::string> argv;
+  /// Where an option, or the key of a setting as "set:key", was given: "--models" or
+  /// "options.toml:3:1". For messages.
+  std::map<std::string, std::string, std::less<>> places;
+  std::string place(std::string_view option) const;
+};
+
+/// An option of one experiment: --name VALUE says the same as --set key=VALUE. One that
+/// is named as an option that all experiments have takes its place.
+struct OwnOption {
+  std::string_view name, key, help;
+  /// VALUE is a file: the default table is results/<experiment>.<file>.csv.
+  bool names_table = false;
+};
+
+/// An option that all experiments share and one of them has no use for: it is not shown
+/// by
+/// --help, and giving it is refused with this reason rather than left without effect.
+struct Unused {
+  std::string_view option, why;
+};
+inline constexpr Unused not_random{"seed", "nothing in it is random"};
+inline constexpr Unused not_repeated{"repeat", "no row is timed more than once"};
+
+/// Whether a choice such as --models leaves `id` in; an empty one leaves everything in.
+bool wanted(const std::vector<std::string>& chosen, std::string_view id);
+
+/// The user asked for help or the version: print `what()` and leave with 0.
+class Answer : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws InputError on anything unknown, malformed or given twice, Answer on --help and
+/// --version. `example` completes "<name> ..." in the help text.
+CommandLine parse_command_line(std::string_view name, std::string_view question,
+                               std::string_view example, int argc,
+                               const char* const* argv,
+                               std::span<const OwnOption> own = {},
+                               std::span<const Unused> unused = {});
+
+}  // namespace tress

@@ -1,0 +1,67 @@
+#include "experiments/run/interruption.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <exception>
+
+#include "experiments/run/exit_code.h"
+#include "experiments/run/message.h"
+
+namespace tress {
+namespace {
+
+sigset_t both_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+}  // namespace
+
+Interruption::Interruption(std::string_view program) : program_(program) {
+  const sigset_t set = both_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  thread_ = std::thread([this] { wait(); });
+}
+
+Interruption::~Interruption() {
+  over_ = true;
+  pthread_kill(thread_.native_handle(), SIGTERM);
+  thread_.join();
+  const sigset_t set = both_signals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+void Interruption::wait() {
+  const sigset_t set = both_signals();
+  int signal = 0;
+  sigwait(&set, &signal);
+  if (over_) return;
+  // A second one is no longer waited for: exit_code()'s handler ends the program.
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  const auto held = hold();
+  try {
+    if (save_) save_();
+    tell("{}{}: interrupted: the same command with --resume continues\n",
+         ::isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", program_);
+  } catch (const std::exception& error) {
+    tell("{}: interrupted, and {}\n", program_, error.what());
+  }
+  ::_exit(interrupted);
+}
+
+Interruption::Save::Save(Interruption& of, std::function<void()> save) : of_(of) {
+  const auto held = of_.hold();
+  of_.save_ = std::move(save);
+}
+
+Interruption::Save::~Save() {
+  const auto held = of_.hold();
+  of_.save_ = nullptr;
+}
+
+}  // namespace tress

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/files/locked_file.h"
+#include "simulation/files/row.h"
+#include "simulation/files/run_key.h"
+
+namespace tress {
+
+/// Rows as they finish, one line of JSON each behind its checksum, so that nothing
+/// finished is ever lost. One process at a time holds a journal; a last line torn by a
+/// kill is dropped on opening.
+class Journal {
+ public:
+  enum class Mode { fresh, resume };
+
+  /// Throws InputError when the file cannot be written, another process holds it, an
+  /// unfinished journal exists and the mode is `fresh`, its key differs, or a line is not
+  /// as it was written.
+  Journal(std::string file, const RunKey& key, Mode mode);
+
+  const std::vector<Row>& rows() const { return rows_; }  // found on opening
+  void append(const Row& row);                            // written at once
+  void remove();
+
+ private:
+  void load(const RunKey& key, Mode mode);
+
+  std::string name_;
+  LockedFile file_;
+  std::vector<Row> rows_;
+  std::chrono::steady_clock::time_point synced_;
+};
+
+/// A row as one line of JSON without its end of line, and back; parse throws
+/// std::runtime_error on text that is not such a line.
+std::string to_json_line(const Row& row);
+Row from_json_line(std::string_view line);
+
+}  // namespace tress

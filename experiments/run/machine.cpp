@@ -1,0 +1,97 @@
+#include "experiments/run/machine.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_version.h>
+#include <klu.h>
+#include <sundials/sundials_version.h>
+#include <sys/utsname.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace tress {
+namespace {
+
+std::string first_line(const std::string& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// Value of the first "key : value" line of /proc/cpuinfo with that key.
+std::string cpu_info(const std::string& key) {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with(key) && colon != std::string::npos)
+      return line.substr(colon + 2);
+  }
+  return {};
+}
+
+std::string cache_sizes() {
+  std::string text;
+  for (int i = 0;; ++i) {
+    const auto entry = [i](const char* what) {
+      return first_line(
+          fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/{}", i, what));
+    };
+    const std::string level = entry("level"), type = entry("type");
+    if (level.empty()) return text;
+    if (type == "Instruction") continue;
+    text += fmt::format("{}L{}{} {}", text.empty() ? "" : ", ", level,
+                        type == "Data" ? "d" : "", entry("size"));
+  }
+}
+
+std::string widest_simd() {
+  const std::string flags = ' ' + cpu_info("flags") + ' ';
+  for (const char* name : {"avx512f", "avx2", "avx", "sse2"}) {
+    if (flags.find(fmt::format(" {} ", name)) != std::string::npos) return name;
+  }
+  return {};
+}
+
+}  // namespace
+
+Machine machine() {
+  utsname system{};
+  ::uname(&system);
+  return {.cpu = cpu_info("model name"),
+          .cpus = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN)),
+          .caches = cache_sizes(),
+          .simd = widest_simd(),
+          .kernel = fmt::format("{} {}", system.sysname, system.release)};
+}
+
+std::array<double, 3> load_average() {
+  std::array<double, 3> loads{};
+  if (::getloadavg(loads.data(), 3) != 3) loads = {};
+  return loads;
+}
+
+Versions library_versions() {
+  char sundials[32] = {};
+  if (SUNDIALSGetVersion(sundials, sizeof sundials) != 0) sundials[0] = '\0';
+  const auto dotted = [](int major, int minor, int patch) {
+    return fmt::format("{}.{}.{}", major, minor, patch);
+  };
+  return {
+      {"sundials", sundials},
+      {"klu", dotted(KLU_MAIN_VERSION, KLU_SUB_VERSION, KLU_SUBSUB_VERSION)},
+      {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"gsl", gsl_version},
+      {"fmt", dotted(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+      {"cli11", CLI11_VERSION},
+      {"tomlplusplus", dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
+      {"nlohmann_json", dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                               NLOHMANN_JSON_VERSION_PATCH)}};
+}
+
+}  // namespace tress

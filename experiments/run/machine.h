@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tress {
+
+/// What a timing depends on. Deliberately no host name: tables are published.
+struct Machine {
+  std::string cpu;     // model name
+  int cpus = 0;        // hardware threads
+  std::string caches;  // "L1d 32K, L2 512K, L3 16384K" of the first CPU
+  std::string simd;    // widest of sse2, avx, avx2, avx512f
+  std::string kernel;  // system and release
+};
+Machine machine();
+
+/// Load averages over 1, 5 and 15 minutes.
+std::array<double, 3> load_average();
+
+using Versions = std::vector<std::pair<std::string, std::string>>;
+Versions library_versions();
+
+}  // namespace tress

@@ -1,0 +1,137 @@
+#include "experiments/run/manifest.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "experiments/run/message.h"
+#include "experiments/run/sundials_speed.h"
+#include "simulation/files/checksum.h"
+
+namespace tress {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string utc_now() {
+  const auto now =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
+ordered_json checks_of(const Verdicts& verdicts) {
+  ordered_json all = ordered_json::array();
+  for (const auto& [claim, held, value, state, reason] : verdicts.all()) {
+    all.push_back(
+        {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
+    if (!reason.empty()) all.back()["reason"] = reason;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string settings_text(const CommandLine& line) {
+  auto sorted = line.set;
+  std::sort(sorted.begin(), sorted.end());
+  std::string text = fmt::format("seed={}", line.seed);
+  if (line.quick) text += " quick";
+  if (line.full) text += " full";
+  for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
+  return text;
+}
+
+Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
+    : experiment_(experiment),
+      line_(line),
+      source_(source_state()),
+      load_(load_average()),
+      sundials_ratio_(sundials_speed_ratio()),
+      start_(utc_now()) {
+  if (sundials_ratio_ > slow_sundials_ratio) {
+    tell(
+        "{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
+        "nothing; './tress setup' builds a Release one\n",
+        experiment.name, sundials_ratio_);
+  }
+  const int cpus = machine().cpus;
+  if (load_[0] > cpus) {
+    tell("{}: warning: the machine is busy (load {:.1f} on {} CPUs): timings are noisy\n",
+         experiment.name, load_[0], cpus);
+  }
+}
+
+void Manifest::add_input(std::string file, std::string text) {
+  inputs_.emplace_back(std::move(file), std::move(text));
+}
+
+std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
+                               std::size_t kept_from_before) const {
+  const Machine here = machine();
+  std::map<std::string, int> counts;
+  for (const Row& row : rows) ++counts[std::string(row.status())];
+  ordered_json columns;
+  for (const Column& column : experiment_.columns) {
+    columns[std::string(column.name)] = column.help;
+  }
+  ordered_json libraries;
+  for (const auto& [library, version] : library_versions()) libraries[library] = version;
+  ordered_json glossary = ordered_json::object();
+  if (experiment_.glossary) {
+    for (const auto& [column, value, texts] : experiment_.glossary()) {
+      auto& entry = glossary[std::string(column)][std::string(value)];
+      for (const auto& [key, text] : texts) entry[std::string(key)] = text;
+    }
+  }
+  ordered_json inputs = ordered_json::array();
+  for (const auto& [file, text] : inputs_) {
+    inputs.push_back({{"file", file}, {"fnv1a_64", checksum(text)}, {"text", text}});
+  }
+  const ordered_json manifest{
+      {"experiment", experiment_.name},
+      {"question", experiment_.question},
+      {"schema", schema_version},
+      {"tress_version", TRESS_VERSION},
+      {"argv", line_.argv},
+      {"merged_from", line_.merge},
+      {"settings", settings_text(line_)},
+      {"options_file", line_.options_file},
+      {"inputs", inputs},
+      {"seed", line_.seed},
+      {"jobs", line_.jobs},
+      {"repeat", line_.repeat},
+      {"timeout_s", line_.timeout_s},
+      {"quick", line_.quick},
+      {"full", line_.full},
+      {"shard", fmt::format("{}/{}", line_.shard_index, line_.shard_count)},
+      {"start", start_},
+      {"end", utc_now()},
+      {"checks", checks_of(verdicts)},
+      {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
+      {"build",
+       {{"compiler", TRESS_COMPILER},
+        {"flags", TRESS_FLAGS},
+        {"type", TRESS_BUILD_TYPE}}},
+      {"machine",
+       {{"cpu", here.cpu},
+        {"cpus", here.cpus},
+        {"caches", here.caches},
+        {"simd", here.simd},
+        {"kernel", here.kernel},
+        {"load_before", load_},
+        {"load_after", load_average()}}},
+      {"libraries", libraries},
+      {"sundials_speed_ratio", sundials_ratio_},
+      {"rows",
+       {{"total", rows.size()}, {"by_status", counts}, {"resumed", kept_from_before}}},
+      {"columns", columns},
+      {"glossary", glossary}};
+  return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace tress

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run/experiment.h"
+#include "experiments/run/machine.h"
+#include "simulation/files/source_state.h"
+
+namespace tress {
+
+/// How a table was made: written next to it as <table>.meta.json.
+class Manifest {
+ public:
+  /// Looks at machine, source tree and SUNDIALS now, before the work; warns on standard
+  /// error when SUNDIALS is a slow build or the machine is busy.
+  Manifest(const Experiment& experiment, const CommandLine& line);
+
+  /// A file that the work depends on, kept with its text and checksum.
+  void add_input(std::string file, std::string text);
+
+  /// The JSON text, with end time, load and the counts of `rows`.
+  std::string finished(const std::vector<Row>& rows, const Verdicts& verdicts,
+                       std::size_t kept_from_before) const;
+
+ private:
+  const Experiment& experiment_;
+  const CommandLine& line_;
+  SourceState source_;
+  std::array<double, 3> load_;
+  double sundials_ratio_;
+  std::string start_;
+  std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
+};
+
+/// "--set", seed, quick and the like in canonical order: what a resumed run must repeat.
+std::string settings_text(const CommandLine& line);
+
+}  // namespace tress

@@ -1,0 +1,102 @@
+#include "experiments/run/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "integrators/integrator_options.h"
+
+namespace tress {
+namespace {
+
+bool declares(std::span<const Parameter> parameters, std::string_view key) {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [key](const Parameter& p) { return p.name == key; });
+}
+
+/// The catalogues' own lookups name the option; here an options file may be the place.
+template <typename Entry>
+void check_ids(const std::vector<std::string>& ids, std::span<const Entry> catalogue,
+               std::string_view kind, const std::string& where) {
+  std::vector<std::string_view> known;
+  for (const Entry& entry : catalogue) known.push_back(entry.id);
+  for (const std::string& id : ids) {
+    if (std::find(known.begin(), known.end(), id) != known.end()) continue;
+    throw InputError(fmt::format("unknown {} '{}'", kind, id), where,
+                     suggestion(id, known, fmt::format("--list shows the {}s", kind)));
+  }
+}
+
+bool selected(const CommandLine& line, const ModelEntry& model) {
+  return line.models.empty() ||
+         std::find(line.models.begin(), line.models.end(), model.id) != line.models.end();
+}
+
+}  // namespace
+
+Settings::Settings(const CommandLine& line, std::span<const Parameter> experiment)
+    : line_(line), declared_(experiment), experiment_(experiment, "--set") {
+  check_ids(line_.models, models(), "model", line_.place("models"));
+  check_ids(line_.integrators, integrators(), "integrator", line_.place("integrators"));
+  for (const auto& [key, value] : line_.set) {
+    const std::string where = line_.place("set:" + key);
+    if (owner(key, where) != Owner::experiment) continue;
+    Parameters checked(declared_, where);  // so that messages name this very place
+    checked.set(key, value);
+    experiment_.set(key, value);
+  }
+  static_cast<void>(options());
+  for (const ModelEntry& model : models()) {
+    if (selected(line_, model)) static_cast<void>(parameters(model));
+  }
+}
+
+Options Settings::options(Options start) const {
+  for (const auto& [key, value] : line_.set) {
+    const std::string where = line_.place("set:" + key);
+    if (owner(key, where) == Owner::integrators) apply(start, key, value, where);
+  }
+  return start;
+}
+
+Parameters Settings::parameters(const ModelEntry& model) const {
+  Parameters result(model.parameters, fmt::format("model {}", model.id));
+  for (const auto& [key, value] : line_.set) {
+    const std::string where = line_.place("set:" + key);
+    if (owner(key, where) != Owner::models || !result.knows(key)) continue;
+    Parameters checked(model.parameters, fmt::format("{}, model {}", where, model.id));
+    checked.set(key, value);
+    result.set(key, value);
+  }
+  return result;
+}
+
+bool Settings::chosen(std::string_view key) const {
+  return std::any_of(line_.set.begin(), line_.set.end(),
+                     [key](const auto& setting) { return setting.first == key; });
+}
+
+bool Settings::some_model_knows(std::string_view key) const {
+  return std::any_of(models().begin(), models().end(), [&](const ModelEntry& model) {
+    return selected(line_, model) && declares(model.parameters, key);
+  });
+}
+
+Settings::Owner Settings::owner(std::string_view key, const std::string& where) const {
+  if (declares(declared_, key)) return Owner::experiment;
+  if (declares(integrator_options(), key)) return Owner::integrators;
+  if (some_model_knows(key)) return Owner::models;
+  std::vector<std::string_view> known;
+  for (const Parameter& p : declared_) known.push_back(p.name);
+  for (const Parameter& p : integrator_options()) known.push_back(p.name);
+  for (const ModelEntry& model : models()) {
+    if (!selected(line_, model)) continue;
+    for (const Parameter& p : model.parameters) known.push_back(p.name);
+  }
+  throw InputError(fmt::format("unknown key '{}'", key), where,
+                   suggestion(key, known, "--list shows the keys"));
+}
+
+}  // namespace tress

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "experiments/run/experiment.h"
+
+namespace tress {
+
+enum class SweepEnd { complete, interrupted };
+
+/// Runs every case in a process of its own, `jobs` at a time, in order. `finished` gets
+/// each case's rows, and how long it ran, as soon as they are there. SIGINT and SIGTERM
+/// stop the sweep: running cases are killed and repeated by the next run.
+SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
+               const std::function<void(std::vector<Row>, double seconds)>& finished);
+
+}  // namespace tress

@@ -1,0 +1,166 @@
+// What does a step cost against the number of elements: by solver, by tangent, by modes,
+// and on trees? With the seed's table of frames per second beside ours.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "experiments/numerics/stability.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/problems/strand_scenes.h"
+#include "experiments/run/experiment.h"
+#include "experiments/scaling/scaling_claims.h"
+#include "experiments/scaling/scaling_grid.h"
+#include "simulation/run/timing.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"structure", "straight strand, or which tree"},
+    {"model", "catalogue id"},
+    {"solver", "how the model solves S x = b"},
+    {"tangent", "which terms S has"},
+    {"modes", "unknowns per element"},
+    {"elements", "number of elements"},
+    {"unknowns", "number of coordinates"},
+    {"cost_per_step_s", "wall time of a semi-implicit step of the released strand", true},
+    {"cost_per_element_step_s", "the same over the number of elements", true},
+    {"exponent", "p of cost ~ N^p from 20 elements on, of the series", true},
+    {"dt_max_s", "largest stable step up to a frame, 1/30 s; solvers share it"},
+    {"fps", "frames of 1/30 s computed per second with that step", true},
+    {"seed_fps", "the seed's, on hardware of 2008: compare ratios"},
+};
+
+constexpr double frame = 1.0 / 30;  // s
+constexpr double t_end = 1;         // s, of a run that is judged
+
+/// A strand some steps into its own motion; the cheapest solver gets it there.
+struct Moving {
+  double t;  // s
+  State state;
+};
+
+// s; what a step costs does not depend on it: short enough for models that come apart.
+constexpr double timed_step = 1e-4;
+
+Options step_of(double h, System& system) {
+  Options options;
+  options.step = h;
+  options.formulation =
+      usable_formulations(find_integrator("semi_implicit_euler"), system).front();
+  return options;
+}
+
+Moving moving(const ScalingCase& c, const Parameters& parameters) {
+  Parameters cheapest = parameters;
+  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
+  if (has_word(*c.model, "tangent", "stiff")) cheapest.set("tangent", "stiff");
+  const auto system = c.model->make(cheapest);
+  constexpr double t = 0.05;
+  Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step, *system),
+                            initial_state(*system), t);
+  return {t, std::move(run.state)};
+}
+
+/// Wall time (s) of a step: batches of about 2 ms, repeated for `time_s` or `repeat`
+/// times, whichever is longer.
+double step_cost(System& system, const Moving& from, double time_s, int repeat) {
+  constexpr double batch_s = 2e-3;
+  const auto method =
+      make_integrator("semi_implicit_euler", system, step_of(timed_step, system));
+  const auto run = [&](long steps) {
+    Status s = method->start(from.t, from.state.q, from.state.v);
+    if (s == Status::ok) {
+      s = method->advance(from.t + static_cast<double>(steps) * timed_step);
+    }
+    if (s != Status::ok) throw std::runtime_error(method->failure());
+  };
+  const double one = time_it(1, [&] { run(1); }).median_s;
+  const long steps = std::clamp(std::lround(batch_s / one), 1L, 2000L);
+  const double batch = one * static_cast<double>(steps);
+  const int batches = std::clamp(static_cast<int>(time_s / batch), repeat, 1000);
+  return time_it(batches, [&] { run(steps); }).median_s / static_cast<double>(steps);
+}
+
+/// The largest stable step of the release, searched with the recursion: all solvers
+/// solve the same equations (stability_limit shows it).
+StepLimit largest_step(const ScalingCase& c, const Parameters& parameters) {
+  Parameters cheapest = parameters;
+  set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
+  const auto system = c.model->make(cheapest);
+  const State start = perturbed_start(*system);
+  const StabilityBounds bounds =
+      c.structure == straight
+          ? stability_bounds(find_strand_scene("release"), cheapest, *system)
+          : release_bounds(*system, start, t_end);
+  constexpr double most_work = 1e9;
+  StabilityRuns tried("semi_implicit_euler", *system, step_of(frame, *system), start,
+                      t_end, bounds, most_work);
+  return find_step_limit({.coarsest = frame}, [&](double dt) -> std::optional<Broken> {
+    const auto run = tried.judge(dt);
+    return run ? std::optional(run->broken) : std::nullopt;
+  });
+}
+
+struct Work {
+  ScalingCase which;
+  Parameters parameters;
+  double time_s;
+  int repeat;
+};
+
+void measure(const Work& work, Row& row) {
+  const ScalingCase& c = work.which;
+  const auto system = c.model->make(work.parameters);
+  row.set("unknowns", system->layout().coordinates);
+  const double cost =
+      step_cost(*system, moving(c, work.parameters), work.time_s, work.repeat);
+  row.set("cost_per_step_s", cost).set("cost_per_element_step_s", cost / c.elements);
+  if (const auto seed = c.seed_fps()) row.set("seed_fps", *seed);
+  if (!c.in_seed_table()) return;
+
+  const StepLimit limit = largest_step(c, work.parameters);
+  if (!limit.resolved) {
+    row.failed("gave_up", "no largest stable step was found in the work of a row");
+    return;
+  }
+  const double steps = std::ceil(frame / limit.stable - 1e-9);
+  row.set("dt_max_s", limit.stable).set("fps", 1 / (steps * cost));
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, scaling_settings());
+  const double chosen = settings.experiment().number("row_s");
+  const double time_s = chosen > 0 ? chosen : line.quick ? 0.02 : 1;
+  std::vector<Case> all;
+  for (const ScalingCase& c : scaling_cases(line, settings)) {
+    const Work work{c, c.parameters(settings), time_s, line.repeat};
+    all.push_back(
+        {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
+  }
+  return all;
+}
+
+constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_euler"},
+                             not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "scaling",
+      .question = "what does a step cost against the number of elements?",
+      .example = "--elements 20,100 --set solver=recursive",
+      .columns = columns,
+      .settings = scaling_settings(),
+      .unused = unused,
+      .cases = cases,
+      .derive = add_exponents,
+      .checks = tell_scaling_figures};
+  return run_experiment(experiment, argc, argv);
+}

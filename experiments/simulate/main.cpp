@@ -1,0 +1,183 @@
+// Runs scenes and writes what they do, for people and for other programs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "contract/input_error.h"
+#include "experiments/run/exit_code.h"
+#include "experiments/run/manifest.h"
+#include "experiments/run/message.h"
+#include "experiments/simulate/scene_run.h"
+#include "integrators/error_indicator.h"
+#include "simulation/files/files.h"
+#include "simulation/scene/schema.h"
+
+namespace tress {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  std::string out = "results/scenes";
+  int threads = 1;
+  std::size_t hairs = 0;
+  bool resume = false, vtk = false, usd = false, print_defaults = false,
+       print_schema = false, no_guard = false, quick = false, full = false;
+  std::string progress = "auto";
+};
+
+constexpr const char* help_end =
+    "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
+    "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
+    "the\nreport page). Exit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
+    "a "
+    "scene\ndid not run to its end, 130 interrupted (--resume continues)\n";
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
+  app.add_option("--out", a.out, "folder for the results (default results/scenes)");
+  app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--hairs", a.hairs,
+                 "hairs drawn between the strands of a groom (default 0)")
+      ->check(CLI::Range(0, 100'000));
+  app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
+  app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
+  app.add_flag("--resume", a.resume, "continue an interrupted run");
+  app.add_flag("--no-guard", a.no_guard,
+               "go on where a run does what physics rules out (as guard = false)");
+  app.add_option("--progress", a.progress, "auto, none or json (default auto)")
+      ->check(CLI::IsMember({"auto", "none", "json"}));
+  app.add_flag("--print-defaults", a.print_defaults,
+               "print a short scene to start from (scenes/README.md: every key)");
+  app.add_flag("--print-schema", a.print_schema, "print the page scenes/README.md");
+  app.add_flag("--quick", a.quick, "no difference here: scenes say how long they are");
+  app.add_flag("--full", a.full, "the same");
+}
+
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes", error)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);
+  if (files.empty()) {
+    throw InputError("no scene to run", "command line",
+                     "name scene files, or run where a folder scenes/ is");
+  }
+  return files;
+}
+
+void ready_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError("the output is not a folder", "--out " + folder,
+                     "give a folder that exists or can be made");
+  }
+}
+
+constexpr Column columns[] = {
+    {"scene", "name of the scene"},
+    {"frames", "frames written"},
+    {"simulated_s", "simulated time"},
+    {"rejected_steps", "steps that were tried again with shorter ones"},
+    {"wall_s", "time it took, output included", true},
+};
+
+const Experiment experiment{.name = "simulate",
+                            .question = "What does a scene do?",
+                            .example = "scenes/hair_under_wind.toml --vtk",
+                            .columns = columns,
+                            .cases = {}};
+
+/// False: the scene did not run to its end.
+bool run_file(const std::string& file, const Arguments& a, const CommandLine& line,
+              Interruption& interruption) {
+  Scene scene = read_scene(file);
+  if (a.no_guard) scene.guard = false;
+  SceneRunOptions options;
+  options.stem = a.out + "/" + scene.name;
+  options.threads = a.threads;
+  options.resume = a.resume;
+  options.hairs = a.hairs;
+  options.vtk = a.vtk;
+  options.usd = a.usd;
+  options.progress = line.progress;
+  RunKey key;
+  key.add("scene", contents_checksum({file}));
+  Manifest manifest(experiment, line);
+  manifest.add_input(file, read_file(file));
+  const SceneRun run = run_scene(scene, key, options, interruption);
+  Row row;
+  row.set("scene", scene.name).set("frames", run.frames);
+  row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
+  row.set("rejected_steps", run.rejected);
+  if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
+  replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
+  tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
+       scene.name, run.frames, run.simulated_s, run.wall_s,
+       run.rejected > 0
+           ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
+           : "",
+       run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
+  if (run.indicator > unresolved) {
+    tell(
+        "simulate: warning: {}: {} did not resolve the motion (one step was wrong by "
+        "{:.2g} of an unknown's scale, by its own indicator): take a shorter dt_s, or "
+        "an integrator that iterates such as implicit_midpoint\n",
+        scene.name, scene.integrator, run.indicator);
+  }
+  return run.end != SceneRun::End::failed;
+}
+
+int run(const Arguments& a, CommandLine line) {
+  if (a.print_defaults || a.print_schema) {
+    write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
+    return done;
+  }
+  line.progress = a.progress == "none"   ? ProgressMode::none
+                  : a.progress == "json" ? ProgressMode::json
+                                         : ProgressMode::automatic;
+  const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
+  std::set<std::string> names;
+  for (const std::string& file : files) {
+    if (names.insert(read_scene(file).name).second) continue;
+    throw InputError("two scenes of one name", file,
+                     "rename one of them, or run it with another --out");
+  }
+  ready_folder(a.out);
+  Interruption interruption("simulate");
+  bool complete = true;
+  for (const std::string& file : files) {
+    complete = run_file(file, a, line, interruption) && complete;
+  }
+  return complete ? done : rows_failed;
+}
+
+int answer(int argc, char** argv) {
+  CLI::App app{"simulate: What does a scene do?"};
+  Arguments a;
+  declare(app, a);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    throw Answer(app.help() + help_end);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what(), "command line", "simulate --help shows the options");
+  }
+  CommandLine line;
+  line.argv.assign(argv, argv + argc);
+  return run(a, std::move(line));
+}
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  return exit_code("simulate", [&] { return answer(argc, argv); });
+}

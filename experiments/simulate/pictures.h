@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/simulate/scene_run.h"
+#include "simulation/export/full_hair.h"
+
+namespace tress {
+
+/// What a run looks like, for the report page and for other programs: <stem>.json, and
+/// where asked for <stem>_vtk/ and <stem>.usda, all with the same lines.
+class Pictures {
+ public:
+  /// Throws InputError where hairs cannot be drawn between the scene's strands.
+  Pictures(const Scene& scene, const World& world, const Readout& readout,
+           const SceneRunOptions& options);
+  void write(const std::vector<Frame3d>& frames) const;
+
+ private:
+  void write_vtk(const Animation& animation) const;
+
+  const Scene& scene_;
+  const Readout& readout_;
+  const SceneRunOptions& options_;
+  FullHair hair_;
+  std::vector<DrawnLine> lines_;
+};
+
+}  // namespace tress

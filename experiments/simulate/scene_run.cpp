@@ -1,0 +1,141 @@
+#include "experiments/simulate/scene_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "contract/input_error.h"
+#include "experiments/run/message.h"
+#include "experiments/run/progress.h"
+#include "experiments/simulate/pictures.h"
+#include "simulation/export/recording.h"
+
+namespace tress {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Simulated time, wall time and what is left, on standard error.
+class TimeBar {
+ public:
+  TimeBar(ProgressMode mode, const Scene& scene)
+      : mode_(mode), terminal_(::isatty(STDERR_FILENO) != 0), scene_(scene) {}
+  ~TimeBar() {
+    if (mode_ == ProgressMode::automatic && terminal_) tell("\r\033[K");
+  }
+
+  void show(double t) {
+    const double wall = seconds_since(start_);
+    if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
+    last_ = wall;
+    const double left = wall * (scene_.duration - t) / t;
+    if (mode_ == ProgressMode::json) {
+      const nlohmann::json event{
+          {"event", "frame"}, {"scene", scene_.name}, {"t_s", t}, {"wall_s", wall}};
+      tell("{}\n", event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+      return;
+    }
+    constexpr int width = 30;
+    const auto full = static_cast<std::size_t>(width * t / scene_.duration);
+    tell("{}{} [{}{}] {:.2f}/{:.2f} s simulated in {:.1f} s, about {} left{}",
+         terminal_ ? "\r" : "", scene_.name, std::string(full, '#'),
+         std::string(width - full, '.'), t, scene_.duration, wall,
+         readable_duration(left), terminal_ ? "\033[K" : "\n");
+  }
+
+ private:
+  ProgressMode mode_;
+  bool terminal_;
+  const Scene& scene_;
+  Clock::time_point start_ = Clock::now();
+  double last_ = 0;
+};
+
+/// Refuses a state that this program has not written, though its key says so.
+void restore(World& world, const Snapshot& saved) {
+  const auto sizes = [](const Snapshot& snapshot) {
+    std::vector<std::array<std::size_t, 3>> all;
+    for (const auto& one : snapshot.strands) {
+      all.push_back({one.q.size(), one.v.size(), one.memory.size()});
+    }
+    return all;
+  };
+  if (sizes(saved) != sizes(world.snapshot())) {
+    throw InputError("the saved state is of other strands", "--resume",
+                     "leave out --resume to begin again");
+  }
+  world.restore(saved);
+}
+
+}  // namespace
+
+SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
+                   Interruption& interruption) {
+  const Clock::time_point begin = Clock::now();
+  auto world = std::make_unique<World>(scene, options.threads);
+  Readout readout(scene, *world);
+  const Pictures pictures(scene, *world, readout, options);
+  Recording recording(options.stem, key, readout, options.resume);
+  const auto between_saves =
+      static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
+  std::optional<Snapshot> latest;  // of the last frame, where nothing else is saved
+  const Interruption::Save save(interruption, [&] {
+    if (latest) recording.save(*latest);
+  });
+  const auto add_frame = [&] {
+    Frame3d frame = readout.read(*world);
+    const auto whole = interruption.hold();
+    recording.add(std::move(frame));
+    if (between_saves == 0) latest = world->snapshot();
+  };
+  if (recording.saved()) {
+    restore(*world, *recording.saved());
+    if (between_saves == 0) latest = recording.saved();
+  } else {
+    add_frame();
+  }
+
+  SceneRun run{SceneRun::End::complete, {}, 0, 0, 0, 0};
+  const std::size_t last = scene.last_frame();
+  TimeBar bar(options.progress, scene);
+  while (recording.frames().size() <= last) {
+    const std::size_t frame = recording.frames().size();
+    if (world->advance(scene.time_of(frame)) != Status::ok) {
+      run.end = SceneRun::End::failed;
+      run.reason = world->failure();
+      break;
+    }
+    add_frame();
+    run.indicator = std::max(run.indicator, world->error_indicator());
+    bar.show(world->time());
+    if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
+    const Snapshot snapshot = world->snapshot();
+    {
+      const auto whole = interruption.hold();
+      recording.save(snapshot);
+    }
+    world = std::make_unique<World>(scene, options.threads);
+    world->restore(snapshot);
+    readout.restart();
+  }
+  run.frames = recording.frames().size();
+  for (const Frame3d& frame : recording.frames()) {
+    run.rejected += static_cast<long>(frame.series.back());
+  }
+  run.simulated_s = world->time();
+  run.wall_s = seconds_since(begin);
+  pictures.write(recording.frames());
+  const auto whole = interruption.hold();
+  latest.reset();
+  recording.close();
+  return run;
+}
+
+}  // namespace tress

@@ -1,0 +1,173 @@
+// What is the largest stable step of a strand, against the number of its elements, and
+// what decides it: the solver, the tangent, damping or the scene?
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/numerics/stability.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/run/experiment.h"
+#include "experiments/stability_limit/limit_row.h"
+#include "experiments/stability_limit/scene_limits.h"
+#include "experiments/stability_limit/stability_claims.h"
+#include "experiments/stability_limit/stability_grid.h"
+#include "simulation/files/parse.h"
+#include "simulation/run/timing.h"
+
+namespace tress {
+namespace {
+
+constexpr Column columns[] = {
+    {"scene", "what happens to the strand"},
+    {"model", "catalogue id"},
+    {"integrator", "method"},
+    {"solver", "how the model solves S x = b"},
+    {"tangent", "which terms S has"},
+    {"modes", "unknowns per element"},
+    {"elements", "number of elements"},
+    {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},
+    {"dt_max_s", "largest step such that every step tested up to it was stable"},
+    {"dt_first_unstable_s", "smallest unstable step tested"},
+    {"limited_by", "what broke there; cap: no larger step was tried"},
+    {"stable_above_s", "largest stable step above it: stability is not monotone"},
+    {"dt_finest_s", "smallest step tested"},
+    {"search_done", "false: the work was used up before smaller steps were all tested"},
+    {"runs", "steps tested"},
+    {"t_end_s", "time simulated by a run, at least"},
+    {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
+    {"energy_gain_j", "largest gain of energy at dt_max"},
+    {"speed_bound_m_s", "driven scenes: speed of the tip that is unstable"},
+    {"speed_max_m_s", "largest speed of the tip at dt_max"},
+    {"steps", "steps of the run at dt_max"},
+    {"newton_iterations", "linear solves of that run"},
+    {"cost_per_step_s", "wall time of a step at dt_max", true},
+    {"realtime_factor", "simulated over wall time at dt_max", true},
+};
+
+double row_work(const CommandLine& line, const Parameters& rows) {
+  if (rows.number("row_work") > 0) return rows.number("row_work");
+  return line.quick ? 4e6 : line.full ? 1e8 : 2e7;
+}
+
+StepSearch step_search(const CommandLine& line, const Parameters& rows) {
+  const double usual_depth = line.quick ? 10 : 30;
+  const double depth = rows.number("depth");
+  return {.coarsest = rows.number("cap_s"),
+          .finest = rows.number("floor_s"),
+          .resolution = rows.number("resolution"),
+          .depth = depth > 0 ? std::max(depth, 1.0) : usual_depth};
+}
+
+/// Wall time (s) of a step, over at most so many steps that a row does not take long.
+double step_cost(const StabilityCase& c, System& system, const Options& options,
+                 int repeat) {
+  constexpr double most_steps = 500;
+  const double steps =
+      std::min(most_steps, std::ceil(c.scene->t_end / options.step - 1e-9));
+  const State start = perturbed_start(system);
+  const double wall = time_run(repeat, [&] {
+    (void)simulate(c.integrator, system, options, start, steps * options.step);
+  });
+  return wall / steps;
+}
+
+struct Work {
+  StabilityCase which;
+  Parameters parameters;
+  Options options;
+  StepSearch search;
+  double most_work;  // of the search
+  int repeat;
+};
+
+void measure(const Work& work, Row& row) {
+  const StabilityCase& c = work.which;
+  const auto system = c.model->make(work.parameters);
+  const StabilityBounds bounds = stability_bounds(*c.scene, work.parameters, *system);
+  const State start = perturbed_start(*system);
+  row.set("t_end_s", c.scene->t_end);
+  row.set("energy_bound_j", bounds.energy).set("speed_bound_m_s", bounds.speed);
+
+  Options options = work.options;
+  options.formulation =
+      usable_formulations(find_integrator(c.integrator), *system).front();
+  StabilityRuns tried(c.integrator, *system, options, start, c.scene->t_end, bounds,
+                      work.most_work);
+  std::map<double, StabilityRun> runs;
+  const StepLimit limit =
+      find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {
+        const auto run = tried.judge(dt);
+        if (!run) return {};
+        return (runs[dt] = *run).broken;
+      });
+
+  set_limit(limit, work.search, row);
+  if (!std::isnan(limit.stable)) {
+    const StabilityRun& run = runs.at(limit.stable);
+    if (bounds.energy < StabilityBounds::none) row.set("energy_gain_j", run.energy_gain);
+    if (bounds.speed < StabilityBounds::none) row.set("speed_max_m_s", run.speed);
+    row.set("steps", run.stats.steps);
+    row.set("newton_iterations", run.stats.newton_iterations);
+    options.step = limit.stable;
+    const double cost = step_cost(c, *system, options, work.repeat);
+    row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
+  }
+  const auto last = runs.find(limit.unstable);
+  fail_without_limit(limit, last == runs.end() ? nullptr : &last->second, row);
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, stability_settings());
+  const Parameters& rows = settings.experiment();
+  const StepSearch search = step_search(line, rows);
+  if (!rows.word("scenes").empty()) {
+    return scene_cases(line, split(rows.word("scenes"), ',', "scenes"),
+                       {search, row_work(line, rows), rows.number("horizon_s"),
+                        static_cast<std::size_t>(rows.whole("strands")), line.repeat});
+  }
+  std::vector<Case> all;
+  for (const StabilityCase& c : stability_cases(line, settings)) {
+    StepSearch own = search;
+    own.coarsest = std::min(own.coarsest, c.scene->coarsest);
+    const Work work{c,   c.parameters(settings), settings.options(),
+                    own, row_work(line, rows),   line.repeat};
+    all.push_back(
+        {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
+  }
+  return all;
+}
+
+constexpr OwnOption own_options[] = {
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+};
+
+/// A method without a stable step, or one that needs so many that nobody waits for them,
+/// is what is looked for.
+bool finding(const Row& row) {
+  return row.status() == "unstable" || row.status() == "gave_up" ||
+         row.status() == "refused";
+}
+
+constexpr Unused unused[] = {not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "stability_limit",
+      .question = "what is the largest stable step against the number of elements?",
+      .example = "--elements 5,20 --integrators backward_euler --set scene=shake",
+      .timed = false,
+      .columns = columns,
+      .settings = stability_settings(),
+      .options = own_options,
+      .unused = unused,
+      .cases = cases,
+      .checks = check_stability_claims,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,124 @@
+#include "experiments/stability_limit/stability_claims.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace tress {
+namespace {
+
+/// All that tells rows apart but for the column that is compared.
+std::string setting_of(const Row& row, std::string_view compared) {
+  std::string key;
+  for (const std::string_view column : {"scene", "model", "integrator", "solver",
+                                        "tangent", "modes", "elements", "damping"}) {
+    if (column != compared) key.append(row.text(column)).append("/");
+  }
+  return key;
+}
+
+/// A limit is known to lie between these two; unstable is infinite at the cap.
+struct Bracket {
+  double stable, unstable;
+  double finest;  // smallest step tested, 0 when the search was done
+  bool above(const Bracket& other) const { return stable >= other.unstable; }
+  /// Whether the search got to where the other one found its limit.
+  bool reaches(const Bracket& other) const { return finest <= other.unstable; }
+};
+
+/// By setting, of the rows with this word in this column that have a limit.
+std::map<std::string, Bracket> limits_of(const std::vector<Row>& rows,
+                                         std::string_view column, std::string_view word) {
+  std::map<std::string, Bracket> limits;
+  for (const Row& row : rows) {
+    if (row.text(column) != word || !row.ok()) continue;
+    const double unstable = row.has("dt_first_unstable_s")
+                                ? row.number("dt_first_unstable_s")
+                                : std::numeric_limits<double>::infinity();
+    const double finest =
+        row.text("search_done") == "false" ? row.number("dt_finest_s") : 0;
+    limits[setting_of(row, column)] = {row.number("dt_max_s"), unstable, finest};
+  }
+  return limits;
+}
+
+struct Worst {
+  double ratio = 0;  // of the two dt_max
+  std::string setting;
+  bool held = true;
+};
+
+/// One verdict per scene. `violated` tells whether two brackets break the claim, `ratio`
+/// how far they are from doing so.
+template <typename Violated, typename Ratio>
+void check_pairs(const std::vector<Row>& rows, std::string_view column,
+                 std::string_view first, std::string_view second,
+                 const std::string& claim, Violated violated, Ratio ratio,
+                 Verdicts& verdicts) {
+  std::map<std::string, Worst> scenes;
+  const auto others = limits_of(rows, column, second);
+  for (const auto& [setting, limit] : limits_of(rows, column, first)) {
+    const auto other = others.find(setting);
+    if (other == others.end()) continue;
+    if (!limit.reaches(other->second) || !other->second.reaches(limit)) continue;
+    Worst& worst = scenes[setting.substr(0, setting.find('/'))];
+    const double r = ratio(limit.stable, other->second.stable);
+    if (r > worst.ratio) {
+      worst.ratio = r;
+      worst.setting = setting;
+    }
+    if (violated(limit, other->second)) worst.held = false;
+  }
+  if (scenes.empty()) verdicts.not_judged(claim);
+  for (const auto& [scene, worst] : scenes) {
+    verdicts.check(scene + ": " + claim + ", worst at " + worst.setting, worst.held,
+                   worst.ratio);
+  }
+}
+
+const Row* shaken(const std::vector<Row>& rows, std::string_view integrator,
+                  std::string_view tangent) {
+  const auto found = std::ranges::find_if(rows, [&](const Row& row) {
+    return row.text("scene") == "shake" && row.text("model") == "super_helix" &&
+           row.text("integrator") == integrator && row.text("solver") == "recursive" &&
+           row.text("tangent") == tangent && row.text("modes") == "bend_twist" &&
+           row.text("elements") == "20" && row.text("damping") == "none";
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
+  check_pairs(
+      rows, "solver", "recursive", "composite",
+      "recursive and composite have the same largest step",
+      [](const Bracket& a, const Bracket& b) { return a.above(b) || b.above(a); },
+      [](double a, double b) { return std::max(a / b, b / a); }, verdicts);
+  check_pairs(
+      rows, "tangent", "less_implicit", "stiff", "less_implicit never exceeds stiff",
+      [](const Bracket& a, const Bracket& b) { return a.above(b); },
+      [](double a, double b) { return a / b; }, verdicts);
+
+  // A row whose search found no limit has no number, and no comparison holds.
+  const auto limit = [&](std::string_view integrator, std::string_view tangent,
+                         const std::string& claim, auto holds) {
+    const Row* row = shaken(rows, integrator, tangent);
+    if (row == nullptr) {
+      verdicts.not_judged(claim);
+      return;
+    }
+    const double dt = row->number("dt_max_s");
+    verdicts.check(claim, row->ok() && holds(dt), dt);
+  };
+  limit("backward_euler", "exact",
+        "shake, undamped, N = 20: backward_euler exact is stable at 33 ms",
+        [](double dt) { return dt >= 0.033; });
+  limit("semi_implicit_euler", "stiff",
+        "shake, undamped, N = 20: semi_implicit_euler stiff stays below 2 ms",
+        [](double dt) { return dt < 0.002; });
+}
+
+}  // namespace tress

@@ -1,0 +1,237 @@
+#include "experiments/stability_limit/stability_grid.h"
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "contract/input_error.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
+#include "integrators/catalogue.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter settings_of_rows[] = {
+    {.name = "scene",
+     .help = "rows of one scene",
+     .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
+    {.name = "damping",
+     .help = "rows of one level of internal friction: 0, 1e-12 or 1e-10 kg m^3/s",
+     .choices = "all|none|light|seed"},
+    {.name = "solver",
+     .help = "rows of one solver of the model",
+     .choices = "all|recursive|composite|sparse|recursive_plain"},
+    {.name = "tangent",
+     .help = "rows of one tangent of the model",
+     .choices = "all|stiff|exact|less_implicit"},
+    {.name = "modes",
+     .help = "which modes the strands have",
+     .choices = "bend_twist|bend|bend_planar"},
+    {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
+    {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-6, .min = 1e-12},
+    {.name = "depth",
+     .help = "test below a stable step until this factor is stable, 0: 30, with --quick "
+             "10",
+     .number = 0,
+     .min = 0},
+    {.name = "resolution",
+     .help = "bisect until unstable over stable step is this",
+     .number = 1.05,
+     .min = 1.0001},
+    {.name = "scenes", .help = "scene files instead of our scenes", .text = true},
+    {.name = "horizon_s",
+     .help = "of a scene file: time that a run simulates, at most the scene's (s)",
+     .number = 0.5,
+     .min = 1e-3,
+     .max = 1e3},
+    {.name = "strands",
+     .help = "of a scene file whose strands do not touch: so many typical ones",
+     .number = 8,
+     .min = 1,
+     .max = 1e4,
+     .whole = true},
+    {.name = "row_work",
+     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 4e6, "
+             "with --full 1e8",
+     .number = 0,
+     .min = 0},
+};
+
+// EI/gamma is the relaxation rate; gamma damps modes beyond 2 EI/gamma over-critically.
+// The seed's gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
+// a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
+// leaves the motion as it is and only rounds off what the grid adds.
+constexpr Damping dampings[] = {{"none", "0"}, {"light", "1e-12"}, {"seed", "1e-10"}};
+
+struct Method {
+  std::string_view model, integrator, solver, tangent;
+};
+
+/// Against the number of elements: the seed's kind of step on every solver, our
+/// reconstruction of its recursion, the whole tangent, and the serial chain.
+constexpr Method methods[] = {
+    {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
+    {"super_helix", "semi_implicit_euler", "composite", "stiff"},
+    {"super_helix", "semi_implicit_euler", "recursive", "less_implicit"},
+    {"super_helix", "semi_implicit_euler", "recursive", "exact"},
+    {"super_helix", "backward_euler", "recursive", "exact"},
+    {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
+};
+
+/// Every other strand model, by the usual step and by whole Newton steps: its first
+/// solver.
+std::vector<Method> methods_of(const ModelEntry& model) {
+  const std::string_view solver = first_word(model, "solver");
+  return {{model.id, "semi_implicit_euler", solver, usual_tangent(model)},
+          {model.id, "backward_euler", solver, first_word(model, "tangent")}};
+}
+
+bool of_the_seed(std::string_view model) {
+  return std::ranges::find(methods, model, &Method::model) != std::end(methods);
+}
+
+/// Only where methods are compared with each other.
+constexpr Method further_methods[] = {
+    {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
+    {"super_helix", "semi_implicit_euler", "composite", "exact"},
+    {"super_helix", "semi_implicit_euler", "sparse", "exact"},
+    {"articulated_chain", "semi_implicit_euler", "composite", "stiff"},
+    {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
+    {"articulated_chain", "backward_euler", "recursive", "exact"},
+};
+
+/// Where methods are compared.
+constexpr int usual_elements = 20;
+
+/// Of --quick; the others say nothing new about stability.
+constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint",
+                                                  "linearly_implicit_midpoint", "bdf2",
+                                                  "generalized_alpha"};
+constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
+                                             "whip"};
+/// Of models that are not the seed's: these scenes and numbers of elements.
+constexpr std::string_view quick_scenes_of_others[] = {"release", "shake"};
+constexpr int quick_elements_of_others[] = {5, usual_elements, 40};
+
+bool contains(std::span<const std::string_view> words, std::string_view word) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+std::vector<int> element_counts(const CommandLine& line) {
+  if (!line.elements.empty()) return line.elements;
+  if (line.full) return {1, 2, 3, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200};
+  return {1, 2, 5, 10, usual_elements, 40};
+}
+
+/// `others`: and every other fixed-step integrator, by the linear-time solver with the
+/// whole tangent.
+std::vector<Method> all_methods(const CommandLine& line, bool others) {
+  std::vector<Method> all(std::begin(methods), std::end(methods));
+  for (const ModelEntry* model : strand_models()) {
+    if (of_the_seed(model->id)) continue;
+    const std::vector<Method> own = methods_of(*model);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  if (!others) return all;
+  all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.adaptive || entry.id == "semi_implicit_euler") continue;
+    if (entry.id == "backward_euler") continue;  // above
+    if (line.quick && line.integrators.empty() &&
+        !contains(quick_integrators, entry.id)) {
+      continue;
+    }
+    all.push_back({"super_helix", entry.id, "recursive", "exact"});
+    if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
+  }
+  return all;
+}
+
+/// Whether the rows of a scene are for a damping and a number of elements, when nothing
+/// on the command line says so: all without damping; --quick shows what damping does on
+/// two scenes at two counts, the default on four at all.
+bool usual(const CommandLine& line, const StrandScene& scene, const Damping& damping,
+           int elements) {
+  if (line.full) return true;
+  if (damping.name == "none") return !line.quick || contains(quick_scenes, scene.name);
+  constexpr std::string_view damped[] = {"shake", "curl_drop", "release", "whip"};
+  if (!line.quick) return contains(damped, scene.name);
+  return contains(std::span(damped).first(2), scene.name) &&
+         (elements == 5 || elements == usual_elements);
+}
+
+/// Whether the model has this solver and tangent, and the integrator takes it.
+bool possible(const StabilityCase& c, const Settings& settings) {
+  for (const auto& [key, word] :
+       {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
+    if (!word.empty() && !has_word(*c.model, key, word)) return false;
+  }
+  try {
+    const auto system = c.model->make(c.parameters(settings));
+    return !usable_formulations(find_integrator(c.integrator), *system).empty();
+  } catch (const InputError&) {
+    return false;  // a scene that the model does not take
+  }
+}
+
+}  // namespace
+
+Row StabilityCase::identity() const {
+  Row row;
+  row.set("scene", scene->name).set("model", model->id).set("integrator", integrator);
+  row.set("solver", solver).set("tangent", tangent).set("modes", modes);
+  row.set("elements", elements).set("damping", damping.name);
+  return row;
+}
+
+Parameters StabilityCase::parameters(const Settings& settings) const {
+  Parameters p = settings.parameters(*model);
+  for (const auto& [key, value] : scene->settings) p.set(key, value);
+  p.set("elements", std::to_string(elements));
+  p.set("internal_friction_kg_m3_s", damping.internal_friction);
+  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
+  return p;
+}
+
+std::span<const Parameter> stability_settings() { return settings_of_rows; }
+
+std::vector<StabilityCase> stability_cases(const CommandLine& line,
+                                           const Settings& settings) {
+  const Parameters& rows = settings.experiment();
+  const auto keeps = [&rows](std::string_view key, std::string_view word) {
+    return rows.word(key) == "all" || rows.word(key) == word;
+  };
+  const bool scene_chosen = rows.word("scene") != "all";
+  const bool damping_chosen = rows.word("damping") != "all";
+  std::vector<StabilityCase> all;
+  for (const StrandScene& scene : strand_scenes()) {
+    if (!keeps("scene", scene.name)) continue;
+    for (const Damping& damping : dampings) {
+      if (!keeps("damping", damping.name)) continue;
+      for (const int elements : element_counts(line)) {
+        const bool chosen = scene_chosen || damping_chosen || !line.elements.empty();
+        if (!chosen && !usual(line, scene, damping, elements)) continue;
+        const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
+                            (elements == usual_elements && damping.name == "none");
+        for (const Method& m : all_methods(line, others)) {
+          if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
+          if (!chosen && line.quick && !of_the_seed(m.model) &&
+              !(damping.name == "none" && contains(quick_scenes_of_others, scene.name) &&
+                std::ranges::find(quick_elements_of_others, elements) !=
+                    std::end(quick_elements_of_others))) {
+            continue;
+          }
+          if (!wanted(line.models, m.model)) continue;
+          if (!wanted(line.integrators, m.integrator)) continue;
+          const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
+                                m.tangent, rows.word("modes"),   elements,     damping};
+          if (possible(c, settings)) all.push_back(c);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace tress

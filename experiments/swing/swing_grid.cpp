@@ -1,0 +1,264 @@
+#include "experiments/swing/swing_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "integrators/catalogue.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter settings_of_rows[] = {
+    {.name = "error", .help = "rows of one kind of error", .choices = "all|time|total"},
+    {.name = "modes",
+     .help = "rows with these modes of the strand",
+     .choices = "all|bend|bend_twist"},
+    {.name = "solver",
+     .help = "rows of one solver of the model",
+     .choices = "all|recursive|composite|sparse"},
+    {.name = "tangent",
+     .help = "rows of one tangent of the model",
+     .choices = "all|stiff|exact"},
+};
+
+/// How far and with which matrix a step's equations are solved. Tolerances are over
+/// System::scale: 0.3 is a curvature of 0.3 over the length of the strand.
+struct Newton {
+  Refresh refresh = Refresh::every_iteration;
+  double tolerance = 0;  // 0: the method does not iterate, or SUNDIALS does
+};
+constexpr Newton converged{Refresh::every_iteration, 1e-10};
+constexpr Newton loose{Refresh::every_step, 0.3};
+constexpr Newton lazy{Refresh::when_slow, 0.1};
+
+struct Method {
+  std::string_view integrator;
+  std::string_view tangent = {};
+  Newton newton = {};
+  int max_order = 0;
+  bool full_only = false;
+};
+
+constexpr Method methods[] = {
+    {"implicit_midpoint", "stiff", loose},
+    {"implicit_midpoint", "stiff", lazy},
+    {"implicit_midpoint", "exact", loose},
+    {"implicit_midpoint", "exact", converged},
+    {"linearly_implicit_midpoint", "stiff"},
+    {"linearly_implicit_midpoint", "exact"},
+    {"generalized_alpha", "stiff", loose},
+    {"generalized_alpha", "exact", converged, 0, true},
+    {"newmark", "stiff", loose},
+    {"newmark", "exact", converged, 0, true},
+    {"bdf2", "stiff", loose},
+    {"bdf2", "exact", converged, 0, true},
+    {"backward_euler", "stiff", loose},
+    {"backward_euler", "exact", converged, 0, true},
+    {"semi_implicit_euler", "stiff"},
+    {"semi_implicit_euler", "exact"},
+    {"ida", "exact", {}, 2},
+    {"ida", "exact", {}, 5},
+    {"ida", "stiff", {}, 2, true},
+    {"cvode_bdf", "exact"},
+    {"cvode_bdf", "stiff", {}, 0, true},
+    {"arkode_dirk", "exact"},
+    {"arkode_dirk", "stiff", {}, 0, true},
+    {"symplectic_euler"},
+    {"velocity_verlet"},
+    {"rk4"},
+    {"explicit_euler", {}, {}, 0, true},
+    {"cvode_adams"},
+    {"arkode_erk"},
+    {"gsl_rkf45"},
+    {"gsl_rk8pd"},
+    {"gsl_msadams", {}, {}, 0, true},
+    {"gsl_bsimp", {}, {}, 0, true},
+};
+
+/// What is compared on other strands and for the total error.
+constexpr Method best[] = {
+    {"implicit_midpoint", "stiff", loose},
+    {"linearly_implicit_midpoint", "stiff"},
+};
+
+struct Body {
+  std::string_view model, modes, solver;
+};
+constexpr Body principal{"super_helix", "bend", "recursive"};
+constexpr Body chain{"articulated_chain", "bend", "recursive"};
+constexpr Body others[] = {
+    {"super_helix", "bend", "composite"},
+    {"super_helix", "bend", "sparse"},
+    chain,
+};
+
+// Twist has next to no mass, so what Newton leaves over of it comes back undamped and
+// larger: only converged steps or methods that damp fast modes get through.
+constexpr Body twisting{"super_helix", "bend_twist", "recursive"};
+constexpr Method twisting_methods[] = {
+    {"implicit_midpoint", "stiff", loose, 0, true},
+    {"implicit_midpoint", "exact", converged},
+    {"linearly_implicit_midpoint", "stiff"},
+    {"bdf2", "stiff", loose},
+    {"bdf2", "exact", converged},
+};
+
+// Total error: the strand bends most at its root, so shorter elements there are worth
+// trying beside equal ones.
+constexpr double gradings[] = {1, 3};
+
+/// Steps (s) or relative tolerances from loose to tight: loosest / base^(i exponent).
+struct Ladder {
+  double loosest, base, exponent;
+  int rungs;
+};
+
+Ladder ladder(const IntegratorEntry& entry, bool implicit, const CommandLine& line) {
+  const int more = line.full ? 3 : line.quick ? -1 : 0;
+  if (entry.adaptive) {
+    return implicit ? Ladder{0.1, 10, 0.5, 5 + 2 * more} : Ladder{0.1, 10, 1, 3 + more};
+  }
+  // Explicit steps beyond 1.25 ms are unstable at 20 elements.
+  const double loosest = implicit ? 1e-2 : 1.25e-3;
+  if (entry.order == 1) return {loosest, 2, 1, (implicit ? 7 : 4) + more};
+  return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
+}
+
+/// Whether step (s) and elements are worth each other: both errors are of order 2, so the
+/// cheapest way to a total error keeps step times elements between fixed bounds.
+bool balanced(double step, int elements) {
+  return step * elements >= 0.025 && step * elements <= 0.161;
+}
+
+std::string_view name(Refresh refresh) {
+  switch (refresh) {
+    case Refresh::every_iteration:
+      return "every_iteration";
+    case Refresh::every_step:
+      return "every_step";
+    case Refresh::when_slow:
+      break;
+  }
+  return "when_slow";
+}
+
+/// Builds the list; knows what the user asked for.
+class Grid {
+ public:
+  Grid(const CommandLine& line, const Settings& settings)
+      : line_(line), settings_(settings) {}
+
+  std::vector<SwingCase> cases() {
+    const std::span<const Method> total =
+        line_.integrators.empty() ? std::span<const Method>(best) : methods;
+    for (const int elements : counts({peer_elements})) {
+      for (const Method& m : methods) add("time", principal, m, elements, 1);
+      for (const Body& body : others) {
+        for (const Method& m : best) add("time", body, m, elements, 1);
+      }
+      for (const Method& m : twisting_methods) add("time", twisting, m, elements, 1);
+    }
+    for (const int elements : counts({3, 5, 7, 9, 12, 16, 20, 28, 40})) {
+      for (const Body& body : {principal, chain}) {
+        for (const double grading : gradings) {
+          for (const Method& m : total) add("total", body, m, elements, grading);
+        }
+      }
+    }
+    return std::move(all_);
+  }
+
+ private:
+  std::vector<int> counts(std::initializer_list<int> usual) const {
+    return line_.elements.empty() ? std::vector<int>(usual) : line_.elements;
+  }
+
+  bool keeps(std::string_view key, std::string_view word) const {
+    const std::string_view chosen = settings_.experiment().word(key);
+    return chosen == "all" || chosen == word;
+  }
+
+  void add(std::string_view error, const Body& body, const Method& m, int elements,
+           double grading) {
+    if (m.full_only && !line_.full && line_.integrators.empty()) return;
+    if (!keeps("error", error) || !keeps("modes", body.modes)) return;
+    if (!keeps("solver", body.solver) || !keeps("tangent", m.tangent)) return;
+    if (!wanted(line_.models, body.model) || !wanted(line_.integrators, m.integrator)) {
+      return;
+    }
+    const IntegratorEntry& entry = find_integrator(m.integrator);
+    SwingCase c{.error_kind = error,
+                .model = &find_model(body.model),
+                .modes = body.modes,
+                .solver = body.solver,
+                .tangent = m.tangent,
+                .integrator = m.integrator,
+                .adaptive = entry.adaptive,
+                .newton = m.newton.tolerance > 0,
+                .options = {},
+                .elements = elements,
+                .grading = grading};
+    const auto system = c.model->make(c.parameters(settings_));
+    if (!refusal(entry, *system, Formulation::parametric).empty()) return;
+    c.options.max_order = m.max_order;
+    c.options.refresh = m.newton.refresh;
+    if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
+    c.options = settings_.options(c.options);
+    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_);
+    for (int i = 0; i < rungs.rungs; ++i) {
+      const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
+      if (error == "total" && !entry.adaptive && !balanced(x, elements)) continue;
+      (entry.adaptive ? c.options.rtol : c.options.step) = x;
+      if (entry.adaptive) c.options.atol = x;
+      // --set can make two ways of iterating the same.
+      if (known_.insert(describe(c.identity())).second) all_.push_back(c);
+    }
+  }
+
+  const CommandLine& line_;
+  const Settings& settings_;
+  std::vector<SwingCase> all_;
+  std::set<std::string> known_;
+};
+
+}  // namespace
+
+Row SwingCase::identity() const {
+  Row row;
+  row.set("error_kind", error_kind).set("model", model->id).set("modes", modes);
+  row.set("solver", solver).set("tangent", tangent).set("integrator", integrator);
+  if (options.max_order > 0) row.set("max_order", options.max_order);
+  if (newton) {
+    row.set("newton_tolerance", options.newton_tolerance);
+    row.set("refresh", name(options.refresh));
+  }
+  row.set("elements", elements).set("grading", grading);
+  return adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
+}
+
+Parameters swing_parameters(const Settings& settings, const ModelEntry& model,
+                            int elements) {
+  Parameters p = settings.parameters(model);
+  for (const auto& [key, value] : find_strand_scene("swing").settings) p.set(key, value);
+  p.set("elements", std::to_string(elements));
+  return p;
+}
+
+Parameters SwingCase::parameters(const Settings& settings) const {
+  Parameters p = swing_parameters(settings, *model, elements);
+  p.set("grading", std::to_string(grading));
+  p.set("modes", modes);
+  p.set("solver", solver);
+  if (!tangent.empty()) p.set("tangent", tangent);
+  return p;
+}
+
+std::span<const Parameter> swing_settings() { return settings_of_rows; }
+
+std::vector<SwingCase> swing_cases(const CommandLine& line, const Settings& settings) {
+  return Grid(line, settings).cases();
+}
+
+}  // namespace tress

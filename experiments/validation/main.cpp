@@ -1,0 +1,42 @@
+// Is the physics right? Every strand model against published tests of slender rods.
+#include "experiments/run/experiment.h"
+#include "experiments/validation/table.h"
+
+namespace tress {
+namespace {
+
+std::vector<Case> cases(const CommandLine& line) {
+  return validation_cases(line, Settings(line, validation_settings()));
+}
+
+/// That a model refuses a test, or has no answer to it in the time there is, is an
+/// answer; what must hold is among the checks, and a claim with a row that was killed is
+/// broken.
+bool finding(const Row& row) {
+  return row.status() == "refused" || row.status() == "failed" ||
+         row.status() == "timeout";
+}
+
+constexpr Unused unused[] = {
+    {"integrators", "each test has its own"}, not_repeated, not_random};
+
+}  // namespace
+}  // namespace tress
+
+int main(int argc, char** argv) {
+  using namespace tress;
+  const Experiment experiment{
+      .name = "validation",
+      .question = "is the physics right: what do published tests of rods say?",
+      .example = "--models der,super_helix --set tests=cantilever",
+      .timed = false,
+      .columns = validation_columns(),
+      .settings = validation_settings(),
+      .unused = unused,
+      .cases = cases,
+      .derive = fit_validation_orders,
+      .checks = check_validation,
+      .glossary = validation_glossary,
+      .finding = finding};
+  return run_experiment(experiment, argc, argv);
+}

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "contract/system.h"
+#include "math/frame.h"
+
+namespace tress {
+
+/// What a test does with the free end of a strand.
+struct End {
+  /// What is held of the section at the tip: nothing, its tangent, or all of its frame.
+  enum class Section { free, tangent, frame };
+
+  Vec force{};               // dead, N, times the load
+  std::vector<Vec> along{};  // unit vectors along which the tip is held ...
+  Vec place{};               // ... at this place, m
+  Section section = Section::free;
+  Frame frame{};  // to which the section is held
+  /// Of models whose last half edge neither bends nor twists, that half edge as a spring
+  /// between it and what holds it: how far (rad/(N m)) it gives to a moment, and how far
+  /// it turns (rad) at rest, about the axes of the section.
+  Vec compliance{}, rest{};
+
+  /// Rows of the section: 0, 2 (about e1, e2) or 3 (about e0, e1, e2).
+  int section_rows() const;
+};
+
+/// The conditions c = 0 that hold an end, as functions of q: along_i . (x - place), then
+/// the rotation vector from `frame` to the section, about the axes of `frame`; with a
+/// half edge, from `frame` to that edge, plus `rest` and compliance times the moment.
+/// Gradients of the place come from the velocities of the tip, exactly, those of the
+/// section by differences of order 4.
+class EndConditions {
+ public:
+  /// Throws std::runtime_error when the section is held and the model has no end_frame.
+  EndConditions(System& system, const End& end);
+
+  int rows() const { return places_ + sections_; }
+  int places() const { return places_; }
+  Eigen::VectorXd value(double t, In q);
+  Eigen::MatrixXd gradient(double t, In q);  // (n x rows)
+  /// d(gradient of the section . moment)/dq, (n x n), by differences to 1e-8 of itself.
+  Eigen::MatrixXd curvature(double t, In q, const Eigen::VectorXd& moment);
+  /// Diagonal of the compliance, (rows); 0: rigid.
+  Eigen::VectorXd compliance() const;
+
+ private:
+  Eigen::VectorXd section(double t, In q);
+  /// Coordinates that turn the section at all.
+  Eigen::MatrixXd section_gradient(double t, In q);  // (n, sections)
+  std::vector<std::size_t> turning(double t, In q);
+
+  System& system_;
+  MaterialPoints& points_;
+  const End& end_;
+  int places_, sections_;
+  std::vector<double> q_typ_;
+};
+
+}  // namespace tress

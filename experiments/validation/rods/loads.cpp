@@ -1,0 +1,94 @@
+#include "experiments/validation/rods/loads.h"
+
+#include "math/gauss_legendre.h"
+#include "math/mat3.h"
+
+namespace tress {
+namespace {
+
+/// Of the polynomial through the points of Gauss's rule, at the end of its interval.
+std::vector<double> at_end(int points) {
+  const std::vector<QuadraturePoint> rule = gauss_legendre(points, 1);
+  std::vector<double> weights;
+  for (const QuadraturePoint& one : rule) {
+    double weight = 1;
+    for (const QuadraturePoint& other : rule) {
+      if (other.at != one.at) weight *= (1 - other.at) / (one.at - other.at);
+    }
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
+}  // namespace
+
+void Weight::add_load(double t, const Points& p, InOut f) const noexcept {
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    store3(load3(&f[3 * i]) + (t * p.mass[i]) * g_, &f[3 * i]);
+  }
+}
+
+double Weight::potential(double t, const Points& p) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.mass.size(); ++i) {
+    sum -= t * p.mass[i] * dot(g_, load3(&p.x[3 * i]));
+  }
+  return sum;
+}
+
+const std::vector<double>& TipPoints::weights(const Points& p) const {
+  // Models carry a segment's mass by one node, n + 1 in all, or by several points.
+  const int points = p.count > elements_ + 1 ? p.count / elements_ : 1;
+  if (weights_.size() != static_cast<std::size_t>(points)) weights_ = at_end(points);
+  return weights_;
+}
+
+void TipForce::add_load(double, const Points& p, InOut f) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    double* load = &f[3 * (first + k)];
+    store3(load3(load) + w[k] * force, load);
+  }
+}
+
+double TipForce::potential(double, const Points& p) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  double sum = 0;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    sum -= w[k] * dot(force, load3(&p.x[3 * (first + k)]));
+  }
+  return sum;
+}
+
+void FollowerForce::add_load(double, const Points& p, InOut f) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const std::size_t at = 3 * (first + k);
+    store3(load3(&f[at]) - (force_ * w[k]) * load3(&p.tangent[at]), &f[at]);
+  }
+}
+
+void FollowerForce::add_direction_derivatives(double, const Points& p, double factor,
+                                              InOut blocks) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    add9((-factor * force_ * w[k]) * identity(), &blocks[9 * (first + k)]);
+  }
+}
+
+double FollowerForce::power(double, const Points& p) const noexcept {
+  const std::vector<double>& w = tip_.weights(p);
+  const std::size_t first = p.mass.size() - w.size();
+  double sum = 0;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const std::size_t at = 3 * (first + k);
+    sum -= force_ * w[k] * dot(load3(&p.tangent[at]), load3(&p.v[at]));
+  }
+  return sum;
+}
+
+}  // namespace tress

@@ -1,0 +1,91 @@
+#include "experiments/work_precision/work_precision_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "experiments/numerics/fit.h"
+#include "experiments/numerics/pareto.h"
+
+namespace tress {
+namespace {
+
+// Finest points that make a slope; coarser ones are often before the asymptotic range.
+constexpr std::size_t fitted_points = 4;
+
+// Errors this close to the reference's own, or to rounding, say nothing about order.
+constexpr double rounding = 1e-12;
+
+struct Point {
+  double size, error;  // of a step or an element
+};
+
+double slope(const std::vector<Point>& points) {
+  std::vector<double> sizes, errors;
+  for (const Point& p : points) {
+    sizes.push_back(p.size);
+    errors.push_back(p.error);
+  }
+  return log_log_slope(sizes, errors);
+}
+
+bool is_total(const Row& row) { return row.text("error_kind") == "total"; }
+
+/// Time errors fall with the step, total ones with the length of an element.
+std::string series_of(const Row& row) {
+  return is_total(row) ? joined(row, {"scene", "model", "integrator", "solver", "dt_s"})
+                       : joined(row, {"scene", "integrator", "formulation", "solver"});
+}
+
+/// The smallest step of every series of total errors: where time adds least.
+std::map<std::string, double> finest_steps(const std::vector<Row>& rows) {
+  std::map<std::string, double> finest;
+  for (const Row& row : rows) {
+    if (!is_total(row) || !row.ok()) continue;
+    const double step = row.number("dt_s");
+    const auto [place, fresh] =
+        finest.emplace(joined(row, {"scene", "model", "integrator", "solver"}), step);
+    place->second = std::min(place->second, step);
+  }
+  return finest;
+}
+
+void add_orders(std::vector<Row>& rows) {
+  const auto finest = finest_steps(rows);
+  const auto fitted = [&finest](const Row& row) {
+    if (!row.ok() || !row.has("dt_s")) return false;
+    return !is_total(row) ||
+           row.number("dt_s") ==
+               finest.at(joined(row, {"scene", "model", "integrator", "solver"}));
+  };
+  std::map<std::string, std::vector<Point>> series;
+  for (const Row& row : rows) {
+    if (!fitted(row) || row.text("below_reference") == "true") continue;
+    const double x = is_total(row) ? 1 / row.number("elements") : row.number("dt_s");
+    if (row.number("error_rel") > rounding) {
+      series[series_of(row)].push_back({x, row.number("error_rel")});
+    }
+  }
+  for (auto& [key, points] : series) {
+    std::ranges::sort(points, {}, &Point::size);
+    if (points.size() > fitted_points) points.resize(fitted_points);
+  }
+  for (Row& row : rows) {
+    const auto found = series.find(series_of(row));
+    if (row.has("dt_s") && found != series.end() && found->second.size() >= 3) {
+      row.set("order_fit", slope(found->second));
+    }
+  }
+}
+
+}  // namespace
+
+void add_series_columns(std::vector<Row>& rows) {
+  add_orders(rows);
+  add_pareto(rows, "error_rel", [](const Row& row) {
+    return joined(row, {"scene", "error_kind"});
+  });
+}
+
+}  // namespace tress

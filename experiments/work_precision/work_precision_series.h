@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "simulation/files/row.h"
+
+namespace tress {
+
+/// Fills what only the whole table knows: `order_fit` of every fixed-step series, the
+/// least-squares slope over its finest trusted points (same scene, integrator,
+/// formulation and solver, over steps; total errors: same model at its finest step, over
+/// element lengths), and `pareto` of every row (no run of its scene and kind of error is
+/// both faster and more accurate).
+void add_series_columns(std::vector<Row>& rows);
+
+}  // namespace tress

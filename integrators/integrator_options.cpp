@@ -1,0 +1,209 @@
+#include "integrators/integrator_options.h"
+
+#include <algorithm>
+
+namespace tress {
+namespace {
+
+using Assign = void (*)(Options&, const Parameters&, std::string_view key);
+
+struct Field {
+  Parameter parameter;
+  Assign assign;
+};
+
+template <double Options::*member>
+void real(Options& o, const Parameters& p, std::string_view key) {
+  o.*member = p.number(key);
+}
+
+template <int Options::*member>
+void whole(Options& o, const Parameters& p, std::string_view key) {
+  o.*member = p.whole(key);
+}
+
+template <bool Options::*member>
+void flag(Options& o, const Parameters& p, std::string_view key) {
+  o.*member = p.word(key) == "true";
+}
+
+/// Position of the word among the declared choices, which follow the enum's order.
+template <auto member, typename Enum>
+void choice(Options& o, const Parameters& p, std::string_view key) {
+  for (const Parameter& declared : integrator_options()) {
+    if (declared.name != key) continue;
+    const auto words = words_of(declared.choices);
+    o.*member = static_cast<Enum>(std::ranges::find(words, p.word(key)) - words.begin());
+  }
+}
+
+void max_steps(Options& o, const Parameters& p, std::string_view key) {
+  o.max_steps = static_cast<long>(p.number(key));
+}
+
+const Options defaults;
+constexpr double smallest_step = 1e-12;       // s
+constexpr double smallest_tolerance = 1e-15;  // below it round-off decides
+constexpr double largest = 1e30;
+constexpr double most_counted = 1e15;  // whole numbers that a double holds exactly
+
+const Field fields[] = {
+    {{.name = "formulation",
+      .help = "how constraints enter the equations",
+      .choices = "parametric|acceleration|baumgarte|projection|index2_ggl|index3|rattle|"
+                 "correction"},
+     choice<&Options::formulation, Formulation>},
+    {{.name = "alpha",
+      .help = "Baumgarte's position gain (1/s^2)",
+      .number = defaults.alpha,
+      .min = -largest,
+      .max = largest},
+     real<&Options::alpha>},
+    {{.name = "beta",
+      .help = "Baumgarte's velocity gain (1/s)",
+      .number = defaults.beta,
+      .min = -largest,
+      .max = largest},
+     real<&Options::beta>},
+    {{.name = "step",
+      .help = "time step of fixed-step methods (s)",
+      .number = defaults.step,
+      .min = smallest_step,
+      .max = largest},
+     real<&Options::step>},
+    {{.name = "rtol",
+      .help = "relative tolerance of adaptive methods",
+      .number = defaults.rtol,
+      .min = smallest_tolerance,
+      .max = 1},
+     real<&Options::rtol>},
+    {{.name = "atol",
+      .help = "absolute tolerance over the model's scale",
+      .number = defaults.atol,
+      .min = 0,
+      .max = largest},
+     real<&Options::atol>},
+    {{.name = "max_step",
+      .help = "largest step of adaptive methods (s), 0: unlimited",
+      .number = defaults.max_step,
+      .min = 0,
+      .max = largest},
+     real<&Options::max_step>},
+    {{.name = "max_steps",
+      .help = "steps until a run counts as failed",
+      .number = static_cast<double>(defaults.max_steps),
+      .min = 1,
+      .max = most_counted,
+      .whole = true},
+     max_steps},
+    {{.name = "max_work",
+      .help = "evaluations, solves and steps, times coordinates + 10, until a run counts "
+              "as failed, 0: unlimited",
+      .number = 0,
+      .min = 0,
+      .max = largest},
+     real<&Options::max_work>},
+    {{.name = "max_order",
+      .help = "order of multistep or Runge-Kutta methods, 0: default",
+      .number = 0,
+      .min = 0,
+      .max = 13,
+      .whole = true},
+     whole<&Options::max_order>},
+    {{.name = "rho_inf",
+      .help = "generalized-alpha: spectral radius at infinity",
+      .number = defaults.rho_inf,
+      .min = 0,
+      .max = 1},
+     real<&Options::rho_inf>},
+    {{.name = "newton_tolerance",
+      .help = "largest correction over the model's scale",
+      .number = defaults.newton_tolerance,
+      .min = smallest_tolerance,
+      .max = 1},
+     real<&Options::newton_tolerance>},
+    {{.name = "newton_iterations",
+      .help = "Newton iterations allowed per step",
+      .number = static_cast<double>(defaults.newton_iterations),
+      .min = 1,
+      .max = 1000,
+      .whole = true},
+     whole<&Options::newton_iterations>},
+    {{.name = "refresh",
+      .help = "when the Newton matrix is rebuilt",
+      .choices = "every_iteration|every_step|when_slow"},
+     choice<&Options::refresh, Refresh>},
+    {{.name = "correction",
+      .help = "predictor_corrector: positions moved with an impulse, or alone",
+      .choices = "impulse|position"},
+     choice<&Options::correction, Correction>},
+    {{.name = "second_filter",
+      .help = "predictor_corrector: an implicit solve after the correction",
+      .choices = "true|false"},
+     flag<&Options::second_filter>},
+    {{.name = "correction_tolerance",
+      .help = "predictor_corrector: largest violation over its scale",
+      .number = defaults.correction_tolerance,
+      .min = smallest_tolerance,
+      .max = 1},
+     real<&Options::correction_tolerance>},
+    {{.name = "newton_coefficient",
+      .help = "SUNDIALS' nonlinear coefficient, 0: SUNDIALS' default",
+      .number = Options{}.newton_coefficient,
+      .min = 0,
+      .max = 1},
+     real<&Options::newton_coefficient>},
+    {{.name = "sweeps",
+      .help = "xpbd: Gauss-Seidel sweeps per step",
+      .number = static_cast<double>(defaults.sweeps),
+      .min = 1,
+      .max = 1e6,
+      .whole = true},
+     whole<&Options::sweeps>},
+    {{.name = "sweep_order",
+      .help = "xpbd: order of the blocks in a sweep",
+      .choices = "root_to_tip|bilateral"},
+     choice<&Options::sweep_order, SweepOrder>},
+    {{.name = "suppress_algebraic",
+      .help = "ida: multipliers out of the error test",
+      .choices = "true|false"},
+     flag<&Options::suppress_algebraic>},
+    {{.name = "multiplier_atol",
+      .help = "ida: multipliers' absolute tolerance over atol",
+      .number = defaults.multiplier_atol,
+      .min = 0,
+      .max = largest},
+     real<&Options::multiplier_atol>},
+    {{.name = "linear", .help = "linear solver", .choices = "automatic|klu|banded|dense"},
+     choice<&Options::linear, LinearKind>},
+    {{.name = "table",
+      .help = "arkode: a SUNDIALS Butcher table by name",
+      .choices = "default"},
+     nullptr},
+};
+
+}  // namespace
+
+std::span<const Parameter> integrator_options() {
+  static const std::vector<Parameter> parameters = [] {
+    std::vector<Parameter> list;
+    for (const Field& field : fields) list.push_back(field.parameter);
+    return list;
+  }();
+  return parameters;
+}
+
+void apply(Options& options, std::string_view key, std::string_view value,
+           const std::string& where) {
+  if (key == "table") {  // the other names belong to SUNDIALS, which checks them
+    options.table = value == "default" ? std::string_view{} : value;
+    return;
+  }
+  Parameters parameters(integrator_options(), where);
+  parameters.set(key, value);
+  for (const Field& field : fields) {
+    if (field.parameter.name == key) field.assign(options, parameters, key);
+  }
+}
+
+}  // namespace tress

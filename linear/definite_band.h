@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "linear/banded.h"
+
+namespace tress {
+
+/// Band matrices that are symmetric and positive definite as a rule: L D L^T without
+/// pivoting or scaling, which such matrices do not need (the errors of every entry stay
+/// small beside the roots of its diagonal entries, whatever the units) [Higham 2002,
+/// Accuracy and Stability of Numerical Algorithms, section 10.1]. n k^2/2 multiply-adds
+/// for half-bandwidth k, a sixth of BandedSolver's time. A matrix that turns out
+/// unsymmetric, or whose pivot is not positive, goes to BandedSolver.
+class DefiniteBand final : public LinearSolver {
+ public:
+  explicit DefiniteBand(const Pattern& pattern);
+  DefiniteBand(const Pattern& pattern, BandOrdering ordering);
+
+  std::string_view name() const override { return "banded"; }
+  Status factor(In values) noexcept override;
+  Status solve(InOut b) noexcept override;
+  /// Of L D L^T: the largest ratio of a diagonal entry to its pivot, a lower bound of the
+  /// condition of the matrix with unit diagonal.
+  double condition() const noexcept override;
+
+ private:
+  /// An entry below the diagonal and its mirror image.
+  struct Pair {
+    std::size_t below, above;  // in values
+    std::size_t slot;          // in band_
+    std::size_t row, column;   // in the band
+  };
+
+  bool gather(In values) noexcept;  // false: not symmetric
+  template <std::size_t known>
+  bool eliminate() noexcept;
+  bool eliminate() noexcept;  // false: not positive definite
+  template <std::size_t known>
+  void substitute() noexcept;  // work_ <- (L D L^T)^-1 work_
+
+  BandedSolver general_;
+  std::vector<int> position_;          // (n) unknown -> place in the band
+  std::size_t n_, stride_;             // between columns: half-bandwidth + 1
+  std::vector<std::size_t> diagonal_;  // (n) place in the band -> in values
+  std::vector<Pair> pairs_;
+  bool mirrored_ = true;         // the pattern is symmetric
+  std::vector<double> band_;     // columns from the diagonal down; k more at the end
+  std::vector<double> entries_;  // (n) diagonal before elimination
+  std::vector<double> work_;
+  bool definite_ = false;
+  double condition_ = 0;
+};
+
+}  // namespace tress

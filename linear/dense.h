@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "linear/direct_solver.h"
+
+namespace tress {
+
+/// DenseLu: for a few unknowns, and the reference of the others.
+class DenseSolver final : public DirectSolver {
+ public:
+  explicit DenseSolver(const Pattern& pattern);
+  ~DenseSolver() override;
+  std::string_view name() const override { return "dense"; }
+
+ private:
+  double factor_scaled(In values) noexcept override;
+  void solve_scaled(InOut b) const noexcept override;
+
+  struct Matrices;
+  std::unique_ptr<Matrices> dense_;
+};
+
+}  // namespace tress

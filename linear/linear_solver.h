@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "contract/linear_kind.h"
+#include "contract/system.h"
+
+namespace tress {
+
+/// Direct solver of A x = b for a fixed pattern; serves our Newton methods and SUNDIALS.
+/// Nothing allocates after the first factor() unless pivoting has to be redone.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string_view name() const = 0;
+  /// `retry` when the matrix is singular to working precision or not finite.
+  virtual Status factor(In values) noexcept = 0;
+  virtual Status solve(InOut b) noexcept = 0;
+  /// Cheap estimate of the condition number from the last factorisation.
+  virtual double condition() const noexcept = 0;
+};
+
+/// `automatic`: dense up to 16 unknowns, banded where a reverse Cuthill-McKee ordering
+/// leaves a narrow band, KLU otherwise.
+std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind, const Pattern& pattern);
+
+/// The same for matrices that are symmetric and positive definite as a rule: a band is
+/// eliminated without pivoting where it can be (DefiniteBand).
+std::unique_ptr<LinearSolver> make_definite_solver(LinearKind kind,
+                                                   const Pattern& pattern);
+
+}  // namespace tress

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include "contract/system.h"
+
+namespace tress {
+
+/// Which combinations of constraint gradients vanish: the null space of G^T (n x m), from
+/// a rank-revealing QR of the scaled matrix R G^T E whose columns have about unit length,
+///
+///     R G^T E P = Q [R11 R12; 0 0],      N = E P [-R11^-1 R12; I].
+///
+/// Linear dependence is declared where what a column adds to the others is shorter than
+/// `dependence`. N stays sparse; projections solve with N^T N. Allocates.
+class NullSpace {
+ public:
+  /// `gt`: values on `pattern`; `rows` (n) and `columns` (m): the scales R and E.
+  NullSpace(const Pattern& pattern, In gt, In rows, In columns);
+  ~NullSpace();
+
+  int dimension() const;
+  /// y -= N (N^T N)^-1 N^T y
+  void project_out(InOut y) const;
+
+  static constexpr double dependence = 1e-8;
+
+ private:
+  struct Basis;
+  std::unique_ptr<Basis> basis_;
+};
+
+}  // namespace tress

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "contract/system.h"
+
+namespace tress {
+
+/// The pattern whose column j has the entries columns[j], in any order, repeated or not.
+Pattern pattern_of(int rows, std::vector<std::vector<int>> columns);
+
+/// Where entry (row, column), which must be in the pattern, stands among its values.
+int place_of(const Pattern& pattern, int row, int column);
+
+}  // namespace tress

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+
+#include "math/lanes.h"
+
+namespace tress {
+
+/// The scalar functions of s and X = |kappa|^2 behind a helix (w = |kappa|):
+///
+///     S = sin(ws)/w,  A = (1 - cos ws)/w^2,  B = (ws - sin ws)/w^3
+///     A1 = A'(w)/w,  A2 = A1'(w)/w,  A3 = A2'(w)/w,  and the same for B
+///
+/// All are even in w, so the derivatives with respect to kappa are dA = A1 (kappa .
+/// dkappa) and so on.
+///
+/// Powers s^1, s^2, s^3, s^4, s^5, s^6, s^7, s^8, s^9 times functions of ws; at w = 0
+/// they are 1, 1/2, 1/6, -1/12, -1/60, 1/90, 1/630, -1/840, -1/7560 of these.
+template <class T>
+struct HelixFunctions {
+  T S, A, B, A1, B1, A2, B2, A3, B3;
+};
+
+namespace helix {
+
+/// Taylor coefficients in X = (ws)^2 of the m-th derivative (1/w d/dw)^m of
+/// sum (-X)^k / (2k + p)!, over the power of s that it carries. Each derivative takes
+/// c_k to 2 (k + 1) c_{k+1}.
+template <int p, int m, int terms>
+constexpr std::array<double, terms> taylor() {
+  std::array<double, terms> c{};
+  for (int k = 0; k < terms; ++k) {
+    long double ck = (k + m) % 2 == 0 ? 1 : -1;
+    for (int j = 1; j <= 2 * (k + m) + p; ++j) ck /= j;
+    for (int j = 1; j <= m; ++j) ck *= 2 * (k + j);
+    c[static_cast<std::size_t>(k)] = static_cast<double>(ck);
+  }
+  return c;
+}
+
+template <int p, int m, int terms, class T>
+T taylor_sum(const T& x) {
+  static constexpr std::array<double, terms> c = taylor<p, m, terms>();
+  T y = c[terms - 1];
+  for (std::size_t k = terms - 1; k-- > 0;) y = y * x + c[k];
+  return y;
+}
+
+/// b = B/s^3 and its derivatives, and A3/s^8, by Taylor series; the rest from them
+/// without cancellation by the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
+///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
+template <int terms, class T, class X>
+HelixFunctions<T> series(const T& s, const X& x2) {
+  const T ss = s * s;
+  const T x = x2 * ss;
+  const T b = taylor_sum<3, 0, terms>(x);
+  const T b1 = taylor_sum<3, 1, terms>(x);
+  const T b2 = taylor_sum<3, 2, terms>(x);
+  const T b3 = taylor_sum<3, 3, terms>(x);
+  const T a3 = taylor_sum<2, 3, terms>(x);
+  const T s3 = s * ss, s4 = ss * ss, s5 = s3 * ss, s6 = s3 * s3;
+  const T s7 = s4 * s3, s8 = s4 * s4, s9 = s5 * s4;
+  return {.S = s * (1.0 - x * b),
+          .A = ss * (3.0 * b + x * b1),
+          .B = s3 * b,
+          .A1 = s4 * (5.0 * b1 + x * b2),
+          .B1 = s5 * b1,
+          .A2 = s6 * (7.0 * b2 + x * b3),
+          .B2 = s7 * b2,
+          .A3 = s8 * a3,
+          .B3 = s9 * b3};
+}
+
+/// By the closed forms for one s; accurate for ws >= 3 or so.
+HelixFunctions<double> closed_forms(double s, double x2) noexcept;
+
+// Five terms leave out less than eps / 8 of the value up to ws = 0.17 (of B, where it is
+// most, 3!/13! X^5), nine less than eps up to 1.5, sixteen up to 4.5, where the
+// alternating sums lose 4 bits; from there on the closed forms are the better.
+inline constexpr double nearly_straight = 0.17 * 0.17;
+inline constexpr double short_end = 1.5 * 1.5;  // of X = (ws)^2
+inline constexpr double long_end = 4.5 * 4.5;
+
+inline HelixFunctions<double> one_by_one(double s, double x2) noexcept {
+  return x2 * (s * s) <= long_end ? series<16>(s, x2) : closed_forms(s, x2);
+}
+
+template <class X>
+HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
+  HelixFunctions<Pack> all;
+  for (int lane = 0; lane < Pack::lanes; ++lane) {
+    const HelixFunctions<double> one = one_by_one(s[lane], lane_of(x2, lane));
+    all.S.set(lane, one.S);
+    all.A.set(lane, one.A);
+    all.B.set(lane, one.B);
+    all.A1.set(lane, one.A1);
+    all.B1.set(lane, one.B1);
+    all.A2.set(lane, one.A2);
+    all.B2.set(lane, one.B2);
+    all.A3.set(lane, one.A3);
+    all.B3.set(lane, one.B3);
+  }
+  return all;
+}
+
+}  // namespace helix
+
+/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa, or one
+/// a lane; longest is the largest |s| of the element, so that all its points take the
+/// same way, and so do the elements of a pack.
+///
+/// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
+/// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
+/// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to
+/// ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50.
+/// Cost: one of four ways, chosen by w longest: below 0.17, 1.5 and 4.5 (a turn is 6.3)
+/// power series without branches, beyond every lane by itself.
+template <class T, class X>
+HelixFunctions<T> helix_functions(const T& s, const X& x2, const X& longest) noexcept {
+  const double x = largest(x2 * (longest * longest));
+  if (x <= helix::nearly_straight) return helix::series<5>(s, x2);
+  if (x <= helix::short_end) return helix::series<9>(s, x2);
+  if (x <= helix::long_end) return helix::series<16>(s, x2);
+  return helix::one_by_one(s, x2);
+}
+
+}  // namespace tress

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+
+#include "math/frame.h"
+#include "math/pack.h"
+
+/// What kernels over either scalar do with a number: `double`, or a Pack with one of four
+/// strands in each lane.
+namespace tress {
+
+template <class Real>
+inline constexpr int lanes = 1;
+template <>
+inline constexpr int lanes<Pack> = Pack::lanes;
+
+inline double lane_of(double x, int /*lane*/) { return x; }
+inline double lane_of(const Pack& x, int lane) { return x[lane]; }
+inline void set_lane(double& x, int /*lane*/, double value) { x = value; }
+inline void set_lane(Pack& x, int lane, double value) { x.set(lane, value); }
+
+inline double largest(double x) { return x; }
+inline double largest(const Pack& x) {
+  return std::max(std::max(x[0], x[1]), std::max(x[2], x[3]));
+}
+inline bool is_finite(double x) { return std::isfinite(x); }
+inline bool is_finite(const Pack& x) { return std::isfinite(sum(x - x)); }
+
+/// What four points add up to: of one strand their sum; when lanes are strands, each lane
+/// has a point of its own.
+template <class Real>
+Real sum_over(const Pack& points) {
+  if constexpr (std::same_as<Real, Pack>) {
+    return points;
+  } else {
+    return sum(points);
+  }
+}
+
+template <class Real>
+Vec3<Real> sum_over(const Vec3<Pack>& points) {
+  return {sum_over<Real>(points.x), sum_over<Real>(points.y), sum_over<Real>(points.z)};
+}
+
+template <class T>
+void set_lane(Vec3<T>& to, int lane, const Vec& x) {
+  set_lane(to.x, lane, x.x);
+  set_lane(to.y, lane, x.y);
+  set_lane(to.z, lane, x.z);
+}
+template <class T>
+void set_lane(FrameOf<T>& to, int lane, const Frame& f) {
+  set_lane(to.e0, lane, f.e0);
+  set_lane(to.e1, lane, f.e1);
+  set_lane(to.e2, lane, f.e2);
+}
+
+/// Vectors of four points, `step` numbers from each to the next; and back.
+inline Vec3<Pack> gather3(const double* p, std::size_t step) {
+  const auto entry = [=](std::size_t k) {
+    return Pack(p[k], p[k + step], p[k + 2 * step], p[k + 3 * step]);
+  };
+  return {entry(0), entry(1), entry(2)};
+}
+inline void scatter3(const Vec3<Pack>& x, double* p, std::size_t step) {
+  for (int lane = 0; lane < Pack::lanes; ++lane, p += step) {
+    store3(Vec{x.x[lane], x.y[lane], x.z[lane]}, p);
+  }
+}
+
+}  // namespace tress

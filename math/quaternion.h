@@ -1,0 +1,87 @@
+#pragma once
+
+#include "math/frame.h"
+
+namespace tress {
+
+/// Four numbers w + v that stand for a rotation when their norm is 1, and then q and -q
+/// for the same one.
+template <class T>
+struct QuaternionOf {
+  T w{1};
+  Vec3<T> v{};
+
+  friend QuaternionOf operator*(const QuaternionOf& p, const QuaternionOf& q) {
+    return {p.w * q.w - dot(p.v, q.v), p.w * q.v + q.w * p.v + cross(p.v, q.v)};
+  }
+  friend QuaternionOf operator*(const T& s, const QuaternionOf& q) {
+    return {s * q.w, s * q.v};
+  }
+  friend T dot(const QuaternionOf& p, const QuaternionOf& q) {
+    return p.w * q.w + dot(p.v, q.v);
+  }
+};
+
+using Quaternion = QuaternionOf<double>;
+
+/// One of the two of a frame, of norm 1 to rounding.
+Quaternion quaternion_of(const Frame& frame);
+/// q or -q, whichever is nearer to p.
+inline Quaternion nearer(const Quaternion& p, const Quaternion& q) {
+  return dot(p, q) < 0 ? -1.0 * q : q;
+}
+/// q' of a frame that turns with omega (rad/s, world components): omega q/2.
+inline Quaternion rate_of(const Quaternion& q, const Vec& omega) {
+  return 0.5 * (Quaternion{0, omega} * q);
+}
+
+/// First axis of the frame times |q|^2: a quadratic form of q.
+template <class T>
+Vec3<T> first_axis(const QuaternionOf<T>& q) {
+  const auto& [w, v] = q;
+  const T two(2);
+  return {w * w + v.x * v.x - v.y * v.y - v.z * v.z, two * (v.x * v.y + w * v.z),
+          two * (v.x * v.z - w * v.y)};
+}
+
+/// All axes of the frame times |q|^2.
+template <class T>
+FrameOf<T> axes(const QuaternionOf<T>& q) {
+  const auto& [w, v] = q;
+  const T two(2), ww = w * w, xx = v.x * v.x, yy = v.y * v.y, zz = v.z * v.z;
+  return {first_axis(q),
+          {two * (v.x * v.y - w * v.z), ww - xx + yy - zz, two * (v.y * v.z + w * v.x)},
+          {two * (v.x * v.z + w * v.y), two * (v.y * v.z - w * v.x), ww - xx - yy + zz}};
+}
+
+/// 2 vec(conj(p) q): of norm 2 |p| |q| sin(angle/2) along the axis of the rotation from p
+/// to q, in components of either. Bilinear, changes sign with p or q.
+template <class T>
+Vec3<T> turn_between(const QuaternionOf<T>& p, const QuaternionOf<T>& q) {
+  return T(2) * (p.w * q.v - q.w * p.v - cross(p.v, q.v));
+}
+
+template <class T>
+QuaternionOf<T> load_quaternion(const T* p) {
+  return {p[0], load3(p + 1)};
+}
+
+template <class T>
+void store_quaternion(const QuaternionOf<T>& q, T* p) {
+  p[0] = q.w;
+  store3(q.v, p + 1);
+}
+
+/// One of the four of the basis.
+inline Quaternion unit_quaternion(int k) {
+  double q[4] = {};
+  q[k] = 1;
+  return load_quaternion(q);
+}
+
+/// d first_axis/dq.
+void axis_gradient(const Quaternion& q, double (&g)[3][4]);
+/// d turn_between(p, q)/dq; that by p is turn_slope(-q).
+void turn_slope(const Quaternion& p, double (&g)[3][4]);
+
+}  // namespace tress

@@ -1,0 +1,155 @@
+#pragma once
+
+#include "models/batch/packed_strands.h"
+#include "models/batch/strand_block.h"
+#include "models/reduced/recursive_solver.h"
+#include "models/reduced/stiff_tangent.h"
+#include "models/reduced/transport_sweeps.h"
+
+namespace tress {
+
+/// The equations of ReducedSystem with the stiff tangent, solved recursively; of four
+/// strands where the kernel's numbers are packs.
+template <class Kernel, int dofs>
+class RecursiveMechanics {
+ public:
+  using K = Kinematics<Kernel, dofs>;
+  using In = typename K::In;
+  using Out = std::span<typename K::Real>;
+
+  RecursiveMechanics(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+      : dynamics_(dynamics), tangent_(kinematics, dynamics), solver_(tangent_.last()) {}
+
+  void residual(double t, In q, In v, In a, Out r) { dynamics_.residual(t, q, v, a, r); }
+  Status linearize(double t, In q, In v, Weights w) {
+    return solver_.factor(tangent_.at(t, q, v, w));
+  }
+  Status solve(In b, Out x) { return solver_.solve(b, x); }
+
+ private:
+  InverseDynamics<Kernel, dofs>& dynamics_;
+  StiffTangent<Kernel, dofs> tangent_;
+  RecursiveSolver<MassShape<dofs, typename K::Real>> solver_;
+};
+
+/// Those of ForceTransport, solved by sweeps.
+template <class Kernel, int dofs>
+class TransportMechanics {
+ public:
+  using K = Kinematics<Kernel, dofs>;
+  using In = typename K::In;
+  using Out = std::span<typename K::Real>;
+
+  TransportMechanics(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+      : mass_(kinematics, dynamics), sweeps_(kinematics, dynamics, mass_) {}
+
+  void residual(double t, In q, In v, In a, Out r) { sweeps_.residual(t, q, v, a, r); }
+  Status linearize(double, In q, In, Weights w) { return sweeps_.factor(q, w); }
+  Status solve(In b, Out x) {
+    sweeps_.solve(b, x);
+    return Status::ok;
+  }
+
+ private:
+  StiffTangent<Kernel, dofs> mass_;
+  TransportSweeps<Kernel, dofs> sweeps_;
+};
+
+/// Up to four strands, one in each lane of a pack, under the stiff tangent: the equations
+/// of the single ones to rounding (points add up in another order), at the cost of one
+/// strand or little more. Kernel: over packs.
+template <template <class, int> class Mechanics, class Kernel, int dofs>
+class ReducedBatch final : public StrandBlock {
+ public:
+  /// `strands`: of what is packed, for everything but steps.
+  ReducedBatch(PackedStrands packed, std::vector<std::unique_ptr<System>> strands)
+      : StrandBlock(std::move(strands)),
+        kinematics_(std::move(packed.segments), std::move(packed.blocks),
+                    std::move(packed.roots), std::nullopt, 0),
+        dynamics_(kinematics_, std::move(packed.effects)),
+        mechanics_(kinematics_, dynamics_),
+        q_(unknowns()),
+        v_(unknowns()),
+        a_(unknowns()),
+        zero_(unknowns(), Pack(0)),
+        r_(unknowns()) {}
+
+  Status residual(double t, In q, In v, In a, Out r) noexcept override {
+    gather(q, q_);
+    gather(v, v_);
+    gather(a, a_);
+    mechanics_.residual(t, q_, v_, a_, r_);
+    return scatter(r_, r);
+  }
+
+  Status linearize(double t, In q, In v, In, Weights w) noexcept override {
+    gather(q, q_);
+    gather(v, v_);
+    return factored_ = mechanics_.linearize(t, q_, v_, w);
+  }
+
+  Status solve(In b, Out x) noexcept override {
+    if (factored_ != Status::ok) return factored_;
+    gather(b, r_);
+    const Status s = mechanics_.solve(r_, r_);
+    return s == Status::ok ? scatter(r_, x) : s;
+  }
+
+ private:
+  void gather(In x, std::vector<Pack>& packed) const {
+    const std::size_t n = unknowns();
+    const double* from[Pack::lanes];
+    for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+      from[lane] = &x[lane < strands() ? lane * n : 0];
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      packed[k] = Pack(from[0][k], from[1][k], from[2][k], from[3][k]);
+    }
+  }
+  /// `retry` unless all of it is finite.
+  Status scatter(const std::vector<Pack>& packed, Out x) const {
+    const std::size_t n = unknowns();
+    bool finite = true;
+    for (std::size_t lane = 0; lane < strands(); ++lane) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const double entry = packed[k][static_cast<int>(lane)];
+        x[lane * n + k] = entry;
+        finite = finite && std::isfinite(entry);
+      }
+    }
+    return finite ? Status::ok : Status::retry;
+  }
+
+  void positions(double t, In q, Out x) override {
+    gather(q, q_);
+    kinematics_.move(t, q_, zero_, zero_);
+    scatter_points([](const auto& m) { return m.x; }, x);
+  }
+  void velocities(double t, In q, In v, Out u) override {
+    gather(q, q_);
+    gather(v, v_);
+    kinematics_.move(t, q_, v_, zero_);
+    scatter_points([](const auto& m) { return m.frame * m.v; }, u);
+  }
+  /// `of` the root's and of all tips' motion.
+  template <class Of>
+  void scatter_points(Of of, Out x) const {
+    const std::size_t n = kinematics_.segments().size() + 1;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3<Pack> all =
+          of(i == 0 ? kinematics_.root() : kinematics_.motion(i - 1).tip);
+      for (std::size_t lane = 0; lane < strands(); ++lane) {
+        const int l = static_cast<int>(lane);
+        store3(Vec{all.x[l], all.y[l], all.z[l]}, &x[3 * (lane * n + i)]);
+      }
+    }
+  }
+
+  Kinematics<Kernel, dofs> kinematics_;
+  InverseDynamics<Kernel, dofs> dynamics_;
+  Mechanics<Kernel, dofs> mechanics_;
+  Status factored_ = Status::retry;
+  std::vector<Pack> q_, v_, a_, zero_, r_;
+};
+
+}  // namespace tress

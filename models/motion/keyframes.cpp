@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "contract/input_error.h"
+#include "models/motion/signals.h"
+
+namespace tress {
+namespace {
+
+/// Times, values and second derivatives at the knots of a cubic spline.
+struct Knots {
+  std::vector<double> t, x, bend;
+};
+
+[[noreturn]] void refuse(const std::string& problem) {
+  throw InputError(problem, "signal of a root motion",
+                   "give at least two, finite, each later than the one before");
+}
+
+void check(const std::vector<double>& times, const std::vector<double>& values) {
+  bool good = times.size() >= 2 && times.size() == values.size();
+  for (std::size_t i = 0; good && i < times.size(); ++i) {
+    good = std::isfinite(times[i]) && std::isfinite(values[i]) &&
+           (i == 0 || times[i] > times[i - 1]);
+  }
+  if (!good) refuse("keyframes are not in order");
+}
+
+/// The knots with the two more; their x is 0 and not known yet.
+Knots with_two_more(const std::vector<double>& times, const std::vector<double>& values) {
+  const std::size_t last = times.size() - 1;
+  const double part = last == 1 ? 1.0 / 3 : 0.5;
+  Knots k{times, values, {}};
+  const double first = times[0] + part * (times[1] - times[0]);
+  const double second = times[last] - part * (times[last] - times[last - 1]);
+  k.t.insert(k.t.end() - 1, second);
+  k.x.insert(k.x.end() - 1, 0);
+  k.t.insert(k.t.begin() + 1, first);
+  k.x.insert(k.x.begin() + 1, 0);
+  k.bend.resize(k.t.size());
+  return k;
+}
+
+/// x' is continuous at knot i where
+///
+///     a M_{i-1}/6 + (a + b) M_i/3 + b M_{i+1}/6 = (x_{i+1} - x_i)/b - (x_i - x_{i-1})/a
+///
+/// for second derivatives M and intervals a before and b after it. M = 0 at both ends;
+/// there x' = 0 is x_1 = x_0 + a^2 M_1/6 for the first interval a, the same for the last.
+Knots spline(const std::vector<double>& times, const std::vector<double>& values) {
+  Knots k = with_two_more(times, values);
+  const std::size_t unknowns = k.t.size() - 2;
+  std::vector<double> diagonal(unknowns), above(unknowns - 1), below(unknowns - 1),
+      right(unknowns), bend(unknowns);
+  const double start = k.t[1] - k.t[0], end = k.t[unknowns + 1] - k.t[unknowns];
+  k.x[1] = k.x[0];
+  k.x[unknowns] = k.x[unknowns + 1];
+  for (std::size_t i = 1; i <= unknowns; ++i) {
+    const double a = k.t[i] - k.t[i - 1], b = k.t[i + 1] - k.t[i];
+    diagonal[i - 1] = (a + b) / 3;
+    if (i > 1) below[i - 2] = a / 6;
+    if (i < unknowns) above[i - 1] = b / 6;
+    right[i - 1] = (k.x[i + 1] - k.x[i]) / b - (k.x[i] - k.x[i - 1]) / a;
+  }
+  // What M_1 and M_unknowns add to x_1 and x_unknowns.
+  const auto move = [&](std::size_t knot, double factor) {
+    const double a = k.t[knot] - k.t[knot - 1], b = k.t[knot + 1] - k.t[knot];
+    diagonal[knot - 1] += factor * (1 / a + 1 / b);
+    if (knot > 1) above[knot - 2] -= factor / a;
+    if (knot < unknowns) below[knot - 1] -= factor / b;
+  };
+  move(1, start * start / 6);
+  move(unknowns, end * end / 6);
+  for (std::size_t i = 1; i < unknowns; ++i) {  // rows are diagonally dominant
+    const double factor = below[i - 1] / diagonal[i - 1];
+    diagonal[i] -= factor * above[i - 1];
+    right[i] -= factor * right[i - 1];
+  }
+  for (std::size_t i = unknowns; i-- > 0;) {
+    if (i + 1 < unknowns) right[i] -= above[i] * bend[i + 1];
+    bend[i] = right[i] / diagonal[i];
+    if (!std::isfinite(bend[i])) refuse("keyframes are too close for their distance");
+  }
+  std::ranges::copy(bend, k.bend.begin() + 1);
+  k.x[1] += start * start / 6 * bend.front();
+  k.x[unknowns] += end * end / 6 * bend.back();
+  return k;
+}
+
+}  // namespace
+
+Signal keyframes(const std::vector<double>& times, const std::vector<double>& values) {
+  check(times, values);
+  const auto k = std::make_shared<const Knots>(spline(times, values));
+  return [k](double t) -> SignalValue {
+    if (t <= k->t.front()) return {k->x.front(), 0, 0};
+    if (t >= k->t.back()) return {k->x.back(), 0, 0};
+    const auto after = std::ranges::upper_bound(k->t, t);
+    const auto j = static_cast<std::size_t>(after - k->t.begin()), i = j - 1;
+    const double h = k->t[j] - k->t[i];
+    const double u = (k->t[j] - t) / h, w = (t - k->t[i]) / h;
+    const double m = k->bend[i], n = k->bend[j];
+    return {u * k->x[i] + w * k->x[j] +
+                h * h / 6 * ((u * u * u - u) * m + (w * w * w - w) * n),
+            (k->x[j] - k->x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m),
+            u * m + w * n};
+  };
+}
+
+}  // namespace tress

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "models/motion/root_motion.h"
+
+namespace tress {
+
+/// To `height` in `duration` from t = 0 on, and back in another: two smooth_steps.
+Signal there_and_back(double height, double duration);
+
+/// A body with one degree of freedom x, at rest until a force acts on it from t0 on:
+/// inertia x'' + damping x' + stiffness x = force sin(2 pi frequency (t - t0)).
+struct Oscillator {
+  double inertia = 1;    // kg m^2 of an angle x, > 0
+  double damping = 0;    // N m s, >= 0
+  double stiffness = 0;  // N m, >= 0
+  double force = 0;      // N m
+  double frequency = 1;  // Hz, > 0
+};
+/// The exact x(t), C^2. With w^2 = stiffness/inertia, d = damping/(2 inertia), W = 2 pi
+/// frequency, f = force/inertia and D = (w^2 - W^2)^2 + (2 d W)^2:
+///
+///     x = P sin W t + Q cos W t - exp(-d t) (Q C(t) + (P W + d Q) S(t))
+///     P = f (w^2 - W^2)/D, Q = -2 f d W/D, C and S = cos and sin over the rate
+///     sqrt(w^2 - d^2), cosh and sinh where that is imaginary.
+///
+/// Error: about eps times the largest term; these exceed x near an undamped resonance.
+/// Throws InputError on numbers out of range and on that resonance itself, which grows
+/// without bound.
+Signal driven_oscillator(const Oscillator& body, double t0);
+
+/// Through `values` at `times` (s, ascending, at least two), C^2 everywhere: at rest
+/// until the first time and after the last. A cubic spline whose first and last interval
+/// is halved by one more knot (a single one cut in three), for the two conditions that
+/// rest adds at either end, x' = x'' = 0. Throws InputError on other times.
+Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
+
+}  // namespace tress

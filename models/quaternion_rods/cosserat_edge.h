@@ -1,0 +1,33 @@
+#pragma once
+
+#include "math/quaternion.h"
+
+namespace tress {
+
+/// Strains of one edge of xpbd_cosserat.h over x = (e, q), e from node to node (m):
+///
+///     R(q)^T e/l - e0,    |q|^2 - 1:
+///
+/// stretch and shear along the two axes of the section, and what keeps the norm. R is the
+/// frame of q/|q|, so that norm and shear have nothing to do with each other. A Part of
+/// strained.h.
+struct CosseratEdge {
+  static constexpr int strains = 4, coordinates = 7;
+  double length;              // l at rest, m
+  double stiffness[strains];  // l EA, l k GA twice, l nu (J)
+  double friction[strains];   // J s
+
+  template <class T>
+  void strain(const T* x, T* s) const {
+    const QuaternionOf<T> q = load_quaternion(x + 3);
+    const T square = dot(q, q);
+    store3((T(1) / (T(length) * square)) * axes(q).back(load3(x)), s);
+    s[0] = s[0] - T(1);
+    s[3] = square - T(1);
+  }
+  void gradient(const double* x, double (&g)[strains][coordinates]) const;
+  void add_second(const double* x, const double* stress,
+                  double (&h)[coordinates][coordinates]) const;
+};
+
+}  // namespace tress

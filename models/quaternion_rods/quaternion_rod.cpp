@@ -1,0 +1,317 @@
+#include "models/quaternion_rods/quaternion_rod.h"
+
+#include <cmath>
+
+#include "models/maximal/nodal_strand.h"
+#include "models/quaternion_rods/corde_edge.h"
+#include "models/quaternion_rods/cosserat_edge.h"
+
+namespace tress {
+namespace {
+
+/// The frame of a clamp as the quaternion before q, and its rate.
+void store_wall(const RootPose& root, const Quaternion& q, double* x, double* rate) {
+  const Quaternion wall = nearer(q, quaternion_of(root.frame));
+  store_quaternion(wall, x);
+  store_quaternion(rate_of(wall, root.omega), rate);
+}
+
+}  // namespace
+
+void QuaternionJoint::gradient(const double* x, double (&g)[strains][coordinates]) const {
+  double before[3][4], behind[3][4];
+  turn_slope(-1.0 * load_quaternion(x + 4), before);
+  turn_slope(load_quaternion(x), behind);
+  for (int k = 0; k < 3; ++k) {
+    std::ranges::copy(before[k], g[k]);
+    std::ranges::copy(behind[k], g[k] + 4);
+  }
+}
+
+/// stress . 2 vec(conj(p) q) = 2 p^T form q.
+void QuaternionJoint::add_second(const double*, const double* s,
+                                 double (&h)[coordinates][coordinates]) const {
+  const double form[4][4] = {{0, s[0], s[1], s[2]},
+                             {-s[0], 0, -s[2], s[1]},
+                             {-s[1], s[2], 0, -s[0]},
+                             {-s[2], -s[1], s[0], 0}};
+  for (int k = 0; k < 4; ++k) {
+    for (int l = 0; l < 4; ++l) {
+      h[k][4 + l] += 2 * form[k][l];
+      h[4 + l][k] += 2 * form[k][l];
+    }
+  }
+}
+
+template <class Edge>
+QuaternionRod<Edge>::QuaternionRod(std::vector<Edge> edges,
+                                   std::vector<QuaternionJoint> joints, bool walled)
+    : edges_(std::move(edges)),
+      joints_(std::move(joints)),
+      walled_(walled),
+      quaternions_(3 * (edges_.size() + 1)) {}
+
+template <class Edge>
+std::vector<std::vector<int>> QuaternionRod<Edge>::groups() const {
+  std::vector<std::vector<int>> all;
+  const auto append = [&all](std::size_t first, int count) {
+    for (int k = 0; k < count; ++k) all.back().push_back(static_cast<int>(first) + k);
+  };
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    all.emplace_back();
+    append(3 * i, 6);
+    append(at(i), 4);
+  }
+  for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
+    all.emplace_back();
+    append(at(i), 8);
+  }
+  return all;
+}
+
+template <class Edge>
+auto QuaternionRod<Edge>::edge(const Placement& p, std::size_t i) const noexcept
+    -> Local<Edge> {
+  Local<Edge> local;
+  const auto fill = [&](In z, double* x) {
+    store3(load3(&z[3 * i + 3]) - load3(&z[3 * i]), x);
+    std::copy_n(&z[at(i)], 4, x + 3);
+  };
+  fill(p.z, local.x);
+  fill(p.rate, local.rate);
+  return local;
+}
+
+template <class Edge>
+auto QuaternionRod<Edge>::joint(const Placement& p, std::size_t j) const noexcept
+    -> Local<QuaternionJoint> {
+  Local<QuaternionJoint> local;
+  const std::size_t after = at(behind(j));
+  std::copy_n(&p.z[after], 4, local.x + 4);
+  std::copy_n(&p.rate[after], 4, local.rate + 4);
+  if (clamp(j)) {
+    store_wall(p.root, load_quaternion(&p.z[after]), local.x, local.rate);
+  } else {
+    std::copy_n(&p.z[after - 4], 4, local.x);
+    std::copy_n(&p.rate[after - 4], 4, local.rate);
+  }
+  return local;
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::add_force(const Placement& p, InOut f) noexcept {
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const auto now = edge(p, i);
+    double force[7] = {};
+    Strained(edges_[i], now.x, now.rate).add_force(force);
+    store3(load3(&f[3 * i]) - load3(force), &f[3 * i]);
+    store3(load3(&f[3 * i + 3]) + load3(force), &f[3 * i + 3]);
+    for (std::size_t k = 0; k < 4; ++k) f[at(i) + k] += force[3 + k];
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const auto now = joint(p, j);
+    double force[8] = {};
+    Strained(joints_[j], now.x, now.rate).add_force(force);
+    const std::size_t first = at(behind(j)) - 4;
+    for (std::size_t k = clamp(j) ? 4 : 0; k < 8; ++k) f[first + k] += force[k];
+  }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::add_tangent(const Placement& p, double pos, double vel,
+                                      GroupSum& s) noexcept {
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    double h[7][7], m[10][10];
+    const auto now = edge(p, i);
+    Strained(edges_[i], now.x, now.rate).tangent(pos, vel, h);
+    if (walled_ && i == 0) {
+      double of_joint[8][8];
+      const auto wall = joint(p, 0);
+      Strained(joints_[0], wall.x, wall.rate).tangent(pos, vel, of_joint);
+      for (int k = 0; k < 4; ++k) {
+        for (int l = 0; l < 4; ++l) h[3 + k][3 + l] += of_joint[4 + k][4 + l];
+      }
+    }
+    to_nodes<4>(h, m);
+    s.add(i, &m[0][0]);
+  }
+  for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {
+    double h[8][8];
+    const auto now = joint(p, j);
+    Strained(joints_[j], now.x, now.rate).tangent(pos, vel, h);
+    s.add(edges_.size() + behind(j) - 1, &h[0][0]);
+  }
+}
+
+template <class Edge>
+double QuaternionRod<Edge>::energy(const Placement& p) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    sum += strain_energy(edges_[i], edge(p, i).x);
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    sum += strain_energy(joints_[j], joint(p, j).x);
+  }
+  return sum;
+}
+
+template <class Edge>
+double QuaternionRod<Edge>::power(const Placement& p) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const auto now = edge(p, i);
+    sum += Strained(edges_[i], now.x, now.rate).friction_power();
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const auto local = joint(p, j);
+    const Strained now(joints_[j], local.x, local.rate);
+    sum += now.friction_power();
+    if (!clamp(j)) continue;
+    for (int m = 0; m < 3; ++m) {
+      for (int k = 0; k < 4; ++k) {
+        sum += now.stress[m] * now.gradient[m][k] * local.rate[k];
+      }
+    }
+  }
+  return sum;
+}
+
+template <class Edge>
+bool QuaternionRod<Edge>::end_frame(const Placement& p, Frame& frame) noexcept {
+  const Quaternion q = load_quaternion(&p.z[at(edges_.size() - 1)]);
+  frame = axes((1 / std::sqrt(dot(q, q))) * q);
+  return true;
+}
+
+/// A world rotation w moves q by w q/2.
+template <class Edge>
+Vec QuaternionRod<Edge>::spin(const Placement& p, In inertia) noexcept {
+  Vec sum;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const Quaternion q = load_quaternion(&p.z[at(i)]);
+    const Quaternion conjugate{q.w, -1.0 * q.v};
+    sum = sum + inertia[4 * i] / 2 * (load_quaternion(&p.rate[at(i)]) * conjugate).v;
+  }
+  return sum;
+}
+
+/// Joint and edge in turn, from the wall or the first edge.
+template <class Edge>
+std::vector<ComplianceForm::Block> QuaternionRod<Edge>::strain_blocks() const {
+  const auto range = [](std::vector<int>& all, std::size_t first, int count) {
+    for (int k = 0; k < count; ++k) all.push_back(static_cast<int>(first) + k);
+  };
+  std::vector<ComplianceForm::Block> blocks;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (walled_ || i > 0) {
+      const std::size_t j = walled_ ? i : i - 1;
+      std::vector<int> quaternions;
+      if (clamp(j)) {
+        range(quaternions, at(i), 4);
+      } else {
+        range(quaternions, at(i) - 4, 8);
+      }
+      blocks.push_back(strain_block(joints_[j], std::move(quaternions)));
+    }
+    std::vector<int> of_edge;
+    range(of_edge, 3 * i, 6);
+    range(of_edge, at(i), 4);
+    blocks.push_back(strain_block(edges_[i], std::move(of_edge)));
+  }
+  return blocks;
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::strain(std::size_t k, const RootPose& root, const double* z,
+                                 ComplianceForm::Value& value) noexcept {
+  std::ranges::fill(value.drift, 0.0);
+  const std::size_t place = walled_ ? k : k + 1;  // joints even, edges odd
+  if (place % 2 == 1) {
+    edge_strain(place / 2, z, value);
+  } else if (walled_ && k == 0) {
+    wall_strain(root, z, value);
+  } else {
+    const QuaternionJoint& joint = joints_[walled_ ? place / 2 : place / 2 - 1];
+    double g[3][8];
+    joint.strain(z, value.c);
+    joint.gradient(z, g);
+    for (int m = 0; m < 3; ++m) std::copy_n(g[m], 8, value.gradient[m]);
+  }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::wall_strain(const RootPose& root, const double* z,
+                                      ComplianceForm::Value& value) const noexcept {
+  double g[3][8], x[8], wall_rate[4];
+  store_wall(root, load_quaternion(z), x, wall_rate);
+  std::copy_n(z, 4, x + 4);
+  joints_[0].strain(x, value.c);
+  joints_[0].gradient(x, g);
+  for (int m = 0; m < 3; ++m) {
+    for (int l = 0; l < 4; ++l) value.drift[m] += g[m][l] * wall_rate[l];
+    std::copy_n(g[m] + 4, 4, value.gradient[m]);
+  }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::edge_strain(std::size_t i, const double* z,
+                                      ComplianceForm::Value& value) const noexcept {
+  double g[Edge::strains][7], x[7];
+  store3(load3(z + 3) - load3(z), x);
+  std::copy_n(z + 6, 4, x + 3);
+  edges_[i].strain(x, value.c);
+  edges_[i].gradient(x, g);
+  for (int m = 0; m < Edge::strains; ++m) {
+    store3(-1.0 * load3(g[m]), value.gradient[m]);
+    std::copy_n(g[m], 7, value.gradient[m] + 3);
+  }
+}
+
+template <class Edge>
+std::unique_ptr<System> quaternion_rod(const Strand& strand, const std::string& model,
+                                       const std::function<Edge(const Segment&)>& edge_of,
+                                       double rotary, Effects effects,
+                                       LinearKind solver) {
+  const std::size_t n = strand.segments.size();
+  NodalStrand nodal(strand, model, 4 * n);
+  MaximalStrand& parts = nodal.parts;
+  const Quaternion root = quaternion_of(nodal.root.place.frame);
+  std::vector<Edge> edges;
+  std::vector<QuaternionJoint> joints;
+  Quaternion now = root, natural = root;  // neighbours on the same side of the sphere
+  for (std::size_t i = 0; i < n; ++i) {
+    const Segment& segment = strand.segments[i];
+    edges.push_back(edge_of(segment));
+    now = nearer(now, quaternion_of(nodal.initial[i]));
+    const std::size_t at = 3 * (n + 1) + 4 * i;
+    store_quaternion(now, &parts.z[at]);
+    store_quaternion(rate_of(now, nodal.root.spin), &parts.rate[at]);
+    const CrossSection& section = segment.section;
+    const double l = segment.length;
+    std::fill_n(&parts.inertia[4 * i], 4,
+                4 * strand.material.density * l *
+                    (section.polar() + rotary * section.area() * l * l));
+    const Quaternion before = natural;
+    natural = nearer(before, quaternion_of(nodal.natural[i]));
+    if (i == 0 && !parts.clamped) continue;
+    joints.emplace_back(rod_joint(strand.material,
+                                  i > 0 ? &strand.segments[i - 1] : nullptr, segment,
+                                  turn_between(before, natural)));
+  }
+  parts.elasticity = std::make_unique<QuaternionRod<Edge>>(
+      std::move(edges), std::move(joints), parts.clamped);
+  parts.effects = std::move(effects);
+  parts.solver = solver;
+  return std::make_unique<MaximalSystem>(std::move(parts));
+}
+
+template class QuaternionRod<CordeEdge>;
+template class QuaternionRod<CosseratEdge>;
+template std::unique_ptr<System> quaternion_rod(
+    const Strand&, const std::string&, const std::function<CordeEdge(const Segment&)>&,
+    double, Effects, LinearKind);
+template std::unique_ptr<System> quaternion_rod(
+    const Strand&, const std::string&, const std::function<CosseratEdge(const Segment&)>&,
+    double, Effects, LinearKind);
+
+}  // namespace tress

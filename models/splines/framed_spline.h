@@ -1,0 +1,80 @@
+#pragma once
+
+#include "models/splines/spline_elasticity.h"
+#include "models/splines/spline_strain.h"
+
+namespace tress {
+
+/// Stretching, bending and twisting of a cubic spline with material frames at its knots
+/// (dynamic_spline.h), coordinates z = (control points, theta at the knots; with
+/// `clamped` the first knot has the clamp's frame and no angle).
+class FramedSpline final : public Elasticity {
+ public:
+  struct Span {
+    struct Point {
+      std::array<double, 4> first, second;  // derivatives of the controls' weights
+      SplineBend bend;
+    };
+    std::array<double, 4> start, end;  // first derivatives at the knots
+    SplineTwist twist;
+    std::array<Point, 2> points;
+  };
+  /// Control points (3 each) and frames at the knots, e0 along r'.
+  struct Shape {
+    std::vector<double> controls;
+    std::vector<Frame> frames;
+  };
+  /// The strains' `rest` becomes what they are in the natural shape; frames of the
+  /// initial one are the first references.
+  FramedSpline(std::vector<Span> spans, std::vector<SplineElasticity::Point> stretching,
+               const Shape& natural, std::vector<Frame> initial, bool clamped);
+  FramedSpline(const FramedSpline&) = delete;  // spans point to the references
+  FramedSpline& operator=(const FramedSpline&) = delete;
+
+  std::vector<std::vector<int>> groups() const override;
+  void add_force(const Placement& p, InOut f) noexcept override;
+  void add_tangent(const Placement& p, double pos, double vel,
+                   GroupSum& s) noexcept override;
+  double energy(const Placement& p) noexcept override;
+  double power(const Placement& p) noexcept override;
+  double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
+  Vec spin(const Placement& p, In inertia) noexcept override;
+  bool end_frame(const Placement& p, Frame& frame) noexcept override;
+  bool rebase(InOut z, InOut rate) override;
+  void reset() override { references_ = references_at_start_; }
+  std::vector<double> memory() const override;
+  void recall(In memory) override;
+
+ private:
+  static constexpr std::size_t most = 14;  // coordinates of a span, and of SplineBend
+  /// Of a span: coordinates of its strains and their rates.
+  struct Local {
+    double x[most], rate[most];
+  };
+  using Square = double[most][most];
+
+  std::size_t first_angle() const { return clamped_ ? 1 : 0; }  // knot
+  bool held(std::size_t knot) const { return knot < first_angle(); }
+  std::size_t angle(std::size_t knot) const {
+    return 3 * (spans_.size() + 3) + knot - first_angle();
+  }
+  /// r' at a knot, or its rate.
+  Vec direction(In z, std::size_t knot) const {
+    const std::size_t span = knot > 0 ? knot - 1 : 0;
+    return of_controls(knot > 0 ? spans_[span].end : spans_[span].start, &z[3 * span]);
+  }
+  std::size_t size(std::size_t span) const { return held(span) ? most - 1 : most; }
+  /// Values at a span's knots, with those of the clamp where it holds the first.
+  void at_knots(const Placement& p, std::size_t span, Local& local) const noexcept;
+  static void at_point(const Placement& p, std::size_t span, const Span::Point& point,
+                       Local& local) noexcept;
+  static void pull_back(const Span& span, const Span::Point& point, const Square& h,
+                        std::size_t size, double* sum) noexcept;
+
+  std::vector<Span> spans_;
+  SplineElasticity stretching_;
+  std::vector<Frame> references_at_start_, references_;  // of the knots; held: the clamp
+  bool clamped_;
+};
+
+}  // namespace tress

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation/export/smooth_lines.h"
+
+namespace tress {
+
+/// Whose line it is, and how thick.
+struct DrawnLine {
+  int strand;     // from 0; hairs that are drawn between strands follow them
+  double radius;  // m, of a circle of the root's area
+};
+
+/// Of lines as Readout has them; none where the scene has no strands.
+std::vector<DrawnLine> drawn_lines(const Scene& scene, const World& world,
+                                   std::span<const int> lines);
+
+/// What an animation of strands is, for other programs: frames of the lines' own points,
+/// written with the points between them that make them curves.
+struct Animation {
+  const Scene& scene;
+  const std::vector<Reading>& series;
+  const std::vector<Reading>& channels;
+  std::span<const DrawnLine> lines;  // empty: not known
+  std::span<const Frame3d> frames;
+  const SmoothLines& curves;  // of the same lines
+  std::size_t guides = 0;     // lines that were simulated; 0: all
+};
+
+/// For the report page: <scene>.json, places in 16 bits of their box, colours in 8 bits
+/// (experiments/report/README.md has the format). Frames are thinned evenly to about
+/// `most_bytes`, though not below 24.
+std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
+
+/// For ParaView: one .vtp a frame (PolyData, appended raw, float32) with every channel,
+/// radius and strand as point data, and the .pvd that lists them with their times [VTK
+/// file formats, XML].
+std::string vtp(const Animation& animation, const Frame3d& frame);
+std::string pvd(const Animation& animation, const std::string& stem);
+std::string vtp_name(const std::string& stem, std::size_t frame);
+
+/// For Blender, Houdini: USD text with one animated BasisCurves [OpenUSD, UsdGeom]; time
+/// codes count the scene's frames, and primvars:strand is the strand of each curve.
+std::string usda(const Animation& animation);
+
+}  // namespace tress

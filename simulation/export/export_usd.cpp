@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include "simulation/export/export.h"
+
+namespace tress {
+
+std::string usda(const Animation& animation) {
+  const Scene& scene = animation.scene;
+  // Frames need not be those of the scene one by one.
+  const auto time_code = [&](const Frame3d& frame) {
+    return frame.series[0] * scene.frame_rate;
+  };
+  std::string samples;
+  for (const Frame3d& frame : animation.frames) {
+    std::string points;
+    const std::vector<float> x = animation.curves.positions(frame);
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
+      points +=
+          fmt::format("{}({}, {}, {})", i == 0 ? "" : ", ", x[i], x[i + 1], x[i + 2]);
+    }
+    samples += fmt::format("            {:.12g}: [{}],\n", time_code(frame), points);
+  }
+  std::vector<double> widths;
+  std::vector<int> strands;
+  for (const DrawnLine& line : animation.lines) {
+    widths.push_back(2 * line.radius);
+    strands.push_back(line.strand);
+  }
+  const std::string attributes =
+      widths.empty()
+          ? "    float[] widths = [0.002] (\n        interpolation = \"constant\"\n    "
+            ")\n"
+          : fmt::format(
+                "    float[] widths = [{}] (\n        interpolation = \"uniform\"\n"
+                "    )\n    int[] primvars:strand = [{}] (\n        interpolation = "
+                "\"uniform\"\n    )\n",
+                fmt::join(widths, ", "), fmt::join(strands, ", "));
+  return fmt::format(
+      "#usda 1.0\n(\n    defaultPrim = \"strands\"\n    upAxis = \"Z\"\n"
+      "    metersPerUnit = 1\n    startTimeCode = 0\n    endTimeCode = {:.12g}\n"
+      "    timeCodesPerSecond = {}\n)\n\ndef BasisCurves \"strands\"\n{{\n"
+      "    uniform token type = \"linear\"\n    int[] curveVertexCounts = [{}]\n"
+      "{}    point3f[] points.timeSamples = {{\n{}    }}\n}}\n",
+      animation.frames.empty() ? 0 : time_code(animation.frames.back()), scene.frame_rate,
+      fmt::join(animation.curves.lines(), ", "), attributes, samples);
+}
+
+}  // namespace tress

@@ -1,0 +1,89 @@
+#include "simulation/export/full_hair.h"
+
+#include <algorithm>
+
+#include "contract/input_error.h"
+
+namespace tress {
+namespace {
+
+constexpr std::size_t most_frames = 60;
+
+/// What has turned the head since its rest.
+Frame turned(const RootMotion& head, double t) {
+  const Frame now = head.at(t).frame;
+  const auto column = [&](const Vec& axis) { return now * head.frame.back(axis); };
+  return {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})};
+}
+
+}  // namespace
+
+FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs)
+    : head_(scene.head) {
+  if (hairs == 0) return;
+  const bool alike = std::ranges::all_of(guides, [&](int n) { return n == guides[0]; });
+  if (scene.strands.size() < 3 || guides.size() != scene.strands.size() || !alike) {
+    throw InputError(
+        "hairs between strands need three strands or more, all of as many "
+        "elements",
+        "--hairs", "leave it out for scene " + scene.name);
+  }
+  std::vector<Vec> roots;
+  for (const Strand& strand : scene.strands) roots.push_back(strand.root.position);
+  points_ = static_cast<std::size_t>(guides[0]);
+  hair_.emplace(roots, scatter_roots(roots, hairs, scene.seed), points_,
+                GuideHairOptions{.seed = scene.seed});
+}
+
+std::vector<int> FullHair::lines(std::span<const int> guides) const {
+  std::vector<int> all(guides.begin(), guides.end());
+  all.insert(all.end(), hairs(), static_cast<int>(points_));
+  return all;
+}
+
+std::vector<DrawnLine> FullHair::drawn(std::vector<DrawnLine> guides) const {
+  const auto simulated = static_cast<int>(guides.size());
+  for (std::size_t h = 0; h < hairs(); ++h) {
+    const double radius = guides[hair_->neighbours(h).guide[0]].radius;
+    guides.push_back({simulated + static_cast<int>(h), radius});
+  }
+  return guides;
+}
+
+std::vector<Frame3d> FullHair::frames(std::span<const Frame3d> guides) const {
+  std::vector<Frame3d> all;
+  const std::size_t stride = (guides.size() + most_frames - 1) / most_frames;
+  for (std::size_t f = 0; f < guides.size(); f += stride) {
+    all.push_back(grown(guides[f]));
+  }
+  return all;
+}
+
+Frame3d FullHair::grown(const Frame3d& guides) const {
+  const std::size_t simulated = guides.positions.size() / 3, drawn = hairs() * points_;
+  std::vector<Vec> of_guides(simulated), places(drawn);
+  Frame3d full{guides.series, guides.positions, {}};
+  for (std::size_t i = 0; i < simulated; ++i) {
+    of_guides[i] = load3(&guides.positions[3 * i]);
+  }
+  hair_->grow(of_guides, turned(head_, guides.series[0]), places);
+  for (const Vec& x : places) {
+    for (const double c : {x.x, x.y, x.z}) {
+      full.positions.push_back(static_cast<float>(c));
+    }
+  }
+  for (std::size_t first = 0; first < guides.channels.size(); first += simulated) {
+    const auto of_channel = guides.channels.begin() + static_cast<std::ptrdiff_t>(first);
+    full.channels.insert(full.channels.end(), of_channel,
+                         of_channel + static_cast<std::ptrdiff_t>(simulated));
+    for (std::size_t h = 0; h < hairs(); ++h) {
+      const auto own = of_channel + static_cast<std::ptrdiff_t>(
+                                        hair_->neighbours(h).guide[0] * points_);
+      full.channels.insert(full.channels.end(), own,
+                           own + static_cast<std::ptrdiff_t>(points_));
+    }
+  }
+  return full;
+}
+
+}  // namespace tress

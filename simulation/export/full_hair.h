@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "simulation/export/export.h"
+#include "simulation/export/guide_hair.h"
+
+namespace tress {
+
+/// Hairs drawn between simulated strands (GuideHair), after them in every frame; of about
+/// 60 frames of a recording, evenly chosen. What a channel says of a hair is what it says
+/// of its own guide.
+class FullHair {
+ public:
+  /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
+  /// lines are not strands of equally many points, three at least. hairs = 0: draws none.
+  FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
+
+  std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }
+  std::vector<int> lines(std::span<const int> guides) const;
+  std::vector<DrawnLine> drawn(std::vector<DrawnLine> guides) const;
+  std::vector<Frame3d> frames(std::span<const Frame3d> guides) const;
+
+ private:
+  Frame3d grown(const Frame3d& guides) const;
+
+  const RootMotion& head_;
+  std::size_t points_ = 0;  // of each line
+  std::optional<GuideHair> hair_;
+};
+
+}  // namespace tress

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/frame.h"
+
+namespace tress {
+
+/// `count` roots between those of the guides: root h lies in the triangle of guide
+/// h mod guides and two of its four nearest, drawn at random, each place of it as
+/// probable. In a round scalp of radius R it lies up to e^2/(6R) deep, e the longest
+/// edge. A root does not depend on how many come after it. O(count guides).
+std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
+                               std::uint64_t seed);
+
+struct GuideHairOptions {
+  /// 0: every hair is interpolated up to its tip; 1: disjoint locks from the root on.
+  double clumpiness = 0.5;
+  /// Guides whose tips are this far apart (m, > 0) or farther share no hair.
+  double tip_limit = 0.04;
+  /// Width of a lock at its tip over that at its root, at clumpiness 1; in [0, 1].
+  double tip_width = 0.1;
+  std::uint64_t seed = 1;  // of where each hair leaves its neighbours
+};
+
+/// The hair between simulated guides, for pictures and export: the semi-interpolating
+/// scheme of Bertails et al. 2006 (Super-Helices, section 4.1 and figure 4),
+/// interpolation near the scalp, extrapolation from one guide near the tip. The paper
+/// states the idea; the formulas here are ours. With n guide points at s = 0..1 (equal
+/// steps), p_k(s) those of guide k, r_k its root, x_h the root of hair h and H the head's
+/// frame:
+///
+///     hair(s)     = (1 - m) mean(s) + m lock(s)
+///     mean(s)     = p_o(0) + H (x_h - r_o) + sum_k w_k (p_k(s) - p_k(0))
+///     lock(s)     = p_o(s) + (1 - c s (1 - tip_width)) T_o(s) H (x_h - r_o)
+///     m(s)        = S(2 (s - 1 + 3 c_h/2)),   S(y) = 3 y^2 - 2 y^3 kept to [0, 1]
+///
+/// c is the clumpiness and c_h that of this hair, drawn within c +- 0.4 c (1 - c); o is
+/// the guide with the nearest root; T_o(s) carries the root's cross-section along guide o
+/// without twist (Bishop 1975: smallest rotations from tangent to tangent).
+///
+/// The weights are those of the three guides with the nearest roots, at distances d_k,
+/// with R the distance of the fourth: (1/d_k - 1/R)^2 (Franke & Nielson 1980), which
+/// vanish where a guide comes in or goes out, so that they are continuous over the scalp.
+/// Across a parting a guide has no weight: each is multiplied by 1 - S(2 D_k/tip_limit -
+/// 1) with D_k the distance of its tip from the own guide's now, so that hair leaves a
+/// guide gradually, and all are divided by their sum.
+///
+/// A hair rooted at a guide's root is that guide. Where the guides' directions differ
+/// their mean, and so the hair, is shorter than they are.
+class GuideHair {
+ public:
+  /// Roots in m in the head's own frame; all guides have `points` points. Throws
+  /// InputError where there is no guide, fewer than two points, a number that is not
+  /// finite or an option out of its range. O(hairs guides).
+  GuideHair(std::vector<Vec> guide_roots, std::vector<Vec> hair_roots, std::size_t points,
+            const GuideHairOptions& options);
+
+  /// Weights at rest: before tips are looked at. Where there are fewer than three guides
+  /// the last weights are 0.
+  struct Neighbours {
+    std::array<std::size_t, 3> guide{};  // the own guide first
+    std::array<double, 3> weight{};      // sum 1
+  };
+  const Neighbours& neighbours(std::size_t hair) const { return neighbours_[hair]; }
+  std::size_t hairs() const { return hair_roots_.size(); }
+
+  /// One frame, in the world. guides: guide after guide, root to tip; head: takes the
+  /// head's components to the world's; hairs (out): in the same order as their roots.
+  /// Throws InputError where a length is not guides x points or hairs x points.
+  /// O((guides + 3 hairs) points).
+  void grow(std::span<const Vec> guides, const Frame& head, std::span<Vec> hairs) const;
+
+ private:
+  std::vector<Vec> guide_roots_, hair_roots_;
+  std::size_t points_;
+  GuideHairOptions options_;
+  std::vector<Neighbours> neighbours_;
+  std::vector<double> clumpiness_;  // of each hair
+};
+
+}  // namespace tress

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/files/row.h"
+
+namespace tress {
+
+/// Where a cell of a file begins, counted from 1.
+struct CellPlace {
+  int line = 1, column = 1;
+};
+
+/// A table as read: every line has as many cells as the header.
+struct CsvTable {
+  std::vector<std::string> header;
+  std::vector<Row> rows;
+  /// Of every cell, the header's first: those of rows[i] are places[i + 1].
+  std::vector<std::vector<CellPlace>> places;
+};
+
+/// RFC 4180: comma, quotes around cells that hold comma, quote or line break, quotes
+/// doubled. Lines end with '\n' alone, which every reader accepts and which diffs well.
+std::string csv_line(std::span<const std::string> cells);
+
+/// Header and rows; status "ok" is written out where a row does not say otherwise.
+std::string to_csv(std::span<const std::string> header, std::span<const Row> rows);
+
+/// Of a table that is read; in memory it is a hundred times as large.
+constexpr std::size_t most_table_bytes = 16 << 20, most_columns = 128;
+
+/// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
+/// unclosed quote, a line of the wrong length, a repeated column name and more columns
+/// than most_columns.
+CsvTable parse_csv(std::string_view text, const std::string& file);
+
+CsvTable read_csv(const std::string& file);
+
+}  // namespace tress

@@ -1,0 +1,87 @@
+#include "simulation/files/files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "contract/input_error.h"
+
+namespace tress {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void cannot_write(const std::string& file, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw InputError(std::string("cannot write: ") + std::strerror(error), "--out " + file,
+                   full ? "free space or write elsewhere, then --resume"
+                        : "choose a file in a writable directory");
+}
+
+}  // namespace
+
+File::File(const std::string& file, int flags)
+    : descriptor_(::open(file.c_str(), flags, 0644)) {
+  if (descriptor_ < 0) cannot_write(file, errno);
+}
+
+File::~File() { ::close(descriptor_); }
+
+void write_all(int descriptor, std::string_view text, const std::string& file) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) cannot_write(file, written < 0 ? errno : ENOSPC);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void replace_file(const std::string& file, std::string_view text) {
+  // A name of this process alone; what a killed one of the same number has left goes.
+  const std::string temporary = file + ".tmp" + std::to_string(::getpid());
+  ::unlink(temporary.c_str());
+  try {
+    // Never what somebody else has put there, be it a link to another file.
+    const File output(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
+    write_all(output.descriptor(), text, file);
+    if (::fsync(output.descriptor()) != 0) cannot_write(file, errno);
+    if (std::rename(temporary.c_str(), file.c_str()) != 0) cannot_write(file, errno);
+  } catch (const InputError&) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+}
+
+void check_output(const std::string& file) {
+  const std::string where = "--out " + file;
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::status_known(status)) cannot_write(file, error.value());
+  if (fs::is_directory(status)) {
+    throw InputError("the output is a directory", where, "give a file name in it");
+  }
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw InputError("the output is not a regular file", where,
+                     "give a .csv file, or - for standard output");
+  }
+  const fs::path parent = fs::absolute(file).parent_path();
+  if (!fs::is_directory(parent, error)) {
+    throw InputError("the output's directory does not exist", where,
+                     "create it first: mkdir -p " + parent.string());
+  }
+  if (fs::exists(status) && ::access(file.c_str(), W_OK) != 0) cannot_write(file, errno);
+  if (::access(parent.c_str(), W_OK) != 0) cannot_write(file, errno);
+}
+
+std::string beside(const std::string& file, std::string_view ending) {
+  const std::string_view csv = ".csv";
+  const bool has_ending = file.size() > csv.size() && file.ends_with(csv);
+  return file.substr(0, file.size() - (has_ending ? csv.size() : 0)) +
+         std::string(ending);
+}
+
+}  // namespace tress

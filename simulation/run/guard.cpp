@@ -1,0 +1,306 @@
+#include "simulation/run/guard.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/catalogue.h"
+
+namespace tress {
+namespace {
+
+constexpr double most_stretch = 0.5;  // of a piece, over its length
+constexpr double start_share = 0.1;   // of the start's energy: an error, no gain
+constexpr double whip = 30;           // square of tip speed over mean square speed
+constexpr int every = 4;              // steps
+constexpr double long_step = 2e-3;    // s
+// Of EI/L: solved to 1e-10 of the typical coordinates, a strand at rest without any load
+// has less than this.
+constexpr double rounding = 1e-9;
+
+bool finite(In x) {
+  return std::ranges::all_of(x, [](double entry) { return std::isfinite(entry); });
+}
+
+/// Twice the kinetic energy of all typical rates at once: r(a) - r(0) = M a.
+double typical_energy(System& system, double t, In q) {
+  const std::size_t n = q.size();
+  std::vector<double> q_typ(n), v_typ(n), zero(n), with(n), without(n);
+  system.scale(q_typ, v_typ);
+  if (system.residual(t, q, zero, v_typ, with) != Status::ok ||
+      system.residual(t, q, zero, zero, without) != Status::ok) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += v_typ[i] * (with[i] - without[i]);
+  return std::abs(sum);
+}
+
+}  // namespace
+
+std::string Breach::message() const {
+  return fmt::format("{} at t = {:.9g} s{}{}", what, t, where.empty() ? "" : ", ", where);
+}
+
+std::string remedy(std::string_view integrator, const Options& options,
+                   std::string_view failure) {
+  const bool adaptive = find_integrator(integrator).adaptive;
+  if (failure.find("max_steps") != failure.npos) {
+    return (adaptive
+                ? fmt::format("try a larger tolerance than rtol = {:g}, a method for "
+                              "stiff systems such as ida",
+                              options.rtol)
+                : fmt::format("try a longer step than {:g} s", options.step)) +
+           fmt::format(", or more than max_steps = {}", options.max_steps);
+  }
+  if (failure.find("max_work") != failure.npos) {
+    return fmt::format("try more than max_work = {:g}", options.max_work);
+  }
+  if (adaptive) {
+    return fmt::format("try a smaller tolerance than rtol = {:g}", options.rtol);
+  }
+  std::string words = fmt::format("try a step of {:.3g} s", options.step / 4);
+  if (integrator != "backward_euler") words += ", or backward_euler, which damps";
+  return words;
+}
+
+Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t first)
+    : system_(system),
+      energetics_(system.energetics()),
+      points_(system.material_points()),
+      strands_(std::move(strands)),
+      first_(first) {
+  const auto count = points_ == nullptr ? 0 : static_cast<std::size_t>(points_->count());
+  for (auto* list : {&x_, &u_, &tangent_, &load_}) list->resize(3 * count);
+}
+
+void Guard::start(double t, In q, In v) {
+  breach_.reset();
+  steps_ = 0;
+  record_ = {.t = t, .seen = t};
+  if (energetics_ == nullptr) return;
+  const Measure begin = measure(t, q, v);
+  record_.energy = begin.kinetic + begin.potential;
+  record_.slack = slack(t, q, v, begin);
+  record_.power = begin.power;
+  record_.frame = begin.frame;
+  record_.lowest = begin.potential;
+}
+
+double Guard::slack(double t, In q, In, const Measure& begin) {
+  if (strands_.empty())
+    return begin.kinetic * start_share + typical_energy(system_, t, q);
+  double sum = 0, uniform = 0;
+  std::size_t first = 0;
+  for (const GuardedStrand& strand : strands_) {
+    sum += strand.weight_work + rounding * strand.bending_energy;
+    const Points p = points_of(strand, first);
+    for (const auto& effect : strand.effects) {
+      if (strand.uniform(*effect)) uniform += effect->potential(t, p);
+    }
+    first += strand.rest.size();
+  }
+  const double elastic = std::max(0.0, begin.potential - uniform);
+  return sum + start_share * (begin.kinetic + elastic);
+}
+
+bool Guard::operator()(double t, In q, In v) {
+  if (++steps_ < every && t - record_.seen < long_step) return true;
+  return judge(t, q, v);
+}
+
+bool Guard::judge(double t, In q, In v) {
+  steps_ = 0;
+  if (!finite(q) || !finite(v)) {
+    return broken(Breach::Kind::not_finite, "the state is not finite",
+                  system_.not_finite(t, q, v), t);
+  }
+  if (stretched(t, q)) return false;
+  if (energetics_ == nullptr) return true;
+  const Measure now = measure(t, q, v);
+  gather(t, now);
+  return !gained(t, now) && !too_fast(t);
+}
+
+Guard::Measure Guard::measure(double t, In q, In v) {
+  const Energy energy = energetics_->energy(t, q, v);
+  Measure now{.kinetic = energy.kinetic, .potential = energy.potential};
+  if (points_ != nullptr) {
+    points_->positions(t, q, x_);
+    points_->velocities(t, q, v, u_);
+  }
+  if (strands_.empty()) now.power = energetics_->power(t, q, v);
+  std::size_t first = 0;
+  for (const GuardedStrand& strand : strands_) {
+    const Points p = points_of(strand, first);
+    for (const auto& effect : strand.effects) now.power += effect->power(t, p);
+    if (strand.root) move_with(t, strand, p, first, now);
+    first += strand.rest.size();
+  }
+  return now;
+}
+
+/// Tangents along the chords from each point's predecessor.
+Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
+  const std::size_t count = strand.rest.size();
+  for (std::size_t i = first; i < first + count; ++i) {
+    const bool root = i == first;
+    const auto from = static_cast<std::size_t>(
+        root ? static_cast<int>(first) : points_->before(static_cast<int>(i)));
+    const Vec chord = load3(&x_[3 * (root ? i + 1 : i)]) - load3(&x_[3 * from]);
+    store3((1 / norm(chord)) * chord, &tangent_[3 * i]);
+  }
+  const auto part = [&](const std::vector<double>& all) {
+    return In(all).subspan(3 * first, 3 * count);
+  };
+  return {strand.points(), part(x_),          part(u_),
+          part(tangent_),  strand.lumps.mass, strand.lumps.length};
+}
+
+/// From the world's frame into the clamp's; leaves the relative velocities in u_.
+void Guard::move_with(double t, const GuardedStrand& strand, const Points& p,
+                      std::size_t first, Measure& now) {
+  const RootPose root = strand.root->at(t);
+  const Out load = Out(load_).first(3 * strand.rest.size());
+  std::ranges::fill(load, 0.0);
+  for (const auto& effect : strand.effects) effect->add_load(t, p, load);
+  for (std::size_t i = 0; i < strand.rest.size(); ++i) {
+    const double m = p.mass[i];
+    const Vec r = load3(&p.x[3 * i]) - root.x, v = load3(&p.v[3 * i]);
+    const Vec turning = cross(root.omega, r), w = root.v + turning, u = v - w;
+    const Vec carried = root.a + cross(root.alpha, r) + cross(root.omega, turning);
+    now.kinetic += m * (dot(w, w) / 2 - dot(v, w));
+    now.frame += m * dot(w, w) / 2;
+    now.power -= dot(load3(&load[3 * i]), w) + m * dot(carried, u);
+    store3(u, &u_[3 * (first + i)]);
+  }
+}
+
+void Guard::gather(double t, const Measure& now) {
+  record_.work += std::max({0.0, record_.power, now.power}) * (t - record_.seen);
+  record_.seen = t;
+  record_.power = now.power;
+  record_.frame = std::max(record_.frame, now.frame);
+  record_.lowest = std::min(record_.lowest, now.potential);
+}
+
+/// Comparisons are such that what is not a number breaks a bound.
+bool Guard::stretched(double t, In q) {
+  double most = 0;
+  if (points_ == nullptr || !points_->stretch(t, q, most) || most <= most_stretch) {
+    return false;
+  }
+  points_->positions(t, q, x_);
+  std::size_t worst = 0, first = 0;
+  double ratio = 0;
+  for (const GuardedStrand& strand : strands_) {
+    for (std::size_t i = 1; i < strand.rest.size(); ++i) {
+      const auto from =
+          static_cast<std::size_t>(points_->before(static_cast<int>(first + i)));
+      const double chord = norm(load3(&x_[3 * (first + i)]) - load3(&x_[3 * from]));
+      const double off = std::abs(chord / strand.rest[i] - 1);
+      if (off <= ratio) continue;
+      ratio = off;
+      worst = first + i;
+    }
+    first += strand.rest.size();
+  }
+  broken(Breach::Kind::stretch,
+         fmt::format("unstable: a piece is off its length by {:.3g} of it (at most {:g})",
+                     most, most_stretch),
+         worst > 0 ? place(worst, "element") : "", t);
+  return true;
+}
+
+bool Guard::gained(double t, const Measure& now) {
+  const double gain = now.kinetic + now.potential - record_.energy;
+  const double allowed = record_.slack + record_.work + record_.frame;
+  if (gain <= allowed) return false;
+  broken(
+      Breach::Kind::energy,
+      fmt::format("unstable: {:.3g} J more energy than at the start, of which {:.3g} J "
+                  "can be",
+                  gain, allowed),
+      fastest(), t);
+  return true;
+}
+
+bool Guard::too_fast(double t) {
+  const double energy =
+      record_.energy + record_.slack + record_.work + record_.frame - record_.lowest;
+  std::size_t i = 0;
+  for (const GuardedStrand& strand : strands_) {
+    const double bound = std::sqrt(whip * 2 * energy / strand.mass);
+    for (const std::size_t end = i + strand.rest.size(); i < end; ++i) {
+      const double speed = norm(load3(&u_[3 * i]));
+      if (speed <= bound) continue;
+      broken(Breach::Kind::speed,
+             fmt::format("unstable: a point moves at {:.3g} m/s (at most {:.3g})", speed,
+                         bound),
+             place(i, "point"), t);
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string Guard::fastest() const {
+  if (strands_.empty()) return {};
+  std::size_t most = 0;
+  const auto speed = [&](std::size_t i) { return norm(load3(&u_[3 * i])); };
+  for (std::size_t i = 1; 3 * i < u_.size(); ++i) {
+    if (speed(i) > speed(most)) most = i;
+  }
+  return place(most, "point") + " the fastest";
+}
+
+/// Elements and points of a strand are counted from 0; element k ends at point k + 1.
+std::string Guard::place(std::size_t point, std::string_view what) const {
+  std::size_t strand = 0;
+  while (point >= strands_[strand].rest.size()) point -= strands_[strand++].rest.size();
+  return fmt::format("strand {}, {} {}", first_ + strand, what,
+                     what == "element" ? point - 1 : point);
+}
+
+bool Guard::broken(Breach::Kind kind, std::string what, std::string where, double t) {
+  breach_ = Breach{kind, std::move(what), std::move(where), t};
+  return false;
+}
+
+Guard::Memory Guard::memory() const {
+  const Record& r = record_;
+  return {r.t, r.energy, r.slack, r.seen, r.power, r.work, r.frame, r.lowest};
+}
+
+void Guard::recall(In memory) {
+  record_ = {memory[0], memory[1], memory[2], memory[3],
+             memory[4], memory[5], memory[6], memory[7]};
+  steps_ = 0;
+  breach_.reset();
+}
+
+void conclude(Guard& guard, std::string_view integrator, const Options& options,
+              Simulation& run) {
+  if (run.status == Status::ok && !guard.judge(run.t, run.state.q, run.state.v)) {
+    run.status = Status::fatal;
+  }
+  if (guard.breach()) {
+    run.failure = guard.breach()->message() + ": " + remedy(integrator, options);
+  }
+}
+
+Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
+                            const Options& options, const State& start, double t_end,
+                            const Observer& each_step) {
+  system.reset();
+  guard.start(0, start.q, start.v);
+  Simulation run =
+      simulate(integrator, system, options, start, t_end, [&](double t, In q, In v) {
+        return guard(t, q, v) && (!each_step || each_step(t, q, v));
+      });
+  conclude(guard, integrator, options, run);
+  return run;
+}
+
+}  // namespace tress

@@ -1,0 +1,73 @@
+#include "simulation/run/memory.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "contract/input_error.h"
+#include "simulation/run/world.h"
+
+namespace tress {
+namespace {
+
+constexpr std::size_t measured = 8;   // strands
+constexpr std::size_t small = 1'000;  // strands that need no question
+
+/// Bytes on the heap.
+double held() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+/// Bytes: of the machine, and of the address space where that is limited (ulimit -v).
+double left() {
+  double bytes = std::numeric_limits<double>::infinity();
+  std::ifstream file("/proc/meminfo");
+  for (std::string key; file >> key;) {
+    double kilobytes = 0;
+    if (key == "MemAvailable:" && file >> kilobytes) bytes = 1024 * kilobytes;
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  rlimit limit{};
+  double pages = 0;
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+      std::ifstream("/proc/self/statm") >> pages) {
+    const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+    bytes = std::min(bytes, static_cast<double>(limit.rlim_cur) - page * pages);
+  }
+  return bytes;
+}
+
+double elements(const Scene& scene) {
+  double sum = 0;
+  for (const Strand& strand : scene.strands) {
+    sum += static_cast<double>(strand.segments.size());
+  }
+  return sum;
+}
+
+}  // namespace
+
+void refuse_too_large(const Scene& scene) {
+  if (scene.strands.size() < small) return;
+  Scene few = scene;
+  few.strands.resize(measured);
+  const double before = held();
+  const World world(few);
+  const double needed = (held() - before) * elements(scene) / elements(few);
+  const double free = left();
+  if (needed <= free) return;
+  throw InputError(
+      fmt::format("{} strands of {} elements altogether need about {:.2g} GB "
+                  "of memory, {:.2g} GB are free",
+                  scene.strands.size(), elements(scene), needed / 1e9, free / 1e9),
+      scene.name, "give fewer strands or elements");
+}
+
+}  // namespace tress

@@ -1,0 +1,175 @@
+#include "simulation/run/readout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/effects/body.h"
+
+namespace tress {
+namespace {
+
+/// Of the circle that turns from one chord into the next over half of each.
+double curvature(const Vec& a, const Vec& b) {
+  const double la = norm(a), lb = norm(b);
+  const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
+  return la + lb > 0 ? 2 * std::tan(angle / 2) / ((la + lb) / 2) : 0;
+}
+
+}  // namespace
+
+Readout::Readout(const Scene& scene, const World& world)
+    : scene_(scene), effects_(make_effects(scene)) {
+  find_lines(world);
+  const std::vector<std::string> names = effect_names(scene);
+  const auto add = [this](std::string name, std::string help) {
+    series_.push_back({std::move(name), std::move(help)});
+  };
+  add("t_s", "time");
+  for (const char* axis : {"x", "y", "z"}) {
+    add(std::string("tip_") + axis + "_m", "tip, mean over the strands");
+  }
+  add("kinetic_j", "kinetic energy of all strands");
+  if (scene.strands.empty()) {
+    add("potential_j", "potential energy");
+  } else {
+    add("elastic_j", "elastic energy of all strands");
+    for (const std::string& name : names) add(name + "_j", "its potential energy");
+  }
+  add("stretch_rel", "largest |length/rest - 1| of a piece");
+  add("penetration_m", "largest depth of a strand in a body");
+  add("touching_pairs", "strands that come closer than the inner radius");
+  add("mean_distance_m", "from a strand to the nearest other one, mean");
+  add("dt_s", "step, mean since the last frame");
+  add("newton_per_step", "Newton iterations a step, mean since the last frame");
+  add("rejected_steps", "steps tried again with shorter ones since the last frame");
+  channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
+  for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
+  if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
+
+  for (const Strand& strand : scene.strands) {
+    lumps_.push_back(lumps(strand));
+  }
+}
+
+Frame3d Readout::read(World& world) {
+  Frame3d frame;
+  std::vector<double>& row = frame.series;
+  row.assign(1, world.time());
+  read_points(world, frame);
+  const Energies energies = world.energies();
+  row.push_back(energies.kinetic);
+  row.push_back(energies.elastic);
+  row.insert(row.end(), energies.effects.begin(), energies.effects.end());
+  row.push_back(world.stretch());
+  double depth = 0;
+  for (const auto& effect : effects_) {
+    const auto* body = dynamic_cast<const Body*>(effect.get());
+    if (body == nullptr) continue;
+    depth = std::max(depth, body->penetration(world.time(), world.positions()));
+  }
+  row.push_back(depth);
+  const StrandInteraction* interaction = world.interaction();
+  row.push_back(
+      interaction != nullptr ? static_cast<double>(interaction->touching_pairs()) : 0);
+  row.push_back(interaction != nullptr ? interaction->mean_distance() : std::nan(""));
+  const Stats now = world.stats();
+  const auto steps = static_cast<double>(now.steps - before_.steps);
+  const auto iterations =
+      static_cast<double>(now.newton_iterations - before_.newton_iterations);
+  // Of a system: all advance through the same time, which the last frame may cut short.
+  const std::size_t last = scene_.last_frame();
+  const double interval = world.time() < scene_.duration || last == 0
+                              ? 1 / scene_.frame_rate
+                              : scene_.duration - scene_.time_of(last - 1);
+  row.push_back(steps > 0 ? interval * static_cast<double>(world.systems()) / steps
+                          : std::nan(""));
+  row.push_back(iterations / steps);
+  row.push_back(static_cast<double>(now.rejected - before_.rejected));
+  before_ = now;
+  return frame;
+}
+
+void Readout::find_lines(const World& world) {
+  const std::vector<int>& before = world.before();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const int from = before[i];
+    if (from < 0 || drawn_.empty() || static_cast<std::size_t>(from) != drawn_.back()) {
+      lines_.push_back(0);
+      if (from >= 0) {
+        drawn_.push_back(static_cast<std::size_t>(from));
+        ++lines_.back();
+      }
+    }
+    drawn_.push_back(i);
+    ++lines_.back();
+  }
+}
+
+void Readout::read_points(World& world, Frame3d& frame) {
+  const std::vector<double>& x = world.positions();
+  const std::vector<double>& u = world.velocities();
+  for (const std::size_t i : drawn_) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      frame.positions.push_back(static_cast<float>(x[3 * i + c]));
+    }
+  }
+  frame.channels.assign(channels_.size() * drawn_.size(), 0.0F);
+  std::size_t first = 0;
+  for (const int line : lines_) {
+    const auto points = static_cast<std::size_t>(line);
+    const auto at = [&](std::size_t i) { return load3(&x[3 * drawn_[first + i]]); };
+    for (std::size_t i = 0; i < points; ++i) {
+      const std::size_t inner =
+          std::clamp<std::size_t>(i, 1, std::max<std::size_t>(points, 3) - 2);
+      const double bent =
+          points < 3 ? 0
+                     : curvature(at(inner) - at(inner - 1), at(inner + 1) - at(inner));
+      const double speed = norm(load3(&u[3 * drawn_[first + i]]));
+      frame.channels[first + i] = static_cast<float>(bent);
+      frame.channels[drawn_.size() + first + i] = static_cast<float>(speed);
+    }
+    first += points;
+  }
+  Vec tip;
+  std::size_t end = 0;
+  for (std::size_t k = 0; k < world.strands(); ++k) {
+    const auto points = static_cast<std::size_t>(world.points()[k]);
+    if (points == 0) continue;
+    // The places of strands are lines of their own.
+    if (!scene_.strands.empty()) read_loads(world, k, end, frame);
+    end += points;
+    tip = tip + (1.0 / static_cast<double>(world.strands())) * load3(&x[3 * (end - 1)]);
+  }
+  for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
+}
+
+/// Loads of the effects on the material points, over the length that each stands for.
+void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame) {
+  const std::size_t count = drawn_.size();
+  const auto points = static_cast<std::size_t>(world.points()[k]);
+  const In x = In(world.positions()).subspan(3 * first, 3 * points);
+  const In u = In(world.velocities()).subspan(3 * first, 3 * points);
+  tangent_.resize(3 * points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::size_t from = i == 0 ? 0 : i - 1, to = std::min(i + 1, points - 1);
+    const Vec d = load3(&x[3 * to]) - load3(&x[3 * from]);
+    store3((1 / norm(d)) * d, &tangent_[3 * i]);
+  }
+  const Points p{static_cast<int>(points), x, u, tangent_, lumps_[k].mass,
+                 lumps_[k].length};
+  std::vector<double> load(3 * points);
+  std::size_t channel = 2;
+  const auto read = [&](const Effect& effect) {
+    std::ranges::fill(load, 0.0);
+    effect.add_load(world.time(), p, load);
+    for (std::size_t i = 0; i < points; ++i) {
+      frame.channels[channel * count + first + i] =
+          static_cast<float>(norm(load3(&load[3 * i])) / lumps_[k].length[i]);
+    }
+    ++channel;
+  };
+  for (const auto& effect : effects_) read(*effect);
+  if (world.interaction() != nullptr) read(*world.interaction()->effect(k));
+}
+
+}  // namespace tress

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/run/world.h"
+
+namespace tress {
+
+/// One column of the time series, or one number per material point for pictures.
+struct Reading {
+  std::string name;  // with its unit
+  std::string help;
+};
+
+/// One instant of a scene, as it is written and shown.
+struct Frame3d {
+  std::vector<double> series;    // as Readout::series()
+  std::vector<float> positions;  // (3 points) m, points as Readout::lines()
+  std::vector<float> channels;   // (points) of the first channel, of the second ...
+};
+
+/// What is told of a scene: places and energies of its strands, what its effects do.
+class Readout {
+ public:
+  /// `world`: any of this scene.
+  Readout(const Scene& scene, const World& world);
+
+  /// Points of each line that is drawn, in the order of Frame3d's: a strand, or a chain
+  /// of segments of a tree, which begins at the point that it hangs on.
+  const std::vector<int>& lines() const { return lines_; }
+  std::size_t points() const { return drawn_.size(); }
+
+  const std::vector<Reading>& series() const { return series_; }
+  const std::vector<Reading>& channels() const { return channels_; }
+  Frame3d read(World& world);
+  /// The next World counts its steps from 0.
+  void restart() { before_ = {}; }
+
+ private:
+  void find_lines(const World& world);
+  void read_points(World& world, Frame3d& frame);
+  void read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame);
+
+  const Scene& scene_;
+  std::vector<int> lines_;
+  std::vector<std::size_t> drawn_;  // material points, line after line
+  std::vector<Reading> series_, channels_;
+  Effects effects_;
+  std::vector<Lumps> lumps_;  // of each strand
+  std::vector<double> tangent_;
+  Stats before_;
+};
+
+}  // namespace tress

@@ -1,0 +1,53 @@
+#include "simulation/run/simulation.h"
+
+#include <algorithm>
+
+#include "simulation/run/method_run.h"
+
+namespace tress {
+
+std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
+  const ModelEntry& entry = find_model(id);
+  Parameters parameters(entry.parameters, "model " + std::string(id));
+  for (const auto& [key, value] : settings) parameters.set(key, value);
+  return entry.make(parameters);
+}
+
+State initial_state(const System& system) {
+  const auto n = static_cast<std::size_t>(system.layout().coordinates);
+  State state{std::vector<double>(n), std::vector<double>(n)};
+  system.initial_state(state.q, state.v);
+  return state;
+}
+
+Simulation run_method(Integrator& method, System& system, const State& start,
+                      std::span<const double> stops,
+                      const std::function<void(const State&)>& at_stop,
+                      const Observer& each_step) {
+  State state = start;
+  system.reset();
+  Status status = method.start(0, start.q, start.v);
+  for (const double t : stops) {
+    if (status == Status::ok) status = method.advance(t, each_step);
+    std::ranges::copy(method.q(), state.q.begin());
+    std::ranges::copy(method.v(), state.v.begin());
+    if (status != Status::ok) break;
+    if (at_stop) at_stop(state);
+  }
+  return {status, method.failure(), method.time(), std::move(state), method.stats()};
+}
+
+Simulation simulate(std::string_view integrator, System& system, const Options& options,
+                    const State& start, std::span<const double> stops,
+                    const std::function<void(const State&)>& at_stop,
+                    const Observer& each_step) {
+  const auto method = make_integrator(integrator, system, options);
+  return run_method(*method, system, start, stops, at_stop, each_step);
+}
+
+Simulation simulate(std::string_view integrator, System& system, const Options& options,
+                    const State& start, double t_end, const Observer& each_step) {
+  return simulate(integrator, system, options, start, {&t_end, 1}, {}, each_step);
+}
+
+}  // namespace tress

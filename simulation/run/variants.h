@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "simulation/scene/scene.h"
+
+namespace tress {
+
+/// One thing that a scene could do without: an effect it names, its strand-strand
+/// interaction, or a mode of its model.
+struct Ingredient {
+  std::string name;
+  std::function<Scene(const Scene&)> without;
+  /// The scene with none of its effects but this one. Empty for modes.
+  std::function<Scene(const Scene&)> alone;
+};
+
+std::vector<Ingredient> ingredients(const Scene& scene);
+
+/// The scene without any effect and interaction.
+Scene bare(Scene scene);
+
+/// At most `most` of its strands, typical ones; where they touch each other, all.
+Scene thinned(Scene scene, std::size_t most);
+/// These of its strands.
+Scene only(Scene scene, const std::vector<std::size_t>& strands);
+
+/// Segments cut in halves of the same shape, steps halved: what the difference from the
+/// scene itself says about its discretisation.
+Scene refined(Scene scene);
+
+/// Tips of all strands at every frame, and how long the run took.
+struct TipPaths {
+  std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
+  double once_s = 0;      // wall time of stepping in the run that was read
+  double wall_s = 0;      // the same where that is long, else the median of repeats
+  double indicator = 0;   // World::error_indicator at the end
+};
+
+/// Where a run is given up, looked at after every frame.
+struct RunLimit {
+  double iterations_per_step = std::numeric_limits<double>::infinity();  // Newton's, mean
+  double wall_s = std::numeric_limits<double>::infinity();
+};
+
+/// Throws InputError where the scene cannot be built and std::runtime_error, with what
+/// happened and when, where it does not run to its end or goes beyond `limit`.
+TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit = {});
+
+/// Wall times of some runs to the end (s): of `runs`, or more until they have taken
+/// `at_least_s` altogether. Without the guard, which is no part of what a method costs.
+std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s = 0);
+
+/// Root mean square distance over frames and strands, over the strands' mean length.
+double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);
+
+}  // namespace tress

@@ -1,0 +1,340 @@
+#include "simulation/run/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "integrators/catalogue.h"
+#include "integrators/error_indicator.h"
+#include "math/pack.h"
+#include "simulation/run/memory.h"
+
+namespace tress {
+namespace {
+
+/// Root and tips of segments of every strand.
+std::vector<int> material_points(const Scene& scene) {
+  std::vector<int> points;
+  for (const Strand& strand : scene.strands) {
+    points.push_back(static_cast<int>(strand.segments.size()) + 1);
+  }
+  return points;
+}
+
+Snapshot::OfStrand initial_state_of(const System& system) {
+  const auto n = static_cast<std::size_t>(system.layout().coordinates);
+  Snapshot::OfStrand state{std::vector<double>(n), std::vector<double>(n),
+                           system.memory()};
+  system.initial_state(state.q, state.v);
+  return state;
+}
+
+void append_strands(In q, In v, In memory, const std::vector<std::size_t>& coordinates,
+                    const std::vector<std::size_t>& memories, Snapshot& snapshot) {
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    const In one_q = q.first(coordinates[k]), one_v = v.first(coordinates[k]),
+             one_memory = memory.first(memories[k]);
+    snapshot.strands.push_back({{one_q.begin(), one_q.end()},
+                                {one_v.begin(), one_v.end()},
+                                {one_memory.begin(), one_memory.end()}});
+    q = q.subspan(coordinates[k]);
+    v = v.subspan(coordinates[k]);
+    memory = memory.subspan(memories[k]);
+  }
+}
+
+/// Each with a meter of its own, which `meters` keeps.
+Effects metered(const Effects& effects,
+                std::vector<std::shared_ptr<const Metered>>& meters) {
+  Effects all;
+  for (const auto& effect : effects) {
+    meters.push_back(std::make_shared<Metered>(effect));
+    all.push_back(meters.back());
+  }
+  return all;
+}
+
+}  // namespace
+
+Effects make_effects(const Scene& scene) {
+  Effects all;
+  for (const EffectChoice& choice : scene.effects) {
+    all.push_back(choice.entry->make(choice.parameters, scene.head));
+  }
+  return all;
+}
+
+std::vector<std::string> effect_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string_view id = scene.effects[i].entry->id;
+    const auto so_far = std::ranges::count(
+        scene.effects.begin(), scene.effects.begin() + static_cast<std::ptrdiff_t>(i), id,
+        [](const EffectChoice& choice) { return choice.entry->id; });
+    std::string name(id);
+    if (so_far > 0) name.append("_").append(std::to_string(so_far + 1));
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+World::World(const Scene& scene, int threads)
+    : integrator_(scene.integrator),
+      options_(scene.options),
+      effects_(scene.effects.size()),
+      crew_(threads) {
+  refuse_too_large(scene);
+  if (scene.strands.empty()) {
+    add(scene.model->make(scene.model_options), 1);
+    if (scene.guard) guard(guarded_strands(*scene.model, scene.model_options));
+  } else if (scene.interaction && scene.interaction->word("coupling") == "monolithic") {
+    build_coupled(scene);
+  } else {
+    build_strands(scene);
+  }
+  ready(scene);
+}
+
+void World::add(std::unique_ptr<System> system, std::size_t strands) {
+  Body& body = bodies_.emplace_back();
+  if (bodies_.size() > 1) {
+    const Body& last = bodies_[bodies_.size() - 2];
+    body.first = last.first + last.coordinates.size();
+    body.first_point = last.first_point + last.points;
+  }
+  // Strands of one system are alike, unless the caller says otherwise.
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  body.coordinates.assign(strands, n / strands);
+  body.memory.assign(strands, system->memory().size() / strands);
+  MaterialPoints* points = system->material_points();
+  body.points = points == nullptr ? 0 : static_cast<std::size_t>(points->count());
+  for (std::size_t i = 0; i < body.points; ++i) {
+    const int before = points->before(static_cast<int>(i));
+    before_.push_back(before < 0 ? -1 : before + static_cast<int>(body.first_point));
+  }
+  points_.insert(points_.end(), strands, static_cast<int>(body.points / strands));
+  body.system = std::move(system);
+}
+
+/// Of the last body.
+void World::guard(std::vector<GuardedStrand> strands) {
+  Body& body = bodies_.back();
+  body.guard.emplace(*body.system, std::move(strands), body.first);
+}
+
+/// None where the scene wants no guard.
+std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
+                                          std::size_t count,
+                                          const Effects& shared) const {
+  std::vector<GuardedStrand> all;
+  for (std::size_t k = first; k < first + count; ++k) {
+    Effects effects = shared;
+    if (interaction_) effects.push_back(interaction_->effect(k));
+    all.push_back(guarded_strand(scene.strands[k], std::move(effects)));
+  }
+  return all;
+}
+
+/// Each strand on its own, or up to four that are cut alike together.
+void World::build_strands(const Scene& scene) {
+  const std::vector<Strand>& strands = scene.strands;
+  if (scene.interaction) {
+    interaction_ =
+        std::make_unique<StrandInteraction>(*scene.interaction, material_points(scene));
+  }
+  const Effects shared = make_effects(scene);
+  std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
+  const auto effects_of = [&](std::size_t k) {
+    Effects effects = metered(shared, meters);
+    if (interaction_) effects.push_back(interaction_->effect(k));
+    return effects;
+  };
+  for (std::size_t k = 0; k < strands.size();) {
+    std::size_t end = k + 1;
+    while (end < strands.size() && end < k + Pack::lanes &&
+           strands[end].segments.size() == strands[k].segments.size()) {
+      ++end;
+    }
+    if (scene.model->on_strands != nullptr && end > k + 1) {
+      std::vector<Effects> effects;
+      for (std::size_t i = k; i < end; ++i) effects.push_back(effects_of(i));
+      auto system = scene.model->on_strands(std::span(strands).subspan(k, end - k),
+                                            scene.model_options, std::move(effects));
+      if (system != nullptr) {
+        add(std::move(system), end - k);
+        bodies_.back().meters = std::exchange(meters, {});
+        if (scene.guard) guard(guarded(scene, k, end - k, shared));
+        k = end;
+        continue;
+      }
+      meters.clear();
+    }
+    add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
+    bodies_.back().meters = std::exchange(meters, {});
+    if (scene.guard) guard(guarded(scene, k, 1, shared));
+    ++k;
+  }
+}
+
+/// All strands as one system.
+void World::build_coupled(const Scene& scene) {
+  const Effects shared = make_effects(scene);
+  std::vector<std::unique_ptr<System>> systems;
+  std::vector<std::size_t> coordinates;
+  std::vector<std::shared_ptr<const Metered>> meters;
+  for (const Strand& strand : scene.strands) {
+    systems.push_back(
+        scene.model->on_strand(strand, scene.model_options, metered(shared, meters)));
+    coordinates.push_back(static_cast<std::size_t>(systems.back()->layout().coordinates));
+  }
+  auto coupled = std::make_unique<CoupledStrands>(std::move(systems), *scene.interaction);
+  CoupledStrands* const whole = coupled.get();
+  add(std::move(coupled), scene.strands.size());
+  Body& body = bodies_.front();
+  body.coupled = whole;
+  body.meters = std::move(meters);
+  body.coordinates = std::move(coordinates);
+  // It remembers more than its strands do: all of it goes with the first.
+  body.memory.assign(scene.strands.size(), 0);
+  body.memory.front() = body.system->memory().size();
+  points_ = material_points(scene);
+  if (scene.guard) guard(guarded(scene, 0, scene.strands.size(), shared));
+}
+
+/// Integrators at the initial state.
+void World::ready(const Scene& scene) {
+  Snapshot begin;
+  for (Body& body : bodies_) {
+    body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
+    const Snapshot::OfStrand all = initial_state_of(*body.system);
+    append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
+  }
+  const std::size_t points = bodies_.back().first_point + bodies_.back().points;
+  x_.values.resize(3 * points);
+  u_.values.resize(3 * points);
+  restore(begin);
+}
+
+void World::restore(const Snapshot& snapshot) {
+  t_ = snapshot.t;
+  In guards = snapshot.guards;
+  for (Body& body : bodies_) {
+    Snapshot::OfStrand all;
+    for (std::size_t k = 0; k < body.coordinates.size(); ++k) {
+      const Snapshot::OfStrand& one = snapshot.strands[body.first + k];
+      all.q.insert(all.q.end(), one.q.begin(), one.q.end());
+      all.v.insert(all.v.end(), one.v.begin(), one.v.end());
+      all.memory.insert(all.memory.end(), one.memory.begin(), one.memory.end());
+    }
+    body.system->recall(all.memory);
+    // Contact sets follow the state; where it was accepted before, nothing changes.
+    body.system->accept(t_, all.q, all.v);
+    body.status = body.integrator->start(t_, all.q, all.v);
+    body.before = {};
+    body.indicator = 0;
+    body.shortened = 0;
+    body.gave_up = false;
+  }
+  failure_.clear();
+  x_.done = u_.done = false;
+  exchange();
+  for (Body& body : bodies_) {
+    if (!body.guard) continue;
+    if (guards.empty()) {
+      body.guard->start(t_, body.integrator->q(), body.integrator->v());
+    } else {
+      body.guard->recall(guards.first(Guard::remembered));
+      guards = guards.subspan(Guard::remembered);
+    }
+  }
+}
+
+Snapshot World::snapshot() const {
+  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}};
+  for (const Body& body : bodies_) {
+    append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),
+                   body.coordinates, body.memory, snapshot);
+    if (!body.guard) continue;
+    const auto gathered = body.guard->memory();
+    snapshot.guards.insert(snapshot.guards.end(), gathered.begin(), gathered.end());
+  }
+  return snapshot;
+}
+
+double World::error_indicator() const {
+  double largest = 0;
+  for (const Body& body : bodies_) {
+    largest = std::max({largest, body.indicator, indicator_of(*body.integrator)});
+  }
+  return largest;
+}
+
+Energies World::energies() {
+  Energies sum;
+  sum.effects.resize(effects_);
+  for (const Body& body : bodies_) {
+    Energetics* energetics = body.system->energetics();
+    if (energetics == nullptr) continue;
+    const In q = body.integrator->q(), v = body.integrator->v();
+    const Energy one = energetics->energy(t_, q, v);
+    double of_effects = 0;
+    for (std::size_t i = 0; i < body.meters.size(); ++i) {
+      sum.effects[i % effects_] += body.meters[i]->last();
+      of_effects += body.meters[i]->last();
+    }
+    if (body.coupled != nullptr) of_effects += body.coupled->contact_potential(t_, q, v);
+    sum.kinetic += one.kinetic;
+    sum.elastic += one.potential - of_effects;
+  }
+  return sum;
+}
+
+double World::stretch() {
+  double most = 0, one = 0;
+  for (const Body& body : bodies_) {
+    MaterialPoints* points = body.system->material_points();
+    if (points != nullptr && points->stretch(t_, body.integrator->q(), one)) {
+      most = std::max(most, one);
+    }
+  }
+  return most;
+}
+
+const std::vector<double>& World::positions() {
+  look(
+      [&](Body& body, Out of_strand) {
+        body.system->material_points()->positions(t_, body.integrator->q(), of_strand);
+      },
+      x_);
+  return x_.values;
+}
+
+const std::vector<double>& World::velocities() {
+  look(
+      [&](Body& body, Out of_strand) {
+        body.system->material_points()->velocities(t_, body.integrator->q(),
+                                                   body.integrator->v(), of_strand);
+      },
+      u_);
+  return u_.values;
+}
+
+void World::exchange() {
+  if (interaction_) interaction_->update(positions(), velocities());
+}
+
+void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
+  if (to.done) return;
+  crew_.run(bodies_.size(), [&](std::size_t k) {
+    const std::size_t count = 3 * bodies_[k].points;
+    if (count > 0) {
+      read(bodies_[k], Out(to.values).subspan(3 * bodies_[k].first_point, count));
+    }
+  });
+  to.done = true;
+}
+
+}  // namespace tress

@@ -1,0 +1,151 @@
+// How a World goes forward: strands side by side, every step watched by their guards, and
+// one that has no solution again in shorter ones.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/catalogue.h"
+#include "integrators/error_indicator.h"
+#include "simulation/run/world.h"
+
+namespace tress {
+namespace {
+
+/// A step without a solution is tried in 2, 4 ... 2^halvings.
+constexpr int halvings = 6;
+/// Of a strand: where a run needs more, its step is wrong and its time without bound.
+constexpr int most_shortened = 100;
+
+void add_work(const Stats& from, Stats& to) {
+  to.steps += from.steps;
+  to.newton_iterations += from.newton_iterations;
+  to.rejected += from.rejected;
+}
+
+}  // namespace
+
+Status World::advance(double t_end) {
+  // Without an exchange nobody needs to wait for the others.
+  const double span = t_end - t_;
+  const double count =
+      interaction_ ? std::max(1.0, std::ceil(span / options_.step - 1e-9)) : 1.0;
+  const double begin = t_;
+  for (long i = 1; i <= static_cast<long>(count); ++i) {
+    const double t = i == static_cast<long>(count)
+                         ? t_end
+                         : begin + static_cast<double>(i) * (span / count);
+    const bool last = i == static_cast<long>(count);
+    crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
+    t_ = t;
+    x_.done = u_.done = false;
+    for (const Body& body : bodies_) {
+      if (body.status == Status::ok) continue;
+      failure_ = failure_of(body);
+      return body.status;
+    }
+    exchange();
+  }
+  return Status::ok;
+}
+
+/// Its guard sees the last state of all, also where the method gave up there.
+void World::advance(Body& body, double t, bool last) {
+  if (body.status != Status::ok) return;
+  const double span = t - t_,
+               count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
+  const bool again = !find_integrator(integrator_).adaptive &&
+                     count <= static_cast<double>(options_.max_steps);
+  Integrator& method = *body.integrator;
+  // Shorter steps would only take more of it.
+  const auto used_up = [&] {
+    return options_.max_work > 0 &&
+           total_work(method.stats(), static_cast<int>(method.q().size())) >=
+               options_.max_work;
+  };
+  body.keep(t_, method.q(), method.v());
+  body.status = method.advance(t, body.observer());
+  while (again && body.status != Status::ok && !body.breached() && !body.gave_up &&
+         !used_up() && body.shortened++ < most_shortened) {
+    const double end = body.t + span / count;
+    body.status = shorter_steps(body, end < t - 1e-6 * span / count ? end : t);
+    if (body.status == Status::ok) body.status = method.advance(t, body.observer());
+  }
+  if (!body.guard || body.breached() || (body.status == Status::ok && !last)) return;
+  if (!body.guard->judge(body.t, body.q, body.v)) body.status = Status::fatal;
+}
+
+/// From the last state that a step led to until `end`, one step further, by as few
+/// shorter steps as it takes; there the method goes on with its own.
+Status World::shorter_steps(Body& body, double end) {
+  const double begin = body.t;
+  const std::vector<double> q = body.q, v = body.v, memory = body.system->memory();
+  const auto gathered = body.guard ? body.guard->memory() : Guard::Memory{};
+  Options shorter = options_;
+  for (int k = 0; k < halvings; ++k) {
+    ++body.before.rejected;
+    shorter.step = (end - begin) / std::ldexp(2.0, k);
+    const auto method = make_integrator(integrator_, *body.system, shorter);
+    body.keep(begin, q, v);
+    body.system->recall(memory);
+    body.system->accept(begin, body.q, body.v);
+    if (body.guard) body.guard->recall(gathered);
+    Status status = method->start(begin, body.q, body.v);
+    if (status == Status::ok) status = method->advance(end, body.observer());
+    if (body.breached()) return Status::fatal;
+    if (status != Status::ok) continue;
+    add_work(method->stats(), body.before);
+    add_work(body.integrator->stats(), body.before);
+    body.indicator =
+        std::max({body.indicator, indicator_of(*body.integrator), indicator_of(*method)});
+    return body.integrator->start(end, body.q, body.v);
+  }
+  body.gave_up = true;
+  return Status::fatal;
+}
+
+/// Keeps every state, and shows it to the guard.
+Observer World::Body::observer() {
+  return [this](double at, In new_q, In new_v) {
+    keep(at, new_q, new_v);
+    return !guard || (*guard)(at, new_q, new_v);
+  };
+}
+
+void World::Body::keep(double at, In new_q, In new_v) {
+  t = at;
+  q.assign(new_q.begin(), new_q.end());
+  v.assign(new_v.begin(), new_v.end());
+}
+
+std::string World::failure_of(const Body& body) const {
+  if (body.breached()) {
+    return fmt::format("{}: {}; guard = false lets it go on",
+                       body.guard->breach()->message(), remedy(integrator_, options_));
+  }
+  const std::string why = body.integrator->failure();
+  const std::size_t last = body.first + body.coordinates.size() - 1;
+  return fmt::format(
+      "strand {}{}: {}{}: {}", body.first,
+      last > body.first ? fmt::format(" to {}", last) : "", why,
+      body.gave_up ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
+                   : "",
+      remedy(integrator_, options_, why));
+}
+
+const Breach* World::breach() const {
+  const auto broken = std::ranges::find_if(bodies_, &Body::breached);
+  return broken == bodies_.end() ? nullptr : &*broken->guard->breach();
+}
+
+Stats World::stats() const {
+  Stats sum;
+  for (const Body& body : bodies_) {
+    add_work(body.before, sum);
+    add_work(body.integrator->stats(), sum);
+    sum.solver = body.integrator->stats().solver;
+  }
+  return sum;
+}
+
+}  // namespace tress

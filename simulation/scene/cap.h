@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace tress {
+
+/// The part of an ellipsoid x = centre + diag(half) u, |u| = 1, where u is within `angle`
+/// (rad, in (0, pi]) of a unit vector.
+class Cap {
+ public:
+  Cap(Vec centre, Vec half_axes, Vec axis, double angle);
+
+  double area() const { return area_; }  // m^2, by the midpoint rule
+
+  struct Place {
+    Vec x, normal;
+  };
+  /// Shares of area: `along` of it lies nearer to the axis, `around` of what is as near
+  /// lies before it. Both in [0, 1).
+  Place place(double along, double around) const;
+
+ private:
+  static constexpr int cells = 256;
+  /// Of u at polar angle and azimuth about the axis.
+  Vec unit(double polar, double azimuth) const;
+  /// Area of the ellipsoid over that of the unit sphere.
+  double stretch(const Vec& u) const;
+
+  Vec centre_, half_, axis_, first_, second_;
+  double angle_, area_ = 0;
+  std::vector<double> below_;   // (cells + 1) area nearer to the axis than each ring
+  std::vector<double> before_;  // (cells (cells + 1)) the same within a ring
+};
+
+}  // namespace tress

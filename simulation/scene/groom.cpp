@@ -1,0 +1,168 @@
+#include "simulation/scene/groom.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contract/input_error.h"
+#include "simulation/scene/cap.h"
+#include "simulation/scene/directions.h"
+#include "simulation/scene/random.h"
+#include "simulation/scene/shapes.h"
+
+namespace tress {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+constexpr Parameter own_parameters[] = {
+    {.name = "count",
+     .help = "number of strands, 0: by density_1_m2",
+     .number = 100,
+     .min = 0,
+     .max = 1e5,
+     .whole = true},
+    {.name = "density_1_m2",
+     .help = "count = 0: strands per area (1/m^2)",
+     .number = 0,
+     .min = 0,
+     .max = 1e9},
+    {.name = "centre_m",
+     .help = "of the head, an ellipsoid x, y, z (m)",
+     .min = -1e3,
+     .max = 1e3,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "half_axes_m",
+     .help = "of the head, which faces x, along x, y, z (m)",
+     .min = 1e-6,
+     .max = 1e3,
+     .components = 3,
+     .fallback = "0.1,0.08,0.12"},
+    {.name = "cap_axis",
+     .help = "direction of the middle of the hair; any length",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 3,
+     .fallback = "-0.4,0,1"},
+    {.name = "cap_angle_rad",
+     .help = "angle from there to the hairline, on the unit sphere (rad)",
+     .number = 1.3,
+     .min = 1e-3,
+     .max = pi},
+    {.name = "tilt_rad",
+     .help = "angle of the roots from the head's normal to the way they are combed (rad)",
+     .number = 0.8,
+     .min = -pi / 2,
+     .max = pi / 2},
+    {.name = "parting",
+     .help = "combed sideways over down, away from the parting; 0: none",
+     .number = 0,
+     .min = 0,
+     .max = 1e3},
+    {.name = "parting_m",
+     .help = "y of the parting, a plane across y, from the centre (m)",
+     .number = 0,
+     .min = -1e3,
+     .max = 1e3},
+    {.name = "length_variation",
+     .help = "largest deviation of the length over its mean",
+     .number = 0.1,
+     .min = 0,
+     .max = 0.99},
+    {.name = "curl_variation",
+     .help = "largest deviation of all natural curvatures over their means",
+     .number = 0.1,
+     .min = 0,
+     .max = 10},
+    {.name = "phase",
+     .help = "direction in which a root's curvature bends: at random, or down",
+     .choices = "random|down"},
+};
+
+std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
+  const Parameters& p = table.values();
+  double wanted = p.number("count");
+  std::string_view key = "count";
+  if (wanted == 0) {
+    wanted = std::floor(p.number("density_1_m2") * cap.area());
+    key = "density_1_m2";
+  } else if (p.number("density_1_m2") > 0) {
+    throw InputError("density_1_m2 beside a count", table.place("density_1_m2"),
+                     "leave it out, or give count = 0");
+  }
+  if (wanted >= 1 && wanted <= static_cast<double>(most)) {
+    return static_cast<std::size_t>(wanted);
+  }
+  throw InputError(fmt::format("{:.0f} strands", wanted), table.place(key),
+                   most > 0 ? fmt::format("give a count, or a density, for 1 to {}, what "
+                                          "the scene has room for",
+                                          most)
+                            : "the scene has no room for more: give fewer elements");
+}
+
+/// The way a root is combed, along the surface; 0 where none is told from others.
+Vec combed(const Parameters& p, const Cap::Place& place) {
+  const double side = place.x.y - p.vec("centre_m").y - p.number("parting_m");
+  const double sideways = side == 0 ? 0 : std::copysign(p.number("parting"), side);
+  return across(place.normal, {0, sideways, -1});
+}
+
+Frame root_frame(const Parameters& p, const Cap::Place& place, double phase) {
+  const Vec comb = combed(p, place);
+  const double tilt = dot(comb, comb) > 0 ? p.number("tilt_rad") : 0;
+  const Vec tangent = across({}, std::cos(tilt) * place.normal + std::sin(tilt) * comb);
+  // Positive curvature about e1 bends towards e1 x e0, which is down for e1 = e0 x down.
+  Vec e1 = across(tangent, cross(tangent, {0, 0, -1}));
+  if (dot(e1, e1) == 0) e1 = across(tangent, {0, 1, 0});
+  return frame_of(tangent, rotation(tangent, phase) * e1);
+}
+
+double varied(Random& random, double variation) {
+  return 1 + variation * (2 * random.uniform() - 1);
+}
+
+}  // namespace
+
+std::span<const Parameter> groom_table_parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list(std::begin(own_parameters), std::end(own_parameters));
+    for (const Parameter& p : cut_parameters()) list.push_back(p);
+    return list;
+  }();
+  return all;
+}
+
+std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
+                                  const Common& common, std::uint64_t first_stream,
+                                  std::size_t most) {
+  const Parameters& p = table.values();
+  table.refuse_unused("shape", shape_uses());
+  const StrandMaterial material = strand_material(common.material, own_material);
+  const Cap cap(p.vec("centre_m"), p.vec("half_axes_m"), direction(table, "cap_axis"),
+                p.number("cap_angle_rad"));
+  const std::size_t n = count(table, cap, most);
+  std::vector<Strand> strands;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t stream = first_stream + i;
+    Random random(common.seed, 2 * stream + 1);  // shapes take the even ones
+    const double length =
+        p.number("length_m") * varied(random, p.number("length_variation"));
+    const double curl = varied(random, p.number("curl_variation"));
+    const double phase = p.word("phase") == "random" ? 2 * pi * random.uniform() : 0;
+    const Shape mean = natural_shape(table, material, common.seed, 2 * stream);
+    strands.push_back(
+        cut_strand(table, material, length, [&](double s) { return curl * mean(s); }));
+    const double share = static_cast<double>(i);
+    const double turns = share * (std::numbers::phi - 1);
+    const Cap::Place place =
+        cap.place((share + 0.5) / static_cast<double>(n), turns - std::floor(turns));
+    set_root(strands.back(), common.head, common.free_root, place.x,
+             root_frame(p, place, phase));
+  }
+  return strands;
+}
+
+}  // namespace tress

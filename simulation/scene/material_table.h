@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "models/strand/material.h"
+#include "simulation/scene/table.h"
+
+namespace tress {
+
+/// What [material] says.
+struct StrandMaterial {
+  Material material;
+  CrossSection section;
+  double curl_radius = 0, curl_pitch = 0;  // of the helix at rest, m; radius 0: straight
+};
+
+std::span<const Parameter> material_table_parameters();
+
+/// The values of `scene`, over them those of `own` ([strand.material]), if any: a name
+/// brings all of its values, keys beside it change single ones. Throws InputError naming
+/// the key that a custom material lacks.
+StrandMaterial strand_material(const Table& scene, const Table* own);
+
+}  // namespace tress

@@ -1,0 +1,128 @@
+#include "simulation/scene/read_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "simulation/files/parse.h"
+
+namespace tress {
+namespace {
+
+std::string_view wanted(const Parameter& p) {
+  if (p.text) return "a string";
+  if (p.choices == "true|false") return "true or false";
+  if (!p.choices.empty()) return "a string";
+  if (p.rows)
+    return p.components > 1 ? "a list of lists of numbers" : "a list of numbers";
+  return p.components > 1 ? "a list of numbers" : "a number";
+}
+
+std::string_view kind(const toml::node& node) {
+  if (node.is_string()) return "a string";
+  if (node.is_boolean()) return "true or false";
+  if (node.is_number()) return "a number";
+  if (node.is_array()) return "a list";
+  if (node.is_table()) return "a table";
+  return "a date or a time";
+}
+
+[[noreturn]] void wrong_type(const Parameter& p, const toml::node& node,
+                             const std::string& file) {
+  throw InputError(
+      fmt::format("{} is {} where {} belongs", p.name, kind(node), wanted(p)),
+      place_of(node.source(), file), fmt::format("give {}: {}", wanted(p), p.help));
+}
+
+std::string number_text(const Parameter& p, const toml::node& node,
+                        const std::string& file) {
+  if (!node.is_number()) wrong_type(p, node, file);
+  return scalar_text(node);
+}
+
+/// Numbers of a list, joined by commas.
+std::string tuple_text(const Parameter& p, const toml::node& node,
+                       const std::string& file) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty()) wrong_type(p, node, file);
+  std::string text;
+  for (const toml::node& one : *list) {
+    if (!text.empty()) text += ',';
+    text += number_text(p, one, file);
+  }
+  return text;
+}
+
+std::string rows_text(const Parameter& p, const toml::node& node,
+                      const std::string& file) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) wrong_type(p, node, file);
+  std::string text;
+  for (const toml::node& row : *list) {
+    if (!text.empty()) text += ';';
+    text += p.components > 1 ? tuple_text(p, row, file) : number_text(p, row, file);
+  }
+  return text;
+}
+
+std::string value_text(const Parameter& p, const toml::node& node,
+                       const std::string& file) {
+  if (p.text || !p.choices.empty()) {
+    const bool flag = p.choices == "true|false" && node.is_boolean();
+    if (!node.is_string() && !flag) wrong_type(p, node, file);
+    const std::string text = one_line(scalar_text(node));
+    if (!p.text || !p.name.ends_with("file") || text.empty()) return text;
+    return (std::filesystem::path(file).parent_path() / text).string();
+  }
+  if (p.rows) return rows_text(p, node, file);
+  return p.components > 1 ? tuple_text(p, node, file) : number_text(p, node, file);
+}
+
+[[noreturn]] void unknown_key(std::string_view key, const std::string& name,
+                              std::span<const Parameter> declared,
+                              std::span<const std::string_view> nested,
+                              const std::string& where) {
+  std::vector<std::string_view> known(nested.begin(), nested.end());
+  for (const Parameter& p : declared) known.push_back(p.name);
+  throw InputError(
+      fmt::format("unknown key '{}' in {}", one_line(key), name), where,
+      suggestion(key, known, fmt::format("use one of: {}", fmt::join(known, ", "))));
+}
+
+}  // namespace
+
+Table read_table(const toml::table& table, std::span<const Parameter> declared,
+                 const std::string& name, const std::string& file,
+                 std::span<const std::string_view> nested) {
+  Table read(declared, name, place_of(table.source(), file));
+  for (const auto& [key, value] : table) {
+    const std::string_view word = key.str();
+    if (std::ranges::count(nested, word) > 0) continue;
+    if (!read.values().knows(word)) {
+      unknown_key(word, name, declared, nested, place_of(key.source(), file));
+    }
+    read_key(table, word, file, read);
+  }
+  return read;
+}
+
+void read_key(const toml::table& table, std::string_view key, const std::string& file,
+              Table& read) {
+  const toml::node* value = table.get(key);
+  if (value == nullptr) return;
+  const auto p = std::ranges::find(read.declared(), key, &Parameter::name);
+  read.set(key, value_text(*p, *value, file), place_of(value->source(), file));
+}
+
+const toml::table& as_table(const toml::node& node, const std::string& name,
+                            const std::string& file) {
+  if (const toml::table* table = node.as_table()) return *table;
+  throw InputError(fmt::format("{} is {} where a table belongs", name, kind(node)),
+                   place_of(node.source(), file),
+                   fmt::format("write [{}] and below it key = value", name));
+}
+
+}  // namespace tress

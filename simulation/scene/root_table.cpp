@@ -1,0 +1,225 @@
+#include "simulation/scene/root_table.h"
+
+#include <vector>
+
+#include "contract/input_error.h"
+#include "models/motion/signals.h"
+#include "simulation/scene/directions.h"
+
+namespace tress {
+namespace {
+
+constexpr double largest_number = 1e6;
+
+constexpr Parameter parameters[] = {
+    {.name = "motion",
+     .help = "what all roots do",
+     .choices = "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull|translate|"
+                "keyframes|head|free"},
+    {.name = "direction",
+     .help = "of shake, swing, stop, drop_pull and translate; any length",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 3,
+     .fallback = "0,1,0"},
+    {.name = "axis",
+     .help =
+         "direction of the axis of rotate, shake_rotate, keyframes and head; any length",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 3,
+     .fallback = "0,0,1"},
+    {.name = "centre_m",
+     .help = "a point on this axis x, y, z (m)",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "amplitude_m",
+     .help = "shake: a sin(2 pi f t); swing: a (1 - cos(2 pi f t)); drop_pull: by a in "
+             "half a period, back in the next (m)",
+     .number = 0.05,
+     .min = -largest_number,
+     .max = largest_number},
+    {.name = "angle_rad",
+     .help = "rotate: amplitude of the angle sin(2 pi f t) (rad)",
+     .number = 0.5,
+     .min = -1e3,
+     .max = 1e3},
+    {.name = "frequency_hz",
+     .help = "f; head: of the torque (Hz)",
+     .number = 1,
+     .min = 1e-6,
+     .max = largest_number},
+    {.name = "speed_m_s",
+     .help = "stop: speed until t = 0 (m/s)",
+     .number = 2,
+     .min = -largest_number,
+     .max = largest_number},
+    {.name = "distance_m",
+     .help = "translate: how far, from rest to rest (m)",
+     .number = 0.1,
+     .min = -largest_number,
+     .max = largest_number},
+    {.name = "time_s",
+     .help = "stop, translate: from t = 0 for how long (s)",
+     .number = 0.5,
+     .min = 1e-9,
+     .max = largest_number},
+    {.name = "keyframes",
+     .help = "rows of t, x, y, z, angle (s, m, rad) away from the place at rest, t "
+             "ascending; smooth in between, at rest before and after",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 5,
+     .rows = true,
+     .fallback = "0,0,0,0,0;1,0,0,0.1,0"},
+    {.name = "torque_n_m",
+     .help = "head: amplitude of the torque about the axis (N m)",
+     .number = 0.5,
+     .min = -largest_number,
+     .max = largest_number},
+    {.name = "periods",
+     .help = "head: how many periods the torque acts, 0: without end",
+     .number = 0,
+     .min = 0,
+     .max = largest_number,
+     .whole = true},
+    {.name = "inertia_kg_m2",
+     .help = "head: moment of inertia about the axis (kg m^2)",
+     .number = 0.02,
+     .min = 1e-12,
+     .max = 1e12},
+    {.name = "damping_n_m_s",
+     .help = "head: torque against the angular velocity (N m s)",
+     .number = 0.1,
+     .min = 0,
+     .max = 1e12},
+    {.name = "stiffness_n_m",
+     .help = "head: torque of the neck against the angle (N m)",
+     .number = 2,
+     .min = 0,
+     .max = 1e12},
+    {.name = "velocity_m_s",
+     .help = "free: initial velocity x, y, z (m/s)",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "spin_rad_s",
+     .help = "free: initial angular velocity x, y, z (rad/s)",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 3,
+     .fallback = "0,0,0"},
+};
+
+constexpr Use uses[] = {
+    {"shake", "direction|amplitude_m|frequency_hz"},
+    {"rotate", "axis|centre_m|angle_rad|frequency_hz"},
+    {"shake_rotate", "direction|amplitude_m|axis|centre_m|angle_rad|frequency_hz"},
+    {"swing", "direction|amplitude_m|frequency_hz"},
+    {"stop", "direction|speed_m_s|time_s"},
+    {"drop_pull", "direction|amplitude_m|frequency_hz"},
+    {"translate", "direction|distance_m|time_s"},
+    {"keyframes", "axis|centre_m|keyframes"},
+    {"head",
+     "axis|centre_m|torque_n_m|frequency_hz|periods|inertia_kg_m2|"
+     "damping_n_m_s|stiffness_n_m"},
+    {"free", "velocity_m_s|spin_rad_s"},
+};
+
+Oscillator oscillator(const Parameters& p) {
+  return {.inertia = p.number("inertia_kg_m2"),
+          .damping = p.number("damping_n_m_s"),
+          .stiffness = p.number("stiffness_n_m"),
+          .force = p.number("torque_n_m"),
+          .frequency = p.number("frequency_hz")};
+}
+
+/// The torque, and after its last period the opposite one with it.
+Signal head_angle(const Parameters& p) {
+  Oscillator body = oscillator(p);
+  Signal angle = driven_oscillator(body, 0);
+  const double periods = p.number("periods");
+  if (periods == 0) return angle;
+  body.force = -body.force;
+  return sum(std::move(angle), driven_oscillator(body, periods / body.frequency));
+}
+
+void add_keyframes(RootMotion& motion, const Parameters& p, Vec axis) {
+  const auto numbers = p.numbers("keyframes");
+  std::vector<double> columns[5];
+  for (std::size_t i = 0; i < numbers.size(); ++i) columns[i % 5].push_back(numbers[i]);
+  const Vec directions[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    motion.translations.push_back({directions[k], keyframes(columns[0], columns[k + 1])});
+  }
+  motion.rotations.push_back({axis, keyframes(columns[0], columns[4])});
+}
+
+void add_parts(RootMotion& motion, const Parameters& p, Vec along, Vec axis) {
+  const std::string_view word = p.word("motion");
+  const double amplitude = p.number("amplitude_m"), frequency = p.number("frequency_hz");
+  const auto translate = [&](Signal s) {
+    motion.translations.push_back({along, std::move(s)});
+  };
+  const auto rotate = [&](Signal s) { motion.rotations.push_back({axis, std::move(s)}); };
+  if (word == "shake" || word == "shake_rotate") translate(sine(amplitude, frequency));
+  if (word == "rotate" || word == "shake_rotate") {
+    rotate(sine(p.number("angle_rad"), frequency));
+  }
+  if (word == "swing") translate(one_minus_cosine(amplitude, frequency));
+  if (word == "stop") translate(stop(p.number("speed_m_s"), 0, p.number("time_s")));
+  if (word == "drop_pull") translate(there_and_back(amplitude, 1 / (2 * frequency)));
+  if (word == "translate") {
+    translate(smooth_step(p.number("distance_m"), 0, p.number("time_s")));
+  }
+  if (word == "keyframes") add_keyframes(motion, p, axis);
+  if (word == "head") rotate(head_angle(p));
+}
+
+}  // namespace
+
+std::span<const Parameter> root_table_parameters() { return parameters; }
+std::span<const Use> root_uses() { return uses; }
+
+RootMotion head_motion(const Table& root) {
+  root.refuse_unused("motion", uses);
+  RootMotion motion;
+  motion.centre = root.values().vec("centre_m");
+  const std::string_view word = root.values().word("motion");
+  const Vec along = direction(root, "direction"), axis = direction(root, "axis");
+  try {
+    add_parts(motion, root.values(), along, axis);
+  } catch (const InputError& error) {
+    // A signal knows its numbers, not where they stand.
+    if (word != "keyframes" && word != "head") throw;
+    throw InputError(error.what(), root.place(word == "head" ? "frequency_hz" : word),
+                     "change the keys of [root]");
+  }
+  return motion;
+}
+
+std::optional<FreeRoot> free_motion(const Table& root) {
+  if (root.values().word("motion") != "free") return std::nullopt;
+  FreeRoot free_root;
+  free_root.velocity = root.values().vec("velocity_m_s");
+  free_root.spin = root.values().vec("spin_rad_s");
+  return free_root;
+}
+
+void set_root(Strand& strand, const RootMotion& head,
+              const std::optional<FreeRoot>& free_root, Vec position,
+              const Frame& frame) {
+  strand.root = head;
+  strand.root.position = position;
+  strand.root.frame = frame;
+  strand.free_root = free_root;
+  if (strand.free_root) {
+    strand.free_root->position = position;
+    strand.free_root->frame = frame;
+  }
+}
+
+}  // namespace tress

@@ -1,0 +1,85 @@
+#include "simulation/scene/scene_check.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "models/effects/contact_law.h"
+
+namespace tress {
+namespace {
+
+/// What `make` gives; its InputErrors know no file, so the place is added.
+template <class F>
+auto at_place(const std::string& place, const F& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(error.what(), place, "change the scene there");
+  } catch (const std::bad_alloc&) {
+    throw InputError("not enough memory", place, "make the scene smaller");
+  }
+}
+
+Effects effects_of(const Scene& scene, const ScenePlaces& places) {
+  Effects all;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectChoice& choice = scene.effects[i];
+    all.push_back(at_place(places.effects[i], [&] {
+      return choice.entry->make(choice.parameters, scene.head);
+    }));
+  }
+  return all;
+}
+
+void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
+  const IntegratorEntry& entry = find_integrator(scene.integrator);
+  const std::string reason = refusal(entry, system, scene.options.formulation);
+  if (reason.empty()) {
+    at_place(places.integrator, [&] { return entry.make(system, scene.options); });
+    return;
+  }
+  std::string able;
+  for (const IntegratorEntry& other : integrators()) {
+    if (!refusal(other, system, scene.options.formulation).empty()) continue;
+    able += (able.empty() ? "" : ", ") + std::string(other.id);
+  }
+  throw InputError(
+      fmt::format("{} cannot drive {} as {}: {}", scene.integrator, scene.model->id,
+                  name(scene.options.formulation), reason),
+      places.integrator,
+      able.empty() ? "give another formulation: ./tress list shows what can drive what"
+                   : "use one of: " + able);
+}
+
+}  // namespace
+
+void check(const Scene& scene, const ScenePlaces& places) {
+  if (scene.model->on_strand == nullptr) {
+    const auto system =
+        at_place(places.model, [&] { return scene.model->make(scene.model_options); });
+    check_integrator(scene, *system, places);
+    return;
+  }
+  if (scene.interaction) {
+    at_place(places.interaction, [&] {
+      return ContactLaw(*scene.interaction, "effects.strand_interaction");
+    });
+  }
+  const std::string* before = nullptr;
+  for (std::size_t i = 0; i < scene.strands.size(); ++i) {
+    const std::string& place = places.strands[i];
+    if (before != nullptr && *before == place) continue;  // of the same groom
+    Effects effects = effects_of(scene, places);
+    const auto system = at_place(place, [&] {
+      return scene.model->on_strand(scene.strands[i], scene.model_options,
+                                    std::move(effects));
+    });
+    if (before == nullptr) check_integrator(scene, *system, places);
+    before = &place;
+  }
+}
+
+}  // namespace tress

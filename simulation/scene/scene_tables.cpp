@@ -1,0 +1,147 @@
+#include "simulation/scene/scene_tables.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "integrators/catalogue.h"
+#include "integrators/integrator_options.h"
+#include "models/effects/catalogue.h"
+#include "models/effects/strand_interaction.h"
+#include "models/strand/strand_parameters.h"
+#include "simulation/scene/groom.h"
+#include "simulation/scene/material_table.h"
+#include "simulation/scene/root_table.h"
+#include "simulation/scene/shapes.h"
+#include "simulation/scene/strand_table.h"
+
+namespace tress {
+namespace {
+
+constexpr Parameter top[] = {
+    {.name = "title", .help = "one line, must be given", .text = true},
+    {.name = "source", .help = "where the scene comes from", .text = true},
+    {.name = "duration_s",
+     .help = "simulated time (s)",
+     .number = 1,
+     .min = 1e-9,
+     .max = 1e6},
+    {.name = "frames_1_s",
+     .help = "frames of the series and the geometry per simulated time, and one at its "
+             "end (1/s)",
+     .number = 50,
+     .min = 1e-6,
+     .max = 1e6},
+    {.name = "checkpoint_s",
+     .help = "simulated time between saved states, 0: none (s)",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "guard",
+     .help = "end the run where it does what physics rules out: a piece stretched by "
+             "half, energy or speed from nowhere",
+     .choices = "true|false"},
+    {.name = "seed",
+     .help = "of everything random",
+     .number = 1,
+     .min = 0,
+     .max = 9007199254740992,  // whole numbers that a double holds exactly
+     .whole = true},
+};
+
+/// The ids of a catalogue as choices, `first` before the others.
+template <class Entries>
+std::string choices_of(const Entries& entries, std::string_view first) {
+  std::string all(first);
+  for (const auto& entry : entries) {
+    if (entry.id != first) all += fmt::format("|{}", entry.id);
+  }
+  return all;
+}
+
+std::vector<Parameter> options_of(const ModelEntry& model, std::string_view ids) {
+  std::vector<Parameter> list{{.name = "id", .help = "which model", .choices = ids}};
+  for (const Parameter& p : model.parameters) {
+    const bool elsewhere = model.on_strand != nullptr && shared_by_strands(p.name);
+    if (!elsewhere) list.push_back(p);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::span<const Parameter> top_parameters() { return top; }
+
+std::span<const Parameter> model_table_parameters(const ModelEntry& model) {
+  static const std::string ids = choices_of(models(), "super_helix");
+  static const auto all = [] {
+    std::map<std::string_view, std::vector<Parameter>> lists;
+    for (const ModelEntry& one : models()) lists.emplace(one.id, options_of(one, ids));
+    return lists;
+  }();
+  return all.at(model.id);
+}
+
+std::span<const Parameter> integrator_table_parameters() {
+  static const std::string ids = choices_of(integrators(), "semi_implicit_euler");
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
+    for (Parameter p : integrator_options()) {
+      if (p.name == "step") p.name = "dt_s";
+      if (p.name == "table") {  // the other names belong to SUNDIALS, which checks them
+        p.fallback = p.choices;
+        p.choices = {};
+        p.text = true;
+      }
+      list.push_back(p);
+    }
+    return list;
+  }();
+  return all;
+}
+
+std::vector<TableEntry> table_entries() {
+  std::vector<TableEntry> all{
+      {.name = "integrator",
+       .summary = "how time advances",
+       .parameters = integrator_table_parameters(),
+       .needed = true},
+      {.name = "material",
+       .summary = "what all strands are made of; [strand.material] and [groom.material] "
+                  "below a strand or a groom change it for that one",
+       .parameters = material_table_parameters(),
+       .needed = true},
+      {.name = "strand",
+       .summary = "one strand",
+       .parameters = strand_table_parameters(),
+       .choice = "shape",
+       .uses = shape_uses(),
+       .needed = true,
+       .many = true},
+      {.name = "groom",
+       .summary = "many strands on a head, from a few numbers",
+       .parameters = groom_table_parameters(),
+       .choice = "shape",
+       .uses = shape_uses(),
+       .many = true},
+      {.name = "root",
+       .summary = "what all roots do together",
+       .parameters = root_table_parameters(),
+       .choice = "motion",
+       .uses = root_uses(),
+       .needed = true}};
+  for (const EffectEntry& effect : effects()) {
+    TableEntry entry;
+    entry.name = fmt::format("effects.{}", effect.id);
+    entry.summary = fmt::format("{} ({})", effect.summary, effect.source);
+    entry.parameters = effect.parameters;
+    entry.many = effect.many;
+    all.push_back(std::move(entry));
+  }
+  all.push_back({.name = fmt::format("effects.{}", interaction_id),
+                 .summary = "strands repel and drag each other (Wang, thesis, NCTU)",
+                 .parameters = strand_interaction_parameters()});
+  return all;
+}
+
+}  // namespace tress

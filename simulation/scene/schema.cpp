@@ -1,0 +1,197 @@
+#include "simulation/scene/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "simulation/scene/material_table.h"
+#include "simulation/scene/scene_tables.h"
+
+namespace tress {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// "1,2;3,4" in brackets: "[[1, 2], [3, 4]]".
+std::string list(std::string_view numbers, bool rows) {
+  std::string text;
+  for (const char c : numbers) {
+    if (c == ';') {
+      text += "], [";
+    } else if (c == ',') {
+      text += ", ";
+    } else {
+      text += c;
+    }
+  }
+  if (!rows) return fmt::format("[{}]", text);
+  return text.empty() ? "[]" : fmt::format("[[{}]]", text);
+}
+
+std::string range(const Parameter& p) {
+  if (p.text) return "text";
+  if (!p.choices.empty()) return fmt::format("{}", fmt::join(words_of(p.choices), ", "));
+  std::string text = p.whole ? "whole, " : "";
+  if (p.min == -infinite && p.max == infinite) {
+    text += "any";
+  } else if (p.max == infinite) {
+    fmt::format_to(std::back_inserter(text), "{:g} or more", p.min);
+  } else {
+    fmt::format_to(std::back_inserter(text), "{:g} to {:g}", p.min, p.max);
+  }
+  return text;
+}
+
+// --- the page
+// -----------------------------------------------------------------------------
+
+constexpr std::string_view page_head =
+    R"(<!-- Written by `simulate --print-schema`; a test compares. -->
+# Scenes
+
+A scene is a TOML file: what moves (`[model]`, and `[strand]` or `[groom]`), how time advances
+(`[integrator]`), what drives it (`[root]`) and which effects act (`[effects.*]`). An effect that a
+scene does not name is not built and costs nothing. Everything else has the default of this page;
+`simulate --print-defaults` writes a short scene to start from.
+
+Numbers are in SI units, named at the end of the key. Vectors are lists, `[x, y, z]`; rows are lists of
+lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
+`[[strand]]`, `[[groom]]`, `[[effects.body]]`. Files are named relative to the scene's folder. What is
+misspelt, out of range, of no effect or refused by a model or an integrator is reported with
+file:line:column. A scene has at most 10 000 strands, 200 000 elements and 4 MiB.
+)";
+
+void add_keys(std::string& page, std::span<const Parameter> parameters,
+              std::string_view but = {}) {
+  const auto out = std::back_inserter(page);
+  bool first = true;
+  for (const Parameter& p : parameters) {
+    if (p.name == but) continue;
+    if (first) page += "\n| key | default | range | |\n|---|---|---|---|\n";
+    first = false;
+    fmt::format_to(out, "| `{}` | `{}` | {} | {} |\n", p.name, default_value(p), range(p),
+                   p.help);
+  }
+  if (first) page += "\nNo keys.\n";
+}
+
+void add_uses(std::string& page, const TableEntry& entry) {
+  if (entry.uses.empty()) return;
+  page += "\nKeys of one word only:\n\n";
+  for (const Use& use : entry.uses) {
+    fmt::format_to(std::back_inserter(page), "- `{} = \"{}\"`: `{}`\n", entry.choice,
+                   use.word, fmt::join(words_of(use.keys), "`, `"));
+  }
+}
+
+/// What each name stands for.
+void add_materials(std::string& page) {
+  page +=
+      "\n| name | radius | ellipticity | E | nu | density | curl radius, pitch |\n"
+      "|---|---|---|---|---|---|---|\n";
+  const auto parameters = material_table_parameters();
+  for (const std::string_view name : words_of(parameters.front().choices)) {
+    if (name == "custom") continue;
+    Table table(parameters, "[material]", "");
+    table.set("name", name, "");
+    const StrandMaterial m = strand_material(table, nullptr);
+    const double poisson = m.material.youngs_modulus / (2 * m.material.shear_modulus) - 1;
+    fmt::format_to(std::back_inserter(page),
+                   "| `{}` | {:.1f} um | {:.2f} | {:.2f} GPa | {:.2f} | {:.0f} kg/m^3 | "
+                   "{:g}, {:g} mm |\n",
+                   name, 1e6 * std::sqrt(m.section.a1 * m.section.a2),
+                   m.section.a1 / m.section.a2, 1e-9 * m.material.youngs_modulus, poisson,
+                   m.material.density, 1e3 * m.curl_radius, 1e3 * m.curl_pitch);
+  }
+  page +=
+      "\nSources, and what is from memory: "
+      "[material_table.cpp](../simulation/scene/material_table.cpp).\n";
+}
+
+void add_models(std::string& page) {
+  page +=
+      "\n## [model]\n\nWhich model; `id` and its own options. A model that brings its "
+      "own geometry takes no\n`[strand]`, `[groom]`, `[material]`, `[root]` and "
+      "`[effects.*]`.\n";
+  const auto out = std::back_inserter(page);
+  for (const ModelEntry& model : models()) {
+    fmt::format_to(out, "\n### id = \"{}\"\n\n{} ({}).{}\n", model.id, model.summary,
+                   model.source,
+                   model.on_strand == nullptr ? " Brings its own geometry." : "");
+    add_keys(page, model_table_parameters(model), "id");
+  }
+}
+
+// --- the scene to start from
+// ------------------------------------------------------------------
+
+constexpr std::string_view defaults_head =
+    "# A hair, clamped at its root, falls from the horizontal and swings. All that this\n"
+    "# file does not name has its default: scenes/README.md lists every table and key.\n"
+    "title = \"a hair that swings\"\n"
+    "source = \"simulate --print-defaults\"\n";
+
+/// The keys that it shows, in the order of the page.
+struct Shown {
+  std::string_view table, keys;
+};
+constexpr Shown shown[] = {{"integrator", "id|dt_s"},
+                           {"material", "name"},
+                           {"strand", "length_m|elements|tangent"},
+                           {"root", "motion"},
+                           {"effects.gravity", "acceleration_m_s2"}};
+
+/// key = value with help and range above; `keys` as "a|b".
+void add_values(std::string& scene, std::span<const Parameter> parameters,
+                std::string_view keys) {
+  for (const std::string_view key : words_of(keys)) {
+    const auto p = std::ranges::find(parameters, key, &Parameter::name);
+    fmt::format_to(std::back_inserter(scene), "# {}; {}\n{} = {}\n", p->help, range(*p),
+                   p->name, default_value(*p));
+  }
+}
+
+}  // namespace
+
+std::string default_value(const Parameter& p) {
+  const std::string text = p.default_text();
+  if (p.choices == "true|false") return text;
+  if (p.text || !p.choices.empty()) return fmt::format("\"{}\"", text);
+  return p.rows || p.components > 1 ? list(text, p.rows) : text;
+}
+
+std::string scene_schema() {
+  std::string page(page_head);
+  page += "\n## Before the first table\n";
+  add_keys(page, top_parameters());
+  add_models(page);
+  for (const TableEntry& entry : table_entries()) {
+    fmt::format_to(std::back_inserter(page), "\n## [{}]{}\n\n{}\n", entry.name,
+                   entry.many ? fmt::format(" or [[{}]]", entry.name) : "",
+                   entry.summary);
+    add_keys(page, entry.parameters);
+    add_uses(page, entry);
+    if (entry.name == "material") add_materials(page);
+  }
+  return page;
+}
+
+std::string scene_defaults() {
+  std::string scene(defaults_head);
+  add_values(scene, top_parameters(), "duration_s|frames_1_s");
+  scene += "\n[model]\n";
+  add_values(scene, model_table_parameters(find_model("super_helix")), "id");
+  for (const TableEntry& entry : table_entries()) {
+    const auto of_table = std::ranges::find(shown, entry.name, &Shown::table);
+    if (of_table == std::end(shown)) continue;
+    fmt::format_to(std::back_inserter(scene), "\n# {}\n[{}]\n", entry.summary,
+                   entry.name);
+    add_values(scene, entry.parameters, of_table->keys);
+  }
+  return scene;
+}
+
+}  // namespace tress

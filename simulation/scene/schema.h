@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "contract/parameters.h"
+
+namespace tress {
+
+/// Every table and key of a scene with default, range and unit as Markdown: the content
+/// of scenes/README.md.
+std::string scene_schema();
+
+/// A short scene to start from: one strand that swings under gravity, the keys that are
+/// changed first with their ranges, all at their defaults.
+std::string scene_defaults();
+
+/// The default as a value of TOML.
+std::string default_value(const Parameter& parameter);
+
+}  // namespace tress

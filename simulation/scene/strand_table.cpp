@@ -1,0 +1,127 @@
+#include "simulation/scene/strand_table.h"
+
+#include <iterator>
+#include <numbers>
+#include <string>
+
+#include "contract/input_error.h"
+#include "simulation/scene/directions.h"
+#include "simulation/scene/shapes.h"
+#include "simulation/scene/shared_parameter.h"
+
+namespace tress {
+namespace {
+
+constexpr double most = 1e6;
+// Models integrate an element by points that grow with the angle it winds.
+constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
+
+constexpr Parameter own_parameters[] = {
+    {.name = "position_m",
+     .help = "of the root x, y, z (m)",
+     .min = -most,
+     .max = most,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "tangent",
+     .help = "at the root, away from it; any length",
+     .min = -most,
+     .max = most,
+     .components = 3,
+     .fallback = "1,0,0"},
+    {.name = "normal",
+     .help = "direction of the section's axis e1 at the root, as far as it is across the "
+             "tangent: positive curvature about it bends towards -(tangent x normal)",
+     .min = -most,
+     .max = most,
+     .components = 3,
+     .fallback = "0,1,0"},
+    {.name = "points",
+     .help = "rows of x, y, z (m): the natural shape as a smooth curve through at least "
+             "three points; they stand for length_m, position_m, tangent and shape",
+     .min = -1e3,
+     .max = 1e3,
+     .components = 3,
+     .rows = true},
+};
+
+void refuse_beside_points(const Table& table) {
+  for (const char* key : {"length_m", "position_m", "tangent", "shape"}) {
+    if (!table.given(key)) continue;
+    throw InputError(std::string(key) + " beside points", table.place(key),
+                     "leave one of them out");
+  }
+}
+
+/// e1, across the tangent.
+Vec normal(const Table& table, const Vec& tangent) {
+  const Vec e1 = across(tangent, direction(table, "normal"));
+  if (dot(e1, e1) > 0) return e1;
+  throw InputError("normal is along the tangent", table.place("normal"),
+                   "give a normal in another direction");
+}
+
+}  // namespace
+
+std::vector<Parameter> cut_parameters() {
+  std::vector<Parameter> all{shared_parameter("length_m"), shared_parameter("elements"),
+                             shared_parameter("grading")};
+  all.insert(all.end(), shape_parameters().begin(), shape_parameters().end());
+  all.push_back(
+      {.name = "initial", .help = "shape at t = 0", .choices = "natural|straight"});
+  return all;
+}
+
+std::span<const Parameter> strand_table_parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list(std::begin(own_parameters), std::end(own_parameters));
+    for (const Parameter& p : cut_parameters()) list.push_back(p);
+    return list;
+  }();
+  return all;
+}
+
+std::span<const Use> strand_uses() { return shape_uses(); }
+
+Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
+                  const Shape& natural) {
+  const Parameters& p = table.values();
+  const Discretisation cut{p.whole("elements"), length, p.number("grading")};
+  const bool straight = p.word("initial") == "straight";
+  Strand strand = make_strand(material.material, material.section, cut, natural,
+                              straight ? uniform_shape({}) : Shape{});
+  for (const Segment& segment : strand.segments) {
+    const Vec& darboux = segment.natural;
+    const double turns = norm(darboux) * segment.length / turn;
+    if (turns <= most_turns) continue;
+    throw InputError("an element winds by " + std::to_string(turns) + " turns",
+                     table.place(),
+                     "give more elements, a shorter strand or less curvature: at most "
+                     "20 turns each");
+  }
+  return strand;
+}
+
+Strand scene_strand(const Table& table, const Table* own_material, const Common& common,
+                    std::uint64_t stream) {
+  const Parameters& p = table.values();
+  table.refuse_unused("shape", shape_uses());
+  const StrandMaterial material = strand_material(common.material, own_material);
+  if (!p.numbers("points").empty()) {
+    refuse_beside_points(table);
+    const PointCurve curve =
+        through_points(p.numbers("points"), p.whole("elements"), p.number("grading"),
+                       direction(table, "normal"), table.place("points"));
+    Strand strand = cut_strand(table, material, curve.length, curve.shape);
+    set_root(strand, common.head, common.free_root, curve.position, curve.frame);
+    return strand;
+  }
+  Strand strand = cut_strand(table, material, p.number("length_m"),
+                             natural_shape(table, material, common.seed, stream));
+  const Vec tangent = direction(table, "tangent");
+  set_root(strand, common.head, common.free_root, p.vec("position_m"),
+           frame_of(tangent, normal(table, tangent)));
+  return strand;
+}
+
+}  // namespace tress

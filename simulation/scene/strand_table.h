@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "models/strand/strand.h"
+#include "simulation/scene/material_table.h"
+#include "simulation/scene/root_table.h"
+
+namespace tress {
+
+/// What holds for every strand of a scene.
+struct Common {
+  const Table& material;
+  const RootMotion& head;
+  const std::optional<FreeRoot>& free_root;
+  std::uint64_t seed;
+};
+
+/// The keys of how a strand is cut, shaped and starts that [strand] and [groom] share.
+std::vector<Parameter> cut_parameters();
+
+/// [strand]: one strand, its root at a place.
+std::span<const Parameter> strand_table_parameters();
+std::span<const Use> strand_uses();
+
+/// Throws InputError with the place of the key that makes no sense. `stream` tells random
+/// shapes of one scene apart.
+Strand scene_strand(const Table& table, const Table* own_material, const Common& common,
+                    std::uint64_t stream);
+
+/// A strand by cut_parameters() and this natural shape.
+Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
+                  const Shape& natural);
+
+}  // namespace tress

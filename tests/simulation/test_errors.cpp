@@ -1,0 +1,157 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <string>
+
+#include "contract/input_error.h"
+#include "simulation/scene/scene.h"
+#include "tests/harness/toy_process.h"
+
+namespace tress::test_errors {
+
+using testing::HasSubstr;
+
+std::string refusal_of(const std::string& text) {
+  try {
+    parse_scene(text, "s.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+struct Wrong {
+  std::string name, scene, place, says;
+};
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.name; }
+
+class WrongSceneTest : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongSceneTest, IsRefusedWithPlaceAndRemedy) {
+  const std::string message = refusal_of("title = \"t\"\n" + GetParam().scene);
+  EXPECT_THAT(message, HasSubstr("(s.toml:" + GetParam().place + "): "));
+  EXPECT_THAT(message, HasSubstr(GetParam().says));
+}
+
+const std::string strand = "[strand]\n";
+
+std::string times(int n, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += text;
+  return all;
+}
+
+const Wrong wrong_scenes[] = {
+    {"DeepKey", times(31'000, "a.") + "a = 1\n", "2:202", "nest less deeply"},
+    {"DeepHeader", "[" + times(31'000, "a.") + "a]\n", "2:203", "nest less deeply"},
+    {"DeepList", "a = " + times(31'000, "["), "2:105", "nest less deeply"},
+    {"DeepTable", "a = " + times(31'000, "{a="), "2:305", "nest less deeply"},
+    {"DeepTogether", "a = " + times(40, "{a.a.a=["), "2:205", "nest less deeply"},
+    {"DeepAfterString", "a = [\"\"\"b\"\"\"\"\", {" + times(31'000, "a.") + "a = 1}]\n",
+     "2:215", "nest less deeply"},
+    {"DistancesOfADevice",
+     strand + "[[effects.body]]\nshape = \"sdf\"\nsdf_file = \"/dev/zero\"\n", "3:1",
+     "readable file"},
+    {"MalformedToml", "[strand\n", "2:8", "correct the TOML"},
+    {"KeyTwice", "[strand]\nelements = 1\nelements = 2\n", "4:12", "correct the TOML"},
+    {"UnknownTable", "[strnd]\n", "2:2", "did you mean 'strand'?"},
+    {"UnknownKey", "[strand]\nlenth_m = 1\n", "3:1", "did you mean 'length_m'?"},
+    {"FarKey", "[strand]\nxyzzyplugh = 1\n", "3:1", "use one of: material, position_m"},
+    {"UnknownEffect", strand + "[effects.grvity]\n", "3:10", "did you mean 'gravity'?"},
+    {"UnknownInteraction", strand + "[effects.strand_interacton]\n", "3:10",
+     "did you mean 'strand_interaction'?"},
+    {"UnknownModel", strand + "[model]\nid = \"super_helx\"\n", "4:6",
+     "did you mean 'super_helix'?"},
+    {"UnknownIntegrator", strand + "[integrator]\nid = \"rk5\"\n", "4:6",
+     "did you mean 'rk4'?"},
+    {"KeyOfAnotherTable", strand + "[model]\nlength_m = 1\n", "4:1", "unknown key"},
+    {"OutOfRange", "[strand]\nlength_m = -1\n", "3:12",
+     "give a number between 1e-09 and 1e+06: length of the strand (m)"},
+    {"NotFinite", "[strand]\nlength_m = nan\n", "3:12", "not a finite number"},
+    {"NotWhole", "[strand]\nelements = 1.5\n", "3:12", "not a whole number"},
+    {"TextForNumber", "[strand]\nlength_m = \"1\"\n", "3:12",
+     "a string where a number belongs"},
+    {"NumberForWord", "[strand]\nshape = 1\n", "3:9", "a number where a string belongs"},
+    {"DateForNumber", "[strand]\nlength_m = 1979-05-27\n", "3:12", "a date or a time"},
+    {"TableForNumber", "[strand]\nlength_m = {}\n", "3:12", "a table where"},
+    {"TwoOfThree", "[strand]\ntangent = [1, 0]\n", "3:11", "2 numbers instead of 3"},
+    {"NumberForTable", "strand = 3\n", "2:10", "write [strand]"},
+    {"TwoOfOne", strand + "[[effects.gravity]]\n", "3:1", "give one [effects.gravity]"},
+    {"NoDirection", "[strand]\ntangent = [0, 0, 0]\n", "3:11", "no direction"},
+    {"NormalAlongTangent", "[strand]\nnormal = [2, 0, 0]\n", "3:10", "along the tangent"},
+    {"KeyWithoutUse", strand + "[root]\nmotion = \"shake\"\nspeed_m_s = 1\n", "5:13",
+     "leave it out, or choose motion = stop"},
+    {"LengthBesidePoints",
+     "[strand]\nlength_m = 1\npoints = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\n", "3:12",
+     "leave one of them out"},
+    {"TwoPoints", "[strand]\npoints = [[0, 0, 0], [1, 0, 0]]\n", "3:10", "3 to 10000"},
+    {"SamePoints", "[strand]\npoints = [[0, 0, 0], [1, 0, 0], [1, 0, 0]]\n", "3:10",
+     "points 2 and 3"},
+    {"WindingPoints",
+     "[strand]\nelements = 1\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], "
+     "[0, 0, 0.1]]\n",
+     "4:10", "half a turn"},
+    {"CustomLacksRadius", strand + "[material]\nname = \"custom\"\n", "4:8",
+     "give radius_m in [material]"},
+    {"NoShearModulus", strand + "[material]\npoisson_ratio = -1\n", "4:17",
+     "no shear modulus"},
+    {"KeyframesBackwards",
+     strand + "[root]\nmotion = \"keyframes\"\n"
+              "keyframes = [[1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]\n",
+     "5:13", "each later than the one before"},
+    {"NoStrand", "", "1:1", "give a [strand], or a [groom]"},
+    {"StrandOfATree", "[model]\nid = \"super_helix_tree\"\n" + strand, "4:1",
+     "brings its own geometry"},
+    {"MassiveGroom", "[groom]\ncount = 10000\nelements = 10000\n", "3:9", "1 to 20"},
+    {"MassiveStrand", "[strand]\nelements = 99999999\n", "3:12", "out of range"},
+    {"WindingElements", "[strand]\nlength_m = 1e6\nshape = \"helix\"\n", "2:1",
+     "give more elements"},
+    {"TooManyFrames", "duration_s = 1e6\nframes_1_s = 1e6\n" + strand, "3:14",
+     "frames_1_s times duration_s"},
+    {"ModelRefuses",
+     "[model]\nid = \"super_helix\"\nmodes = \"bend_planar\"\n[strand]\nshape = "
+     "\"helix\"\n",
+     "5:1", "leaves the plane"},
+    {"IntegratorCannotDrive",
+     strand + "[model]\nid = \"super_helix\"\n[integrator]\nid = \"rattle\"\n", "6:6",
+     "use one of: explicit_euler"},
+    {"NeedsAFormulation", "[model]\nid = \"tinkertoys\"\n[integrator]\nid = \"rk4\"\n",
+     "5:6", "choose a formulation"},
+    {"EffectRefuses",
+     strand + "[effects.wind]\nlaw = \"force\"\nvelocity_m_s = [0, 0, 0]\n", "3:1",
+     "change the scene there"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, WrongSceneTest, testing::ValuesIn(wrong_scenes),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(SceneErrors, TitleMustBeGiven) {
+  EXPECT_THAT(refusal_of("[strand]\n"), HasSubstr("(s.toml:1:1): begin it with title"));
+}
+
+std::string refusal_of_file(const std::string& file) {
+  try {
+    read_scene(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// Nobody writes into the pipe: whoever waited for it would wait for ever.
+TEST(SceneErrors, OnlyRegularFilesOfLimitedSizeAreRead) {
+  const Toy folder;
+  folder.write("large.toml", std::string((4 << 20) + 1, '#'));
+  const std::string pipe = folder.path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusal_of_file(folder.path("work/large.toml")), HasSubstr("4194304"));
+  for (const std::string& special :
+       {pipe, std::string("/dev/zero"), std::string("/dev/urandom")}) {
+    EXPECT_THAT(refusal_of_file(special), HasSubstr("is not a regular file"));
+  }
+  EXPECT_THAT(refusal_of_file(folder.path("work")), HasSubstr("is a directory"));
+  EXPECT_THAT(refusal_of_file(folder.path("none")), HasSubstr("No such file"));
+}
+
+}  // namespace tress::test_errors

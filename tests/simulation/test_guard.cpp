@@ -1,0 +1,179 @@
+// What physics rules out ends a run with a reason; what it allows goes on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/run/world.h"
+
+namespace tress::test_guard {
+
+struct Said {
+  std::string model, integrator, dt, more, root = "motion = \"fixed\"\n",
+                                           effects = "[effects.gravity]\n";
+  std::string top = {};
+};
+
+Scene scene(const Said& said) {
+  return parse_scene("title = \"guarded\"\nduration_s = 0.3\n" + said.top +
+                         "[model]\nid = \"" + said.model + "\"\n[integrator]\nid = \"" +
+                         said.integrator + "\"\ndt_s = " + said.dt +
+                         "\n[material]\nname = \"hair.asian\"\n[strand]\n" + said.more +
+                         "[root]\n" + said.root + said.effects,
+                     "guarded.toml");
+}
+
+/// Why it ended before its time; empty: it did not.
+std::string ending(const Scene& scene) {
+  World world(scene);
+  for (std::size_t f = 1; f <= scene.last_frame(); ++f) {
+    if (world.advance(scene.time_of(f)) != Status::ok) return world.failure();
+  }
+  return {};
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Ten Gauss-Seidel sweeps of 20 stiff springs a step of 4.4 ms do not hold them: energy
+/// of 1e4 m g L, and simulate called it ok.
+const Said gaining{"mass_spring", "xpbd", "0.0044", "elements = 20\n"};
+
+TEST(Guard, EndsAPassiveSceneThatGainsEnergy) {
+  const std::string why = ending(scene(gaining));
+  EXPECT_TRUE(says(why, "more energy than at the start")) << why;
+  EXPECT_TRUE(says(why, "at t = 0.0")) << why;
+  EXPECT_TRUE(says(why, "strand 0, point ")) << why;
+  EXPECT_TRUE(says(why, "try a step of 0.0011 s")) << why;
+}
+
+TEST(Guard, AdvisesMoreWorkWhereThatIsUsedUp) {
+  Options options;
+  options.max_work = 5e4;
+  EXPECT_EQ(remedy("implicit_midpoint", options, "max_work used up at t = 0.1 s"),
+            "try more than max_work = 50000");
+}
+
+TEST(Guard, AdvisesAgainstTooManySteps) {
+  const std::string tight = "1e-3\nmax_steps = 5";
+  const std::string adaptive = ending(scene({"der", "gsl_rkf45", tight, ""}));
+  EXPECT_TRUE(says(adaptive, "max_steps steps needed at t = ")) << adaptive;
+  EXPECT_TRUE(says(adaptive, "try a larger tolerance than rtol = 1e-06")) << adaptive;
+  EXPECT_TRUE(says(adaptive, "or more than max_steps = 5")) << adaptive;
+  const std::string fixed = ending(scene({"der", "backward_euler", tight, ""}));
+  EXPECT_TRUE(says(fixed, "try a longer step than 0.001 s")) << fixed;
+}
+
+TEST(Guard, IsSwitchedOffByTheScene) {
+  Said watched = gaining;
+  watched.top = "guard = false\n";
+  EXPECT_EQ(ending(scene(watched)), "");
+}
+
+TEST(Guard, EndsAStrandThatIsStretchedApart) {
+  // A tether that pulls 0.1 N at hair as soft as 1 kPa (EA = 5e-6 N): an honest
+  // equilibrium of equations that hold for small strains only.
+  const Said torn{"der",
+                  "backward_euler",
+                  "0.001",
+                  "elements = 5\n[strand.material]\nname = \"hair.asian\"\n"
+                  "youngs_modulus_pa = 1e3\n",
+                  "motion = \"fixed\"\n",
+                  "[effects.gravity]\n[effects.tether]\npull_n = 0.1\n"
+                  "target_m = [1, 0, 0]\n"};
+  const std::string why = ending(scene(torn));
+  EXPECT_TRUE(says(why, "a piece is off its length by")) << why;
+  EXPECT_TRUE(says(why, "strand 0, element 4")) << why;  // the one that is pulled
+}
+
+class GuardTest : public testing::Test {
+ protected:
+  void make(const Said& said) {
+    Scene read = scene(said);
+    system_ = read.model->on_strand(read.strands.front(), read.model_options,
+                                    make_effects(read));
+    guard_.emplace(*system_,
+                   std::vector{guarded_strand(read.strands.front(), make_effects(read))});
+    state_ = initial_state(*system_);
+    guard_->start(0, state_.q, state_.v);
+  }
+  std::unique_ptr<System> system_;
+  std::optional<Guard> guard_;
+  State state_;
+};
+
+TEST_F(GuardTest, FindsWhatIsNoNumber) {
+  make(gaining);
+  EXPECT_TRUE(guard_->judge(0.001, state_.q, state_.v));
+  state_.v[4] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(guard_->judge(0.002, state_.q, state_.v));
+  EXPECT_EQ(guard_->breach()->kind, Breach::Kind::not_finite);
+}
+
+/// The tip of 40 elements has an 80th of the mass: at 15 m/s 1.4 m g L, which a hair
+/// released upright may have, but not all of it in so small a part of itself.
+TEST_F(GuardTest, FindsAPointThatIsTooFast) {
+  make({"mass_spring", "xpbd", "0.001", "elements = 40\ntangent = [0, 0, 1]\n"});
+  const double energy = 9.81 * 0.1;  // J/kg, m g L
+  // 0.99 of the energy that may come to be, while the tip of a whip has a third of that.
+  state_.v.back() = std::sqrt(0.99 * energy * 2 * 80);
+  EXPECT_FALSE(guard_->judge(0.001, state_.q, state_.v));
+  EXPECT_EQ(guard_->breach()->kind, Breach::Kind::speed);
+  EXPECT_EQ(guard_->breach()->where, "strand 0, point 40");
+}
+
+TEST_F(GuardTest, RemembersWhatItGathered) {
+  make(gaining);
+  EXPECT_TRUE(guard_->judge(0.001, state_.q, state_.v));
+  const auto memory = guard_->memory();
+  guard_->start(0.5, state_.q, state_.v);
+  guard_->recall(memory);
+  EXPECT_EQ(guard_->memory(), memory);
+}
+
+// ---- honest scenes ----------------------------------------------------------------
+
+const std::string shaken = "motion = \"shake\"\namplitude_m = 0.05\nfrequency_hz = 3\n";
+const std::string turned =
+    "motion = \"shake_rotate\"\namplitude_m = 0.02\nfrequency_hz = 4\nangle_rad = 1\n"
+    "centre_m = [-0.1, 0, 0]\n";
+const std::string curled = "elements = 10\nshape = \"helix\"\n";
+const std::string windy =
+    "[effects.gravity]\n[effects.wind]\nvelocity_m_s = [3, 1, 0]\nlaw = \"quadratic\"\n";
+
+TEST(Guard, LeavesHonestScenesAlone) {
+  const Said honest[] = {
+      {"super_helix", "semi_implicit_euler", "0.001", curled},
+      {"super_helix", "backward_euler", "0.02", curled, turned},
+      {"super_helix", "implicit_midpoint", "0.001",
+       curled + "initial = \"straight\"\n"},  // prestressed
+      {"super_helix", "semi_implicit_euler", "0.001", curled, turned, windy},
+      {"super_helix", "implicit_midpoint", "0.001", curled, "motion = \"fixed\"\n", ""},
+      {"super_helix", "generalized_alpha", "0.002", curled,
+       "motion = \"free\"\nspin_rad_s = [5, 10, 0]\n", ""},
+      {"der", "semi_implicit_euler", "0.001", curled, shaken},
+      {"der", "backward_euler", "0.001", "elements = 10\n", turned, windy},
+      {"corde", "backward_euler", "0.001", "elements = 10\n", turned},
+      {"mass_spring", "backward_euler", "0.005", "elements = 20\n", shaken},
+      {"articulated_chain", "bdf2", "0.001", curled,
+       "motion = \"drop_pull\"\namplitude_m = 0.05\nfrequency_hz = 5\n"},
+      {"kirchhoff_nodal", "semi_implicit_euler", "0.0002", "elements = 10\n",
+       "motion = \"stop\"\nspeed_m_s = 2\ntime_s = 0.01\n"},
+      {"super_helix", "semi_implicit_euler", "0.0005", "elements = 10\n", shaken,
+       "[effects.gravity]\n[effects.body]\nshape = \"sphere\"\n"
+       "centre_m = [0.05, 0, -0.06]\nradius_m = 0.05\n"},
+      {"super_helix", "backward_euler", "0.002", "elements = 10\n", turned,
+       "[effects.gravity]\n[effects.tether]\nstiffness_n_m = 0.01\n"
+       "target_m = [0, 0.1, 0]\namplitude_m = [0.1, 0, 0]\nfrequency_1_s = 2\n"},
+  };
+  for (const Said& said : honest) {
+    EXPECT_EQ(ending(scene(said)), "") << said.model << " by " << said.integrator;
+  }
+}
+
+}  // namespace tress::test_guard

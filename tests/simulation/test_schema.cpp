@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "simulation/files/files.h"
+#include "simulation/scene/scene.h"
+#include "simulation/scene/scene_tables.h"
+#include "simulation/scene/schema.h"
+
+namespace tress::test_schema {
+
+TEST(SceneSchema, IsThePageInTheScenesFolder) {
+  EXPECT_EQ(read_file(TRESS_SCENES "/README.md"), scene_schema())
+      << "write it anew: simulate --print-schema > scenes/README.md";
+}
+
+TEST(SceneDefaults, AreAShortSceneInWhichSomethingMoves) {
+  const std::string text = scene_defaults();
+  const Scene scene = parse_scene(text, "defaults.toml");
+  EXPECT_EQ(scene.model->id, "super_helix");
+  EXPECT_FALSE(scene.source.empty());
+  EXPECT_EQ(scene.strands.size(), 1u);
+  EXPECT_EQ(scene.effects.size(), 1u);
+  EXPECT_LT(std::ranges::count(text, '\n'), 50);
+  // Rest at an angle under gravity: it begins to fall, and nothing else drives it.
+  EXPECT_EQ(scene.effects[0].entry->id, "gravity");
+  EXPECT_EQ(dot(scene.strands[0].root.frame.e0,
+                scene.effects[0].parameters.vec("acceleration_m_s2")),
+            0);
+}
+
+/// What it shows has the values that hold without it.
+TEST(SceneDefaults, AreDefaults) {
+  const Scene scene = parse_scene(scene_defaults(), "defaults.toml");
+  const Scene bare =
+      parse_scene("title = \"t\"\n[strand]\n[effects.gravity]\n", "bare.toml");
+  EXPECT_EQ(scene.model, bare.model);
+  EXPECT_EQ(scene.integrator, bare.integrator);
+  EXPECT_EQ(scene.options.step, bare.options.step);
+  EXPECT_EQ(scene.duration, bare.duration);
+  EXPECT_EQ(scene.frame_rate, bare.frame_rate);
+  EXPECT_EQ(scene.strands[0].segments.size(), bare.strands[0].segments.size());
+}
+
+/// A scene with the table `entry`, all of whose keys that every choice takes are there.
+std::string with_table(const TableEntry& entry) {
+  std::string text = "title = \"t\"\n";
+  if (entry.name != "strand" && entry.name != "groom") text += "[strand]\n";
+  text += "[" + entry.name + "]\n";
+  std::string_view word;
+  for (const Parameter& p : entry.parameters) {
+    if (p.name == entry.choice) word = words_of(p.choices).front();
+  }
+  for (const Parameter& p : entry.parameters) {
+    // Rows and texts are empty by default: there they would say nothing.
+    const bool says_nothing = (p.rows || p.text) && p.fallback.empty();
+    if (says_nothing || !used(entry.uses, word, p.name)) continue;
+    text += std::string(p.name) + " = " + default_value(p) + "\n";
+  }
+  return text;
+}
+
+TEST(SceneTables, TakeEveryKeyAtItsDefault) {
+  for (const TableEntry& entry : table_entries()) {
+    const std::string text = with_table(entry);
+    SCOPED_TRACE(text);
+    const Scene scene = parse_scene(text, "defaults.toml");
+    const bool one_effect = scene.effects.size() == 1 || scene.interaction.has_value();
+    EXPECT_EQ(one_effect, entry.name.starts_with("effects."));
+    EXPECT_EQ(scene.strands.size(), entry.name == "groom" ? 100u : 1u);
+  }
+}
+
+TEST(SceneTables, TakeEveryWordWithItsKeys) {
+  for (const TableEntry& entry : table_entries()) {
+    for (const Use& use : entry.uses) {
+      std::string text = "title = \"t\"\n[" + entry.name + "]\n" +
+                         std::string(entry.choice) + " = \"" + std::string(use.word) +
+                         "\"\n";
+      for (const Parameter& p : entry.parameters) {
+        for (const std::string_view key : words_of(use.keys)) {
+          if (p.name == key) text += std::string(key) + " = " + default_value(p) + "\n";
+        }
+      }
+      if (entry.name == "root") text += "[strand]\n";
+      EXPECT_NO_THROW(parse_scene(text, "word.toml")) << text;
+    }
+  }
+}
+
+}  // namespace tress::test_schema

@@ -1,0 +1,227 @@
+// The program `simulate` as its users run it: what it writes, that a run can be stopped
+// at any moment and continued, and what it says about bad input.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "simulation/files/csv.h"
+#include "tests/harness/toy_process.h"
+
+namespace tress::test_simulate {
+
+/// One hair that falls, with frames until 1 s.
+std::string falling(const std::string& model, const std::string& more = "") {
+  return "title = \"falls\"\nduration_s = 1\nframes_1_s = 50\ncheckpoint_s = 0.1\n"
+         "[model]\nid = \"" +
+         model +
+         "\"\n[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.001\n"
+         "[material]\nname = \"hair.caucasian\"\n"
+         "[strand]\nlength_m = 0.1\nelements = 10\n[root]\nmotion = \"shake\"\n"
+         "amplitude_m = 0.02\nfrequency_hz = 2\n[effects.gravity]\n" +
+         more;
+}
+
+/// Strands that touch while they are shaken; long enough to be caught at work.
+std::string groom(int frames = 100) {
+  return "title = \"groom\"\nduration_s = " + std::to_string(frames / 100.0) +
+         "\nframes_1_s = 100\ncheckpoint_s = 0.05\nseed = 7\n"
+         "[model]\nid = \"der\"\n[integrator]\nid = \"semi_implicit_euler\"\n"
+         "dt_s = 0.001\n[material]\nname = \"hair.asian\"\n"
+         "[groom]\ncount = 20\nlength_m = 0.08\nelements = 12\n"
+         "[root]\nmotion = \"rotate\"\nangle_rad = 0.5\nfrequency_hz = 2\n"
+         "[effects.gravity]\n[effects.linear_drag]\n[effects.strand_interaction]\n";
+}
+
+bool wait_for(const Toy& toy, const std::string& file) {
+  for (int i = 0; i < 3000 && !toy.exists(file); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return toy.exists(file);
+}
+
+// 0.05 s are a frame and a half, 0.01 s less than one.
+TEST(Simulate, RunsTheWholeDurationWhereItIsNoWholeNumberOfFrames) {
+  for (const auto& [duration, frames] : {std::pair{"0.05", 3U}, std::pair{"0.01", 2U}}) {
+    Toy toy;
+    toy.write("fall.toml",
+              std::string("title = \"t\"\nduration_s = ") + duration +
+                  "\nframes_1_s = 30\n[integrator]\ndt_s = 0.0016666666666666667\n"
+                  "[strand]\nelements = 1\n[effects.gravity]\n");
+    const Toy::Result run = toy.run("fall.toml --out out --progress none");
+    ASSERT_EQ(run.code, 0) << run.err;
+    const CsvTable table = parse_csv(toy.read("out/fall.csv"), "fall.csv");
+    ASSERT_EQ(table.rows.size(), frames);
+    EXPECT_EQ(table.rows.back().number("t_s"), std::stod(duration));
+    // Steps divide this frame too; times are sums of frames, good to some units of them.
+    EXPECT_NEAR(table.rows.back().number("dt_s"), 1.0 / 600, 1e-15);
+  }
+}
+
+TEST(Simulate, WritesASeriesThatConservesEnergy) {
+  Toy toy;
+  toy.write("fall.toml",
+            "title = \"falls\"\nduration_s = 0.2\nframes_1_s = 50\n[model]\n"
+            "id = \"super_helix\"\n[integrator]\nid = \"implicit_midpoint\"\n"
+            "dt_s = 0.0005\n[material]\nname = \"hair.asian\"\n"
+            "internal_friction_kg_m3_s = 0\n[strand]\nlength_m = 0.1\nelements = 8\n"
+            "[root]\nmotion = \"fixed\"\n[effects.gravity]\n");
+  const Toy::Result run = toy.run("fall.toml --out out --progress none");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const CsvTable table = parse_csv(toy.read("out/fall.csv"), "fall.csv");
+  ASSERT_EQ(table.rows.size(), 11U);
+  // Released at rest: what gravity gives goes into motion and bending. Implicit midpoint
+  // errs by O(h^2) of the fastest motion that has energy; a percent of what has fallen.
+  const Row& first = table.rows.front();
+  const auto total = [](const Row& row) {
+    return row.number("kinetic_j") + row.number("elastic_j") + row.number("gravity_j");
+  };
+  EXPECT_EQ(first.number("kinetic_j"), 0);
+  for (const Row& row : table.rows) {
+    const double fallen = first.number("gravity_j") - row.number("gravity_j");
+    EXPECT_NEAR(total(row), total(first), 0.01 * fallen + 1e-18);
+    EXPECT_EQ(row.number("stretch_rel"), 0);
+  }
+  EXPECT_LT(table.rows.back().number("tip_z_m"), -0.05);
+  EXPECT_NEAR(table.rows.back().number("dt_s"), 0.0005, 1e-12);
+}
+
+TEST(Simulate, ThePageHasEveryFrameInItsBox) {
+  Toy toy;
+  toy.write("fall.toml", falling("super_helix"));
+  ASSERT_EQ(toy.run("fall.toml --out out --progress none --vtk --usd").code, 0);
+  const auto page = nlohmann::json::parse(toy.read("out/fall.json"));
+  EXPECT_EQ(page["format"], "tress-strands-1");
+  EXPECT_EQ(page["times_s"].size(), 51U);
+  // At least the ends of 10 elements. 51 frames of points of 3 numbers of 2 bytes, 4
+  // characters for 3 bytes.
+  const std::size_t points = page["strand_points"][0];
+  EXPECT_GE(points, 11U);
+  EXPECT_EQ(page["positions"].get<std::string>().size(), (51 * points * 6 + 2) / 3 * 4);
+  EXPECT_EQ(page["channels"][0]["values"].get<std::string>().size(),
+            (51 * points + 2) / 3 * 4);
+  EXPECT_LT(page["low"][2], -0.05);
+
+  const std::string vtp = toy.read("out/fall_vtk/fall_00050.vtp");
+  const std::string sizes =
+      "NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfLines=\"1\"";
+  EXPECT_NE(vtp.find(sizes), std::string::npos);
+  // The last array is the ends of the lines: its size, then one number.
+  const std::size_t end = vtp.find("\n</AppendedData>");
+  ASSERT_NE(end, std::string::npos);
+  std::int32_t offset = 0;
+  vtp.copy(reinterpret_cast<char*>(&offset), 4, end - 4);
+  EXPECT_EQ(static_cast<std::size_t>(offset), points);
+  EXPECT_NE(toy.read("out/fall_vtk/fall.pvd").find("fall_00050.vtp"), std::string::npos);
+  EXPECT_NE(toy.read("out/fall.usda").find("BasisCurves"), std::string::npos);
+}
+
+class Continued : public testing::TestWithParam<std::string> {};
+
+/// A run through and one that was ended by a signal, then continued, write the same
+/// bytes.
+TEST_P(Continued, AStoppedRunEndsBitByBitLikeOneThatGoesThrough) {
+  for (const int signal : {SIGKILL, SIGINT}) {
+    Toy through, stopped;
+    for (const Toy* toy : {&through, &stopped}) {
+      toy->write("scene.toml", GetParam() == "groom" ? groom() : falling(GetParam()));
+    }
+    ASSERT_EQ(through.run("scene.toml --out out --progress none").code, 0);
+    const pid_t process = stopped.start("scene.toml --out out --progress none");
+    ASSERT_TRUE(wait_for(stopped, "out/scene.csv"));
+    if (GetParam() == "groom") {
+      ASSERT_TRUE(wait_for(stopped, "out/scene.state"));
+    }
+    kill(process, signal);
+    static_cast<void>(stopped.wait(process));
+    // What is there is a table with whole lines.
+    const std::string so_far = stopped.read("out/scene.csv");
+    EXPECT_NO_THROW(
+        static_cast<void>(parse_csv(so_far.substr(0, so_far.rfind('\n') + 1), "csv")));
+    ASSERT_EQ(stopped.run("scene.toml --out out --progress none --resume").code, 0);
+    EXPECT_EQ(stopped.read("out/scene.csv"), through.read("out/scene.csv"));
+    EXPECT_EQ(stopped.read("out/scene.json"), through.read("out/scene.json"));
+    EXPECT_FALSE(stopped.exists("out/scene.state"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Continued,
+                         testing::Values("super_helix", "der", "corde", "groom"),
+                         [](const auto& tested) { return tested.param; });
+
+TEST(Simulate, ThreadsDoNotChangeABit) {
+  Toy one, two;
+  for (const Toy* toy : {&one, &two}) toy->write("scene.toml", groom(20));
+  ASSERT_EQ(one.run("scene.toml --out out --progress none --threads 1").code, 0);
+  ASSERT_EQ(two.run("scene.toml --out out --progress none --threads 2").code, 0);
+  EXPECT_EQ(one.read("out/scene.csv"), two.read("out/scene.csv"));
+  EXPECT_EQ(one.read("out/scene.json"), two.read("out/scene.json"));
+}
+
+TEST(Simulate, AnotherSceneIsNotContinued) {
+  Toy toy;
+  toy.write("scene.toml", groom());
+  const pid_t process = toy.start("scene.toml --out out --progress none");
+  ASSERT_TRUE(wait_for(toy, "out/scene.state"));
+  kill(process, SIGINT);
+  ASSERT_EQ(toy.wait(process).code, 130);
+  toy.write("scene.toml", groom(20));
+  const Toy::Result run = toy.run("scene.toml --out out --progress none --resume");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("other scene"), std::string::npos) << run.err;
+}
+
+TEST(Simulate, ASceneThatBlowsUpIsSaidSo) {
+  Toy toy;
+  std::string scene = falling("super_helix");
+  // Explicit, far beyond the limit of its fastest wave.
+  scene.replace(scene.find("semi_implicit_euler"), 19, "symplectic_euler");
+  toy.write("scene.toml", scene);
+  const Toy::Result run = toy.run("scene.toml --out out --progress none");
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.err.find("strand 0"), std::string::npos) << run.err;
+  EXPECT_GE(parse_csv(toy.read("out/scene.csv"), "csv").rows.size(), 1U);
+  EXPECT_NE(toy.read("out/scene.meta.json").find("diverged"), std::string::npos);
+}
+
+struct Wrong {
+  std::string name, arguments, message;
+};
+
+class SimulateBadInput : public testing::TestWithParam<Wrong> {};
+
+TEST_P(SimulateBadInput, IsOneLineExitCode2AndNothingWritten) {
+  Toy toy;
+  toy.write("good.toml", falling("super_helix"));
+  toy.write("typo.toml", falling("super_helix", "[effects.linear_drga]\n"));
+  toy.write("key.toml", falling("super_helix") + "acceleration = [0, 0, -1]\n");
+  toy.write("nan.toml",
+            falling("super_helix", "[effects.linear_drag]\nnu_kg_m_s = nan\n"));
+  const auto before = toy.files();
+  const Toy::Result run = toy.run(GetParam().arguments);
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.error_lines(), 1) << run.err;
+  EXPECT_NE(run.err.find(GetParam().message), std::string::npos) << run.err;
+  EXPECT_EQ(toy.files(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SimulateBadInput,
+    testing::Values(Wrong{"missing", "nowhere.toml --out out", "nowhere.toml"},
+                    Wrong{"folder", ". --out out", "directory"},
+                    Wrong{"effect", "typo.toml --out out", "linear_drag"},
+                    Wrong{"key", "key.toml --out out", "acceleration_m_s2"},
+                    Wrong{"nan", "nan.toml --out out", "nan.toml:"},
+                    Wrong{"option", "good.toml --treads 2", "--help"},
+                    Wrong{"threads", "good.toml --threads 0", "threads"},
+                    Wrong{"no_scenes", "--out out", "scene"},
+                    Wrong{"second_is_bad", "good.toml typo.toml --out out",
+                          "linear_drag"},
+                    Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
+                    Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
+    [](const auto& tested) { return tested.param.name; });
+
+}  // namespace tress::test_simulate
