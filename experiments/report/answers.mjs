@@ -1,0 +1,101 @@
+// answers.mjs FOLDER: what stability_limit, effect_audit and cost_of_accuracy found about one
+// scene, whose tables lie in FOLDER, on one page -> FOLDER/answers.html.
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { parse_csv } from './src/csv.mjs';
+import { escape_html, format_number, format_time } from './src/format.mjs';
+
+const folder = process.argv[2];
+
+/// Rows as objects; none where there is no such table.
+function rows_of(name) {
+  const file = join(folder, `${name}.csv`);
+  if (!existsSync(file)) return [];
+  const { columns, rows } = parse_csv(readFileSync(file, 'utf8'), file);
+  return rows.map((row) => Object.fromEntries(columns.map((c, i) => [c.name, row[i]])));
+}
+
+const percent = (part) =>
+  typeof part === 'number' ? `${format_number(100 * part, 2)} %` : '';
+const seconds = (s) => (typeof s === 'number' ? format_time(s) : '');
+
+function table(heads, body) {
+  if (body.length === 0) return '<p>No row: see the table beside this page.</p>';
+  const line = (cells, tag) =>
+    `<tr>${cells.map((c) => `<${tag}>${escape_html(c)}</${tag}>`).join('')}</tr>`;
+  return `<table><thead>${line(heads, 'th')}</thead>
+<tbody>${body.map((cells) => line(cells, 'td')).join('\n')}</tbody></table>`;
+}
+
+const method = (row) => `${row.integrator}${row.tangent ? `, tangent ${row.tangent}` : ''}`;
+
+function stable_steps() {
+  const rows = rows_of('stability_limit');
+  const size = (row) => (typeof row.dt_max_s === 'number' ? row.dt_max_s : 0);
+  return table(
+    ['method', 'largest stable step', 'beyond it', 'time of a simulated second'],
+    [...rows]
+      .sort((a, b) => size(b) - size(a))
+      .map((row) =>
+        size(row) > 0
+          ? [method(row),
+             `${row.limited_by === 'cap' ? '≥ ' : ''}${seconds(row.dt_max_s)}`,
+             row.limited_by === 'cap' ? 'not tried' : row.limited_by,
+             seconds(1 / row.realtime_factor)]
+          : [method(row), 'none', row.reason, '']),
+  );
+}
+
+function effects() {
+  return table(
+    ['left out', 'tips move by', 'share of the time', 'verdict'],
+    rows_of('effect_audit')
+      .filter((row) => row.effect !== 'none')
+      .map((row) => [row.effect, percent(row.error_without_rel), percent(row.cost_share),
+        row.verdict || row.reason]),
+  );
+}
+
+const configuration = (row) =>
+  [row.model, row.modes, row.tangent && `tangent ${row.tangent}`, row.options,
+    row.elements && `${row.elements} elements`, row.integrator,
+    typeof row.dt_s === 'number' && `dt ${seconds(row.dt_s)}`].filter(Boolean).join(', ');
+
+function accuracy() {
+  const names = { winner: 'take', runner_up: 'next best', as_given: 'as the file has it' };
+  const rows = rows_of('cost_of_accuracy');
+  const line = (row) => [configuration(row), percent(row.error_rel),
+    typeof row.ms_per_frame === 'number' ? seconds(row.ms_per_frame / 1e3) : row.reason];
+  const heads = ['configuration', 'error, of the length', 'time a frame'];
+  return `${table(['', ...heads], rows.filter((row) => names[row.kind])
+    .map((row) => [names[row.kind], ...line(row)]))}
+<h2>Error against time</h2>
+<p>What nothing else that was tried beats in both.</p>
+${table(heads, rows.filter((row) => row.kind === 'front').map(line))}`;
+}
+
+const name = rows_of('stability_limit')[0]?.scene ?? 'scene';
+writeFileSync(join(folder, 'answers.html'), `<!doctype html>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>${escape_html(name)}: what the experiments say</title>
+<style>
+:root { color-scheme: light dark; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+table { border-collapse: collapse; width: 100%; }
+th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid #8886;
+         vertical-align: top; }
+</style></head><body><main>
+<h1>${escape_html(name)}</h1>
+<h2>Which steps are stable</h2>
+<p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
+needs shorter ones in its place.</p>
+${stable_steps()}
+<h2>Which effects matter</h2>
+<p>Root mean square over frames and strands, over their length; the verdict is for 1 %.</p>
+${effects()}
+<h2>What is the cheapest way to 1 %</h2>
+${accuracy()}
+</main></body></html>
+`);
+console.log(`${folder}/answers.html`);

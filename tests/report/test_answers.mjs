@@ -1,0 +1,52 @@
+// The page of ./tress ask: what the tables of one scene say, and nothing where one is not there.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const program = fileURLToPath(new URL('../../experiments/report/answers.mjs', import.meta.url));
+
+function page(tables) {
+  const folder = mkdtempSync(join(tmpdir(), 'tress-answers-'));
+  for (const [name, text] of Object.entries(tables)) writeFileSync(join(folder, name), text);
+  execFileSync(process.execPath, [program, folder]);
+  return readFileSync(join(folder, 'answers.html'), 'utf8');
+}
+
+test('steps come longest first; a capped one is a bound; a reason stands for none', () => {
+  const html = page({
+    'stability_limit.csv': `scene,integrator,tangent,dt_max_s,limited_by,realtime_factor,reason
+mine,rk4,,,energy,,no <step>
+mine,bdf2,exact,0.002,energy,4,
+mine,backward_euler,exact,0.1,cap,100,
+`,
+  });
+  assert.match(html, /<h1>mine<\/h1>/);
+  const places = ['≥ 100 ms', '>2 ms<', 'no &lt;step&gt;'].map((text) => html.indexOf(text));
+  assert.ok(places.every((place) => place > 0), String(places));
+  assert.deepEqual(places, [...places].sort((a, b) => a - b));
+  assert.match(html, /250 ms/); // a simulated second of bdf2
+});
+
+test('effects and advice are shown in words', () => {
+  const html = page({
+    'effect_audit.csv': `scene,effect,error_without_rel,cost_share,verdict,reason
+mine,none,,,,
+mine,wind,0.25,0.5,keep,
+`,
+    'cost_of_accuracy.csv': `kind,model,modes,tangent,options,elements,integrator,dt_s,error_rel,ms_per_frame,reason
+winner,der,,exact,,8,bdf2,0.001,0.005,2,
+front,der,,exact,,9,bdf2,0.001,0.004,3,
+`,
+  });
+  assert.match(html, /<td>wind<\/td><td>25 %<\/td><td>50 %<\/td><td>keep<\/td>/);
+  assert.match(html, /<td>take<\/td><td>der, tangent exact, 8 elements, bdf2, dt 1 ms<\/td><td>0.5 %<\/td>/);
+  assert.match(html, /9 elements/);
+});
+
+test('a table that is not there leaves a gap, never no page', () => {
+  assert.match(page({}), /No row/);
+});
