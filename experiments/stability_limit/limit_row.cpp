@@ -19,8 +19,8 @@ void fail_without_limit(const StepLimit& limit, const StabilityRun* last, Row& r
     row.failed("gave_up", "the work of a row was used up before the limit was found");
   } else if (std::isnan(limit.stable) && last != nullptr) {
     row.failed("unstable",
-               fmt::format("no stable step down to {:.3g} s: {} at t = {:.3g} s {}", limit.finest,
-                           name(last->broken), last->t, last->failure));
+               fmt::format("no stable step down to {:.3g} s: {} at t = {:.3g} s {}",
+                           limit.finest, name(last->broken), last->t, last->failure));
   }
 }
 
