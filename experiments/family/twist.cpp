@@ -15,8 +15,8 @@ constexpr Claim claims[] = {
     {"twist_curly_matters", "leaving twist out moves the tip of the hair by over 1 %",
      "root mean square change of the tip over the length, the hair as it is"}};
 
-constexpr double t_end = 0.25;  // s
-constexpr int samples = 15, elements = 20;
+constexpr double t_end = 0.4;  // s
+constexpr int samples = 24, elements = 20;
 constexpr double bar = 0.01;
 constexpr double coarsest = 2e-3;  // s
 constexpr int halvings = 4;        // of a step that finds no solution
