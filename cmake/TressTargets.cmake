@@ -45,10 +45,14 @@ function(tress_in_batches target)
                         UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# tress_library(name source...): tress_<name>, also known as tress::<name>. Link Eigen as
-# $<BUILD_INTERFACE:Eigen3::Eigen>: users of the installed library do not need it.
+# tress_library(name [BATCHES] source...): tress_<name>, also known as tress::<name>. Link
+# Eigen as $<BUILD_INTERFACE:Eigen3::Eigen>: users of the installed library do not need it.
 function(tress_library name)
-  add_library(tress_${name} STATIC ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "BATCHES" "" "")
+  add_library(tress_${name} STATIC ${arg_UNPARSED_ARGUMENTS})
+  if(arg_BATCHES)
+    tress_in_batches(tress_${name})
+  endif()
   add_library(tress::${name} ALIAS tress_${name})
   set_target_properties(tress_${name} PROPERTIES EXPORT_NAME ${name}
                         POSITION_INDEPENDENT_CODE ON)

@@ -8,6 +8,7 @@
 #include "experiments/run/machine.h"
 #include "experiments/run/sundials_speed.h"
 #include "integrators/formulation/dynamics.h"
+#include "simulation/files/build_facts.h"
 
 namespace tress {
 namespace {
@@ -58,8 +59,8 @@ void add_context() {
   const SourceState source = source_state();
   benchmark::AddCustomContext("git_commit", source.commit);
   benchmark::AddCustomContext("git_dirty", source.dirty ? "yes" : "no");
-  benchmark::AddCustomContext("compiler", TRESS_COMPILER);
-  benchmark::AddCustomContext("flags", TRESS_FLAGS);
+  benchmark::AddCustomContext("compiler", std::string(build_facts().compiler));
+  benchmark::AddCustomContext("flags", std::string(build_facts().flags));
   benchmark::AddCustomContext("sundials_speed_ratio",
                               fmt::format("{:.2f}", sundials_speed_ratio()));
   benchmark::AddCustomContext("cpu", machine().cpu);

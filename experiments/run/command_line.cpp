@@ -9,6 +9,7 @@
 #include "contract/input_error.h"
 #include "contract/parameters.h"
 #include "experiments/run/options_file.h"
+#include "simulation/files/build_facts.h"
 #include "simulation/files/parse.h"
 
 namespace tress {
@@ -232,8 +233,8 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   CommandLine line;
   Raw raw;
   CLI::App app{std::string(question), std::string(name)};
-  app.set_version_flag("--version",
-                       fmt::format("{} {} ({})", name, TRESS_VERSION, TRESS_GIT_COMMIT));
+  app.set_version_flag("--version", fmt::format("{} {} ({})", name, build_facts().version,
+                                                build_facts().commit));
   declare(app, line, raw, own);
   hide(app, unused);
   try {

@@ -10,6 +10,7 @@
 
 #include "experiments/run/message.h"
 #include "experiments/run/sundials_speed.h"
+#include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
 
 namespace tress {
@@ -75,9 +76,10 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   const Machine here = machine();
   std::map<std::string, int> counts;
   for (const Row& row : rows) ++counts[std::string(row.status())];
-  ordered_json columns;
+  ordered_json columns, timings = ordered_json::array();
   for (const Column& column : experiment_.columns) {
     columns[std::string(column.name)] = column.help;
+    if (column.timing) timings.push_back(column.name);
   }
   ordered_json libraries;
   for (const auto& [library, version] : library_versions()) libraries[library] = version;
@@ -96,7 +98,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"experiment", experiment_.name},
       {"question", experiment_.question},
       {"schema", schema_version},
-      {"tress_version", TRESS_VERSION},
+      {"tress_version", build_facts().version},
       {"argv", line_.argv},
       {"merged_from", line_.merge},
       {"settings", settings_text(line_)},
@@ -114,9 +116,9 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"checks", checks_of(verdicts)},
       {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
       {"build",
-       {{"compiler", TRESS_COMPILER},
-        {"flags", TRESS_FLAGS},
-        {"type", TRESS_BUILD_TYPE}}},
+       {{"compiler", build_facts().compiler},
+        {"flags", build_facts().flags},
+        {"type", build_facts().type}}},
       {"machine",
        {{"cpu", here.cpu},
         {"cpus", here.cpus},
@@ -130,6 +132,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"rows",
        {{"total", rows.size()}, {"by_status", counts}, {"resumed", kept_from_before}}},
       {"columns", columns},
+      {"timings", timings},
       {"glossary", glossary}};
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }

@@ -19,7 +19,7 @@ constexpr std::string_view structure_names[] = {"chain", "ring", "net", "tree", 
 constexpr int least_size[] = {1, 3, 1, 1, 1};
 constexpr int largest_size[] = {100'000, 100'000, 300, 16, 10'000};
 
-constexpr Parameter declared[] = {
+constexpr Parameter declared_of_tinkertoys[] = {
     {.name = "structure",
      .help = "what to build",
      .choices = "chain|ring|net|tree|truss"},
@@ -190,7 +190,7 @@ ParticleScene tinkertoys(const ToyShape& shape) {
   return std::move(b.scene);
 }
 
-std::span<const Parameter> tinkertoys_parameters() { return declared; }
+std::span<const Parameter> tinkertoys_parameters() { return declared_of_tinkertoys; }
 
 std::unique_ptr<System> make_tinkertoys(const Parameters& parameters) {
   ToyShape shape;

@@ -5,13 +5,15 @@
 namespace tress {
 namespace {
 
-constexpr Parameter parameters_of_drag[] = {
+constexpr Parameter parameters_of_quadratic_drag[] = {
     strand_radius_parameter, air_density_parameter, air_viscosity_parameter,
     coefficients_parameter,  c_normal_parameter,    c_tangential_parameter};
 
 }  // namespace
 
-std::span<const Parameter> quadratic_drag_parameters() { return parameters_of_drag; }
+std::span<const Parameter> quadratic_drag_parameters() {
+  return parameters_of_quadratic_drag;
+}
 
 std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
                                                   const RootMotion&) {

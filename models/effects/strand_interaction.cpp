@@ -12,14 +12,14 @@
 namespace tress {
 namespace {
 
-const std::string where = "effects.strand_interaction";
+const std::string where_interaction = "effects.strand_interaction";
 
 std::vector<int> checked(std::vector<int> points) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (points[k] >= 2) continue;
     throw InputError(
-        "strand " + std::to_string(k) + " has fewer than two material points", where,
-        "give strands of at least one segment");
+        "strand " + std::to_string(k) + " has fewer than two material points",
+        where_interaction, "give strands of at least one segment");
   }
   return points;
 }
@@ -42,7 +42,7 @@ std::span<const Parameter> strand_interaction_parameters() {
 
 StrandInteraction::StrandInteraction(const Parameters& parameters,
                                      std::vector<int> points)
-    : StrandInteraction(ContactLaw(parameters, where), std::move(points)) {}
+    : StrandInteraction(ContactLaw(parameters, where_interaction), std::move(points)) {}
 
 StrandInteraction::StrandInteraction(const ContactLaw& law, std::vector<int> points)
     : law_(law), grid_(checked(points), law.reach()), points_(std::move(points)) {}

@@ -11,10 +11,10 @@
 namespace tress {
 namespace {
 
-const std::string where = "effects.strand_interaction, coupling = monolithic";
+const std::string where_monolithic = "effects.strand_interaction, coupling = monolithic";
 
 [[noreturn]] void refuse(std::size_t k, const std::string& what) {
-  throw InputError("strand " + std::to_string(k) + " " + what, where,
+  throw InputError("strand " + std::to_string(k) + " " + what, where_monolithic,
                    "use coupling = lagged, or a model of nodes without constraints such "
                    "as der, corde or mass_spring");
 }
@@ -23,7 +23,7 @@ const std::string where = "effects.strand_interaction, coupling = monolithic";
 
 CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
                                const Parameters& parameters)
-    : CoupledStrands(std::move(strands), ContactLaw(parameters, where)) {}
+    : CoupledStrands(std::move(strands), ContactLaw(parameters, where_monolithic)) {}
 
 CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
                                const ContactLaw& law)

@@ -167,11 +167,13 @@ class AndrewsSqueezer final : public DenseSystem<coordinates, Mechanism>,
   LoopClosure closure_;
 };
 
-constexpr std::array<Parameter, 1> parameters_table = {{tangent_parameter}};
+constexpr std::array<Parameter, 1> andrews_squeezer_table = {{tangent_parameter}};
 
 }  // namespace
 
-std::span<const Parameter> andrews_squeezer_parameters() { return parameters_table; }
+std::span<const Parameter> andrews_squeezer_parameters() {
+  return andrews_squeezer_table;
+}
 
 std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters) {
   return std::make_unique<AndrewsSqueezer>(tangent_choice(parameters));

@@ -228,7 +228,7 @@ class Beam final : public System,
   BandedLu lu_;
 };
 
-constexpr std::array<Parameter, 3> parameters_table = {
+constexpr std::array<Parameter, 3> beam_table = {
     {{.name = "segments",
       .help = "rigid segments",
       .number = 40,
@@ -240,7 +240,7 @@ constexpr std::array<Parameter, 3> parameters_table = {
 
 }  // namespace
 
-std::span<const Parameter> beam_parameters() { return parameters_table; }
+std::span<const Parameter> beam_parameters() { return beam_table; }
 
 std::unique_ptr<System> make_beam(const Parameters& p) {
   return std::make_unique<Beam>(p.whole("segments"), p.number("load"), tangent_choice(p));

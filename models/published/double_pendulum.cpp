@@ -108,7 +108,7 @@ class DoublePendulum final : public DenseSystem<2, Pendulum>,
 
 constexpr double tiny = 1e-9;  // keeps masses and lengths positive
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr std::array<Parameter, 7> parameters_table = {{
+constexpr std::array<Parameter, 7> double_pendulum_table = {{
     {.name = "mass_1", .help = "upper mass (kg)", .number = 1, .min = tiny},
     {.name = "mass_2", .help = "lower mass (kg)", .number = 1, .min = tiny},
     {.name = "length_1", .help = "upper rod (m)", .number = 1, .min = tiny},
@@ -120,7 +120,7 @@ constexpr std::array<Parameter, 7> parameters_table = {{
 
 }  // namespace
 
-std::span<const Parameter> double_pendulum_parameters() { return parameters_table; }
+std::span<const Parameter> double_pendulum_parameters() { return double_pendulum_table; }
 
 std::unique_ptr<System> make_double_pendulum(const Parameters& p) {
   return std::make_unique<DoublePendulum>(

@@ -241,7 +241,7 @@ class SliderCrank final : public DenseSystem<coordinates, CrankWithFlexibleRod> 
   SlideAndDrive constraints_;
 };
 
-constexpr std::array<Parameter, 2> parameters_table = {
+constexpr std::array<Parameter, 2> slider_crank_table = {
     {{.name = "start",
       .help = "close to smooth motion, or rigid motion: the rod rings",
       .choices = "smooth|rigid"},
@@ -249,7 +249,7 @@ constexpr std::array<Parameter, 2> parameters_table = {
 
 }  // namespace
 
-std::span<const Parameter> slider_crank_parameters() { return parameters_table; }
+std::span<const Parameter> slider_crank_parameters() { return slider_crank_table; }
 
 std::unique_ptr<System> make_slider_crank(const Parameters& p) {
   return std::make_unique<SliderCrank>(

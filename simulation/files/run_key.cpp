@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "contract/input_error.h"
+#include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
 #include "simulation/files/files.h"
 #include "simulation/files/source_state.h"
@@ -45,7 +46,7 @@ std::vector<std::string> quoted_texts(const std::string& text) {
 
 RunKey::RunKey() {
   const SourceState source = source_state();
-  add("version", TRESS_VERSION);
+  add("version", std::string(build_facts().version));
   add("commit", source.commit + (source.dirty ? " with changes" : ""));
 }
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "simulation/files/build_facts.h"
+
 namespace tress {
 namespace {
 
@@ -15,7 +17,7 @@ struct Output {
 
 Output git(const std::string& arguments) {
   std::string tree;
-  for (const char c : std::string_view(TRESS_SOURCE_TREE)) {
+  for (const char c : build_facts().source_tree) {
     tree += c == '\'' ? std::string("'\\''") : std::string(1, c);
   }
   const std::string command =
@@ -36,7 +38,8 @@ Output git(const std::string& arguments) {
 
 SourceState source_state() {
   const Output commit = git("rev-parse HEAD");
-  if (commit.status != 0) return {.commit = TRESS_GIT_COMMIT, .dirty = false};
+  if (commit.status != 0)
+    return {.commit = std::string(build_facts().commit), .dirty = false};
   const Output changes =
       git("status --porcelain --untracked-files=no -- . ':(exclude)results'");
   return {.commit = commit.text, .dirty = !changes.text.empty()};
