@@ -10,7 +10,6 @@
 #include "experiments/hard_cases/grid.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
-#include "integrators/integrator_options.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/variants.h"
@@ -18,18 +17,6 @@
 
 namespace tress {
 namespace {
-
-void refuse_settings_of_the_scene(const CommandLine& line) {
-  const auto knows = [](std::span<const Parameter> declared, std::string_view key) {
-    return std::ranges::find(declared, key, &Parameter::name) != declared.end();
-  };
-  for (const auto& [key, value] : line.set) {
-    const bool ours = knows(hard_case_settings(), key) && key != "case";
-    if (ours || knows(integrator_options(), key)) continue;
-    throw InputError(fmt::format("a scene says itself what '{}' is", key),
-                     line.place("set:" + key), "leave it out, or change the scene");
-  }
-}
 
 /// The tangents that are tried; of the scene's own model the scene's, and the usual one
 /// of the method that solves only once a step.
@@ -170,7 +157,10 @@ SceneSurvival survive(const Scene& given, const SceneCriteria& criteria, double 
 }
 
 std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings) {
-  refuse_settings_of_the_scene(line);
+  settings.leave_models_to_the_scene();
+  if (settings.chosen("case")) {
+    throw InputError("the scene is the case", line.place("set:case"), "leave it out");
+  }
   const Parameters& own = settings.experiment();
   const SceneCriteria criteria{own.number("most_stretch"), own.number("most_depth_m"),
                                own.number("most_energy_gain_j")};

@@ -137,15 +137,7 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how) {
-  if (!line.models.empty()) {
-    throw InputError("a scene says itself which model it has", line.place("models"),
-                     "leave it out, or change the scene's [model]");
-  }
-  if (!line.elements.empty()) {
-    throw InputError("a scene says itself how its strands are cut",
-                     line.place("elements"),
-                     "leave it out, or change the scene's elements");
-  }
+  leave_strands_to_the_scene(line);
   std::vector<Case> all;
   for (const Scene& given : read_scenes(files)) {
     const Scene scene = thinned(given, how.strands);

@@ -12,6 +12,7 @@ const readersOfScenes = {
   stability_limit: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   hard_cases: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
+  calibrate: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
 };
 const advise = (file) => ['--advise', file, '--out', 't.csv'];
 
