@@ -53,11 +53,14 @@ function survival() {
   const steps = distinct(rows.map((row) => row.dt_s)).sort((a, b) => a - b);
   const whose = (row) =>
     [row.model, row.variant, row.integrator].filter(Boolean).join(', ');
+  // The guard's words begin with the outcome.
+  const reason = ({ outcome, why }) =>
+    why.startsWith(outcome) ? why : `${outcome}: ${why}`;
   const lines = [...group_by(rows, whose)].map(([subject, members]) => [
     subject,
     ...steps.map((dt) => {
       const row = members.find((one) => one.dt_s === dt);
-      return !row ? '' : is_set(row.passed) ? row.outcome : `${row.outcome}: ${row.why}`;
+      return !row ? '' : is_set(row.passed) ? row.outcome : reason(row);
     }),
   ]);
   return table(['model, integrator', ...steps.map((dt) => `step ${seconds(dt)}`)], lines);

@@ -46,7 +46,7 @@ const surname = (authors) => authors.match(/\p{Lu}\p{L}{2,}/u)?.[0] ?? authors;
 
 // A journal or a title, without section or equation; empty where it is none.
 const work_of = (place) =>
-  /^\p{Lu}.{4,}\d/u.test(place) ? place.replace(/,? (section|eqs?\.|figure) .*$/, '') : '';
+  /^\p{Lu}.{4,}\d/u.test(place) ? place.replace(/,? (section|chapter|eqs?\.|figure) .*$/, '') : '';
 
 export function list(_, root) {
   const all = new Map();
