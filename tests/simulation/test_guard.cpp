@@ -69,6 +69,26 @@ TEST(Guard, AdvisesAgainstTooManySteps) {
   EXPECT_TRUE(says(fixed, "try a longer step than 0.001 s")) << fixed;
 }
 
+TEST(Guard, KnowsByTheRunThatItsWorkIsUsedUp) {
+  const std::string bounded = "1e-3\nmax_work = 100";
+  for (const char* method : {"gsl_rkf45", "backward_euler", "cvode_bdf"}) {
+    const std::string why = ending(scene({"der", method, bounded, ""}));
+    EXPECT_TRUE(says(why, "try more than max_work = 100")) << why;
+  }
+}
+
+// Every counter that total_work() adds up, over strands.
+TEST(WorldWork, IsThatOfAllCounters) {
+  World world(scene({"der", "backward_euler", "1e-3", ""}));
+  ASSERT_EQ(world.advance(0.01), Status::ok);
+  const Stats done = world.stats();
+  EXPECT_GT(done.residuals, 0);
+  EXPECT_GT(done.linearizations, 0);
+  EXPECT_GT(done.solves, 0);
+  const auto n = static_cast<int>(world.snapshot().strands.front().q.size());
+  EXPECT_EQ(world.work(), total_work(done, n));
+}
+
 TEST(Guard, IsSwitchedOffByTheScene) {
   Said watched = gaining;
   watched.top = "guard = false\n";
