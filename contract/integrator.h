@@ -94,6 +94,14 @@ inline double total_work(const Stats& done, int coordinates) {
   return static_cast<double>(calls) * (coordinates + 10.0);
 }
 
+/// Whether a run of n coordinates has done as much as Options::max_work lets it.
+inline bool work_used_up(const Options& options, const Stats& done, int coordinates) {
+  return options.max_work > 0 && total_work(done, coordinates) >= options.max_work;
+}
+
+/// The bound of Options that ended a run: max_steps or max_work.
+enum class Limit { none, steps, work };
+
 /// Sees every accepted step; returning false stops the run (Status::fatal, "stopped").
 using Observer = std::function<bool(double t, In q, In v)>;
 
@@ -114,6 +122,8 @@ class Integrator {
   virtual In v() const = 0;
   virtual Stats stats() const = 0;
   virtual std::string failure() const = 0;
+  /// Of a failure: whether the method met a bound, or gave up by itself (none).
+  virtual Limit limit() const = 0;
 };
 
 }  // namespace tress

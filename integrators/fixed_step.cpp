@@ -35,6 +35,7 @@ Status FixedStep::start(double t, In q, In v) {
   std::ranges::fill(lambda_, 0.0);
   t_ = t;
   failure_.clear();
+  limit_ = Limit::none;
   dynamics_.begin();
   const Status s = reset(t);
   return s == Status::ok ? s : fail(s, t, "no acceleration at the initial state");
@@ -75,6 +76,7 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
   // 1e-9: a span that is a whole number of steps up to rounding is not cut once more.
   const double count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
   if (count > static_cast<double>(options_.max_steps)) {
+    limit_ = Limit::steps;
     return fail(Status::fatal, t_, "more than max_steps steps needed");
   }
   const auto steps = static_cast<long>(count);
@@ -89,8 +91,8 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
     ++dynamics_.stats.steps;
     dynamics_.forget();
     if (each_step && !each_step(t_, q_, v_)) return end(Status::fatal, t_, "stopped");
-    if (options_.max_work > 0 && t_ < t_end &&
-        total_work(dynamics_.stats, dynamics_.n()) >= options_.max_work) {
+    if (t_ < t_end && work_used_up(options_, dynamics_.stats, dynamics_.n())) {
+      limit_ = Limit::work;
       return end(Status::fatal, t_, "max_work used up");
     }
   }

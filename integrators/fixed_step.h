@@ -24,6 +24,7 @@ class FixedStep : public Integrator {
   In v() const final { return v_; }
   Stats stats() const final { return dynamics_.stats; }
   std::string failure() const final { return failure_; }
+  Limit limit() const final { return limit_; }
 
  protected:
   /// Forgets history; the state is q_, v_ at time t.
@@ -53,6 +54,7 @@ class FixedStep : public Integrator {
   std::optional<Projection> projection_;
   double t_ = 0;
   std::string failure_;
+  Limit limit_ = Limit::none;
 };
 
 }  // namespace tress

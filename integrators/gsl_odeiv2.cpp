@@ -65,19 +65,23 @@ class GslOdeiv2 final : public Integrator {
     t_ = t;
     h_ = first_step();
     failure_.clear();
+    limit_ = Limit::none;
     dynamics_.begin();
     gsl_odeiv2_driver_reset(driver_.get());
     return Status::ok;
   }
 
   Status advance(double t_end, const Observer& each_step) override {
-    const long limit = dynamics_.stats.steps + options_.max_steps;
+    const long most = dynamics_.stats.steps + options_.max_steps;
     const double too_small = 1e-12 * (t_end - t_);
     int stuck = 0;
     while (t_ < t_end) {
-      if (dynamics_.stats.steps >= limit) return fail("more than max_steps steps needed");
-      if (options_.max_work > 0 &&
-          total_work(dynamics_.stats, dynamics_.n()) >= options_.max_work) {
+      if (dynamics_.stats.steps >= most) {
+        limit_ = Limit::steps;
+        return fail("more than max_steps steps needed");
+      }
+      if (work_used_up(options_, dynamics_.stats, dynamics_.n())) {
+        limit_ = Limit::work;
         return end("max_work used up");
       }
       if (options_.max_step > 0) h_ = std::min(h_, options_.max_step);
@@ -105,6 +109,7 @@ class GslOdeiv2 final : public Integrator {
   In q() const override { return In(y_).first(n_); }
   In v() const override { return In(y_).last(n_); }
   std::string failure() const override { return failure_; }
+  Limit limit() const override { return limit_; }
 
   Stats stats() const override {
     Stats s = dynamics_.stats;
@@ -198,6 +203,7 @@ class GslOdeiv2 final : public Integrator {
   double t_ = 0;
   double h_ = 0;
   std::string failure_;
+  Limit limit_ = Limit::none;
 };
 
 }  // namespace

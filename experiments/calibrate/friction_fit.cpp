@@ -12,9 +12,6 @@
 namespace tress {
 namespace {
 
-constexpr const char* gamma_key = "internal_friction_kg_m3_s";
-constexpr const char* nu_key = "drag_kg_m_s";
-
 // Central differences in ln gamma and ln nu: 1e-3 is off by 2e-7 of the third derivative,
 // and Newton's tolerance of 1e-10 by 1e-7.
 constexpr double difference = 1e-3;
@@ -31,7 +28,7 @@ constexpr double largest_shift = 0.25;  // half-intervals
 /// The fitted values as unknowns of least squares.
 class Unknowns {
  public:
-  Unknowns(const std::vector<Parameters>& strands, Fitted fitted)
+  Unknowns(const std::vector<Specimen>& strands, Fitted fitted)
       : strands_(strands), gamma_(fitted != Fitted::nu), nu_(fitted != Fitted::gamma) {}
 
   std::size_t count() const { return (gamma_ ? 1u : 0u) + (nu_ ? 1u : 0u); }
@@ -45,26 +42,25 @@ class Unknowns {
     return x;
   }
   /// Of the first strand; a known value may differ from strand to strand.
-  Friction friction(In x) const {
-    return {gamma_ ? std::exp(x[0]) : strands_.front().number(gamma_key),
-            nu_ ? std::exp(x[count() - 1]) : strands_.front().number(nu_key)};
-  }
+  Friction friction(In x) const { return friction(x, strands_.front()); }
   /// Of `finer` times as many elements. Empty: out of range.
-  std::vector<Parameters> strands(In x, int finer) const {
+  std::vector<BuiltStrand> strands(In x, int finer) const {
     constexpr double most = 1e6;
     const auto [gamma, nu] = friction(x);
     if ((gamma_ && !(gamma < most)) || (nu_ && !(nu < most))) return {};
-    std::vector<Parameters> all = strands_;
-    for (Parameters& p : all) {
-      if (gamma_) p.set(gamma_key, fmt::format("{}", gamma));
-      if (nu_) p.set(nu_key, fmt::format("{}", nu));
-      p.set("elements", fmt::format("{}", finer * p.whole("elements")));
-    }
+    std::vector<BuiltStrand> all;
+    for (const Specimen& one : strands_)
+      all.push_back(one.build(friction(x, one), finer));
     return all;
   }
 
  private:
-  const std::vector<Parameters>& strands_;
+  Friction friction(In x, const Specimen& strand) const {
+    return {gamma_ ? std::exp(x[0]) : strand.friction.gamma,
+            nu_ ? std::exp(x[count() - 1]) : strand.friction.nu};
+  }
+
+  const std::vector<Specimen>& strands_;
   bool gamma_, nu_;
 };
 
@@ -90,10 +86,8 @@ Measured measured(const Records& records, Observed observed) {
 
 class Fit {
  public:
-  Fit(const Records& records, const ModelEntry& model,
-      const std::vector<Parameters>& strands, const FitOptions& how)
+  Fit(const Records& records, const std::vector<Specimen>& strands, const FitOptions& how)
       : records_(records),
-        model_(model),
         how_(how),
         unknowns_(strands, how.fitted),
         strands_(strands),
@@ -111,18 +105,17 @@ class Fit {
                const FitOptions& how, int finer) const;
 
   const Records& records_;
-  const ModelEntry& model_;
   const FitOptions& how_;
   Unknowns unknowns_;
-  const std::vector<Parameters>& strands_;
+  const std::vector<Specimen>& strands_;
   Measured measured_;
   int start_evaluations_ = 0;
 };
 
 bool Fit::residuals(In x, const FitOptions& how, int finer, Out r) const {
-  const std::vector<Parameters> strands = unknowns_.strands(x, finer);
+  const std::vector<BuiltStrand> strands = unknowns_.strands(x, finer);
   if (strands.empty()) return false;
-  const auto signals = simulated(records_, model_, strands, how);
+  const auto signals = simulated(records_, strands, how);
   if (signals.empty()) return false;
   std::size_t at = 0;
   for (std::size_t i = 0; i < signals.size(); ++i) {
@@ -262,11 +255,11 @@ FrictionFit Fit::result() {
 
 }  // namespace
 
-std::vector<Parameters> strands_of(const Records& records, const Parameters& parameters,
-                                   Fitted fitted) {
-  std::vector<Parameters> all;
+std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model,
+                                 const Parameters& parameters, Fitted fitted) {
+  std::vector<Specimen> all;
   for (const Record& record : records.all) {
-    Parameters& strand = all.emplace_back(parameters);
+    Parameters strand = parameters;
     for (const auto& [key, value, where] : record.of_strand) {
       if ((key == gamma_key && fitted != Fitted::nu) ||
           (key == nu_key && fitted != Fitted::gamma)) {
@@ -275,13 +268,24 @@ std::vector<Parameters> strands_of(const Records& records, const Parameters& par
       }
       strand.set(key, value, where);
     }
+    all.push_back(specimen(model, strand));
   }
   return all;
 }
 
-FrictionFit fit_friction(const Records& records, const ModelEntry& model,
-                         const std::vector<Parameters>& strands, const FitOptions& how) {
-  return Fit(records, model, strands, how).result();
+std::vector<Specimen> strands_of(const Records& records, const Scene& scene) {
+  for (const Record& record : records.all) {
+    if (record.of_strand.empty()) continue;
+    const auto& [key, value, where] = record.of_strand.front();
+    throw InputError("the scene says itself what '" + key + "' is", where,
+                     "leave out the column, or --scene");
+  }
+  return {records.all.size(), specimen(scene)};
+}
+
+FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& strands,
+                         const FitOptions& how) {
+  return Fit(records, strands, how).result();
 }
 
 }  // namespace tress

@@ -7,7 +7,6 @@
 
 #include "experiments/calibrate/simulated_records.h"
 #include "experiments/numerics/least_squares.h"
-#include "models/catalogue.h"
 
 namespace tress {
 
@@ -42,8 +41,11 @@ struct FrictionFit {
 
 /// The strands of the records: `parameters` with what each record says. Throws InputError
 /// at the record's cell on what the model does not know or the fit looks for.
-std::vector<Parameters> strands_of(const Records& records, const Parameters& parameters,
-                                   Fitted fitted);
+std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model,
+                                 const Parameters& parameters, Fitted fitted);
+/// That of the scene, for each record; throws InputError at a cell that says what the
+/// scene says.
+std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 
 /// Internal friction gamma and air drag nu from damped oscillations, as [Bertails et al.
 /// 2006, section 4.2 and first seed, figure 1.8] fit gamma to the span of a curly clump
@@ -73,7 +75,7 @@ std::vector<Parameters> strands_of(const Records& records, const Parameters& par
 ///                     or strand are not those of the record, the interval is too narrow
 ///     solver_error    the fit did not converge, or a run failed, one of half the step
 ///     too
-FrictionFit fit_friction(const Records& records, const ModelEntry& model,
-                         const std::vector<Parameters>& strands, const FitOptions& how);
+FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& strands,
+                         const FitOptions& how);
 
 }  // namespace tress

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <span>
 
-#include "models/strand/strand_parameters.h"
-
 namespace tress {
 namespace {
 
@@ -38,7 +36,7 @@ double decay_rate(const Record& record, Observed observed) {
   return std::max(0.0, std::log(early / late) / apart);
 }
 
-Friction friction_start(const Records& records, const std::vector<Parameters>& strands,
+Friction friction_start(const Records& records, const std::vector<Specimen>& strands,
                         Observed observed, Fitted fitted,
                         const std::function<double(const Friction&)>& misfit) {
   // Geometric means over the records; one that does not decay counts as decaying by a
@@ -48,10 +46,9 @@ Friction friction_start(const Records& records, const std::vector<Parameters>& s
     const Record& record = records.all[i];
     const double least = 0.1 / record.t.back();
     const double rate = std::max(decay_rate(record, observed), least);
-    const Strand made = strand(strands[i]);
-    const double nu = 2 * rate * made.mass() / made.length();
+    const double nu = 2 * rate * strands[i].mass / strands[i].length;
     log_nu += std::log(nu);
-    log_gamma += std::log(nu * std::pow(made.length() / 1.8751, 4));
+    log_gamma += std::log(nu * std::pow(strands[i].length / 1.8751, 4));
   }
   const auto count = static_cast<double>(strands.size());
   const Friction drag{negligible, std::exp(log_nu / count)};

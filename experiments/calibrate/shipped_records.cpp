@@ -1,8 +1,6 @@
 #include "experiments/calibrate/shipped_records.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 
 #include <cmath>
 #include <memory>
@@ -18,11 +16,6 @@ namespace {
 constexpr const char* model = "super_helix";
 constexpr double step = 5e-4;  // s
 constexpr int z = 2;
-
-struct FreeGenerator {
-  void operator()(gsl_rng* generator) const { gsl_rng_free(generator); }
-};
-using Generator = std::unique_ptr<gsl_rng, FreeGenerator>;
 
 std::vector<ShippedRecords> make_list() {
   const ModelSettings curl{{"natural_curvature_1_m", "100"},
@@ -144,25 +137,21 @@ Records synthetic(const ShippedRecords& shipped, std::uint64_t seed) {
   watch.observed = shipped.observed;
   watch.axis = z;
   Records records = planned(shipped);
-  std::vector<Parameters> strands;
+  std::vector<BuiltStrand> strands;
   for (Record& record : records.all) {
-    Parameters& strand = strands.emplace_back(parameters);
+    Parameters strand = parameters;
     for (const auto& [key, value, where] : record.of_strand)
       strand.set(key, value, where);
     if (shipped.observed == Observed::envelope) take_swing_times(record, strand, watch);
+    const Specimen made = specimen(entry, strand);
+    strands.push_back(made.build(made.friction, 1));
   }
-  const auto signals = simulated(records, entry, strands, watch);
-  if (signals.empty()) throw std::logic_error("a shipped record cannot be simulated");
-  const Generator generator(gsl_rng_alloc(gsl_rng_mt19937));
-  gsl_rng_set(generator.get(), seed);
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    for (const double value : signals[i]) {
-      records.all[i].value.push_back(value +
-                                     gsl_ran_gaussian(generator.get(), shipped.sigma));
-      if (shipped.observed == Observed::envelope) {
-        records.all[i].sigma.push_back(shipped.sigma);
-      }
-    }
+  if (!fill_in(records, strands, watch, {shipped.sigma, seed})) {
+    throw std::logic_error("a shipped record cannot be simulated");
+  }
+  if (shipped.observed == Observed::envelope) {
+    for (Record& record : records.all)
+      record.sigma.assign(record.t.size(), shipped.sigma);
   }
   return records;
 }

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "contract/integrator.h"
 #include "experiments/calibrate/records.h"
-#include "models/catalogue.h"
+#include "experiments/calibrate/specimen.h"
 
 namespace tress {
 
@@ -26,8 +27,18 @@ void centre(const Record& record, std::vector<double>& values);
 /// What the records would be of these strands, one for each, m; displacements from the
 /// mean of their record. Empty when a run fails or does not oscillate.
 std::vector<std::vector<double>> simulated(const Records& records,
-                                           const ModelEntry& model,
-                                           const std::vector<Parameters>& strands,
+                                           const std::vector<BuiltStrand>& strands,
                                            const Watch& watch);
+
+/// Gaussian errors of zero mean, independent, of GSL's mt19937.
+struct Noise {
+  double sigma;  // m
+  std::uint64_t seed;
+};
+
+/// Sets the values at the times of the records to what simulated() says, and errors.
+/// False: there is none.
+bool fill_in(Records& records, const std::vector<BuiltStrand>& strands,
+             const Watch& watch, const Noise& noise);
 
 }  // namespace tress

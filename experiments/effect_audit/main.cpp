@@ -169,12 +169,12 @@ std::vector<Case> cases(const CommandLine& line) {
   const double accuracy = settings.experiment().number("accuracy");
   std::vector<Case> all;
   const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
-  for (const std::string& file :
-       split(settings.experiment().word("scenes"), ',', "scenes")) {
-    const Scene scene = thinned(read_scene(file), strands);
+  const auto files = split(settings.experiment().word("scenes"), ',', "scenes");
+  for (const Scene& given : read_scenes(files)) {
+    const Scene scene = thinned(given, strands);
     if (scene.strands.empty()) {
-      throw InputError("nothing to leave out: the model brings its own effects", file,
-                       "give a scene with [strand] or [groom]");
+      throw InputError("nothing to leave out: the model brings its own effects",
+                       "scene " + scene.name, "give a scene with [strand] or [groom]");
     }
     std::vector<Ingredient> parts = ingredients(scene);
     parts.insert(parts.begin(), Ingredient{});

@@ -9,12 +9,12 @@ namespace tress {
 namespace {
 
 /// Time at which it breaks, or the measure, in the column named.
-struct Limit {
+struct Known {
   std::string_view column;
   KnownLimit known;
 };
 
-constexpr Limit limits[] = {
+constexpr Known limits[] = {
     {"t_s",
      {"long_curl", 0.033, 0.034,
       "one curvature near the root swings two metres of curls farther than they fall in "
@@ -30,9 +30,9 @@ constexpr Limit limits[] = {
       "the same after 5000 steps as after a million"}},
 };
 
-const Limit* limit_of(std::string_view hard) {
+const Known* limit_of(std::string_view hard) {
   const auto found = std::ranges::find(
-      limits, hard, [](const Limit& limit) { return limit.known.claim; });
+      limits, hard, [](const Known& limit) { return limit.known.claim; });
   return found == std::end(limits) ? nullptr : &*found;
 }
 
@@ -63,7 +63,7 @@ void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row->text("outcome") == "refused") continue;  // its kinematics does not admit it
     const bool held = row->text("passed") == "true";
     if (!held) claim += "; " + std::string(row->text("why"));
-    if (const Limit* limit = limit_of(hard.name)) {
+    if (const Known* limit = limit_of(hard.name)) {
       verdicts.check_known(std::move(claim), held, row->number(limit->column),
                            limit->known);
     } else {

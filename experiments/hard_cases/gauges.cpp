@@ -22,9 +22,8 @@ class PenetrationGauge final : public Gauge {
  public:
   explicit PenetrationGauge(const Situation& s)
       : points_(*s.system->material_points()),
-        x_(3 * static_cast<std::size_t>(points_.count())) {
-    const Segment& last = s.strand.segments.back();
-    allowed_ = last.section.a1 + last_point * last.length;
+        x_(3 * static_cast<std::size_t>(points_.count())),
+        allowed_(allowed_depth(s.strand)) {
     for (const auto& effect : s.effects) {
       if (const auto* body = dynamic_cast<const Body*>(effect.get())) {
         bodies_.push_back(body);
@@ -43,7 +42,7 @@ class PenetrationGauge final : public Gauge {
   MaterialPoints& points_;
   std::vector<double> x_;
   std::vector<const Body*> bodies_;
-  double allowed_ = 0, deepest_ = 0;
+  double allowed_, deepest_ = 0;
 };
 
 class StretchGauge final : public Gauge {
@@ -215,6 +214,10 @@ void OverlapGauge::see(double t, In q, In) {
   }
 }
 
+double allowed_depth(const Strand& strand) {
+  const Segment& last = strand.segments.back();
+  return last.section.a1 + last_point * last.length;
+}
 std::unique_ptr<Gauge> penetration_gauge(const Situation& s) {
   return std::make_unique<PenetrationGauge>(s);
 }

@@ -5,10 +5,13 @@
 /// What the cases measure. Each reads the system of the situation, which outlives it.
 namespace tress {
 
-/// Largest depth of a material point in a Body among the effects, over what a right
-/// simulator may have: the strand's radius, by which its axis stays outside, and 0.07 of
-/// the last element's length, by which the tip is beyond the last point where bodies can
-/// hold a strand that hits them head-on (the last of four points of Gauss).
+/// Depth (m) of a strand's surface in a Body that a right simulator may have: the radius,
+/// by which its axis stays outside, and 0.07 of the last element's length, by which the
+/// tip is beyond the last point where bodies can hold a strand that hits them head-on
+/// (the last of four points of Gauss).
+double allowed_depth(const Strand& strand);
+
+/// Largest depth of a material point in a Body among the effects, over that.
 std::unique_ptr<Gauge> penetration_gauge(const Situation& situation);
 
 /// Largest overlap of parts of the strand farther apart along it than `separation`, over

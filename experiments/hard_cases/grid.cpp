@@ -18,6 +18,38 @@ constexpr Parameter settings_of_rows[] = {
      .text = true,
      .fallback = "all"},
     {.name = "dt_s", .help = "rows of one step (s), 0: all", .number = 0, .min = 0},
+    {.name = "scenes", .help = "scene files instead of our cases", .text = true},
+    {.name = "horizon_s",
+     .help = "of a scene file: time that a run simulates, at most the scene's (s)",
+     .number = 0.5,
+     .min = 1e-3,
+     .max = 1e3},
+    {.name = "strands",
+     .help = "of a scene file whose strands do not touch: so many typical ones",
+     .number = 8,
+     .min = 1,
+     .max = 1e4,
+     .whole = true},
+    {.name = "row_work",
+     .help = "of a scene file: work of a row (max_work), 0: 2e7, with --quick 4e6, with "
+             "--full 1e8",
+     .number = 0,
+     .min = 0},
+    {.name = "most_stretch",
+     .help = "of a scene file: passed up to this change of a piece's length, over it",
+     .number = 0.5,
+     .min = 0,
+     .max = 0.5},
+    {.name = "most_depth_m",
+     .help = "of a scene file: passed up to this depth in a body beyond that at the "
+             "start (m), 0: the radius and 0.07 of the last element",
+     .number = 0,
+     .min = 0},
+    {.name = "most_energy_gain_j",
+     .help = "of a scene file: passed up to so much energy more than at the start (J), "
+             "0: what the guard allows",
+     .number = 0,
+     .min = 0},
 };
 
 constexpr double film = 1.0 / 30, substep = 1.0 / 300, fine = 1e-3;  // s
@@ -32,26 +64,9 @@ constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "rk4"};
 constexpr std::size_t usual_quick = 3;  // the first of them
 
-std::vector<std::string_view> integrators_of(const CommandLine& line) {
-  std::vector<std::string_view> all;
-  for (const IntegratorEntry& entry : integrators()) {
-    if (entry.adaptive) continue;  // has no step
-    const auto place = std::ranges::find(usual, entry.id) - std::begin(usual);
-    const bool is_usual =
-        place < static_cast<std::ptrdiff_t>(line.quick ? usual_quick : std::size(usual));
-    const bool chosen = !line.integrators.empty();
-    if (chosen ? wanted(line.integrators, entry.id) : line.full || is_usual) {
-      all.push_back(entry.id);
-    }
-  }
-  return all;
-}
-
 std::vector<double> steps_of(const CommandLine& line, const HardCase& hard) {
-  std::vector<double> all{film, substep};
-  if (line.quick) return all;
-  all.push_back(fine);
-  if (hard.further_step > 0) all.push_back(hard.further_step);
+  std::vector<double> all = tried_steps(line);
+  if (!line.quick && hard.further_step > 0) all.push_back(hard.further_step);
   return all;
 }
 
@@ -77,10 +92,33 @@ std::vector<Subject> subjects_of(const CommandLine& line, const HardCase& hard) 
   return all;
 }
 
-/// Tangents that an integrator is tried with; one empty word: the model has no choice.
-std::vector<std::string_view> tangents_of(const CommandLine& line,
-                                          const ModelEntry& model,
-                                          std::string_view integrator) {
+}  // namespace
+
+std::span<const Parameter> hard_case_settings() { return settings_of_rows; }
+
+std::vector<std::string_view> tried_integrators(const CommandLine& line) {
+  std::vector<std::string_view> all;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.adaptive) continue;  // has no step
+    const auto place = std::ranges::find(usual, entry.id) - std::begin(usual);
+    const bool is_usual =
+        place < static_cast<std::ptrdiff_t>(line.quick ? usual_quick : std::size(usual));
+    const bool chosen = !line.integrators.empty();
+    if (chosen ? wanted(line.integrators, entry.id) : line.full || is_usual) {
+      all.push_back(entry.id);
+    }
+  }
+  return all;
+}
+
+std::vector<double> tried_steps(const CommandLine& line) {
+  if (line.quick) return {film, substep};
+  return {film, substep, fine};
+}
+
+std::vector<std::string_view> tried_tangents(const CommandLine& line,
+                                             const ModelEntry& model,
+                                             std::string_view integrator) {
   const std::string_view whole = first_word(model, "tangent");
   const std::string_view seed = usual_tangent(model);
   if (whole == seed) return {whole};
@@ -89,10 +127,6 @@ std::vector<std::string_view> tangents_of(const CommandLine& line,
   if (line.quick) return {seed};
   return {seed, whole};
 }
-
-}  // namespace
-
-std::span<const Parameter> hard_case_settings() { return settings_of_rows; }
 
 Row Cell::identity() const {
   Row row;
@@ -113,9 +147,9 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
     if (only != "all" && only != hard.name) continue;
     for (const Subject& subject : subjects_of(line, hard)) {
       const std::size_t reference = grid.references++;
-      for (const std::string_view integrator : integrators_of(line)) {
+      for (const std::string_view integrator : tried_integrators(line)) {
         for (const std::string_view tangent :
-             tangents_of(line, *subject.model, integrator)) {
+             tried_tangents(line, *subject.model, integrator)) {
           Subject own = subject;
           if (!tangent.empty()) {
             own.settings.emplace_back("tangent", tangent);

@@ -29,6 +29,15 @@ struct Grid {
 /// Keys of --set that choose rows.
 std::span<const Parameter> hard_case_settings();
 
+// What the command line leaves of what is tried; hard_grid() says which.
+std::vector<std::string_view> tried_integrators(const CommandLine& line);
+/// s
+std::vector<double> tried_steps(const CommandLine& line);
+/// Of this model with this integrator; one empty word: the model has no choice.
+std::vector<std::string_view> tried_tangents(const CommandLine& line,
+                                             const ModelEntry& model,
+                                             std::string_view integrator);
+
 /// Every case on every model of a strand, and the systems of particles that it names, by
 /// every integrator and at every step that the command line leaves; what cannot be is a
 /// cell too.

@@ -5,20 +5,22 @@
 
 #include "experiments/hard_cases/claims.h"
 #include "experiments/hard_cases/grid.h"
+#include "experiments/hard_cases/scene_case.h"
 #include "experiments/run/experiment.h"
 
 namespace tress {
 namespace {
 
 constexpr Column columns[] = {
-    {"case", "name of the situation"},
+    {"case", "name of the situation, or of the scene"},
     {"model", "catalogue id"},
     {"variant", "which of its choices: tangent, how it keeps lengths, structure"},
     {"integrator", "method"},
     {"dt_s", "its step"},
     {"formulation", "how constraints enter, where there are some"},
     {"outcome", "refused, not finished, unstable, stable, stable and accurate"},
-    {"measure_name", "what the criterion looks at"},
+    {"measure_name",
+     "what the criterion looks at; empty: the guard of a scene, or a step"},
     {"measure", "its value, the largest of the run"},
     {"limit", "the criterion is measure <= limit"},
     {"criterion", "the same in words, and why"},
@@ -58,22 +60,12 @@ void measure(const Cell& cell, References& references, const Budget& budget,
                        coarser, budget.reference);
     });
   });
-  row.set("wall_s", s.wall_s);
-  row.set("outcome", name(s.outcome)).set("passed", passed(s.outcome));
-  if (!s.why.empty()) row.set("why", s.why);
-  if (!s.formulation.empty()) row.set("formulation", s.formulation);
-  if (s.measure) row.set("measure", *s.measure);
-  if (s.error) row.set("error_rel", *s.error);
-  if (s.gap) row.set("reference_gap", *s.gap);
-  if (s.outcome != Outcome::refused) {
-    row.set("t_s", s.t).set("steps", s.stats.steps);
-    row.set("newton_iterations", s.stats.newton_iterations);
-  }
-  if (!passed(s.outcome)) row.failed(name(s.outcome), s.why);
+  set_survival(s, row);
 }
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, hard_case_settings());
+  if (!settings.experiment().word("scenes").empty()) return scene_cells(line, settings);
   const Grid grid = hard_grid(line, settings);
   const auto references = std::make_shared<References>(grid.references);
   const Budget budget = budget_of(line);
@@ -110,6 +102,11 @@ std::vector<Gloss> glossary() {
 /// What does not survive is what is looked for.
 bool finding(const Row& row) { return row.status() != "crashed"; }
 
+constexpr OwnOption own_options[] = {
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of our cases",
+     true},
+};
+
 constexpr Unused unused[] = {
     {"elements", "how many there are belongs to each case"}, not_repeated, not_random};
 
@@ -128,6 +125,7 @@ int main(int argc, char** argv) {
       .quick_timeout_s = 120,  // an emergency: its work bounds a row
       .columns = columns,
       .settings = hard_case_settings(),
+      .options = own_options,
       .unused = unused,
       .cases = cases,
       .derive = fill,

@@ -99,8 +99,6 @@ Watched watch(std::string_view integrator, const HardCase& hard, const Subject& 
   return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>(), cut};
 }
 
-std::string cut_at(double t) { return "its work was done at t = " + text(t) + " s"; }
-
 /// The reference's tips at one step; empty and `why` where there is none.
 std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
                             const Parameters& defaults, const Options& options, double dt,
@@ -128,6 +126,23 @@ Subject rod() { return {&find_model("super_helix"), {}, ""}; }
 }  // namespace
 
 std::string_view name(Outcome outcome) { return names[static_cast<int>(outcome)]; }
+
+void set_survival(const Survival& s, Row& row) {
+  row.set("wall_s", s.wall_s);
+  row.set("outcome", name(s.outcome)).set("passed", passed(s.outcome));
+  if (!s.why.empty()) row.set("why", s.why);
+  if (!s.formulation.empty()) row.set("formulation", s.formulation);
+  if (s.measure) row.set("measure", *s.measure);
+  if (s.error) row.set("error_rel", *s.error);
+  if (s.gap) row.set("reference_gap", *s.gap);
+  if (s.outcome != Outcome::refused) {
+    row.set("t_s", s.t).set("steps", s.stats.steps);
+    row.set("newton_iterations", s.stats.newton_iterations);
+  }
+  if (!passed(s.outcome)) row.failed(name(s.outcome), s.why);
+}
+
+std::string cut_at(double t) { return "its work was done at t = " + text(t) + " s"; }
 
 Outcome outcome_of(std::string_view word, const std::string& where) {
   const auto found = std::ranges::find(names, word);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "experiments/hard_cases/references.h"
+#include "simulation/files/row.h"
 
 namespace tress {
 
@@ -27,6 +28,9 @@ struct Survival {
   double wall_s = 0;  // of the run
 };
 
+/// The columns about how a run ended.
+void set_survival(const Survival& survival, Row& row);
+
 /// What is tried.
 struct Attempt {
   const HardCase* hard;
@@ -47,6 +51,9 @@ struct WorkLimit {
 /// Of --quick: half a second a row, and a second for the reference that it makes for all
 /// rows of its case and model.
 inline constexpr WorkLimit quick_row{3e6}, quick_reference{6e6};
+
+/// "its work was done at t = 0.1 s".
+std::string cut_at(double t);
 
 /// The reference of a case on one model; `coarser` times as long steps as the case asks
 /// for.

@@ -134,10 +134,10 @@ std::optional<StabilityRun> judge_run(std::string_view integrator, System& syste
       simulate(integrator, system, options, start, steps * options.step,
                [&judge](double t, In q, In v) { return judge(t, q, v); });
   StabilityRun verdict = judge.verdict(run);
-  const bool used_up =
-      options.max_work > 0 &&
-      total_work(run.stats, system.layout().coordinates) >= options.max_work;
-  if (used_up && verdict.broken == Broken::no_solution) return {};
+  if (verdict.broken == Broken::no_solution &&
+      work_used_up(options, run.stats, system.layout().coordinates)) {
+    return {};
+  }
   return verdict;
 }
 

@@ -1,9 +1,10 @@
-// answers.mjs FOLDER: what stability_limit, effect_audit and cost_of_accuracy found about one
-// scene, whose tables lie in FOLDER, on one page -> FOLDER/answers.html.
+// answers.mjs FOLDER: what stability_limit, hard_cases, effect_audit and cost_of_accuracy found
+// about one scene, whose tables lie in FOLDER, on one page -> FOLDER/answers.html.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parse_csv } from './src/csv.mjs';
 import { escape_html, format_number, format_time } from './src/format.mjs';
+import { distinct, group_by, is_set } from './src/tables.mjs';
 
 const folder = process.argv[2];
 
@@ -44,6 +45,25 @@ function stable_steps() {
              seconds(1 / row.realtime_factor)]
           : [method(row), 'none', row.reason, '']),
   );
+}
+
+/// A line for each model and integrator, a column for each step; what is not stable says why.
+function survival() {
+  const rows = rows_of('hard_cases');
+  const steps = distinct(rows.map((row) => row.dt_s)).sort((a, b) => a - b);
+  const whose = (row) =>
+    [row.model, row.variant, row.integrator].filter(Boolean).join(', ');
+  // The guard's words begin with the outcome.
+  const reason = ({ outcome, why }) =>
+    why.startsWith(outcome) ? why : `${outcome}: ${why}`;
+  const lines = [...group_by(rows, whose)].map(([subject, members]) => [
+    subject,
+    ...steps.map((dt) => {
+      const row = members.find((one) => one.dt_s === dt);
+      return !row ? '' : is_set(row.passed) ? row.outcome : reason(row);
+    }),
+  ]);
+  return table(['model, integrator', ...steps.map((dt) => `step ${seconds(dt)}`)], lines);
 }
 
 function effects() {
@@ -91,6 +111,10 @@ th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px soli
 <p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
 needs shorter ones in its place.</p>
 ${stable_steps()}
+<h2>Which models survive it</h2>
+<p>Every model, at the scene's step and at those of the hard cases: each step has a solution, the guard of simulations
+finds nothing, no piece is stretched and no body entered too far.</p>
+${survival()}
 <h2>Which effects matter</h2>
 <p>Root mean square over frames and strands, over their length; the verdict is for 1 %.</p>
 ${effects()}

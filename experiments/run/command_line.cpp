@@ -129,10 +129,10 @@ void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> o
     return true;
   };
   if (!takes_place(own, "scene") && given(raw.scene, "scene")) {
-    throw InputError("this experiment has strands of its own and takes no scene",
-                     "--scene",
-                     "ask stability_limit, cost_of_accuracy or effect_audit about a "
-                     "scene; a file of options goes to --options");
+    throw InputError(
+        "this experiment has strands of its own and takes no scene", "--scene",
+        "ask stability_limit, hard_cases, cost_of_accuracy or effect_audit about "
+        "a scene; a file of options goes to --options");
   }
   if (given(raw.options, "options")) line.options_file = raw.options;
   if (given(raw.out, "out")) line.out = raw.out;

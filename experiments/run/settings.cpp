@@ -73,6 +73,15 @@ Parameters Settings::parameters(const ModelEntry& model) const {
   return result;
 }
 
+void Settings::leave_models_to_the_scene() const {
+  for (const auto& [key, value] : line_.set) {
+    const std::string where = line_.place("set:" + key);
+    if (owner(key, where) != Owner::models) continue;
+    throw InputError(fmt::format("a scene says itself what '{}' is", key), where,
+                     "leave it out, or change the scene");
+  }
+}
+
 bool Settings::chosen(std::string_view key) const {
   return std::any_of(line_.set.begin(), line_.set.end(),
                      [key](const auto& setting) { return setting.first == key; });
@@ -97,6 +106,18 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
   }
   throw InputError(fmt::format("unknown key '{}'", key), where,
                    suggestion(key, known, "--list shows the keys"));
+}
+
+void leave_strands_to_the_scene(const CommandLine& line) {
+  if (!line.models.empty()) {
+    throw InputError("a scene says itself which model it has", line.place("models"),
+                     "leave it out, or change the scene's [model]");
+  }
+  if (!line.elements.empty()) {
+    throw InputError("a scene says itself how its strands are cut",
+                     line.place("elements"),
+                     "leave it out, or change the scene's elements");
+  }
 }
 
 }  // namespace tress

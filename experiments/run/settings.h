@@ -29,6 +29,9 @@ class Settings {
   /// Defaults of `model`, then what the user set; keys it does not know are for others.
   Parameters parameters(const ModelEntry& model) const;
 
+  /// Throws InputError on a key of models, which a scene says itself.
+  void leave_models_to_the_scene() const;
+
   /// Whether the user set this key, wherever it went.
   bool chosen(std::string_view key) const;
 
@@ -41,5 +44,9 @@ class Settings {
   const std::span<const Parameter> declared_;
   Parameters experiment_;
 };
+
+/// Throws InputError on --models and --elements where a scene says itself which model it
+/// has and how its strands are cut.
+void leave_strands_to_the_scene(const CommandLine& line);
 
 }  // namespace tress

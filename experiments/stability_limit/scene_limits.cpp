@@ -67,8 +67,6 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   scene.options.max_work = left;
   scene.guard = true;
   World world(scene);
-  std::size_t coordinates = 0;
-  for (const auto& strand : world.snapshot().strands) coordinates += strand.q.size();
   // Whole steps, a few at a time: a step that shorter ones had to replace is too long.
   const double steps = std::ceil(t_end / dt - 1e-9), parts = std::min(steps, 16.0);
   Status status = Status::ok;
@@ -80,7 +78,7 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   run.t = world.time();
   run.stats = world.stats();
   run.failure = world.failure();
-  left -= total_work(run.stats, static_cast<int>(coordinates / world.systems()));
+  left -= world.work();
   if (const Breach* breach = world.breach()) {
     run.broken = broken_by(*breach);
     run.t = breach->t;
@@ -139,22 +137,10 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how) {
-  if (!line.models.empty()) {
-    throw InputError("a scene says itself which model it has", line.place("models"),
-                     "leave it out, or change the scene's [model]");
-  }
-  if (!line.elements.empty()) {
-    throw InputError("a scene says itself how its strands are cut",
-                     line.place("elements"),
-                     "leave it out, or change the scene's elements");
-  }
+  leave_strands_to_the_scene(line);
   std::vector<Case> all;
-  std::set<std::string> names;
-  for (const std::string& file : files) {
-    const Scene scene = thinned(read_scene(file), how.strands);
-    if (!names.insert(scene.name).second) {
-      throw InputError("two scenes of one name", file, "rename one of them");
-    }
+  for (const Scene& given : read_scenes(files)) {
+    const Scene scene = thinned(given, how.strands);
     for (const IntegratorEntry& entry : integrators()) {
       if (!considered(line, entry)) continue;
       for (const std::string& tangent : tangents_of(scene, entry.id)) {

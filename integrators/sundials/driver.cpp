@@ -55,6 +55,7 @@ Status Driver::start(double t, In q, In v) {
   std::copy(q.begin(), q.end(), y_.values().begin());
   std::copy(v.begin(), v.end(), y_.values().begin() + static_cast<std::ptrdiff_t>(n_));
   failure_.clear();
+  limit_ = Limit::none;
   dynamics().forget();
   steps_ = 0;
   carried_ = {};
@@ -80,11 +81,12 @@ Status Driver::advance(double t_end, const Observer& each_step) {
       return Status::ok;
     }
     if (taken >= options_.max_steps) {
+      limit_ = Limit::steps;
       return fail("max_steps = " + std::to_string(options_.max_steps) +
                   " used up before " + text(t_end) + " s");
     }
-    if (options_.max_work > 0 &&
-        total_work(stats(), dynamics().n()) >= options_.max_work) {
+    if (work_used_up(options_, stats(), dynamics().n())) {
+      limit_ = Limit::work;
       return fail("max_work used up");
     }
     std::ranges::copy(y_.values(), last_.begin());

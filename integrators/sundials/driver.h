@@ -25,6 +25,7 @@ class Driver : public Integrator {
   In v() const final { return y_.values().subspan(n_, n_); }
   Stats stats() const final;
   std::string failure() const final { return failure_; }
+  Limit limit() const final { return limit_; }
 
  protected:
   /// `unknowns` beyond q and v follow them in y.
@@ -68,6 +69,7 @@ class Driver : public Integrator {
   Stats carried_;          // counters of the stretches before the last restart
   Stats work_before_;      // work() at start()
   std::string failure_ = "not started";
+  Limit limit_ = Limit::none;
 };
 
 /// Options.max_order if it is within [1, most], `standard` if it is 0, else InputError.

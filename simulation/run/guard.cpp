@@ -43,10 +43,9 @@ std::string Breach::message() const {
   return fmt::format("{} at t = {:.9g} s{}{}", what, t, where.empty() ? "" : ", ", where);
 }
 
-std::string remedy(std::string_view integrator, const Options& options,
-                   std::string_view failure) {
+std::string remedy(std::string_view integrator, const Options& options, Limit limit) {
   const bool adaptive = find_integrator(integrator).adaptive;
-  if (failure.find("max_steps") != failure.npos) {
+  if (limit == Limit::steps) {
     return (adaptive
                 ? fmt::format("try a larger tolerance than rtol = {:g}, a method for "
                               "stiff systems such as ida",
@@ -54,7 +53,7 @@ std::string remedy(std::string_view integrator, const Options& options,
                 : fmt::format("try a longer step than {:g} s", options.step)) +
            fmt::format(", or more than max_steps = {}", options.max_steps);
   }
-  if (failure.find("max_work") != failure.npos) {
+  if (limit == Limit::work) {
     return fmt::format("try more than max_work = {:g}", options.max_work);
   }
   if (adaptive) {

@@ -22,10 +22,10 @@ struct Breach {
   std::string message() const;
 };
 
-/// What to try instead of this method at this step (s), in words; `failure`: what the
-/// method said, where it was the method that gave up.
+/// What to try instead of this method at this step (s), in words; `limit`: the bound that
+/// ended the run, if one did.
 std::string remedy(std::string_view integrator, const Options& options,
-                   std::string_view failure = {});
+                   Limit limit = Limit::none);
 
 /// Watches one system for what physics rules out, so that no run ends "ok" with nonsense
 /// in it: numbers that are not finite; a piece stretched or compressed by more than half

@@ -82,7 +82,7 @@ std::vector<std::string> effect_names(const Scene& scene) {
 }
 
 World::World(const Scene& scene, int threads)
-    : integrator_(scene.integrator),
+    : integrator_(find_integrator(scene.integrator)),
       options_(scene.options),
       effects_(scene.effects.size()),
       crew_(threads) {

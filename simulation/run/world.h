@@ -57,8 +57,10 @@ class World {
   const Breach* breach() const;
   /// Largest of all strands so far; 0 where the method has none (ErrorIndicator).
   double error_indicator() const;
-  /// Steps, rejected ones and Newton iterations since restore(), summed over strands.
+  /// What all strands have done since restore(), and what that cost as total_work()
+  /// counts it.
   Stats stats() const;
+  double work() const;
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
@@ -94,6 +96,7 @@ class World {
     std::vector<double> q, v;
     // Of what ran until the integrator's last start.
     Stats before;
+    Stats stats() const;  // with that
     double indicator = 0;
     int shortened = 0;     // steps that were taken in shorter ones, since restore()
     bool gave_up = false;  // shorter steps did not help
@@ -121,7 +124,7 @@ class World {
   void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();
 
-  std::string integrator_;
+  const IntegratorEntry& integrator_;
   Options options_;
   std::size_t effects_;
   std::unique_ptr<StrandInteraction> interaction_;

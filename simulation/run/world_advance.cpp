@@ -19,8 +19,15 @@ constexpr int most_shortened = 100;
 
 void add_work(const Stats& from, Stats& to) {
   to.steps += from.steps;
-  to.newton_iterations += from.newton_iterations;
   to.rejected += from.rejected;
+  to.residuals += from.residuals;
+  to.linearizations += from.linearizations;
+  to.solves += from.solves;
+  to.newton_iterations += from.newton_iterations;
+  to.sweeps += from.sweeps;
+  to.solver = from.solver;
+  to.rank_deficiency = std::max(to.rank_deficiency, from.rank_deficiency);
+  to.condition = std::max(to.condition, from.condition);
 }
 
 }  // namespace
@@ -54,14 +61,12 @@ void World::advance(Body& body, double t, bool last) {
   if (body.status != Status::ok) return;
   const double span = t - t_,
                count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
-  const bool again = !find_integrator(integrator_).adaptive &&
-                     count <= static_cast<double>(options_.max_steps);
+  const bool again =
+      !integrator_.adaptive && count <= static_cast<double>(options_.max_steps);
   Integrator& method = *body.integrator;
   // Shorter steps would only take more of it.
   const auto used_up = [&] {
-    return options_.max_work > 0 &&
-           total_work(method.stats(), static_cast<int>(method.q().size())) >=
-               options_.max_work;
+    return work_used_up(options_, method.stats(), static_cast<int>(method.q().size()));
   };
   body.keep(t_, method.q(), method.v());
   body.status = method.advance(t, body.observer());
@@ -85,7 +90,7 @@ Status World::shorter_steps(Body& body, double end) {
   for (int k = 0; k < halvings; ++k) {
     ++body.before.rejected;
     shorter.step = (end - begin) / std::ldexp(2.0, k);
-    const auto method = make_integrator(integrator_, *body.system, shorter);
+    const auto method = make_integrator(integrator_.id, *body.system, shorter);
     body.keep(begin, q, v);
     body.system->recall(memory);
     body.system->accept(begin, body.q, body.v);
@@ -121,16 +126,15 @@ void World::Body::keep(double at, In new_q, In new_v) {
 std::string World::failure_of(const Body& body) const {
   if (body.breached()) {
     return fmt::format("{}: {}; guard = false lets it go on",
-                       body.guard->breach()->message(), remedy(integrator_, options_));
+                       body.guard->breach()->message(), remedy(integrator_.id, options_));
   }
-  const std::string why = body.integrator->failure();
   const std::size_t last = body.first + body.coordinates.size() - 1;
   return fmt::format(
       "strand {}{}: {}{}: {}", body.first,
-      last > body.first ? fmt::format(" to {}", last) : "", why,
+      last > body.first ? fmt::format(" to {}", last) : "", body.integrator->failure(),
       body.gave_up ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
                    : "",
-      remedy(integrator_, options_, why));
+      remedy(integrator_.id, options_, body.integrator->limit()));
 }
 
 const Breach* World::breach() const {
@@ -138,12 +142,22 @@ const Breach* World::breach() const {
   return broken == bodies_.end() ? nullptr : &*broken->guard->breach();
 }
 
+Stats World::Body::stats() const {
+  Stats sum = before;
+  add_work(integrator->stats(), sum);
+  return sum;
+}
+
 Stats World::stats() const {
   Stats sum;
+  for (const Body& body : bodies_) add_work(body.stats(), sum);
+  return sum;
+}
+
+double World::work() const {
+  double sum = 0;
   for (const Body& body : bodies_) {
-    add_work(body.before, sum);
-    add_work(body.integrator->stats(), sum);
-    sum.solver = body.integrator->stats().solver;
+    sum += total_work(body.stats(), static_cast<int>(body.integrator->q().size()));
   }
   return sum;
 }

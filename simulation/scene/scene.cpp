@@ -247,6 +247,18 @@ Scene read_scene(const std::string& file) {
   return parse_scene(read_file(file, most_toml_bytes), file);
 }
 
+std::vector<Scene> read_scenes(const std::vector<std::string>& files) {
+  std::vector<Scene> all;
+  for (const std::string& file : files) {
+    Scene scene = read_scene(file);
+    if (std::ranges::find(all, scene.name, &Scene::name) != all.end()) {
+      throw InputError("two scenes of one name", file, "rename one of them");
+    }
+    all.push_back(std::move(scene));
+  }
+  return all;
+}
+
 Scene parse_scene(const std::string& text, const std::string& file) {
   return Reader(text, file).read();
 }

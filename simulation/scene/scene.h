@@ -56,6 +56,8 @@ struct Scene {
 
 /// Throws InputError with file:line:column, what is wrong and what would be right.
 Scene read_scene(const std::string& file);
+/// The same of several, whose names differ: tables tell scenes by them.
+std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// The same of a text; `file` is its name in messages, and its folder that of files which
 /// the scene names.
 Scene parse_scene(const std::string& text, const std::string& file);

@@ -10,7 +10,9 @@ const readersOfScenes = {
   simulate: (file) => [file, '--out', 'out'],
   cost_of_accuracy: (file) => ['--scene', file, '--out', 't.csv'],
   stability_limit: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  hard_cases: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
+  calibrate: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
 };
 const advise = (file) => ['--advise', file, '--out', 't.csv'];
 

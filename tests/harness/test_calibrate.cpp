@@ -54,7 +54,7 @@ void read(const BadRecords& bad) {
   const Records records = parse_records(bad.text, "x.csv", bad.observed);
   const ModelEntry& model = find_model("super_helix");
   const Parameters parameters(model.parameters, "model super_helix");
-  static_cast<void>(strands_of(records, parameters, Fitted::both));
+  static_cast<void>(strands_of(records, model, parameters, Fitted::both));
 }
 
 TEST_P(BadRecordsTest, AreRefusedWithPlaceAndRemedy) {

@@ -39,21 +39,26 @@ Parameters planar(int elements = 8) {
 
 constexpr double gamma_true = 1e-10, nu_true = 2e-5;
 
+BuiltStrand built(const Parameters& p) {
+  const Specimen strand = specimen(model(), p);
+  return strand.build(strand.friction, 1);
+}
+
 /// Hairs let go straight from a horizontal clamp, as the fit itself sees them.
 Records released(const std::vector<double>& lengths, const FitOptions& how) {
   Records records;
   Parameters truth = planar();
   truth.set("internal_friction_kg_m3_s", "1e-10");
   truth.set("drag_kg_m_s", "2e-5");
-  std::vector<Parameters> strands;
+  std::vector<BuiltStrand> strands;
   for (const double length : lengths) {
     Record& record = records.all.emplace_back();
     record.of_strand.push_back({"length_m", std::to_string(length), "x"});
     for (int k = 1; k <= 50; ++k) record.t.push_back(0.02 * k);
-    strands.push_back(truth);
-    strands.back().set("length_m", std::to_string(length));
+    truth.set("length_m", std::to_string(length));
+    strands.push_back(built(truth));
   }
-  const auto signals = simulated(records, model(), strands, how);
+  const auto signals = simulated(records, strands, how);
   for (std::size_t i = 0; i < signals.size(); ++i) records.all[i].value = signals[i];
   return records;
 }
@@ -74,7 +79,7 @@ void add_errors(Records& records, double sigma) {
 
 FrictionFit fit(const Records& records, const FitOptions& how,
                 const Parameters& parameters = planar()) {
-  return fit_friction(records, model(), strands_of(records, parameters, how.fitted), how);
+  return fit_friction(records, strands_of(records, model(), parameters, how.fitted), how);
 }
 
 TEST(FrictionFit, ExactRecordsOfTwoLengthsGiveTheTruth) {
@@ -173,8 +178,11 @@ TEST(FrictionFit, IntervalsAreThoseOfTheLinearisedFit) {
           fmt::format("{:.17g}", found.gamma.value * std::exp(ln_gamma)));
     p.set("drag_kg_m_s", fmt::format("{:.17g}", found.nu.value * std::exp(ln_nu)));
     std::vector<double> all;
-    for (const auto& one :
-         simulated(records, model(), strands_of(records, p, Fitted::both), how)) {
+    std::vector<BuiltStrand> strands;
+    for (const Specimen& one : strands_of(records, model(), p, Fitted::both)) {
+      strands.push_back(one.build(one.friction, 1));
+    }
+    for (const auto& one : simulated(records, strands, how)) {
       all.insert(all.end(), one.begin(), one.end());
     }
     return all;

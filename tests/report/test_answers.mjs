@@ -31,6 +31,21 @@ mine,backward_euler,exact,0.1,cap,100,
   assert.match(html, /250 ms/); // a simulated second of bdf2
 });
 
+test('outcomes stand beside each other by step, the shortest first; what failed says why', () => {
+  const html = page({
+    'hard_cases.csv': `case,model,variant,integrator,dt_s,outcome,passed,why
+mine,der,tangent=exact,rk4,0.03,unstable,false,too <fast> at t = 0.1 s
+mine,der,tangent=exact,rk4,0.003,stable,true,nothing to compare with
+mine,der,tangent=stiff,rk4,0.03,unstable,false,unstable: a piece is off
+mine,xpbd_cosserat,,bdf2,0.03,stable,true,nothing to compare with
+`,
+  });
+  assert.match(html, /<th>step 3 ms<\/th><th>step 30 ms<\/th>/);
+  assert.match(html, /<td>der, tangent=exact, rk4<\/td><td>stable<\/td><td>unstable: too &lt;fast&gt; at t = 0.1 s<\/td>/);
+  assert.match(html, /<td>unstable: a piece is off<\/td>/);
+  assert.match(html, /<td>xpbd_cosserat, bdf2<\/td><td><\/td><td>stable<\/td>/);
+});
+
 test('effects and advice are shown in words', () => {
   const html = page({
     'effect_audit.csv': `scene,effect,error_without_rel,cost_share,verdict,reason

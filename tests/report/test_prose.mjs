@@ -9,6 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { must, number, percent, range, row_of, table, time } from '../../experiments/report/prose/markdown.mjs';
 import { answers, written_pages } from '../../experiments/report/prose/pages.mjs';
 import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
+import { citations } from '../../experiments/report/prose/queries/references.mjs';
 import { fill, untraced_numbers } from '../../experiments/report/prose/template.mjs';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
@@ -18,6 +19,25 @@ test('every page says what templates and tables say', () => {
   for (const { page, text } of written_pages(root)) {
     assert.equal(readFileSync(join(root, page), 'utf8'), text, `${page}: run ./tress report`);
   }
+});
+
+test('a citation is authors, years and a place', () => {
+  assert.deepEqual(citations('Bergou et al. 2008, 2010'), [
+    { authors: 'Bergou et al.', year: '2008', place: '' },
+    { authors: 'Bergou et al.', year: '2010', place: '' },
+  ]);
+  assert.deepEqual(citations(' van der Heijden &  Thompson 2000: closed form'), [
+    { authors: 'van der Heijden & Thompson', year: '2000', place: 'closed form' },
+  ]);
+  assert.deepEqual(citations('Newton'), []);
+});
+
+test('every source has a line, once, with all places that cite it', () => {
+  const list = answers({}, root)('references.list');
+  const lines = list.split('\n').filter((line) => line.startsWith('| Chung'));
+  assert.equal(lines.length, 1, 'Chung-Hulbert is Chung, Hulbert');
+  assert.match(lines[0], /1993 .*`integrators\/catalogue.cpp`.*`integrators\/methods.h`/);
+  assert.match(list, /\| Swope et al\. \| 1982 \| J\. Chem\. Phys\. 76, 637 \|/);
 });
 
 test('the README fits on three screens', () => {

@@ -55,7 +55,7 @@ TEST(Guard, EndsAPassiveSceneThatGainsEnergy) {
 TEST(Guard, AdvisesMoreWorkWhereThatIsUsedUp) {
   Options options;
   options.max_work = 5e4;
-  EXPECT_EQ(remedy("implicit_midpoint", options, "max_work used up at t = 0.1 s"),
+  EXPECT_EQ(remedy("implicit_midpoint", options, Limit::work),
             "try more than max_work = 50000");
 }
 
@@ -67,6 +67,26 @@ TEST(Guard, AdvisesAgainstTooManySteps) {
   EXPECT_TRUE(says(adaptive, "or more than max_steps = 5")) << adaptive;
   const std::string fixed = ending(scene({"der", "backward_euler", tight, ""}));
   EXPECT_TRUE(says(fixed, "try a longer step than 0.001 s")) << fixed;
+}
+
+TEST(Guard, KnowsByTheRunThatItsWorkIsUsedUp) {
+  const std::string bounded = "1e-3\nmax_work = 100";
+  for (const char* method : {"gsl_rkf45", "backward_euler", "cvode_bdf"}) {
+    const std::string why = ending(scene({"der", method, bounded, ""}));
+    EXPECT_TRUE(says(why, "try more than max_work = 100")) << why;
+  }
+}
+
+// Every counter that total_work() adds up, over strands.
+TEST(WorldWork, IsThatOfAllCounters) {
+  World world(scene({"der", "backward_euler", "1e-3", ""}));
+  ASSERT_EQ(world.advance(0.01), Status::ok);
+  const Stats done = world.stats();
+  EXPECT_GT(done.residuals, 0);
+  EXPECT_GT(done.linearizations, 0);
+  EXPECT_GT(done.solves, 0);
+  const auto n = static_cast<int>(world.snapshot().strands.front().q.size());
+  EXPECT_EQ(world.work(), total_work(done, n));
 }
 
 TEST(Guard, IsSwitchedOffByTheScene) {

@@ -12,6 +12,7 @@ import * as flight from './flight.mjs';
 import * as friction from './friction.mjs';
 import * as hard from './hard.mjs';
 import * as machine from './machine.mjs';
+import * as references from './references.mjs';
 import * as scaling from './scaling.mjs';
 import * as stability from './stability.mjs';
 import * as swing from './swing.mjs';
@@ -30,6 +31,7 @@ export const queries = {
   friction,
   hard,
   machine,
+  references,
   scaling,
   stability,
   swing,

@@ -1,0 +1,290 @@
+#include "experiments/calibrate/fit_grid.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "contract/input_error.h"
+#include "experiments/calibrate/calibrate_claims.h"
+#include "experiments/calibrate/fit_row.h"
+#include "experiments/calibrate/shipped_records.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/run/settings.h"
+#include "integrators/catalogue.h"
+#include "simulation/files/parse.h"
+
+namespace tress {
+namespace {
+
+using calibrate::damping, calibrate::fitting;
+
+constexpr Parameter settings_of_rows[] = {
+    {.name = "data",
+     .help = "CSV files, separated by ',': t_s,amplitude_m[,sigma_m][,parameters of the "
+             "strand]; empty: those of experiments/calibrate/data",
+     .text = true},
+    {.name = "signal",
+     .help = "amplitude_m is the tip's displacement from the root, up to a constant, or "
+             "half the difference of successive turning points, midway between them",
+     .choices = "displacement|envelope"},
+    {.name = "axis", .help = "of the displacement; z is up", .choices = "z|x|y"},
+    {.name = "fit",
+     .help = "internal friction gamma, air drag nu; what is not fitted is a parameter",
+     .choices = "both|gamma|nu"},
+    {.name = "confidence",
+     .help = "of the intervals",
+     .number = 0.95,
+     .min = 0.5,
+     .max = 0.9999},
+    {.name = "scenes", .help = "scene files that say what the strand is", .text = true},
+    {.name = "horizon_s",
+     .help = "of a scene without data: length of its record, at most the scene's (s)",
+     .number = 1.5,
+     .min = 1e-3,
+     .max = 1e3},
+    {.name = "noise_m",
+     .help = "of a scene without data: standard error of its record (m)",
+     .number = 5e-4,
+     .min = 1e-12,
+     .max = 1e3},
+    {.name = "noise_seed",
+     .help = "of these errors",
+     .number = 1,
+     .min = 0,
+     .max = 1e9,
+     .whole = true},
+};
+
+/// What a file of experiments/calibrate/data is to show.
+struct Shown {
+  std::string_view data, fit, integrator;
+  bool slow = false;  // not with --quick
+};
+constexpr double usual_step = 2e-3;  // s
+constexpr double most_work = 2e7;    // of a run of a scene
+constexpr Shown shown[] = {
+    {"two_lengths", "both", fitting},          {"two_lengths", "both", damping},
+    {"two_lengths_envelope", "both", fitting}, {"one_length", "both", fitting},
+    {"one_length", "gamma", fitting},          {"one_length", "nu", fitting},
+    {"curly_span", "gamma", fitting, true},
+};
+
+Fitted fitted_of(std::string_view word) {
+  return word == "both" ? Fitted::both : word == "gamma" ? Fitted::gamma : Fitted::nu;
+}
+
+class Cases {
+ public:
+  explicit Cases(const CommandLine& line)
+      : line_(line),
+        settings_(line, calibrate_settings()),
+        own_(settings_.experiment()) {}
+
+  std::vector<Case> all() {
+    if (!own_.word("scenes").empty()) {
+      add_scenes();
+    } else if (own_.word("data").empty()) {
+      add_shipped();
+    } else {
+      add_measured();
+    }
+    return std::move(all_);
+  }
+
+ private:
+  FitOptions options(std::string_view integrator, std::string_view fit) const {
+    FitOptions how;
+    how.integrator = integrator;
+    Options start;
+    start.step = usual_step;
+    start.refresh = Refresh::every_step;
+    how.options = settings_.options(start);
+    how.fitted = fitted_of(fit);
+    const std::string_view axes = "xyz";
+    how.axis = static_cast<int>(axes.find(own_.word("axis")));
+    how.confidence = own_.number("confidence");
+    return how;
+  }
+
+  Observed observed() const {
+    return own_.word("signal") == "envelope" ? Observed::envelope
+                                             : Observed::displacement;
+  }
+
+  std::vector<std::string_view> methods(std::string_view usual) const {
+    std::vector<std::string_view> chosen;
+    for (const std::string& id : line_.integrators) {
+      chosen.push_back(find_integrator(id).id);
+    }
+    if (chosen.empty()) chosen.push_back(usual);
+    return chosen;
+  }
+
+  std::vector<const ModelEntry*> models() const {
+    if (line_.models.empty()) return {&find_model("super_helix")};
+    std::vector<const ModelEntry*> chosen;
+    for (const ModelEntry* model : strand_models()) {
+      if (wanted(line_.models, model->id)) chosen.push_back(model);
+    }
+    return chosen;
+  }
+
+  /// One row for each number of elements; none given: those of the model as it is set.
+  void add(const FitRow& work, const Parameters& parameters) {
+    std::vector<int> counts = line_.elements;
+    if (counts.empty()) counts = {parameters.whole("elements")};
+    for (const int elements : counts) {
+      Parameters p = parameters;
+      p.set("elements", std::to_string(elements));
+      FitRow one = work;
+      one.strands = strands_of(*one.records, *one.model, p, one.how.fitted);
+      one.elements = elements;
+      add(one);
+    }
+  }
+
+  void add(const FitRow& work) {
+    for (const Specimen& strand : work.strands) {  // refuses what cannot be made
+      Friction friction = strand.friction;
+      if (work.how.fitted != Fitted::nu) friction.gamma = 1e-12;
+      static_cast<void>(strand.build(friction, 1));
+    }
+    all_.push_back(
+        {work.identity(), [work](Row& row, const Deadline&) { work.measure(row); }});
+  }
+
+  void add_scenes() {
+    leave_strands_to_the_scene(line_);
+    settings_.leave_models_to_the_scene();
+    const auto files = split(own_.word("scenes"), ',', line_.place("scene"));
+    const bool measured = !own_.word("data").empty();
+    if (measured && files.size() > 1) {
+      throw InputError("several scenes, but data is of one strand", line_.place("scene"),
+                       "give one scene");
+    }
+    for (const Scene& scene : read_scenes(files)) {
+      static_cast<void>(specimen(scene));  // refuses what has none
+      for (const std::string_view method :
+           methods(find_integrator(scene.integrator).id)) {
+        FitRow work{scene.name, nullptr, {}, scene.model, {}, options(method, "both"), 0};
+        work.elements = static_cast<int>(scene.strands.front().segments.size());
+        work.how.options = settings_.options(scene.options);
+        if (work.how.options.max_work == 0) work.how.options.max_work = most_work;
+        work.how.observed = observed();
+        if (measured) {
+          add_measured(scene, work);
+        } else {
+          add_simulated(scene, work);
+        }
+      }
+    }
+  }
+
+  void add_measured(const Scene& scene, FitRow work) {
+    for (const std::string& file :
+         split(own_.word("data"), ',', line_.place("set:data"))) {
+      work.data = file;
+      work.records = std::make_shared<const Records>(read_records(file, observed()));
+      work.strands = strands_of(*work.records, scene);
+      work.how.fitted = fitted_of(own_.word("fit"));
+      add(work);
+    }
+  }
+
+  /// Of what the scene itself would show: fits of what it has.
+  void add_simulated(const Scene& scene, FitRow work) {
+    if (observed() == Observed::envelope) {
+      throw InputError("a scene's own record is a displacement",
+                       line_.place("set:signal"), "leave it out, or give data=file.csv");
+    }
+    work.records = std::make_shared<const Records>();
+    work.strands = {specimen(scene)};
+    work.truth = work.strands.front().friction;
+    work.simulate = {
+        std::min(own_.number("horizon_s"), scene.duration),
+        {own_.number("noise_m"), static_cast<std::uint64_t>(own_.number("noise_seed"))}};
+    const bool gamma = work.truth->gamma > 0, nu = work.truth->nu > 0;
+    bool any = false;
+    for (const std::string_view fit : {"both", "gamma", "nu"}) {
+      if (settings_.chosen("fit") && own_.word("fit") != fit) continue;
+      if ((fit != "nu" && !gamma) || (fit != "gamma" && !nu)) continue;
+      work.how.fitted = fitted_of(fit);
+      add(work);
+      any = true;
+    }
+    if (any) return;
+    throw InputError("the scene has nothing of what is to be found",
+                     "scene " + scene.name,
+                     "give internal_friction_kg_m3_s, [effects.linear_drag] with "
+                     "nu_kg_m_s, or another fit");
+  }
+
+  void add_measured() {
+    const std::string_view fit = own_.word("fit");
+    for (const std::string& file :
+         split(own_.word("data"), ',', line_.place("set:data"))) {
+      const auto records =
+          std::make_shared<const Records>(read_records(file, observed()));
+      for (const ModelEntry* model : models()) {
+        for (const std::string_view method : methods(fitting)) {
+          FitRow work{file, records, {}, model, {}, options(method, fit), 0};
+          work.how.observed = observed();
+          add(work, settings_.parameters(*model));
+        }
+      }
+    }
+  }
+
+  void add_shipped() {
+    if (own_.word("axis") != "z") {
+      throw InputError("the files of experiments/calibrate/data tell heights",
+                       line_.place("set:axis"), "leave it out, or give data=file.csv");
+    }
+    for (const Shown& row : shown) {
+      if (settings_.chosen("fit") && own_.word("fit") != row.fit) continue;
+      if (line_.quick && row.slow) continue;
+      // The methods chosen stand in for the one that fits.
+      if (!line_.integrators.empty() && row.integrator != fitting) continue;
+      const ShippedRecords& shipped =
+          *std::ranges::find(shipped_records(), row.data, &ShippedRecords::name);
+      if (settings_.chosen("signal") && observed() != shipped.observed) continue;
+      const auto records = std::make_shared<const Records>(
+          read_records(file_of(shipped), shipped.observed));
+      for (const ModelEntry* model : models()) {
+        for (const std::string_view method : methods(row.integrator)) {
+          FitRow work{std::string(row.data),
+                      records,
+                      Friction{shipped.gamma, shipped.nu},
+                      model,
+                      {},
+                      options(method, row.fit),
+                      0};
+          work.how.observed = shipped.observed;
+          add(work, parameters(shipped, *model));
+        }
+      }
+    }
+  }
+
+  Parameters parameters(const ShippedRecords& shipped, const ModelEntry& model) const {
+    Parameters p = settings_.parameters(model);
+    for (const auto& [key, value] : settings_of(shipped, shipped.elements)) {
+      const bool word_known = key != "modes" || has_word(model, key, value);
+      if (p.knows(key) && word_known && !settings_.chosen(key)) p.set(key, value);
+    }
+    return p;
+  }
+
+  const CommandLine& line_;
+  const Settings settings_;
+  const Parameters& own_;
+  std::vector<Case> all_;
+};
+
+}  // namespace
+
+std::span<const Parameter> calibrate_settings() { return settings_of_rows; }
+
+std::vector<Case> calibrate_cases(const CommandLine& line) { return Cases(line).all(); }
+
+}  // namespace tress

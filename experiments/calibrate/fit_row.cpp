@@ -1,0 +1,76 @@
+#include "experiments/calibrate/fit_row.h"
+
+#include "integrators/catalogue.h"
+
+namespace tress {
+namespace {
+
+void set(Row& row, const Estimate& estimate, const std::string& name,
+         const std::string& unit) {
+  row.set(name + unit, estimate.value);
+  row.set(name + "_low" + unit, estimate.low).set(name + "_high" + unit, estimate.high);
+}
+
+/// The record that the strand would leave: by half the step and twice the elements, so
+/// that the truth is better than the fit. Empty: its run fails.
+Records record_of(const FitRow& work) {
+  constexpr int points = 150, finer = 2;
+  Records records;
+  Record& record = records.all.emplace_back();
+  for (int k = 1; k <= points; ++k) record.t.push_back(work.simulate->t_end * k / points);
+  Watch watch = work.how;
+  watch.options.step /= finer;
+  std::vector<BuiltStrand> strands;
+  strands.push_back(work.strands.front().build(*work.truth, finer));
+  if (!fill_in(records, strands, watch, work.simulate->noise)) return {};
+  return records;
+}
+
+}  // namespace
+
+std::string_view name(Fitted fitted) {
+  return fitted == Fitted::both ? "both" : fitted == Fitted::gamma ? "gamma" : "nu";
+}
+
+Row FitRow::identity() const {
+  constexpr std::string_view axes[] = {"x", "y", "z"};
+  Row row;
+  row.set("data", data).set("data_hash", records->hash);
+  row.set("signal", how.observed == Observed::envelope ? "envelope" : "displacement");
+  row.set("axis", axes[how.axis]).set("fit", name(how.fitted)).set("model", model->id);
+  row.set("integrator", how.integrator).set("elements", elements);
+  row.set("confidence", how.confidence);
+  return row;
+}
+
+void FitRow::measure(Row& row) const {
+  const Specimen& first = strands.front();
+  const BuiltStrand built = first.build(first.friction, 1);
+  const std::string objection =
+      refusal(find_integrator(how.integrator), *built.system, how.options.formulation);
+  if (!objection.empty()) {
+    row.failed("refused", objection);
+    return;
+  }
+  if (truth) {
+    row.set("gamma_true_kg_m3_s", truth->gamma);
+    row.set("nu_true_kg_m_s", truth->nu);
+  }
+  const Records fitted = simulate ? record_of(*this) : *records;
+  if (fitted.all.empty()) {
+    row.failed("solver_error", "the scene's own run fails, or its tip does not swing");
+    return;
+  }
+  const FrictionFit fit = fit_friction(fitted, strands, how);
+  row.set("records", fitted.all.size()).set("points", fitted.points());
+  set(row, fit.gamma, "gamma", "_kg_m3_s");
+  set(row, fit.nu, "nu", "_kg_m_s");
+  row.set("correlation", fit.correlation).set("condition", fit.condition);
+  row.set("residual_rms_m", fit.rms).set("reduced_chi2", fit.reduced_chi2);
+  row.set("autocorrelation", fit.autocorrelation).set("step_shift", fit.step_shift);
+  row.set("elements_shift", fit.elements_shift);
+  row.set("degrees", fit.degrees).set("evaluations", fit.evaluations);
+  if (fit.status != "ok") row.failed(fit.status, fit.reason);
+}
+
+}  // namespace tress

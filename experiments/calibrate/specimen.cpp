@@ -1,0 +1,81 @@
+#include "experiments/calibrate/specimen.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "contract/input_error.h"
+#include "models/strand/strand_parameters.h"
+#include "simulation/run/variants.h"
+#include "simulation/run/world.h"
+
+namespace tress {
+namespace {
+
+constexpr const char* drag_id = "linear_drag";
+constexpr const char* drag_key = "nu_kg_m_s";
+
+auto drag_of(auto& scene) {
+  return std::ranges::find(scene.effects, drag_id,
+                           [](const EffectChoice& one) { return one.entry->id; });
+}
+
+Scene with_friction(Scene scene, const Friction& friction) {
+  scene.strands.front().material.internal_friction = friction.gamma;
+  auto drag = drag_of(scene);
+  if (drag == scene.effects.end()) {
+    const EffectEntry& entry = find_effect(drag_id, "effects");
+    Parameters none(entry.parameters, "effects.linear_drag");
+    drag = scene.effects.insert(drag, EffectChoice{&entry, std::move(none)});
+  }
+  drag->parameters.set(drag_key, fmt::format("{}", friction.nu));
+  return scene;
+}
+
+}  // namespace
+
+Specimen specimen(const ModelEntry& model, const Parameters& parameters) {
+  const Strand made = strand(parameters);
+  const auto build = [&model, parameters](const Friction& friction, int finer) {
+    Parameters p = parameters;
+    p.set(gamma_key, fmt::format("{}", friction.gamma));
+    p.set(nu_key, fmt::format("{}", friction.nu));
+    p.set("elements", fmt::format("{}", finer * p.whole("elements")));
+    return BuiltStrand{model.make(p), guarded_strands(model, p)};
+  };
+  return {{parameters.number(gamma_key), parameters.number(nu_key)},
+          made.length(),
+          made.mass(),
+          build};
+}
+
+Specimen specimen(const Scene& scene) {
+  const std::string where = "scene " + scene.name;
+  if (scene.strands.empty()) {
+    throw InputError("the model brings its own geometry: it has no tip to be followed",
+                     where, "give a scene with one [strand]");
+  }
+  if (scene.strands.size() > 1) {
+    throw InputError(
+        fmt::format("{} strands, but records are of one", scene.strands.size()), where,
+        "leave one [strand] in it");
+  }
+  const Strand& strand = scene.strands.front();
+  if (strand.free_root) {
+    throw InputError("the strand flies freely: its tip does not swing about a root",
+                     where, "clamp it: leave out motion = \"free\"");
+  }
+  const auto build = [scene](const Friction& friction, int finer) {
+    Scene changed = with_friction(scene, friction);
+    for (; finer > 1; finer /= 2) changed = refined(std::move(changed));
+    const Strand& made = changed.strands.front();
+    const Effects effects = make_effects(changed);
+    return BuiltStrand{changed.model->on_strand(made, changed.model_options, effects),
+                       {guarded_strand(made, effects)}};
+  };
+  const auto drag = drag_of(scene);
+  const double nu = drag == scene.effects.end() ? 0 : drag->parameters.number(drag_key);
+  return {{strand.material.internal_friction, nu}, strand.length(), strand.mass(), build};
+}
+
+}  // namespace tress

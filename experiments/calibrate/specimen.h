@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "models/catalogue.h"
+#include "simulation/run/guarded_strand.h"
+#include "simulation/scene/scene.h"
+
+namespace tress {
+
+// What parameters of strand models call them.
+inline constexpr const char* gamma_key = "internal_friction_kg_m3_s";
+inline constexpr const char* nu_key = "drag_kg_m_s";
+
+struct Friction {
+  double gamma;  // internal friction, kg m^3/s
+  double nu;     // air drag, kg/(m s)
+};
+
+struct BuiltStrand {
+  std::unique_ptr<System> system;
+  std::vector<GuardedStrand> guarded;
+};
+
+/// A strand of which records are made: all but its friction is known.
+struct Specimen {
+  Friction friction;    // its own
+  double length, mass;  // m, kg
+  /// With this friction, of `finer` (a power of two) times as many elements.
+  std::function<BuiltStrand(const Friction&, int finer)> build;
+};
+
+/// Of a model's parameters (models/strand/strand_parameters.h).
+Specimen specimen(const ModelEntry& model, const Parameters& parameters);
+
+/// The strand of a scene, with all that acts on it; nu is that of [effects.linear_drag].
+/// Throws InputError on a scene without or of several strands, and on a strand that flies
+/// freely.
+Specimen specimen(const Scene& scene);
+
+}  // namespace tress

@@ -1,0 +1,196 @@
+#include "experiments/hard_cases/scene_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "contract/input_error.h"
+#include "experiments/hard_cases/grid.h"
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
+#include "simulation/files/parse.h"
+#include "simulation/run/timing.h"
+#include "simulation/run/variants.h"
+#include "simulation/scene/scene_tables.h"
+
+namespace tress {
+namespace {
+
+/// The tangents that are tried; of the scene's own model the scene's, and the usual one
+/// of the method that solves only once a step.
+std::vector<std::string_view> tangents(const CommandLine& line, const Scene& scene,
+                                       const ModelEntry& model,
+                                       std::string_view integrator) {
+  if (&model != scene.model) return tried_tangents(line, model, integrator);
+  if (first_word(model, "tangent").empty()) return {""};
+  std::set<std::string_view> all{scene.model_options.word("tangent")};
+  if (integrator == "semi_implicit_euler") all.insert(usual_tangent(model));
+  return {all.begin(), all.end()};
+}
+
+Scene with_model(const Scene& scene, const ModelEntry& model, std::string_view tangent) {
+  Scene changed = scene;
+  if (&model != scene.model) {
+    changed.model = &model;
+    changed.model_options =
+        Parameters(model_table_parameters(model), fmt::format("model {}", model.id));
+  }
+  if (!tangent.empty()) changed.model_options.set("tangent", tangent);
+  return changed;
+}
+
+/// Sets how constraints enter, where the scene's own way is none for this model and
+/// integrator; throws InputError where there is no way.
+void take_formulation(Scene& scene) {
+  const auto system =
+      scene.strands.empty()
+          ? scene.model->make(scene.model_options)
+          : scene.model->on_strand(scene.strands.front(), scene.model_options,
+                                   make_effects(scene));
+  const IntegratorEntry& entry = find_integrator(scene.integrator);
+  if (refusal(entry, *system, scene.options.formulation).empty()) return;
+  const auto usable = usable_formulations(entry, *system);
+  if (!usable.empty()) scene.options.formulation = usable.front();
+}
+
+struct Work {
+  Scene scene;
+  SceneCriteria criteria;
+  double horizon;  // s
+  WorkLimit limit;
+};
+
+void measure(const Work& work, Row& row) {
+  Scene scene = work.scene;
+  SceneSurvival s;
+  try {
+    take_formulation(scene);
+    s = survive(scene, work.criteria, std::min(work.horizon, scene.duration), work.limit);
+    row.set("measure_name", s.measured).set("limit", s.limit);
+    row.set("criterion", s.criterion);
+  } catch (const InputError& refused) {
+    s.why = refused.what();
+  }
+  set_survival(s, row);
+}
+
+/// Ours and the scene's own.
+std::vector<double> steps_of(const CommandLine& line, const Scene& scene, double only) {
+  std::set<double> all{scene.options.step};
+  for (const double dt : tried_steps(line)) all.insert(dt);
+  if (only > 0) std::erase_if(all, [only](double dt) { return dt != only; });
+  return {all.begin(), all.end()};
+}
+
+std::vector<const ModelEntry*> models_of(const CommandLine& line, const Scene& scene) {
+  std::vector<const ModelEntry*> all;
+  for (const ModelEntry& model : models()) {
+    const bool able =
+        scene.strands.empty() ? &model == scene.model : model.on_strand != nullptr;
+    if (able && wanted(line.models, model.id)) all.push_back(&model);
+  }
+  return all;
+}
+
+double row_work(const CommandLine& line, const Parameters& own) {
+  if (own.number("row_work") > 0) return own.number("row_work");
+  return line.quick ? 4e6 : line.full ? 1e8 : 2e7;
+}
+
+}  // namespace
+
+SceneSurvival survive(const Scene& given, const SceneCriteria& criteria, double t_end,
+                      const WorkLimit& limit) {
+  Scene scene = given;
+  scene.guard = true;
+  scene.options.max_work = 0;  // it is counted here, over all strands
+  const double dt = scene.options.step;
+  World world(scene);
+  SceneGauge gauge(scene, world, criteria);
+  SceneSurvival result;
+  result.outcome = Outcome::stable;
+  const auto ends = [&result](Outcome outcome, std::string why) {
+    result.outcome = outcome;
+    result.why = std::move(why);
+  };
+  const SceneGauge::Criterion* broken = nullptr;
+  const auto steps = static_cast<long>(std::max(1.0, std::ceil(t_end / dt - 1e-9)));
+  result.wall_s = seconds_of([&] {
+    for (long k = 1; k <= steps && passed(result.outcome); ++k) {
+      const Status status = world.advance(static_cast<double>(k) * dt);
+      if (const Breach* breach = world.breach()) {
+        ends(Outcome::unstable, breach->message());
+      } else if (status != Status::ok) {
+        ends(Outcome::unstable, world.failure());
+      } else if (world.stats().rejected > 0) {
+        ends(Outcome::unstable,
+             fmt::format("no solution for the step to t = {:.9g} s, only for shorter "
+                         "ones in its place",
+                         world.time()));
+      } else if (broken = gauge.broken(); broken != nullptr) {
+        ends(Outcome::unstable,
+             fmt::format("{} = {:.3g} > {:.3g} at t = {:.9g} s, {}", broken->name,
+                         broken->largest, broken->limit, world.time(), broken->where()));
+      } else if (k < steps && world.work() > limit.most) {
+        ends(Outcome::not_finished, cut_at(world.time()));
+      }
+    }
+  });
+  if (result.outcome == Outcome::unstable && broken == nullptr) {
+    result.criterion =
+        "every step has a solution, and the guard of simulations finds nothing";
+  } else {
+    const SceneGauge::Criterion& told = broken != nullptr ? *broken : gauge.nearest();
+    result.measured = told.name;
+    result.measure = told.largest;
+    result.limit = told.limit;
+    result.criterion = told.words;
+  }
+  result.t = world.breach() != nullptr ? world.breach()->t : world.time();
+  result.stats = world.stats();
+  const Formulation formulation = scene.options.formulation;
+  if (formulation != Formulation::parametric) result.formulation = name(formulation);
+  if (passed(result.outcome)) result.why = "a scene has nothing to be compared with";
+  return result;
+}
+
+std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings) {
+  settings.leave_models_to_the_scene();
+  if (settings.chosen("case")) {
+    throw InputError("the scene is the case", line.place("set:case"), "leave it out");
+  }
+  const Parameters& own = settings.experiment();
+  const SceneCriteria criteria{own.number("most_stretch"), own.number("most_depth_m"),
+                               own.number("most_energy_gain_j")};
+  const auto strands = static_cast<std::size_t>(own.whole("strands"));
+  std::vector<Case> all;
+  for (const Scene& given : read_scenes(split(own.word("scenes"), ',', "scenes"))) {
+    const Scene scene = thinned(given, strands);
+    for (const ModelEntry* model : models_of(line, scene)) {
+      for (const std::string_view integrator : tried_integrators(line)) {
+        for (const std::string_view tangent : tangents(line, scene, *model, integrator)) {
+          for (const double dt : steps_of(line, scene, own.number("dt_s"))) {
+            Work work{with_model(scene, *model, tangent),
+                      criteria,
+                      own.number("horizon_s"),
+                      {row_work(line, own)}};
+            work.scene.integrator = integrator;
+            work.scene.options = settings.options(scene.options);
+            work.scene.options.step = dt;
+            Row row;
+            row.set("case", scene.name).set("model", model->id);
+            row.set("variant", tangent.empty() ? "" : fmt::format("tangent={}", tangent));
+            row.set("integrator", integrator).set("dt_s", dt);
+            all.push_back(
+                {row, [work](Row& of_case, const Deadline&) { measure(work, of_case); }});
+          }
+        }
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace tress

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/hard_cases/scene_gauge.h"
+#include "experiments/hard_cases/survival.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+
+namespace tress {
+
+/// With the criterion that does not hold, or the one that has used up the most of its
+/// limit; it has a name and a limit where it is one of SceneCriteria.
+struct SceneSurvival : Survival {
+  std::string_view measured;
+  double limit = std::numeric_limits<double>::quiet_NaN();
+  std::string_view criterion;
+};
+
+/// A scene as a hard case: runs it at its own step until t_end (s), or until something
+/// does not hold. Stable where every step has a solution, the guard finds nothing and the
+/// criteria are met; there is no reference that it could be accurate against. `limit`:
+/// World::work().
+SceneSurvival survive(const Scene& scene, const SceneCriteria& criteria, double t_end,
+                      const WorkLimit& limit);
+
+/// Rows about scene files: every strand model and integrator that the command line
+/// leaves, at the scene's step and at ours; of a scene without strands its own model. The
+/// scene's model is as the scene has it, others as they come, with the tangents of
+/// hard_grid(). Of many strands that do not touch each other, typical ones. Throws
+/// InputError on settings that a scene says itself.
+std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
+
+}  // namespace tress

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/run/world.h"
+
+namespace tress {
+
+/// What a run of a scene keeps besides what the guard of simulations asks for (Guard).
+struct SceneCriteria {
+  double stretch = 0.5;    // of a piece, over its length; the guard's own bound
+  double depth = 0;        // m, in a body, beyond that at the start; 0: allowed_depth()
+  double energy_gain = 0;  // J, kinetic, elastic and of effects; 0: the guard's bound
+};
+
+/// Watches a scene from step to step; reads both, which outlive it.
+class SceneGauge {
+ public:
+  struct Criterion {
+    std::string_view name;
+    std::string_view words;
+    double limit;
+    std::function<double()> read;
+    std::function<std::string()> where;  // "strand 0, point 3"
+    double largest = 0;
+  };
+
+  /// From the present state of the world on.
+  SceneGauge(const Scene& scene, World& world, const SceneCriteria& criteria);
+
+  /// After a step: the criterion that does not hold, null while all do.
+  const Criterion* broken();
+  /// The one that has used up the most of its limit.
+  const Criterion& nearest() const;
+
+ private:
+  double energy() const;
+  double depth();
+  std::string stretched_place() const;
+  std::string place(std::size_t point, std::string_view what) const;
+
+  const Scene& scene_;
+  World& world_;
+  Effects bodies_;
+  std::size_t deepest_ = 0;  // point
+  std::vector<Criterion> criteria_;
+};
+
+}  // namespace tress

@@ -1,0 +1,68 @@
+// Sources that headers, catalogues, tests and scenes cite, gathered from their texts.
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { table } from '../markdown.mjs';
+
+const folders = ['math', 'contract', 'linear', 'models', 'integrators', 'simulation', 'experiments'];
+const year = '(?:1[6-9]|20)\\d\\d';
+
+// Headers, sources and scenes, relative to the repository.
+function files(root) {
+  const list = (folder, ending) =>
+    readdirSync(join(root, folder), { withFileTypes: true })
+      .sort((a, b) => (a.name < b.name ? -1 : 1))
+      .flatMap((entry) => {
+        const path = `${folder}/${entry.name}`;
+        if (entry.isDirectory()) return entry.name === 'report' ? [] : list(path, ending);
+        return ending.test(entry.name) ? [path] : [];
+      });
+  return [...folders.flatMap((folder) => list(folder, /\.(h|cpp)$/)), ...list('scenes', /\.toml$/)];
+}
+
+// What is cited in one file: in brackets in comments, as the source of a published test or
+// of a scene, and as that of a line of a catalogue.
+function cited(path, text) {
+  const joined = text.replace(/\n\s*\/\/\/? ?/g, ' ').replace(/"\s*\n\s*"/g, '');
+  const of = (pattern) => [...joined.matchAll(pattern)].map((match) => match[1]);
+  const brackets = path.endsWith('.toml') ? [] : of(new RegExp(`\\[([A-Z][^\\[\\]]{3,150}${year}[^\\[\\]]{0,80})\\]`, 'g'));
+  const sources = of(/\bsource = "([^"]+)"/g);
+  const lines = path.endsWith('catalogue.cpp') ? of(new RegExp(`"([A-Z][^"]*\\b${year}\\b[^"]*)"`, 'g')) : [];
+  return [...brackets, ...sources, ...lines].flatMap((all) => all.split(';'));
+}
+
+// "Bergou et al. 2008, 2010, eq. 3" -> two of {authors, year, place}; none where it has no
+// author and year.
+export function citations(text) {
+  const authors = `[A-Z][\\p{L}.&,' -]*?`;
+  const found = text.replace(/\s+/g, ' ').trim().match(new RegExp(`((?:(?:van der|von|de|den) )?${authors}),? (${year}(?:, ${year})*)(.*)$`, 'u'));
+  if (found === null) return [];
+  const [, who, years, place] = found;
+  return years.split(', ').map((one) => ({ authors: who.trim(), year: one,
+    place: place.replace(/^[,:]? */, '').trim() }));
+}
+
+// By which the same publication is known: catalogues write Chung-Hulbert.
+const surname = (authors) => authors.match(/\p{Lu}\p{L}{2,}/u)?.[0] ?? authors;
+
+// A journal or a title, without section or equation; empty where it is none.
+const work_of = (place) =>
+  /^\p{Lu}.{4,}\d/u.test(place) ? place.replace(/,? (section|chapter|eqs?\.|figure) .*$/, '') : '';
+
+export function list(_, root) {
+  const all = new Map();
+  for (const path of files(root)) {
+    for (const text of cited(path, readFileSync(join(root, path), 'utf8'))) {
+      for (const { authors, year: when, place } of citations(text)) {
+        const key = `${surname(authors)} ${when}`;
+        const entry = all.get(key) ?? { authors, when, work: '', where: new Set() };
+        if (authors.length > entry.authors.length) entry.authors = authors;
+        if (work_of(place).length > entry.work.length) entry.work = work_of(place);
+        entry.where.add(`\`${path}\``);
+        all.set(key, entry);
+      }
+    }
+  }
+  const rows = [...all].sort(([a], [b]) => a.localeCompare(b, 'en'))
+    .map(([, { authors, when, work, where }]) => [authors, when, work, [...where].join(', ')]);
+  return table(['authors', 'year', 'work', 'cited in'], rows);
+}
