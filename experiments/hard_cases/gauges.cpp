@@ -6,7 +6,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/drift_monitor.h"
 #include "math/closest.h"
-#include "models/effects/body.h"
+#include "models/effects/effect.h"
 
 namespace tress {
 namespace {
@@ -22,19 +22,16 @@ class PenetrationGauge final : public Gauge {
  public:
   explicit PenetrationGauge(const Situation& s)
       : points_(*s.system->material_points()),
-        x_(3 * static_cast<std::size_t>(points_.count())) {
+        x_(3 * static_cast<std::size_t>(points_.count())),
+        effects_(s.effects) {
     const Segment& last = s.strand.segments.back();
     allowed_ = last.section.a1 + last_point * last.length;
-    for (const auto& effect : s.effects) {
-      if (const auto* body = dynamic_cast<const Body*>(effect.get())) {
-        bodies_.push_back(body);
-      }
-    }
   }
   void see(double t, In q, In) override {
     points_.positions(t, q, x_);
-    for (const Body* body : bodies_) {
-      deepest_ = larger(deepest_, body->penetration(t, x_));
+    for (const auto& effect : effects_) {
+      const std::optional<double> depth = effect->penetration(t, x_);
+      if (depth) deepest_ = larger(deepest_, *depth);
     }
   }
   double measure() const override { return deepest_ / allowed_; }
@@ -42,7 +39,7 @@ class PenetrationGauge final : public Gauge {
  private:
   MaterialPoints& points_;
   std::vector<double> x_;
-  std::vector<const Body*> bodies_;
+  const Effects effects_;
   double allowed_ = 0, deepest_ = 0;
 };
 
