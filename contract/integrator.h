@@ -1,10 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "contract/linear_kind.h"
+#include "contract/parameters.h"
 #include "contract/system.h"
 
 namespace tress {
@@ -25,16 +28,8 @@ std::string_view name(Formulation formulation);
 /// When an implicit method rebuilds its Newton matrix.
 enum class Refresh { every_iteration, every_step, when_slow };
 
-/// What moving q onto its constraints does to the velocity: it takes the impulse that
-/// would have moved it there [Bridson et al. 2002], or stays [Provot 1995].
-enum class Correction { impulse, position };
-
-/// In which order xpbd goes through the blocks of a strand: from the root to the tip, or
-/// from both ends in turn, even places upwards and odd ones downwards, after the
-/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
-enum class SweepOrder { root_to_tip, bilateral };
-
-/// Everything an integrator can be told; each reads what applies to it.
+/// Everything an integrator can be told; each reads what applies to it. `apply` of
+/// integrators/integrator_options.h sets any of it from text.
 struct Options {
   Formulation formulation = Formulation::parametric;
   double alpha = 0;  // 1/s^2, Baumgarte's position gain
@@ -48,8 +43,6 @@ struct Options {
   double max_work = 0;          // since start(), as total_work() counts it; 0: unlimited
 
   int max_order = 0;  // multistep order or Runge-Kutta order; 0: the method's default
-  std::string table;  // arkode_dirk: a SUNDIALS Butcher table by name; empty: our default
-  double rho_inf = 0.9;  // generalized_alpha: spectral radius at infinity, in [0, 1]
 
   double newton_tolerance = 1e-10;  // largest correction over System::scale
   int newton_iterations = 20;
@@ -59,17 +52,14 @@ struct Options {
   /// error test: on the pendulum 1e-2 is both more accurate and faster.
   double newton_coefficient = 1e-2;
 
-  Correction correction = Correction::impulse;  // predictor_corrector
-  bool second_filter = true;  // predictor_corrector: the implicit solve that ends a step
-  double correction_tolerance = 1e-8;  // the same: largest |g| left, over its scale
-  int sweeps = 10;                     // xpbd: of Gauss-Seidel per step
-  SweepOrder sweep_order = SweepOrder::root_to_tip;
-
-  bool suppress_algebraic = true;  // IDA: multipliers out of the local error test
-  double multiplier_atol = 1e6;    // IDA: absolute tolerance of multipliers over atol
-
   LinearKind linear = LinearKind::automatic;
+
+  /// Options that one method declares for itself, as text by name; read by own_options().
+  std::map<std::string, std::string, std::less<>> own;
 };
+
+/// The values of a method's own options: its defaults, then what `options` has of them.
+Parameters own_options(const Options& options, std::span<const Parameter> declared);
 
 /// Work done since start(); counts that a method does not have stay zero.
 struct Stats {

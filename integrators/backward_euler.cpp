@@ -1,5 +1,5 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
@@ -7,7 +7,7 @@ namespace tress {
 namespace {
 
 /// v_{n+1} = v_n + h a_{n+1}, q_{n+1} = q_n + h v_{n+1}. The last acceleration is the
-/// guess.
+/// guess. Order 1, L-stable, strongly damping. [Hairer, Wanner: Solving ODEs II, IV.3]
 class BackwardEuler final : public FixedStep {
  public:
   BackwardEuler(System& system, const Options& options)
@@ -27,8 +27,13 @@ class BackwardEuler final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_backward_euler(System& system, const Options& options) {
-  return std::make_unique<BackwardEuler>(system, options);
+IntegratorEntry backward_euler_entry() {
+  return {.id = "backward_euler",
+          .summary = "L-stable, strong damping",
+          .source = "Hairer-Wanner IV.3",
+          .tangent = true,
+          .formulations = of_order(1, stage_formulations),
+          .make = make_method<BackwardEuler>};
 }
 
 }  // namespace tress

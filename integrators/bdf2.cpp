@@ -1,11 +1,14 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// Two-step backward differentiation with variable-step coefficients, started by backward
+/// Euler. Order 2, L-stable, damps high frequencies. [Hairer, Norsett, Wanner I, III.5]
+///
 /// y_{n+1} = c0 y_n - c1 y_{n-1} + b h y'_{n+1} for y = q and y = v, with
 /// w = h / h_previous: b = (1 + w)/(1 + 2w), c0 = (1 + w)^2/(1 + 2w), c1 = w^2/(1 + 2w).
 /// w = 0 is backward Euler, the first step.
@@ -49,8 +52,13 @@ class Bdf2 final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_bdf2(System& system, const Options& options) {
-  return std::make_unique<Bdf2>(system, options);
+IntegratorEntry bdf2_entry() {
+  return {.id = "bdf2",
+          .summary = "L-stable, damps fast modes",
+          .source = "Gear 1971",
+          .tangent = true,
+          .formulations = of_order(2, stage_formulations),
+          .make = make_method<Bdf2>};
 }
 
 }  // namespace tress

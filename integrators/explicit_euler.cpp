@@ -1,10 +1,11 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// Order 1; amplifies oscillations for every h: a baseline.
 class ExplicitEuler final : public FixedStep {
  public:
   ExplicitEuler(System& system, const Options& options) : FixedStep(system, options) {}
@@ -21,8 +22,13 @@ class ExplicitEuler final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_explicit_euler(System& system, const Options& options) {
-  return std::make_unique<ExplicitEuler>(system, options);
+IntegratorEntry explicit_euler_entry() {
+  return {.id = "explicit_euler",
+          .summary = "amplifies; baseline",
+          .source = "Euler 1768",
+          .formulations = of_order(1, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_method<ExplicitEuler>};
 }
 
 }  // namespace tress

@@ -1,10 +1,15 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/stage.h"
 
 namespace tress {
 namespace {
 
+constexpr Parameter own[] = {{.name = "rho_inf",
+                              .help = "spectral radius at infinity",
+                              .number = 0.9,
+                              .min = 0,
+                              .max = 1}};
 struct Coefficients {
   double alpha_m, alpha_f, gamma, beta;
 };
@@ -21,7 +26,11 @@ Coefficients chung_hulbert(double rho) {
 ///     (1 - alpha_m) a_{n+1} + alpha_m a_n = (1 - alpha_f) u_{n+1} + alpha_f u_n
 ///     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
 ///     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
-/// Newmark's method is alpha_m = alpha_f = 0, where a = u.
+/// Order 2, A-stable, spectral radius at infinity rho_inf. [Chung, Hulbert 1993;
+/// constraints: Arnold, Bruls 2007, eqs. (4) to (6)]
+///
+/// Newmark's method is alpha_m = alpha_f = 0, where a = u; with average acceleration,
+/// beta = 1/4 and gamma = 1/2, it has no damping. [Newmark 1959]
 class GeneralizedAlpha final : public FixedStep {
  public:
   GeneralizedAlpha(System& system, const Options& options, Coefficients coefficients)
@@ -60,17 +69,36 @@ class GeneralizedAlpha final : public FixedStep {
   std::vector<double> u_, a_known_, q_bar_, v_bar_;
 };
 
-}  // namespace
-
 std::unique_ptr<Integrator> make_generalized_alpha(System& system,
                                                    const Options& options) {
-  return std::make_unique<GeneralizedAlpha>(system, options,
-                                            chung_hulbert(options.rho_inf));
+  const double rho_inf = own_options(options, own).number("rho_inf");
+  return std::make_unique<GeneralizedAlpha>(system, options, chung_hulbert(rho_inf));
 }
 
 std::unique_ptr<Integrator> make_newmark(System& system, const Options& options) {
   return std::make_unique<GeneralizedAlpha>(system, options,
                                             Coefficients{0, 0, 0.5, 0.25});
+}
+
+}  // namespace
+
+IntegratorEntry newmark_entry() {
+  return {.id = "newmark",
+          .summary = "average acceleration, no damping",
+          .source = "Newmark 1959",
+          .tangent = true,
+          .formulations = of_order(2, stage_formulations),
+          .make = make_newmark};
+}
+
+IntegratorEntry generalized_alpha_entry() {
+  return {.id = "generalized_alpha",
+          .summary = "damping by rho_inf",
+          .source = "Chung-Hulbert 1993",
+          .tangent = true,
+          .formulations = of_order(2, stage_formulations),
+          .parameters = own,
+          .make = make_generalized_alpha};
 }
 
 }  // namespace tress

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "integrators/entry.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 #include "linear/finite.h"
 
@@ -206,22 +206,63 @@ class GslOdeiv2 final : public Integrator {
   Limit limit_ = Limit::none;
 };
 
+template <const gsl_odeiv2_step_type** type>
+std::unique_ptr<Integrator> make_gsl(System& system, const Options& options) {
+  return std::make_unique<GslOdeiv2>(system, options, *type);
+}
+
+// A dense Jacobian by differences costs n^2 residual entries per step.
+constexpr int most_dense_coordinates = 200;
+
+std::string dense_jacobian(System& system, Formulation formulation) {
+  if (system.layout().coordinates > most_dense_coordinates) {
+    return "needs a dense Jacobian: at most 200 coordinates";
+  }
+  return inverts_mass(system, formulation);
+}
+
 }  // namespace
 
-std::unique_ptr<Integrator> make_gsl_rkf45(System& system, const Options& options) {
-  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_rkf45);
+IntegratorEntry gsl_rkf45_entry() {
+  return {.id = "gsl_rkf45",
+          .summary = "explicit Runge-Kutta 5(4)",
+          .source = "GSL odeiv2",
+          .adaptive = true,
+          .formulations = of_order(5, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_gsl<&gsl_odeiv2_step_rkf45>};
 }
 
-std::unique_ptr<Integrator> make_gsl_rk8pd(System& system, const Options& options) {
-  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_rk8pd);
+IntegratorEntry gsl_rk8pd_entry() {
+  return {.id = "gsl_rk8pd",
+          .summary = "explicit Runge-Kutta 8(7)",
+          .source = "GSL odeiv2",
+          .adaptive = true,
+          .formulations = of_order(8, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_gsl<&gsl_odeiv2_step_rk8pd>};
 }
 
-std::unique_ptr<Integrator> make_gsl_msadams(System& system, const Options& options) {
-  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_msadams);
+IntegratorEntry gsl_msadams_entry() {
+  return {.id = "gsl_msadams",
+          .summary = "orders 1-12 Adams",
+          .source = "GSL odeiv2",
+          .adaptive = true,
+          .formulations = of_order(12, ode_formulations),
+          .gaps = {{Formulation::projection,
+                    "a projected state would not match the method's history"}},
+          .objection = inverts_mass,
+          .make = make_gsl<&gsl_odeiv2_step_msadams>};
 }
 
-std::unique_ptr<Integrator> make_gsl_bsimp(System& system, const Options& options) {
-  return std::make_unique<GslOdeiv2>(system, options, gsl_odeiv2_step_bsimp);
+IntegratorEntry gsl_bsimp_entry() {
+  return {.id = "gsl_bsimp",
+          .summary = "implicit extrapolation, stiff",
+          .source = "GSL odeiv2, Bader-Deuflhard 1983",
+          .adaptive = true,
+          .formulations = of_order(8, projected_formulations),
+          .objection = dense_jacobian,
+          .make = make_gsl<&gsl_odeiv2_step_bsimp>};
 }
 
 }  // namespace tress

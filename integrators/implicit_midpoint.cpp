@@ -1,12 +1,14 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// The one-stage Gauss method. Order 2, A-stable, no damping, symplectic:
 /// a at t + h/2, (q_n + h/2 v_mid, v_mid = v_n + h/2 a); v += h a, q += h v_mid.
+/// [Hairer, Lubich, Wanner: Geometric Numerical Integration, 2nd ed., II.1.3]
 class ImplicitMidpoint final : public FixedStep {
  public:
   ImplicitMidpoint(System& system, const Options& options)
@@ -28,9 +30,14 @@ class ImplicitMidpoint final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_implicit_midpoint(System& system,
-                                                   const Options& options) {
-  return std::make_unique<ImplicitMidpoint>(system, options);
+IntegratorEntry implicit_midpoint_entry() {
+  return {.id = "implicit_midpoint",
+          .summary = "A-stable, no damping, symplectic",
+          .source = "Gauss 1 stage",
+          .tangent = true,
+          .formulations = of_order(2, projected_formulations),
+          .gaps = {{Formulation::index3, "Gauss methods are unstable on index 3"}},
+          .make = make_method<ImplicitMidpoint>};
 }
 
 }  // namespace tress

@@ -22,15 +22,10 @@ void whole(Options& o, const Parameters& p, std::string_view key) {
   o.*member = p.whole(key);
 }
 
-template <bool Options::*member>
-void flag(Options& o, const Parameters& p, std::string_view key) {
-  o.*member = p.word(key) == "true";
-}
-
 /// Position of the word among the declared choices, which follow the enum's order.
 template <auto member, typename Enum>
 void choice(Options& o, const Parameters& p, std::string_view key) {
-  for (const Parameter& declared : integrator_options()) {
+  for (const Parameter& declared : common_options()) {
     if (declared.name != key) continue;
     const auto words = words_of(declared.choices);
     o.*member = static_cast<Enum>(std::ranges::find(words, p.word(key)) - words.begin());
@@ -110,12 +105,6 @@ const Field fields[] = {
       .max = 13,
       .whole = true},
      whole<&Options::max_order>},
-    {{.name = "rho_inf",
-      .help = "generalized-alpha: spectral radius at infinity",
-      .number = defaults.rho_inf,
-      .min = 0,
-      .max = 1},
-     real<&Options::rho_inf>},
     {{.name = "newton_tolerance",
       .help = "largest correction over the model's scale",
       .number = defaults.newton_tolerance,
@@ -133,58 +122,19 @@ const Field fields[] = {
       .help = "when the Newton matrix is rebuilt",
       .choices = "every_iteration|every_step|when_slow"},
      choice<&Options::refresh, Refresh>},
-    {{.name = "correction",
-      .help = "predictor_corrector: positions moved with an impulse, or alone",
-      .choices = "impulse|position"},
-     choice<&Options::correction, Correction>},
-    {{.name = "second_filter",
-      .help = "predictor_corrector: an implicit solve after the correction",
-      .choices = "true|false"},
-     flag<&Options::second_filter>},
-    {{.name = "correction_tolerance",
-      .help = "predictor_corrector: largest violation over its scale",
-      .number = defaults.correction_tolerance,
-      .min = smallest_tolerance,
-      .max = 1},
-     real<&Options::correction_tolerance>},
     {{.name = "newton_coefficient",
       .help = "SUNDIALS' nonlinear coefficient, 0: SUNDIALS' default",
       .number = Options{}.newton_coefficient,
       .min = 0,
       .max = 1},
      real<&Options::newton_coefficient>},
-    {{.name = "sweeps",
-      .help = "xpbd: Gauss-Seidel sweeps per step",
-      .number = static_cast<double>(defaults.sweeps),
-      .min = 1,
-      .max = 1e6,
-      .whole = true},
-     whole<&Options::sweeps>},
-    {{.name = "sweep_order",
-      .help = "xpbd: order of the blocks in a sweep",
-      .choices = "root_to_tip|bilateral"},
-     choice<&Options::sweep_order, SweepOrder>},
-    {{.name = "suppress_algebraic",
-      .help = "ida: multipliers out of the error test",
-      .choices = "true|false"},
-     flag<&Options::suppress_algebraic>},
-    {{.name = "multiplier_atol",
-      .help = "ida: multipliers' absolute tolerance over atol",
-      .number = defaults.multiplier_atol,
-      .min = 0,
-      .max = largest},
-     real<&Options::multiplier_atol>},
     {{.name = "linear", .help = "linear solver", .choices = "automatic|klu|banded|dense"},
      choice<&Options::linear, LinearKind>},
-    {{.name = "table",
-      .help = "arkode: a SUNDIALS Butcher table by name",
-      .choices = "default"},
-     nullptr},
 };
 
 }  // namespace
 
-std::span<const Parameter> integrator_options() {
+std::span<const Parameter> common_options() {
   static const std::vector<Parameter> parameters = [] {
     std::vector<Parameter> list;
     for (const Field& field : fields) list.push_back(field.parameter);
@@ -193,14 +143,32 @@ std::span<const Parameter> integrator_options() {
   return parameters;
 }
 
+std::span<const Parameter> integrator_options() {
+  static const std::vector<Parameter> parameters = [] {
+    std::vector<Parameter> list(common_options().begin(), common_options().end());
+    for (const IntegratorEntry& entry : integrators()) {
+      list.insert(list.end(), entry.parameters.begin(), entry.parameters.end());
+    }
+    return list;
+  }();
+  return parameters;
+}
+
+const IntegratorEntry* owner_of_option(std::string_view key) {
+  for (const IntegratorEntry& entry : integrators()) {
+    if (std::ranges::count(entry.parameters, key, &Parameter::name) > 0) return &entry;
+  }
+  return nullptr;
+}
+
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where) {
-  if (key == "table") {  // the other names belong to SUNDIALS, which checks them
-    options.table = value == "default" ? std::string_view{} : value;
-    return;
-  }
   Parameters parameters(integrator_options(), where);
   parameters.set(key, value);
+  if (owner_of_option(key) != nullptr) {
+    options.own.insert_or_assign(std::string(key), value);
+    return;
+  }
   for (const Field& field : fields) {
     if (field.parameter.name == key) field.assign(options, parameters, key);
   }

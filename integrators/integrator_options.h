@@ -4,15 +4,21 @@
 #include <string>
 #include <string_view>
 
-#include "contract/integrator.h"
 #include "contract/parameters.h"
+#include "integrators/catalogue.h"
 
 namespace tress {
 
 /// The fields of Options that `--set` reaches, with units, ranges and choices.
+std::span<const Parameter> common_options();
+
+/// The same, and behind them what single methods declare for themselves.
 std::span<const Parameter> integrator_options();
 
-/// Sets one field from text; throws InputError naming `where` on an unknown key, a
+/// The method that alone reads this option; null for those of common_options().
+const IntegratorEntry* owner_of_option(std::string_view key);
+
+/// Sets one option from text; throws InputError naming `where` on an unknown key, a
 /// malformed or non-finite number, or a value out of range.
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where);

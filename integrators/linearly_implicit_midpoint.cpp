@@ -1,15 +1,21 @@
 #include <algorithm>
 #include <utility>
 
+#include "integrators/entry.h"
 #include "integrators/error_indicator.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// One residual, one factorisation and one solve per step, like semi_implicit_euler, but
+/// order 2, with any tangent (a W-method). Stable as implicit_midpoint on linear systems
+/// with the exact tangent; beyond, the step must resolve what the tangent leaves out and
+/// how it changes: it has an ErrorIndicator. [Steihaug, Wolfbrandt 1979, Math. Comp. 33,
+/// 521; Hairer, Wanner: Solving ODEs II, IV.7]
+///
 /// The midpoint rule's equations with a single Newton step from
 ///
 ///     a* = a_{-1} + (h + h_{-1})/(h_{-1} + h_{-2}) (a_{-1} - a_{-2}),
@@ -89,9 +95,14 @@ class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_linearly_implicit_midpoint(System& system,
-                                                            const Options& options) {
-  return std::make_unique<LinearlyImplicitMidpoint>(system, options);
+IntegratorEntry linearly_implicit_midpoint_entry() {
+  return {.id = "linearly_implicit_midpoint",
+          .summary = "one linear solve, with any tangent",
+          .source = "Steihaug-Wolfbrandt 1979",
+          .tangent = true,
+          .formulations = of_order(2, projected_formulations),
+          .gaps = {{Formulation::index3, "Gauss methods are unstable on index 3"}},
+          .make = make_method<LinearlyImplicitMidpoint>};
 }
 
 }  // namespace tress

@@ -1,10 +1,14 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// Verlet's method with g = 0 and g' = 0 held by impulses. Order 2, symplectic, stable
+/// for h omega < 2; one factorisation per step. Needs a constant mass matrix. [Andersen
+/// 1983, J. Comput. Phys. 52]
+///
 /// One step, with G_n the constraint gradient at q_n and [M, -G_n^T; G_n, 0] factored:
 ///     w = v_n + h/2 M^-1 (f_n + G_n^T lambda),  q_{n+1} = q_n + h w,  g(q_{n+1}) = 0
 ///     v_{n+1} = w + h/2 M^-1 (f_{n+1} + G_{n+1}^T mu),  G_{n+1} v_{n+1} + g_t = 0
@@ -41,8 +45,15 @@ class Rattle final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_rattle(System& system, const Options& options) {
-  return std::make_unique<Rattle>(system, options);
+IntegratorEntry rattle_entry() {
+  return {
+      .id = "rattle",
+      .summary = "symplectic, exact constraints",
+      .source = "Andersen 1983",
+      .formulations = {{Formulation::rattle, 2}},
+      .gaps = holds_constraints("is velocity_verlet when there is nothing to constrain"),
+      .objection = constant_mass,
+      .make = make_method<Rattle>};
 }
 
 }  // namespace tress

@@ -1,10 +1,12 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// The classical Runge-Kutta method. Order 4, stable for h omega < 2.83 on the imaginary
+/// axis. [Kutta 1901]
 class Rk4 final : public FixedStep {
  public:
   Rk4(System& system, const Options& options)
@@ -44,8 +46,13 @@ class Rk4 final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_rk4(System& system, const Options& options) {
-  return std::make_unique<Rk4>(system, options);
+IntegratorEntry rk4_entry() {
+  return {.id = "rk4",
+          .summary = "conditionally stable",
+          .source = "Kutta 1901",
+          .formulations = of_order(4, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_method<Rk4>};
 }
 
 }  // namespace tress

@@ -1,10 +1,13 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/semi_implicit_step.h"
 
 namespace tress {
 namespace {
 
+/// Backward Euler's first Newton step from constant velocity: one linear solve per step,
+/// the scheme of the seed papers. Order 1, strongly damping. The model's Tangent option
+/// decides what S carries. [Baraff, Witkin 1998; Bertails et al. 2006]
 class SemiImplicitEuler final : public FixedStep {
  public:
   SemiImplicitEuler(System& system, const Options& options)
@@ -27,9 +30,13 @@ class SemiImplicitEuler final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_semi_implicit_euler(System& system,
-                                                     const Options& options) {
-  return std::make_unique<SemiImplicitEuler>(system, options);
+IntegratorEntry semi_implicit_euler_entry() {
+  return {.id = "semi_implicit_euler",
+          .summary = "one linear solve, strong damping",
+          .source = "Baraff-Witkin 1998",
+          .tangent = true,
+          .formulations = of_order(1, stage_formulations),
+          .make = make_method<SemiImplicitEuler>};
 }
 
 }  // namespace tress

@@ -1,10 +1,13 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// v += h a(q, v), q += h v. Order 1, symplectic for separable systems, stable for
+/// h omega < 2. [Hairer, Lubich, Wanner: Geometric Numerical Integration, 2nd ed.,
+/// VI.3.1]
 class SymplecticEuler final : public FixedStep {
  public:
   SymplecticEuler(System& system, const Options& options) : FixedStep(system, options) {}
@@ -21,9 +24,13 @@ class SymplecticEuler final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_symplectic_euler(System& system,
-                                                  const Options& options) {
-  return std::make_unique<SymplecticEuler>(system, options);
+IntegratorEntry symplectic_euler_entry() {
+  return {.id = "symplectic_euler",
+          .summary = "symplectic, conditionally stable",
+          .source = "Hairer-Lubich-Wanner VI.3",
+          .formulations = of_order(1, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_method<SymplecticEuler>};
 }
 
 }  // namespace tress

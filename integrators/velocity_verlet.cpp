@@ -1,10 +1,14 @@
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 #include "integrators/vector_ops.h"
 
 namespace tress {
 namespace {
 
+/// Half kick, drift, half kick. Order 2, symplectic for separable systems, stable for
+/// h omega < 2. Velocity-dependent forces are evaluated at the predicted v + h a, which
+/// keeps order 2 with one evaluation per step. [Swope et al. 1982, J. Chem. Phys. 76,
+/// 637]
 class VelocityVerlet final : public FixedStep {
  public:
   VelocityVerlet(System& system, const Options& options)
@@ -28,8 +32,13 @@ class VelocityVerlet final : public FixedStep {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_velocity_verlet(System& system, const Options& options) {
-  return std::make_unique<VelocityVerlet>(system, options);
+IntegratorEntry velocity_verlet_entry() {
+  return {.id = "velocity_verlet",
+          .summary = "symplectic, conditionally stable",
+          .source = "Swope 1982",
+          .formulations = of_order(2, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_method<VelocityVerlet>};
 }
 
 }  // namespace tress

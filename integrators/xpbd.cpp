@@ -2,18 +2,31 @@
 #include <cmath>
 #include <vector>
 
+#include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/methods.h"
 
 namespace tress {
 namespace {
 
+constexpr Parameter own[] = {
+    {.name = "sweeps",
+     .help = "Gauss-Seidel sweeps per step",
+     .number = 10,
+     .min = 1,
+     .max = 1e6,
+     .whole = true},
+    {.name = "sweep_order",
+     .help = "order of the blocks in a sweep",
+     .choices = "root_to_tip|bilateral"},
+};
 using Block = ComplianceForm::Block;
 
-/// Places of `count` blocks in the order of a sweep.
-std::vector<std::size_t> order_of(SweepOrder order, std::size_t count) {
+/// Places of `count` blocks in the order of a sweep: from the root to the tip, or from
+/// both ends in turn, even places upwards and odd ones downwards, after the bilateral
+/// interleaving of [Kugelstadt & Schoemer 2016].
+std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t count) {
   std::vector<std::size_t> all;
-  if (order == SweepOrder::root_to_tip) {
+  if (sweep_order == "root_to_tip") {
     for (std::size_t k = 0; k < count; ++k) all.push_back(k);
     return all;
   }
@@ -26,30 +39,46 @@ std::vector<std::size_t> order_of(SweepOrder order, std::size_t count) {
   return all;
 }
 
+/// Position-based dynamics with compliance: backward Euler on the energy, explicit on all
+/// other forces, by a fixed number of Gauss-Seidel sweeps over the blocks of the model's
+/// ComplianceForm. From x = q + h v + h^2 rest(q, v) and lambda = 0 every block is
+/// corrected in turn by x += W G^T dlambda with
+///
+///     ((1 + gamma) G W G^T + alpha/h^2) dlambda
+///         = -C - alpha lambda/h^2 - gamma (G (x - q) + h C_t),   gamma = alpha c/h,
+///
+/// then v = (x - q)/h. Order 1. Few sweeps leave it softer than the model, the more so
+/// the longer the step and the finer the strand. Converged sweeps are backward Euler's
+/// step but for the change of G on the way, O(h^2) of the force (none for linear C, much
+/// where light coordinates turn far). [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
 class Xpbd final : public FixedStep {
  public:
   Xpbd(System& system, const Options& options)
-      : FixedStep(system, options),
-        form_(*system.compliance_form()),
-        blocks_(form_.blocks()),
-        order_(order_of(options.sweep_order, blocks_.size())),
-        lambda_of_(blocks_.size()),
-        w_(vector_n()),
-        x_(vector_n()) {
-    form_.inverse_mass(w_);
-  }
+      : Xpbd(system, options, own_options(options, own)) {}
 
  private:
   static constexpr int columns = ComplianceForm::most_coordinates;
   using Rows = std::array<double, ComplianceForm::most_rows>;
   using Square = std::array<Rows, ComplianceForm::most_rows>;
 
+  Xpbd(System& system, const Options& options, const Parameters& chosen)
+      : FixedStep(system, options),
+        sweeps_(chosen.whole("sweeps")),
+        form_(*system.compliance_form()),
+        blocks_(form_.blocks()),
+        order_(order_of(chosen.word("sweep_order"), blocks_.size())),
+        lambda_of_(blocks_.size()),
+        w_(vector_n()),
+        x_(vector_n()) {
+    form_.inverse_mass(w_);
+  }
+
   Status step(double t, double h) override {
     if (const Status s = form_.rest(t, q_, v_, x_); s != Status::ok) return s;
     ++dynamics_.stats.residuals;
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = q_[i] + h * (v_[i] + h * x_[i]);
     for (Rows& lambda : lambda_of_) lambda.fill(0);
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
+    for (int sweep = 0; sweep < sweeps_; ++sweep) {
       for (const std::size_t k : order_) correct(t + h, h, k);
       ++dynamics_.stats.sweeps;
     }
@@ -58,7 +87,7 @@ class Xpbd final : public FixedStep {
     return Status::ok;
   }
 
-  /// Rows of methods.h's equation divided by 1 + gamma: symmetric, positive definite.
+  /// Rows of the equation above divided by 1 + gamma: symmetric, positive definite.
   void correct(double t, double h, std::size_t k) {
     const Block& block = blocks_[k];
     const std::size_t size = block.coordinates.size();
@@ -117,6 +146,7 @@ class Xpbd final : public FixedStep {
     }
   }
 
+  int sweeps_;
   ComplianceForm& form_;
   const std::vector<Block>& blocks_;
   std::vector<std::size_t> order_;
@@ -125,10 +155,31 @@ class Xpbd final : public FixedStep {
   ComplianceForm::Value value_{};
 };
 
+std::string compliances(System& system, Formulation /*formulation*/) {
+  if (system.compliance_form() != nullptr) return {};
+  return "needs the model's energy as compliant constraints";
+}
+
+constexpr std::string_view no_multipliers =
+    "takes energies, not constraints with multipliers";
+
 }  // namespace
 
-std::unique_ptr<Integrator> make_xpbd(System& system, const Options& options) {
-  return std::make_unique<Xpbd>(system, options);
+IntegratorEntry xpbd_entry() {
+  return {.id = "xpbd",
+          .summary = "position-based, Gauss-Seidel on compliances",
+          .source = "Macklin-Mueller-Chentanez 2016",
+          .formulations = {{Formulation::parametric, 1}},
+          .gaps = {{Formulation::acceleration, no_multipliers},
+                   {Formulation::baumgarte, no_multipliers},
+                   {Formulation::projection, no_multipliers},
+                   {Formulation::index2_ggl, no_multipliers},
+                   {Formulation::index3, no_multipliers},
+                   {Formulation::rattle, no_multipliers},
+                   {Formulation::correction, no_multipliers}},
+          .parameters = own,
+          .objection = compliances,
+          .make = make_method<Xpbd>};
 }
 
 }  // namespace tress

@@ -6,6 +6,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/model_variants.h"
 #include "experiments/problems/strand_scenes.h"
+#include "integrators/integrator_options.h"
 
 namespace tress {
 namespace {
@@ -53,7 +54,7 @@ void add_formulations(const CommandLine& line, const Settings& user,
   for (const Scene& scene : scenes(user)) {
     const auto system = scene.model->make(scene.parameters);
     for (const IntegratorEntry& entry : integrators()) {
-      for (const Formulation formulation : entry.formulations) {
+      for (const auto& [formulation, order] : entry.formulations) {
         if (!refusal(entry, *system, formulation).empty()) continue;
         // Redundant constraints are analysed anew at every factorisation: a tenth will
         // do. Of all methods on the chain 10 s take a minute.
@@ -90,9 +91,9 @@ void add_formulations(const CommandLine& line, const Settings& user,
         if (entry.id == "ida" && formulation == Formulation::index2_ggl) {
           // Multipliers held to the tolerance of the coordinates: harmless out of the
           // error test, ruinous in it.
-          study.options.multiplier_atol = 1;
+          apply(study.options, "multiplier_atol", "1", "ida");
           add_steps();
-          study.options.suppress_algebraic = false;
+          apply(study.options, "suppress_algebraic", "false", "ida");
           add_steps();
         }
       }

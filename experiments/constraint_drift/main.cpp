@@ -66,8 +66,10 @@ Row identity(const DriftStudy& s) {
     row.set("dt_s", s.options.step);
   }
   if (s.integrator == "ida" && s.options.formulation != Formulation::parametric) {
-    row.set("suppress_algebraic", s.options.suppress_algebraic);
-    row.set("multiplier_atol", s.options.multiplier_atol);
+    const Parameters own =
+        own_options(s.options, find_integrator(s.integrator).parameters);
+    row.set("suppress_algebraic", own.word("suppress_algebraic") == "true");
+    row.set("multiplier_atol", own.number("multiplier_atol"));
   }
   row.set("t_end_s", s.t_end).set("violation", s.violation);
   return row;

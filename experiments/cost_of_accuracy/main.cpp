@@ -83,7 +83,7 @@ constexpr Parameter own_settings[] = {
      .fallback = "results/reference"},
 };
 
-constexpr OwnOption own_options[] = {
+constexpr OwnOption command_options[] = {
     {"scene", "scenes", "scene file to look at (several: a.toml,b.toml)", true},
     {"advise", "advise",
      "scene file: prints what to take, next best and what not to do; writes "
@@ -204,7 +204,7 @@ int main(int argc, char** argv) {
       .quick_timeout_s = 600,
       .columns = study_columns(),
       .settings = own_settings,
-      .options = own_options,
+      .options = command_options,
       .unused = unused,
       .cases = cases,
       .checks = check_accuracy_claims,

@@ -75,7 +75,7 @@ std::string verdict(double change, double change_error, double discretisation,
   return "too close to call";
 }
 
-constexpr OwnOption own_options[] = {
+constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
 };
 
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
       .example = "--set scenes=scenes/head_shaking.toml --set accuracy=0.01",
       .columns = columns,
       .settings = own_settings,
-      .options = own_options,
+      .options = command_options,
       .unused = unused,
       .cases = cases,
       .checks = judge,

@@ -6,7 +6,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/drift_monitor.h"
 #include "math/closest.h"
-#include "models/effects/body.h"
+#include "models/effects/effect.h"
 
 namespace tress {
 namespace {
@@ -23,17 +23,13 @@ class PenetrationGauge final : public Gauge {
   explicit PenetrationGauge(const Situation& s)
       : points_(*s.system->material_points()),
         x_(3 * static_cast<std::size_t>(points_.count())),
-        allowed_(allowed_depth(s.strand)) {
-    for (const auto& effect : s.effects) {
-      if (const auto* body = dynamic_cast<const Body*>(effect.get())) {
-        bodies_.push_back(body);
-      }
-    }
-  }
+        effects_(s.effects),
+        allowed_(allowed_depth(s.strand)) {}
   void see(double t, In q, In) override {
     points_.positions(t, q, x_);
-    for (const Body* body : bodies_) {
-      deepest_ = larger(deepest_, body->penetration(t, x_));
+    for (const auto& effect : effects_) {
+      const std::optional<double> depth = effect->penetration(t, x_);
+      if (depth) deepest_ = larger(deepest_, *depth);
     }
   }
   double measure() const override { return deepest_ / allowed_; }
@@ -41,7 +37,7 @@ class PenetrationGauge final : public Gauge {
  private:
   MaterialPoints& points_;
   std::vector<double> x_;
-  std::vector<const Body*> bodies_;
+  const Effects effects_;
   double allowed_, deepest_ = 0;
 };
 

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "experiments/hard_cases/gauges.h"
-#include "models/effects/body.h"
 
 namespace tress {
 namespace {
@@ -29,7 +28,7 @@ SceneGauge::SceneGauge(const Scene& scene, World& world, const SceneCriteria& cr
        criteria.stretch, [this] { return world_.stretch(); },
        [this] { return stretched_place(); }});
   for (const auto& effect : make_effects(scene)) {
-    if (dynamic_cast<const Body*>(effect.get()) != nullptr) bodies_.push_back(effect);
+    if (effect->penetration(world.time(), {})) bodies_.push_back(effect);
   }
   if (!bodies_.empty()) {
     criteria_.push_back({"depth_m",
@@ -74,8 +73,7 @@ double SceneGauge::depth() {
   double most = 0;
   for (std::size_t i = 0; 3 * i < x.size(); ++i) {
     for (const auto& body : bodies_) {
-      const double one =
-          static_cast<const Body&>(*body).penetration(world_.time(), x.subspan(3 * i, 3));
+      const double one = *body->penetration(world_.time(), x.subspan(3 * i, 3));
       if (one <= most) continue;
       most = one;
       deepest_ = i;

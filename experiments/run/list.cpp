@@ -62,8 +62,9 @@ class Footnotes {
 };
 
 std::string default_text(const Parameter& p) {
-  if (p.choices.empty()) return fmt::format("{}", p.number);
-  return std::string(p.choices);
+  if (!p.choices.empty()) return std::string(p.choices);
+  const bool one_number = !p.text && !p.rows && p.components == 1;
+  return one_number ? fmt::format("{}", p.number) : p.default_text();
 }
 
 std::string parameter_lines(std::span<const Parameter> parameters) {
@@ -77,7 +78,7 @@ std::string parameter_lines(std::span<const Parameter> parameters) {
 /// "pab 2,3": formulations that work, then the notes on those that do not.
 std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& notes) {
   std::string works, gaps;
-  for (const Formulation formulation : integrator.formulations) {
+  for (const auto& [formulation, order] : integrator.formulations) {
     const std::string reason = refusal(integrator, system, formulation);
     if (reason.empty()) {
       works += letter(formulation);
@@ -88,6 +89,19 @@ std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& n
     if (!noted) gaps += (gaps.empty() ? "" : ",") + number;
   }
   return works.empty() || gaps.empty() ? works + gaps : works + ' ' + gaps;
+}
+
+/// "pabj", and behind them those of another order than the nominal one: ", 3 of order 1".
+std::string letters_of(const IntegratorEntry& entry) {
+  std::string nominal, others;
+  for (const auto& [formulation, order] : entry.formulations) {
+    if (order == entry.order()) {
+      nominal += letter(formulation);
+    } else {
+      others += fmt::format(", {} of order {}", letter(formulation), order);
+    }
+  }
+  return nominal + others;
 }
 
 std::string matrix(std::span<const ModelEntry> models,
@@ -134,16 +148,14 @@ std::string catalogue_text(std::span<const ModelEntry> models,
     text += fmt::format("  {:<20} {} ({})\n", model.id, model.summary, model.source);
     text += parameter_lines(model.parameters);
   }
-  text += "\nINTEGRATORS\n";
+  text += "\nINTEGRATORS (options of one alone by --set key=value, [default])\n";
   for (const IntegratorEntry& entry : integrators) {
-    std::string letters;
-    for (const Formulation formulation : entry.formulations)
-      letters += letter(formulation);
-    text += fmt::format("  {:<20} order {}{}, {} [{}] ({})\n", entry.id, entry.order,
-                        entry.adaptive ? ", adaptive" : "", entry.summary, letters,
-                        entry.source);
+    text += fmt::format("  {:<20} order {}{}, {} [{}] ({})\n", entry.id, entry.order(),
+                        entry.adaptive ? ", adaptive" : "", entry.summary,
+                        letters_of(entry), entry.source);
+    text += parameter_lines(entry.parameters);
   }
-  text += "\nKEYS OF ALL INTEGRATORS\n" + parameter_lines(integrator_options());
+  text += "\nKEYS OF ALL INTEGRATORS\n" + parameter_lines(common_options());
   if (!experiment_settings.empty()) {
     text += "\nKEYS OF THIS EXPERIMENT\n" + parameter_lines(experiment_settings);
   }

@@ -56,7 +56,9 @@ Settings::Settings(const CommandLine& line, std::span<const Parameter> experimen
 Options Settings::options(Options start) const {
   for (const auto& [key, value] : line_.set) {
     const std::string where = line_.place("set:" + key);
-    if (owner(key, where) == Owner::integrators) apply(start, key, value, where);
+    if (owner(key, where) != Owner::integrators) continue;
+    refuse_foreign(key, where);
+    apply(start, key, value, where);
   }
   return start;
 }
@@ -85,6 +87,13 @@ void Settings::leave_models_to_the_scene() const {
 bool Settings::chosen(std::string_view key) const {
   return std::any_of(line_.set.begin(), line_.set.end(),
                      [key](const auto& setting) { return setting.first == key; });
+}
+
+void Settings::refuse_foreign(std::string_view key, const std::string& where) const {
+  const IntegratorEntry* reader = owner_of_option(key);
+  if (reader == nullptr || wanted(line_.integrators, reader->id)) return;
+  throw InputError(fmt::format("{} belongs to {}", key, reader->id), where,
+                   fmt::format("leave it out, or add {} to --integrators", reader->id));
 }
 
 bool Settings::some_model_knows(std::string_view key) const {

@@ -38,6 +38,8 @@ class Settings {
  private:
   enum class Owner { experiment, integrators, models };
   Owner owner(std::string_view key, const std::string& where) const;
+  /// Throws InputError on an option that none of the chosen integrators reads.
+  void refuse_foreign(std::string_view key, const std::string& where) const;
   bool some_model_knows(std::string_view key) const;
 
   const CommandLine line_;

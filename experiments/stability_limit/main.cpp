@@ -139,7 +139,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-constexpr OwnOption own_options[] = {
+constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
 };
 
@@ -164,7 +164,7 @@ int main(int argc, char** argv) {
       .timed = false,
       .columns = columns,
       .settings = stability_settings(),
-      .options = own_options,
+      .options = command_options,
       .unused = unused,
       .cases = cases,
       .checks = check_stability_claims,

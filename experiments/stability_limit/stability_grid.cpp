@@ -136,8 +136,8 @@ std::vector<Method> all_methods(const CommandLine& line, bool others) {
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
-    if (entry.adaptive || entry.id == "semi_implicit_euler") continue;
-    if (entry.id == "backward_euler") continue;  // above
+    if (entry.adaptive) continue;  // has no step
+    if (std::ranges::count(methods, entry.id, &Method::integrator) > 0) continue;
     if (line.quick && line.integrators.empty() &&
         !contains(quick_integrators, entry.id)) {
       continue;

@@ -122,7 +122,7 @@ Ladder ladder(const IntegratorEntry& entry, bool implicit, const CommandLine& li
   }
   // Explicit steps beyond 1.25 ms are unstable at 20 elements.
   const double loosest = implicit ? 1e-2 : 1.25e-3;
-  if (entry.order == 1) return {loosest, 2, 1, (implicit ? 7 : 4) + more};
+  if (entry.order() == 1) return {loosest, 2, 1, (implicit ? 7 : 4) + more};
   return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
 }
 

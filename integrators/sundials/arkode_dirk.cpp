@@ -3,12 +3,17 @@
 #include <algorithm>
 
 #include "contract/input_error.h"
-#include "integrators/sundials/factories.h"
+#include "integrators/entry.h"
 
 namespace tress {
 namespace {
 
 constexpr std::string_view id = "arkode_dirk";
+constexpr std::string_view standard = "default";
+constexpr Parameter own[] = {{.name = "table",
+                              .help = "a SUNDIALS Butcher table by name",
+                              .text = true,
+                              .fallback = standard}};
 constexpr const char* standard_table = "ARKODE_ESDIRK436L2SA_6_3_4";
 constexpr const char* no_explicit_table = "ARKODE_ERK_NONE";
 
@@ -72,16 +77,17 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
 }
 
 void ArkodeDirk::choose_table() {
-  if (options_.table.empty() && options_.max_order != 0) {
+  const Parameters chosen = own_options(options_, own);
+  const std::string name(chosen.word("table"));
+  if (name == standard && options_.max_order != 0) {
     require(ARKStepSetOrder(memory_.get(), chosen_order(id, options_, 0, 2, 5)),
             "ARKStepSetOrder");
     return;
   }
-  if (!options_.table.empty() &&
-      std::ranges::find(tables, options_.table) == tables.end()) {
-    throw unknown_table(options_.table);
+  if (name != standard && std::ranges::find(tables, name) == tables.end()) {
+    throw unknown_table(name);
   }
-  const char* table = options_.table.empty() ? standard_table : options_.table.c_str();
+  const char* table = name == standard ? standard_table : name.c_str();
   require(ARKStepSetTableName(memory_.get(), table, no_explicit_table),
           "ARKStepSetTableName");
 }
@@ -112,8 +118,18 @@ std::string ArkodeDirk::reason(int code) const {
   return code_name(&ARKStepGetReturnFlagName, code);
 }
 
-std::unique_ptr<Integrator> make_arkode_dirk(System& system, const Options& options) {
-  return std::make_unique<ArkodeDirk>(system, options);
+IntegratorEntry arkode_dirk_entry() {
+  return {.id = "arkode_dirk",
+          .summary = "ESDIRK4(3)6L[2]SA, L-stable",
+          .source = "SUNDIALS ARKODE",
+          .adaptive = true,
+          .tangent = true,
+          .formulations = of_order(4, ode_formulations),
+          .gaps = {{Formulation::projection,
+                    "ARKODE has no projection: SUNDIALS projects in cvode_bdf only"}},
+          .parameters = own,
+          .objection = inverts_mass,
+          .make = make_method<ArkodeDirk>};
 }
 
 }  // namespace tress

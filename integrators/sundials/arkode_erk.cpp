@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "integrators/sundials/factories.h"
+#include "integrators/entry.h"
 
 namespace tress {
 namespace {
@@ -62,8 +62,16 @@ std::string ArkodeErk::reason(int code) const {
   return code_name(&ERKStepGetReturnFlagName, code);
 }
 
-std::unique_ptr<Integrator> make_arkode_erk(System& system, const Options& options) {
-  return std::make_unique<ArkodeErk>(system, options);
+IntegratorEntry arkode_erk_entry() {
+  return {.id = "arkode_erk",
+          .summary = "explicit Runge-Kutta, orders 2-8",
+          .source = "SUNDIALS ARKODE",
+          .adaptive = true,
+          .formulations = of_order(4, ode_formulations),
+          .gaps = {{Formulation::projection,
+                    "ARKODE has no projection: SUNDIALS projects in cvode_bdf only"}},
+          .objection = inverts_mass,
+          .make = make_method<ArkodeErk>};
 }
 
 }  // namespace tress

@@ -2,7 +2,7 @@
 
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "integrators/sundials/factories.h"
+#include "integrators/entry.h"
 
 namespace tress {
 namespace {
@@ -23,8 +23,16 @@ CvodeAdams::CvodeAdams(System& system, const Options& options)
           "CVodeSetNonlinearSolver");
 }
 
-std::unique_ptr<Integrator> make_cvode_adams(System& system, const Options& options) {
-  return std::make_unique<CvodeAdams>(system, options);
+IntegratorEntry cvode_adams_entry() {
+  return {.id = "cvode_adams",
+          .summary = "orders 1-12 Adams-Moulton",
+          .source = "SUNDIALS CVODE",
+          .adaptive = true,
+          .formulations = of_order(12, ode_formulations),
+          .gaps = {{Formulation::projection,
+                    "a projected state would not match the method's history"}},
+          .objection = inverts_mass,
+          .make = make_method<CvodeAdams>};
 }
 
 }  // namespace tress

@@ -1,6 +1,6 @@
 #include "integrators/sundials/cvode_bdf.h"
 
-#include "integrators/sundials/factories.h"
+#include "integrators/entry.h"
 
 namespace tress {
 namespace {
@@ -18,7 +18,7 @@ int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vecto
 }  // namespace
 
 CvodeBdf::CvodeBdf(System& system, const Options& options)
-    : Cvode(id, system, options, cvode_bdf_formulations, CV_BDF,
+    : Cvode(id, system, options, projected_formulations, CV_BDF,
             chosen_order(id, options, standard_order, 1, highest_order)),
       linear_(context_, equations_) {
   void* const memory = memory_.get();
@@ -32,8 +32,15 @@ CvodeBdf::CvodeBdf(System& system, const Options& options)
   }
 }
 
-std::unique_ptr<Integrator> make_cvode_bdf(System& system, const Options& options) {
-  return std::make_unique<CvodeBdf>(system, options);
+IntegratorEntry cvode_bdf_entry() {
+  return {.id = "cvode_bdf",
+          .summary = "BDF, order 2 by default, 1-5 on request",
+          .source = "SUNDIALS CVODE",
+          .adaptive = true,
+          .tangent = true,
+          .formulations = of_order(2, projected_formulations),
+          .objection = inverts_mass,
+          .make = make_method<CvodeBdf>};
 }
 
 }  // namespace tress

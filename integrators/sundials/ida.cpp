@@ -2,13 +2,26 @@
 
 #include <algorithm>
 
-#include "integrators/sundials/factories.h"
+#include "integrators/entry.h"
 
 namespace tress {
 namespace {
 
 constexpr std::string_view id = "ida";
 constexpr int highest_order = 5;
+constexpr std::array ida_formulations{Formulation::parametric, Formulation::acceleration,
+                                      Formulation::baumgarte, Formulation::index2_ggl,
+                                      Formulation::index3};
+constexpr Parameter own[] = {
+    {.name = "suppress_algebraic",
+     .help = "multipliers out of the error test",
+     .choices = "true|false"},
+    {.name = "multiplier_atol",
+     .help = "multipliers' absolute tolerance over atol",
+     .number = 1e6,
+     .min = 0,
+     .max = 1e30},
+};
 
 int residual(sunrealtype t, N_Vector y, N_Vector y_dot, N_Vector f, void* form) noexcept {
   return sundials_code(
@@ -38,7 +51,10 @@ Ida::Ida(System& system, const Options& options)
   require(IDASVtolerances(memory, options.rtol, atol_.handle()), "IDASVtolerances");
   form_.differential(id_.values());
   require(IDASetId(memory, id_.handle()), "IDASetId");
-  require(IDASetSuppressAlg(memory, options.suppress_algebraic), "IDASetSuppressAlg");
+  const Parameters chosen = own_options(options, own);
+  multiplier_atol_ = chosen.number("multiplier_atol");
+  require(IDASetSuppressAlg(memory, chosen.word("suppress_algebraic") == "true"),
+          "IDASetSuppressAlg");
   require(IDASetMaxOrd(memory, chosen_order(id, options, highest_order, 1, 5)),
           "IDASetMaxOrd");
   require(IDASetMaxStep(memory, options.max_step), "IDASetMaxStep");
@@ -57,7 +73,7 @@ int Ida::restart() {
   Status s = form_.consistent(time_, y, y_dot_.values());
   if (s == Status::ok) s = form_.multiplier_scale(time_, y, tolerances);
   if (s != Status::ok) return IDA_FIRST_RES_FAIL;
-  for (double& entry : tolerances) entry *= options_.multiplier_atol * options_.atol;
+  for (double& entry : tolerances) entry *= multiplier_atol_ * options_.atol;
   const int code = IDASVtolerances(memory_.get(), options_.rtol, atol_.handle());
   if (code < 0) return code;
   return IDAReInit(memory_.get(), time_, y_.handle(), y_dot_.handle());
@@ -82,8 +98,17 @@ Stats Ida::counters() const {
 
 std::string Ida::reason(int code) const { return code_name(&IDAGetReturnFlagName, code); }
 
-std::unique_ptr<Integrator> make_ida(System& system, const Options& options) {
-  return std::make_unique<Ida>(system, options);
+IntegratorEntry ida_entry() {
+  return {
+      .id = "ida",
+      .summary = "BDF on the residual form, orders 1-5",
+      .source = "SUNDIALS IDA",
+      .adaptive = true,
+      .tangent = true,
+      .formulations = of_order(highest_order, ida_formulations),
+      .gaps = {{Formulation::projection, "holds g = 0 itself: use its own formulations"}},
+      .parameters = own,
+      .make = make_method<Ida>};
 }
 
 }  // namespace tress

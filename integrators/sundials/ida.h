@@ -35,6 +35,7 @@ class Ida final : public Driver {
   SundialsVector y_dot_, id_;
   IdaMemory memory_;
   LinearAdapter linear_;
+  double multiplier_atol_;
 };
 
 }  // namespace tress

@@ -112,6 +112,17 @@ bool has_size(const Ellipsoid& e) {
 }
 bool has_size(const DistanceGrid&) { return true; }
 
+/// What an outline has of a shape, wherever it is.
+struct Drawn {
+  std::string_view shape;
+  Vec half_axes;
+};
+Drawn drawn(const Plane&) { return {"plane", {}}; }
+Drawn drawn(const Sphere& s) { return {"sphere", {s.radius, s.radius, s.radius}}; }
+Drawn drawn(const Capsule& c) { return {"capsule", {c.radius, c.radius, c.half_length}}; }
+Drawn drawn(const Ellipsoid& e) { return {"ellipsoid", e.half_axes()}; }
+Drawn drawn(const DistanceGrid&) { return {}; }
+
 /// A point of the strand in the frame of a body.
 struct Seen {
   Vec x, u;  // u: velocity relative to the surface
@@ -184,6 +195,13 @@ Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
                            " m and more from it");
     }
   }
+}
+
+std::optional<Outline> Body::outline(double t) const {
+  const Drawn of = std::visit([](const auto& shape) { return drawn(shape); }, shape_);
+  if (of.shape.empty()) return {};
+  const BodyPose now = pose(t);
+  return Outline{of.shape, of.half_axes, now.x, now.frame};
 }
 
 BodyPose Body::pose(double t) const {
@@ -261,7 +279,7 @@ double Body::power(double t, const Points& p) const noexcept {
   return sum;
 }
 
-double Body::penetration(double t, In x) const {
+std::optional<double> Body::penetration(double t, In x) const {
   const BodyPose now = pose(t);
   double deepest = 0;
   const auto look = [&](const auto& shape) {

@@ -51,12 +51,10 @@ class Body final : public Effect {
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
 
-  /// Largest depth (m) of the strand's surface in the body over the points at `x` (3 per
-  /// point), 0 when none touches.
-  double penetration(double t, In x) const;
+  std::optional<double> penetration(double t, In x) const override;
+  /// None of a distance grid.
+  std::optional<Outline> outline(double t) const override;
 
-  // For pictures.
-  const BodyShape& shape() const { return shape_; }
   BodyPose pose(double t) const;
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/system.h"
+#include "math/frame.h"
 #include "math/vec3.h"
 #include "models/effects/coupling.h"
 
@@ -39,6 +40,14 @@ struct Needs {
   }
 };
 
+/// A body as it is drawn.
+struct Outline {
+  std::string_view shape;  // "plane", "sphere", "capsule" or "ellipsoid"
+  Vec half_axes;           // m; a capsule's z without the caps, a plane has none
+  Vec x;                   // of its origin, m
+  Frame frame;             // its axes
+};
+
 /// A force on material points that never sees degrees of freedom. Called once per block
 /// of points, never per point; an effect that a scene does not name is not built.
 class Effect {
@@ -70,6 +79,11 @@ class Effect {
   virtual double potential(double t, const Points& p) const noexcept = 0;
   /// W done by the part of the load that `potential` does not account for.
   virtual double power(double t, const Points& p) const noexcept = 0;
+  /// Largest depth (m) of the strand's surface in a body over the points at `x` (3 per
+  /// point), 0 when none touches. Nothing: the effect is no body.
+  virtual std::optional<double> penetration(double /*t*/, In /*x*/) const { return {}; }
+  /// Nothing where there is nothing to draw.
+  virtual std::optional<Outline> outline(double /*t*/) const { return {}; }
 };
 
 /// Effects hold no state: strands may share them.

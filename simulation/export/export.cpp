@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "math/quaternion.h"
-#include "models/effects/body.h"
+#include "models/effects/effect.h"
 
 namespace tress {
 namespace {
@@ -59,38 +59,22 @@ nlohmann::ordered_json number(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
 
-nlohmann::ordered_json pose_of(const BodyPose& pose) {
-  const Quaternion q = quaternion_of(pose.frame);
-  return {pose.x.x, pose.x.y, pose.x.z, q.w, q.v.x, q.v.y, q.v.z};
+nlohmann::ordered_json pose_of(const Outline& body) {
+  const Quaternion q = quaternion_of(body.frame);
+  return {body.x.x, body.x.y, body.x.z, q.w, q.v.x, q.v.y, q.v.z};
 }
 
-struct Outline {
-  std::string_view shape;
-  Vec half_axes;  // m; a capsule's z without the caps
-};
-
-Outline outline(const Plane&) { return {"plane", {}}; }
-Outline outline(const Sphere& s) { return {"sphere", {s.radius, s.radius, s.radius}}; }
-Outline outline(const Capsule& c) {
-  return {"capsule", {c.radius, c.radius, c.half_length}};
-}
-Outline outline(const Ellipsoid& e) { return {"ellipsoid", e.half_axes()}; }
-Outline outline(const DistanceGrid&) { return {"grid", {}}; }
-
-/// Bodies of the scene at the times of the frames; grids have no outline to draw.
+/// Bodies of the scene at the times of the frames.
 nlohmann::ordered_json bodies(const Scene& scene, const std::vector<double>& times) {
   auto all = nlohmann::ordered_json::array();
   for (const auto& effect : make_effects(scene)) {
-    const auto* body = dynamic_cast<const Body*>(effect.get());
-    if (body == nullptr) continue;
-    const Outline drawn =
-        std::visit([](const auto& shape) { return outline(shape); }, body->shape());
-    if (drawn.shape == "grid") continue;
+    const std::optional<Outline> drawn = effect->outline(0);
+    if (!drawn) continue;
     auto poses = nlohmann::ordered_json::array();
-    for (const double t : times) poses.push_back(pose_of(body->pose(t)));
+    for (const double t : times) poses.push_back(pose_of(*effect->outline(t)));
     all.push_back(
-        {{"shape", drawn.shape},
-         {"half_axes_m", {drawn.half_axes.x, drawn.half_axes.y, drawn.half_axes.z}},
+        {{"shape", drawn->shape},
+         {"half_axes_m", {drawn->half_axes.x, drawn->half_axes.y, drawn->half_axes.z}},
          {"poses", std::move(poses)}});
   }
   return all;

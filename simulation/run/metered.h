@@ -40,6 +40,10 @@ class Metered final : public Effect {
   double power(double t, const Points& p) const noexcept override {
     return effect_->power(t, p);
   }
+  std::optional<double> penetration(double t, In x) const override {
+    return effect_->penetration(t, x);
+  }
+  std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
 
  private:
   std::shared_ptr<const Effect> effect_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/effects/body.h"
+#include "models/effects/effect.h"
 
 namespace tress {
 namespace {
@@ -63,9 +63,8 @@ Frame3d Readout::read(World& world) {
   row.push_back(world.stretch());
   double depth = 0;
   for (const auto& effect : effects_) {
-    const auto* body = dynamic_cast<const Body*>(effect.get());
-    if (body == nullptr) continue;
-    depth = std::max(depth, body->penetration(world.time(), world.positions()));
+    depth =
+        std::max(depth, effect->penetration(world.time(), world.positions()).value_or(0));
   }
   row.push_back(depth);
   const StrandInteraction* interaction = world.interaction();

@@ -110,6 +110,7 @@ class Reader {
 
   void read_integrator() {
     const Table read = read_or_default("integrator", integrator_table_parameters());
+    read.refuse_unused("id", integrator_uses());
     scene_.integrator = read.values().word("id");
     places_.integrator = read.place("id");
     for (const Parameter& p : read.declared()) {

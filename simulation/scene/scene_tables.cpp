@@ -88,11 +88,6 @@ std::span<const Parameter> integrator_table_parameters() {
     std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
     for (Parameter p : integrator_options()) {
       if (p.name == "step") p.name = "dt_s";
-      if (p.name == "table") {  // the other names belong to SUNDIALS, which checks them
-        p.fallback = p.choices;
-        p.choices = {};
-        p.text = true;
-      }
       list.push_back(p);
     }
     return list;
@@ -100,11 +95,32 @@ std::span<const Parameter> integrator_table_parameters() {
   return all;
 }
 
+std::span<const Use> integrator_uses() {
+  static const auto keys_of = [] {  // a Use only names them
+    std::map<std::string_view, std::string> all;
+    for (const IntegratorEntry& entry : integrators()) {
+      for (const Parameter& p : entry.parameters) {
+        std::string& keys = all[entry.id];
+        keys += (keys.empty() ? "" : "|") + std::string(p.name);
+      }
+    }
+    return all;
+  }();
+  static const auto uses = [] {
+    std::vector<Use> list;
+    for (const auto& [id, keys] : keys_of) list.push_back({id, keys});
+    return list;
+  }();
+  return uses;
+}
+
 std::vector<TableEntry> table_entries() {
   std::vector<TableEntry> all{
       {.name = "integrator",
        .summary = "how time advances",
        .parameters = integrator_table_parameters(),
+       .choice = "id",
+       .uses = integrator_uses(),
        .needed = true},
       {.name = "material",
        .summary = "what all strands are made of; [strand.material] and [groom.material] "

@@ -22,6 +22,8 @@ std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 
 /// `id`, `dt_s` and the integrators' options.
 std::span<const Parameter> integrator_table_parameters();
+/// Which of them go with which integrator only.
+std::span<const Use> integrator_uses();
 
 /// The effect that is not one of a single strand.
 inline constexpr std::string_view interaction_id = "strand_interaction";

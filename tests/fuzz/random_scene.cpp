@@ -49,12 +49,7 @@ constexpr int least_steps = 50, least_steps_of_frame = 20, most_steps_of_frame =
 
 /// s of processor time, roughly, from the times of some hundred such scenes.
 double seconds_per_step(const IntegratorEntry& entry, int elements, bool monolithic) {
-  constexpr std::string_view explicit_ones[] = {
-      "explicit_euler", "symplectic_euler", "velocity_verlet", "rk4",
-      "xpbd",           "gsl_rkf45",        "gsl_rk8pd",       "gsl_msadams",
-      "arkode_erk",     "cvode_adams"};
-  const bool explicit_one =
-      std::ranges::find(explicit_ones, entry.id) != std::ranges::end(explicit_ones);
+  const bool explicit_one = !entry.tangent && entry.order(Formulation::parametric);
   const double n = elements, pairs = monolithic ? n * n : 0;
   // Each of its columns takes a difference of the acceleration.
   if (entry.id == "gsl_bsimp") return 13e-6 * n * n * (1 + n / 50);
@@ -183,7 +178,7 @@ class Writer {
     line("[integrator]\nid = \"{}\"", method_->id);
     if (constrained_) {
       std::vector<Formulation> usable;
-      for (const Formulation one : method_->formulations) {
+      for (const auto& [one, order] : method_->formulations) {
         if (one != Formulation::parametric) usable.push_back(one);
       }
       if (!usable.empty()) line("formulation = \"{}\"", name(draw_.of(usable)));

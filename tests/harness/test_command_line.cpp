@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "contract/input_error.h"
 #include "experiments/run/command_line.h"
 #include "experiments/run/settings.h"
@@ -101,15 +103,11 @@ TEST(IntegratorOptions, EveryDeclaredKeyReachesItsField) {
   apply(o, "step", "0.01", "x");
   apply(o, "rtol", "1e-4", "x");
   apply(o, "atol", "1e-5", "x");
-  apply(o, "rho_inf", "0.5", "x");
   apply(o, "max_order", "2", "x");
-  apply(o, "table", "SDIRK_2_1_2", "x");
   apply(o, "newton_tolerance", "1e-8", "x");
   apply(o, "newton_iterations", "7", "x");
   apply(o, "refresh", "when_slow", "x");
   apply(o, "newton_coefficient", "0.25", "x");
-  apply(o, "suppress_algebraic", "false", "x");
-  apply(o, "multiplier_atol", "1", "x");
   apply(o, "linear", "banded", "x");
   apply(o, "formulation", "index2_ggl", "x");
   apply(o, "max_steps", "50", "x");
@@ -120,15 +118,11 @@ TEST(IntegratorOptions, EveryDeclaredKeyReachesItsField) {
   EXPECT_EQ(o.step, 0.01);
   EXPECT_EQ(o.rtol, 1e-4);
   EXPECT_EQ(o.atol, 1e-5);
-  EXPECT_EQ(o.rho_inf, 0.5);
   EXPECT_EQ(o.max_order, 2);
-  EXPECT_EQ(o.table, "SDIRK_2_1_2");
   EXPECT_EQ(o.newton_tolerance, 1e-8);
   EXPECT_EQ(o.newton_iterations, 7);
   EXPECT_EQ(o.refresh, Refresh::when_slow);
   EXPECT_EQ(o.newton_coefficient, 0.25);
-  EXPECT_FALSE(o.suppress_algebraic);
-  EXPECT_EQ(o.multiplier_atol, 1);
   EXPECT_EQ(o.linear, LinearKind::banded);
   EXPECT_EQ(o.formulation, Formulation::index2_ggl);
   EXPECT_EQ(o.max_steps, 50);
@@ -138,8 +132,8 @@ TEST(IntegratorOptions, EveryDeclaredKeyReachesItsField) {
 
 TEST(IntegratorOptions, DeclaredDefaultsAreThoseOfOptions) {
   const Options original;
-  for (const Parameter& p : integrator_options()) {
-    if (!p.choices.empty() || p.name == "table") continue;
+  for (const Parameter& p : common_options()) {
+    if (!p.choices.empty()) continue;
     Options o;
     std::string text(32, ' ');
     text.resize(static_cast<std::size_t>(
@@ -149,12 +143,62 @@ TEST(IntegratorOptions, DeclaredDefaultsAreThoseOfOptions) {
     EXPECT_EQ(o.step, original.step) << p.name;
     EXPECT_EQ(o.rtol, original.rtol) << p.name;
     EXPECT_EQ(o.atol, original.atol) << p.name;
-    EXPECT_EQ(o.rho_inf, original.rho_inf) << p.name;
     EXPECT_EQ(o.max_steps, original.max_steps) << p.name;
     EXPECT_EQ(o.max_work, original.max_work) << p.name;
     EXPECT_EQ(o.newton_iterations, original.newton_iterations) << p.name;
     EXPECT_EQ(o.newton_tolerance, original.newton_tolerance) << p.name;
-    EXPECT_EQ(o.multiplier_atol, original.multiplier_atol) << p.name;
+  }
+}
+
+// A key that two methods declared would be set for both by one --set.
+TEST(IntegratorOptions, EveryKeyHasOneOwner) {
+  std::set<std::string_view> names;
+  for (const Parameter& p : integrator_options()) {
+    EXPECT_TRUE(names.insert(p.name).second) << p.name;
+  }
+}
+
+TEST(IntegratorOptions, OwnOnesReachTheMethodThatDeclaresThem) {
+  int own = 0;
+  for (const IntegratorEntry& entry : integrators()) {
+    for (const Parameter& p : entry.parameters) {
+      ++own;
+      EXPECT_EQ(owner_of_option(p.name), &entry) << p.name;
+      const bool number = p.choices.empty() && !p.text;
+      std::string text = "other";
+      if (!p.choices.empty()) text = words_of(p.choices).back();
+      if (number) text = std::to_string(p.number > 0.5 ? 0.5 * p.number : 1);
+      if (p.whole) text = "7";
+      Options options;
+      apply(options, p.name, text, "x");
+      const Parameters read = own_options(options, entry.parameters);
+      const Parameters defaults = own_options({}, entry.parameters);
+      if (number) {
+        EXPECT_EQ(read.number(p.name), std::stod(text)) << p.name;
+        EXPECT_EQ(defaults.number(p.name), p.number) << p.name;
+      } else {
+        EXPECT_EQ(read.word(p.name), text) << p.name;
+        EXPECT_EQ(defaults.word(p.name), p.default_text()) << p.name;
+      }
+    }
+  }
+  EXPECT_GT(own, 0);
+  Options options;
+  EXPECT_THROW(apply(options, "rho_inf", "2", "x"), InputError);
+  EXPECT_THROW(apply(options, "sweep_order", "upwards", "x"), InputError);
+}
+
+TEST(Settings, AnOptionOfAMethodThatIsNotChosenIsRefusedWithItsOwner) {
+  const auto options_of = [](const char* integrators) {
+    return Settings(parse({"--integrators", integrators, "--set", "rho_inf=0.5"}), {})
+        .options();
+  };
+  EXPECT_EQ(options_of("rk4,generalized_alpha").own.at("rho_inf"), "0.5");
+  try {
+    options_of("rk4,newmark");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("rho_inf belongs to generalized_alpha"));
   }
 }
 

@@ -30,7 +30,7 @@ class Point final : public System {
 };
 
 constexpr Parameter parameters[] = {{.name = "mass", .help = "mass (kg)", .number = 2}};
-constexpr Formulation parametric[] = {Formulation::parametric};
+constexpr Parameter own[] = {{.name = "gamma", .help = "its own", .number = 0.5}};
 
 const ModelEntry models_listed[] = {
     {"point", "one particle", "Newton 1687", parameters,
@@ -48,10 +48,19 @@ const ModelEntry models_listed[] = {
 };
 
 const IntegratorEntry integrators_listed[] = {
-    {"willing", "drives all", "Euler 1768", 1, false, parametric,
-     [](System&, Formulation) { return std::string(); }, nullptr},
-    {"choosy", "drives none", "Gear 1971", 2, true, parametric,
-     [](System&, Formulation) { return std::string("needs a longer rope"); }, nullptr},
+    {.id = "willing",
+     .summary = "drives all",
+     .source = "Euler 1768",
+     .formulations = {{Formulation::parametric, 3}, {Formulation::index3, 1}},
+     .parameters = own,
+     .make = nullptr},
+    {.id = "choosy",
+     .summary = "drives none",
+     .source = "Gear 1971",
+     .adaptive = true,
+     .formulations = {{Formulation::parametric, 2}},
+     .objection = [](System&, Formulation) { return std::string("needs a longer rope"); },
+     .make = nullptr},
 };
 
 std::vector<std::string> words_of_line(const std::string& text,
@@ -67,13 +76,13 @@ TEST(List, MatrixShowsWhatWorksAndEachReasonOnce) {
   const std::string text = catalogue_text(models_listed, integrators_listed, {});
   const std::string matrix = text.substr(text.find("WHAT DRIVES WHAT"));
   EXPECT_THAT(words_of_line(matrix, "willing"),
-              testing::ElementsAre("willing", "p", "p", "2"));
+              testing::ElementsAre("willing", "p", "1", "p", "1", "3"));
   EXPECT_THAT(words_of_line(matrix, "choosy"),
-              testing::ElementsAre("choosy", "1", "1", "2"));
+              testing::ElementsAre("choosy", "2", "2", "3"));
   const std::string reason = "needs a longer rope";
   EXPECT_NE(matrix.find(reason), std::string::npos);
   EXPECT_EQ(matrix.find(reason), matrix.rfind(reason));
-  EXPECT_THAT(matrix, HasSubstr("2  lacks its parts"));
+  EXPECT_THAT(matrix, HasSubstr("3  lacks its parts"));
 }
 
 TEST(List, ShowsModelsWithParametersAndIntegratorsWithOrder) {
@@ -81,6 +90,8 @@ TEST(List, ShowsModelsWithParametersAndIntegratorsWithOrder) {
   EXPECT_THAT(text, HasSubstr("one particle (Newton 1687)"));
   EXPECT_THAT(text, HasSubstr("mass (kg) [2]"));
   EXPECT_THAT(text, HasSubstr("order 2, adaptive, drives none [p] (Gear 1971)"));
+  EXPECT_THAT(
+      text, HasSubstr("order 3, drives all [p, 3 of order 1] (Euler 1768)\n      gamma"));
 }
 
 }  // namespace tress::test_list

@@ -8,7 +8,7 @@
 
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"
-#include "integrators/catalogue.h"
+#include "integrators/integrator_options.h"
 #include "models/catalogue.h"
 #include "tests/support/small_systems.h"
 
@@ -33,24 +33,25 @@ void PrintTo(const Method& method, std::ostream* out) {
   *out << method.name();
 }  // NOLINT
 
-/// All but xpbd: a wire is no compliant constraint.
-std::vector<Method> methods(bool adaptive) {
-  std::vector<Method> all;
-  for (const IntegratorEntry& entry : integrators()) {
-    if (entry.adaptive != adaptive || entry.id == "xpbd") continue;
-    for (const Formulation formulation : entry.formulations) {
-      all.push_back({&entry, formulation});
-    }
-  }
-  return all;
-}
-
 std::unique_ptr<System> bead(Formulation formulation) {
   const ModelEntry& entry = find_model("bead_on_wire");
   Parameters parameters(entry.parameters, "model bead_on_wire");
   parameters.set("form",
                  formulation == Formulation::parametric ? "parametric" : "implicit");
   return entry.make(parameters);
+}
+
+/// All that take the bead: not those of compliant constraints, which a wire is not.
+std::vector<Method> methods(bool adaptive) {
+  std::vector<Method> all;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.adaptive != adaptive) continue;
+    for (const auto& [formulation, order] : entry.formulations) {
+      if (!refusal(entry, *bead(formulation), formulation).empty()) continue;
+      all.push_back({&entry, formulation});
+    }
+  }
+  return all;
 }
 
 struct Outcome {
@@ -101,7 +102,8 @@ TEST_P(FixedStepOrder, ErrorFallsAtTheNominalOrder) {
     steps.push_back(options.step);
     errors.push_back(run(GetParam(), options).position_error);
   }
-  EXPECT_NEAR(log_log_slope(steps, errors), GetParam().entry->order, 0.2)
+  const int order = *GetParam().entry->order(GetParam().formulation);
+  EXPECT_NEAR(log_log_slope(steps, errors), order, 0.2)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 
@@ -197,6 +199,28 @@ TEST(MaxWork, EndsARunOfEveryMethodWithThatReason) {
   }
 }
 
+TEST(IntegratorEntry, EveryFormulationThatAMethodLacksHasAReason) {
+  using enum Formulation;
+  for (const IntegratorEntry& entry : integrators()) {
+    for (const Formulation formulation : {parametric, acceleration, baumgarte, projection,
+                                          index2_ggl, index3, rattle, correction}) {
+      if (entry.order(formulation)) continue;
+      EXPECT_EQ(refusal(entry, *bead(formulation), formulation), entry.gap(formulation));
+      EXPECT_FALSE(entry.gap(formulation).empty()) << entry.id;
+    }
+    for (const auto& [formulation, reason] : entry.gaps) {
+      EXPECT_FALSE(entry.order(formulation)) << entry.id << ": " << reason;
+    }
+  }
+}
+
+TEST(IntegratorEntry, AReasonOfItsOwnComesBeforeTheGeneralOne) {
+  const IntegratorEntry& gauss = find_integrator("implicit_midpoint");
+  const IntegratorEntry& explicit_one = find_integrator("rk4");
+  EXPECT_NE(gauss.gap(Formulation::index3), explicit_one.gap(Formulation::index3));
+  EXPECT_EQ(gauss.gap(Formulation::rattle), explicit_one.gap(Formulation::rattle));
+}
+
 INSTANTIATE_TEST_SUITE_P(Catalogue, FixedStepOrder, testing::ValuesIn(methods(false)),
                          [](const auto& test) { return test.param.name(); });
 
@@ -277,7 +301,7 @@ class HeldConstraints : public testing::TestWithParam<Method> {};
 TEST_P(HeldConstraints, ViolationStaysAtRounding) {
   Options options;
   options.step = 1e-3;
-  options.correction_tolerance = 1e-13;
+  apply(options, "correction_tolerance", "1e-13", "test");
   // Newton and projection stop at a few units in the last place of coordinates of size 1
   // m.
   EXPECT_LE(run(GetParam(), options).violation, 1e-12);

@@ -29,7 +29,7 @@ std::vector<Method> methods() {
   const auto truss = make_model("tinkertoys", one_bay);
   std::vector<Method> all;
   for (const IntegratorEntry& entry : integrators()) {
-    for (const Formulation formulation : entry.formulations) {
+    for (const auto& [formulation, order] : entry.formulations) {
       const bool known_to_fail = entry.id == "ida" && formulation == Formulation::index3;
       if (!known_to_fail && refusal(entry, *truss, formulation).empty()) {
         all.push_back({&entry, formulation});

@@ -121,7 +121,7 @@ class FixedStepOnStrands : public testing::TestWithParam<Method> {};
 TEST_P(FixedStepOnStrands, ErrorFallsAtTheNominalOrder) {
   std::vector<double> steps, errors;
   // Methods of order one come to their asymptotic range later.
-  const int coarsest = GetParam().entry->order == 1 ? 1000 : 100;
+  const int coarsest = GetParam().entry->order() == 1 ? 1000 : 100;
   for (int i = 0; i < 4; ++i) {
     Options options;
     options.step = end_time / (coarsest * std::pow(2, i));
@@ -130,7 +130,7 @@ TEST_P(FixedStepOnStrands, ErrorFallsAtTheNominalOrder) {
   }
   // The coarsest step may still be longer than the fastest waves.
   const auto last = [](const std::vector<double>& x) { return std::span(x).subspan(1); };
-  EXPECT_NEAR(log_log_slope(last(steps), last(errors)), GetParam().entry->order, 0.25)
+  EXPECT_NEAR(log_log_slope(last(steps), last(errors)), GetParam().entry->order(), 0.25)
       << "errors from " << errors.front() << " to " << errors.back();
 }
 

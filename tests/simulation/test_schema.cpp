@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "models/catalogue.h"
 #include "simulation/files/files.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/scene_tables.h"
@@ -72,6 +75,37 @@ TEST(SceneTables, TakeEveryKeyAtItsDefault) {
   }
 }
 
+/// Whether a strand of some model can be driven as `text`, which ends in [integrator],
+/// says: not every method takes every model.
+bool some_model_takes(const IntegratorEntry& entry, const std::string& text) {
+  for (const ModelEntry& model : models()) {
+    if (model.on_strand == nullptr) continue;
+    for (const auto& [formulation, order] : entry.formulations) {
+      try {
+        parse_scene(text + "formulation = \"" + std::string(name(formulation)) +
+                        "\"\n[strand]\n[model]\nid = \"" + std::string(model.id) + "\"\n",
+                    "word.toml");
+        return true;
+      } catch (const InputError&) {
+        continue;  // what is sought is one that goes
+      }
+    }
+  }
+  return false;
+}
+
+TEST(SceneTables, RefuseAnOptionOfAnotherIntegratorAndNameItsOwner) {
+  try {
+    parse_scene("title = \"t\"\n[strand]\n[integrator]\nid = \"rk4\"\nrho_inf = 0.5\n",
+                "other.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("other.toml:5:"), std::string::npos) << text;
+    EXPECT_NE(text.find("generalized_alpha"), std::string::npos) << text;
+  }
+}
+
 TEST(SceneTables, TakeEveryWordWithItsKeys) {
   for (const TableEntry& entry : table_entries()) {
     for (const Use& use : entry.uses) {
@@ -84,6 +118,10 @@ TEST(SceneTables, TakeEveryWordWithItsKeys) {
         }
       }
       if (entry.name == "root") text += "[strand]\n";
+      if (entry.name == "integrator") {
+        EXPECT_TRUE(some_model_takes(find_integrator(use.word), text)) << text;
+        continue;
+      }
       EXPECT_NO_THROW(parse_scene(text, "word.toml")) << text;
     }
   }

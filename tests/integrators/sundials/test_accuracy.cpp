@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/numerics/fit.h"
+#include "integrators/integrator_options.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
@@ -27,7 +28,7 @@ Options options_of(const Case& chosen, double tolerance) {
   Options options;
   options.rtol = options.atol = tolerance;
   options.max_order = chosen.max_order;
-  options.table = chosen.table;
+  if (!chosen.table.empty()) apply(options, "table", chosen.table, "test");
   return options;
 }
 

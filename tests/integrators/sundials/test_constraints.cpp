@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "integrators/integrator_options.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
@@ -68,10 +69,10 @@ TEST(IdaStabilisedIndex2, HoldsTheConstraintToTheTolerance) {
 // step is small enough for.
 TEST(IdaStabilisedIndex2, IsSlowerWithMultipliersInTheErrorTest) {
   Options options = options_of(Formulation::index2_ggl, 1e-6);
-  options.multiplier_atol = 1;
+  apply(options, "multiplier_atol", "1", "test");
   options.max_steps = 10'000;
   const Outcome out_of_test = swing("ida", options);
-  options.suppress_algebraic = false;
+  apply(options, "suppress_algebraic", "false", "test");
   const Outcome in_test = swing("ida", options);
   ASSERT_EQ(out_of_test.status, Status::ok) << out_of_test.failure;
   const auto attempts = [](const Outcome& run) {

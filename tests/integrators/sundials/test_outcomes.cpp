@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
-#include "integrators/sundials/factories.h"
+#include "integrators/integrator_options.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
@@ -190,9 +190,9 @@ TEST_P(Sundials, EndInThePastIsAFailure) {
 TEST(ArkodeDirk, UnknownTableIsRefusedWithTheList) {
   AnglePendulum system;
   Options options;
-  options.table = "ESDIRK";
+  apply(options, "table", "ESDIRK", "test");
   try {
-    make_arkode_dirk(system, options);
+    make_integrator("arkode_dirk", system, options);
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("ARKODE_ESDIRK436L2SA_6_3_4"));
@@ -205,7 +205,7 @@ TEST(ArkodeDirk, TableIsUsed) {
   Options options;
   options.rtol = options.atol = 1e-8;
   Drive standard("arkode_dirk", system, options);
-  options.table = "ARKODE_SDIRK_2_1_2";
+  apply(options, "table", "ARKODE_SDIRK_2_1_2", "test");
   Drive second_order("arkode_dirk", system, options);
   ASSERT_EQ(standard.to(0.2), Status::ok);
   ASSERT_EQ(second_order.to(0.2), Status::ok);
@@ -218,7 +218,7 @@ TEST(CvodeAdams, RefusesProjectionAndNamesWhoCan) {
   Options options;
   options.formulation = Formulation::projection;
   try {
-    make_cvode_adams(system, options);
+    find_integrator("cvode_adams").make(system, options);
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("cvode_bdf"));

@@ -37,7 +37,7 @@ TEST(Body, AStrandAtRestOnAPlaneSinksByItsWeightOverTheStiffness) {
     for (std::size_t i = 0; i < points; ++i) {
       EXPECT_NEAR(radius - strand.place(i).z, depth, 1e-13 * depth);
     }
-    EXPECT_NEAR(plane.penetration(0, strand.points.x), depth, 1e-13 * depth);
+    EXPECT_NEAR(*plane.penetration(0, strand.points.x), depth, 1e-13 * depth);
   }
 }
 
@@ -201,9 +201,28 @@ TEST(Body, OnlyPushesWhatMovesWithIt) {
 
 TEST(Body, TellsTheDeepestPoint) {
   const Body sphere(Sphere{0.5}, {{0, 0, 1}, {}}, {.stiffness = 1, .offset = 0.01});
-  EXPECT_EQ(sphere.penetration(0, std::vector{0.0, 0.0, 0.0, 2.0, 0.0, 1.0}), 0);
-  EXPECT_NEAR(sphere.penetration(0, std::vector{0.0, 0.0, 0.55, 0.3, 0.0, 1.0}), 0.21,
+  EXPECT_EQ(*sphere.penetration(0, std::vector{0.0, 0.0, 0.0, 2.0, 0.0, 1.0}), 0);
+  EXPECT_NEAR(*sphere.penetration(0, std::vector{0.0, 0.0, 0.55, 0.3, 0.0, 1.0}), 0.21,
               4 * eps);
+}
+
+TEST(Body, IsDrawnWhereItIs) {
+  const StrandPlace place{{0.05, 0.1, 1.45}, rotation({0, 1, 0}, 0.3)};
+  const Body body(Capsule{0.1, 0.2}, place, {.stiffness = 1}, shaking_head());
+  const BodyPose pose = body.pose(0.37);
+  const std::optional<Outline> drawn = body.outline(0.37);
+  ASSERT_TRUE(drawn.has_value());
+  EXPECT_EQ(drawn->shape, "capsule");
+  EXPECT_EQ(norm(drawn->half_axes - Vec{0.1, 0.1, 0.2}), 0);
+  EXPECT_EQ(norm(drawn->x - pose.x), 0);
+  EXPECT_EQ(norm(drawn->frame.e2 - pose.frame.e2), 0);
+}
+
+TEST(Effect, HasNoDepthAndNoOutlineUnlessItIsABody) {
+  EXPECT_FALSE(gravity.penetration(0, std::vector{0.0, 0.0, -1.0}));
+  EXPECT_FALSE(gravity.outline(0));
+  const Body grid(DistanceGrid(sphere_samples(0.6, 1, 81), "test"), {}, {.stiffness = 1});
+  EXPECT_FALSE(grid.outline(0)) << "a grid is not drawn";
 }
 
 TEST(Body, ASampledSphereActsAsASphere) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "experiments/numerics/fit.h"
+#include "integrators/integrator_options.h"
 #include "tests/models/reduced/strand_cases.h"
 #include "tests/support/tangent.h"
 
@@ -29,7 +30,7 @@ TEST_P(MovingClamp, GivesItsWorkToTheStrand) {
     system->initial_state(start.q, start.v);
     Options options;
     options.step = step;
-    options.rho_inf = 1;
+    apply(options, "rho_inf", "1", "test");
     options.newton_tolerance = 1e-10;
     if (system->layout().constraints > 0) options.formulation = Formulation::projection;
     const double before = energetics.energy(0, start.q, start.v).total();

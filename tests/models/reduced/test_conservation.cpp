@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/numerics/fit.h"
+#include "integrators/integrator_options.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::test_conservation {
@@ -49,7 +50,7 @@ std::vector<Way> ways(const std::vector<StrandCase>& strands,
 Options undamped(double step) {
   Options options;
   options.step = step;
-  options.rho_inf = 1;
+  apply(options, "rho_inf", "1", "test");
   options.newton_tolerance = 1e-12;
   return options;
 }
