@@ -10,6 +10,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
+#include "experiments/validation/free_flight.h"
 #include "simulation/files/parse.h"
 
 namespace tress {
@@ -28,11 +29,21 @@ constexpr Column columns[] = {
     {"judged", "whether the test asks so much of so few elements"},
     {"passed", "error_rel <= tolerance"},
     {"order", "error ~ elements^-order at this parameter"},
+    {"integrator", "free_flight: method; the other tests have one of their own"},
+    {"dt_s", "free_flight: fixed step"},
+    {"rtol", "free_flight: relative and absolute tolerance, adaptive methods"},
+    {"t_end_s", "length of the flight"},
+    {"linear_error_rel",
+     "largest change of linear momentum over the flight, over itself"},
+    {"angular_error_rel", "the same of angular momentum about the origin"},
+    {"angular_change_rel", "change of its size from start to end"},
+    {"energy_change_rel", "change of mechanical energy from start to end, over it"},
+    {"steps", "accepted steps of the flight"},
 };
 
 constexpr Parameter settings_table[] = {
     {.name = "tests",
-     .help = "which tests, as in cantilever,greenhill; empty: all",
+     .help = "which tests, as in cantilever,free_flight; empty: all",
      .text = true},
     {.name = "parameters",
      .help = "values of the tests' parameter instead of their own, as in 0.1;10",
@@ -64,16 +75,36 @@ void measure(const Work& work, Row& row, const Deadline& deadline) {
   }
 }
 
-std::vector<const ValidationTest*> chosen_tests(const Settings& settings) {
-  std::vector<const ValidationTest*> chosen;
+struct Chosen {
+  std::vector<const ValidationTest*> published;
+  bool flight;
+};
+
+/// Those that --set tests names; with --integrators only those that leave a choice.
+Chosen chosen_tests(const CommandLine& line, const Settings& settings) {
+  Chosen chosen{};
   const std::string names(settings.experiment().word("tests"));
   if (names.empty()) {
-    for (const ValidationTest& test : validation_tests()) chosen.push_back(&test);
+    for (const ValidationTest& test : validation_tests()) {
+      chosen.published.push_back(&test);
+    }
+    chosen.flight = true;
   } else {
     for (const std::string& name : split(names, ',', "--set tests")) {
-      chosen.push_back(&find_validation_test(name));
+      if (name == free_flight) {
+        chosen.flight = true;
+      } else {
+        chosen.published.push_back(&find_validation_test(name));
+      }
     }
   }
+  if (line.integrators.empty()) return chosen;
+  if (!names.empty() && !chosen.published.empty()) {
+    throw InputError(
+        std::string(chosen.published.front()->name) + " has an integrator of its own",
+        line.place("integrators"), "leave it out, or ask for --set tests=free_flight");
+  }
+  chosen.published.clear();
   return chosen;
 }
 
@@ -123,6 +154,7 @@ std::vector<Gloss> validation_glossary() {
                     {"quantity", test.quantity},
                     {"why", test.why}}});
   }
+  all.push_back(free_flight_gloss());
   return all;
 }
 
@@ -130,7 +162,8 @@ std::span<const Parameter> validation_settings() { return settings_table; }
 
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {
   std::vector<Case> all;
-  for (const ValidationTest* test : chosen_tests(settings)) {
+  const Chosen chosen = chosen_tests(line, settings);
+  for (const ValidationTest* test : chosen.published) {
     const auto [parameters, elements] = grid(*test, line, settings);
     for (const ModelVariant& variant : length_variants()) {
       if (!wanted(line.models, variant.model->id)) continue;
@@ -158,6 +191,13 @@ std::vector<Case> validation_cases(const CommandLine& line, const Settings& sett
         }
       }
     }
+  }
+  if (chosen.flight) {
+    if (!settings.experiment().numbers("parameters").empty()) {
+      throw InputError("free_flight has no parameter", "--set parameters",
+                       "leave it out, or name other tests");
+    }
+    std::ranges::move(free_flight_cases(line, settings), std::back_inserter(all));
   }
   return all;
 }
@@ -212,6 +252,7 @@ void check_validation(const std::vector<Row>& rows, Verdicts& verdicts) {
       }
     }
   }
+  check_free_flight(rows, verdicts);
 }
 
 }  // namespace tress

@@ -1,36 +1,18 @@
-// What does an integrator do to momentum and energy that no force changes? A hair thrown
-// in space without gravity, spinning, by every strand model whose root can be free.
+#include "experiments/validation/free_flight.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "experiments/numerics/momentum_drift.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
-#include "experiments/run/experiment.h"
-#include "experiments/run/settings.h"
 #include "integrators/catalogue.h"
 
 namespace tress {
 namespace {
 
-constexpr Column columns[] = {
-    {"model", "catalogue id"},
-    {"integrator", "method"},
-    {"elements", "number of elements"},
-    {"dt_s", "fixed step"},
-    {"rtol", "relative and absolute tolerance, adaptive methods"},
-    {"t_end_s", "length of the flight"},
-    {"linear_error_rel",
-     "largest change of linear momentum over the flight, over itself"},
-    {"angular_error_rel", "the same of angular momentum about the origin"},
-    {"angular_change_rel", "change of its size from start to end"},
-    {"energy_change_rel", "change of mechanical energy from start to end, over it"},
-    {"steps", "accepted steps"},
-};
-
-constexpr double t_end = 0.5;        // s: three quarters of a turn
+constexpr double flight_time = 0.5;  // s: three quarters of a turn
 constexpr double energy_bound = 10;  // times the start's: diverged
 constexpr double most_work = 6e7;    // of a row
 
@@ -43,29 +25,29 @@ Parameters thrown(const Settings& settings, const ModelEntry& model, int element
 }
 
 /// Explicit methods follow the waves of stretching of a hair, microseconds long.
-bool shown(const IntegratorEntry& entry, const CommandLine& line) {
+bool flies(const IntegratorEntry& entry, const CommandLine& line) {
   constexpr std::string_view slow[] = {"gsl_rkf45",   "gsl_rk8pd",  "gsl_msadams",
                                        "cvode_adams", "arkode_erk", "gsl_bsimp"};
   if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
   return line.full || std::ranges::find(slow, entry.id) == std::end(slow);
 }
 
-struct Work {
+struct Flight {
   const ModelEntry* model;
   std::string_view integrator;
   Options options;
   Parameters parameters;
 };
 
-void measure(const Work& work, Row& row) {
-  const auto system = work.model->make(work.parameters);
+void fly(const Flight& flight, Row& row) {
+  const auto system = flight.model->make(flight.parameters);
   const State start = initial_state(*system);
   Energetics& energetics = *system->energetics();
   MomentumDrift momentum(energetics, start.q, start.v);
   const double energy = energetics.energy(0, start.q, start.v).total();
   double total = energy;
-  const Simulation run = simulate(work.integrator, *system, work.options, start, t_end,
-                                  [&](double t, In q, In v) {
+  const Simulation run = simulate(flight.integrator, *system, flight.options, start,
+                                  flight_time, [&](double t, In q, In v) {
                                     momentum.see(t, q, v);
                                     total = energetics.energy(t, q, v).total();
                                     return std::abs(total) <= energy_bound * energy;
@@ -85,43 +67,26 @@ void measure(const Work& work, Row& row) {
   row.set("energy_change_rel", total / energy - 1);
 }
 
-std::vector<Case> cases(const CommandLine& line) {
-  const Settings settings(line, {});
-  const std::vector<int> counts =
-      line.elements.empty() ? std::vector<int>{10} : line.elements;
-  std::vector<Case> all;
-  for (const ModelEntry* model : strand_models()) {
-    if (!has_word(*model, "root", "free") || !wanted(line.models, model->id)) continue;
-    for (const int elements : counts) {
-      const Parameters p = thrown(settings, *model, elements);
-      const auto system = model->make(p);
-      for (const IntegratorEntry& entry : integrators()) {
-        if (!shown(entry, line)) continue;
-        Options options = settings.options();
-        if (!line.full && options.max_work == 0) options.max_work = most_work;
-        const auto formulations = usable_formulations(entry, *system);
-        if (formulations.empty()) continue;
-        options.formulation = formulations.front();
-        const int points = line.full ? 5 : line.quick ? 2 : 3;
-        for (int level = 0; level < points; ++level) {
-          Row identity;
-          identity.set("model", model->id).set("integrator", entry.id);
-          identity.set("elements", elements);
-          if (entry.adaptive) {
-            options.rtol = options.atol = std::pow(10, -3 - 2 * level);
-            identity.set("rtol", options.rtol);
-          } else {
-            options.step = 1 / 120.0 / std::pow(10, level);
-            identity.set("dt_s", options.step);
-          }
-          const Work work{model, entry.id, options, p};
-          all.push_back(
-              {identity, [work](Row& row, const auto&) { measure(work, row); }});
-        }
-      }
+/// Rows of one model by one integrator, over its steps or tolerances.
+void add_flights(const CommandLine& line, const IntegratorEntry& entry, Flight flight,
+                 std::vector<Case>& all) {
+  const int levels = line.full ? 5 : line.quick ? 2 : 3;
+  for (int level = 0; level < levels; ++level) {
+    Row row;
+    row.set("test", free_flight).set("model", flight.model->id);
+    row.set("elements", flight.parameters.whole("elements"));
+    row.set("integrator", entry.id);
+    Options& options = flight.options;
+    if (entry.adaptive) {
+      options.rtol = options.atol = std::pow(10, -3 - 2 * level);
+      row.set("rtol", options.rtol);
+    } else {
+      options.step = 1 / 120.0 / std::pow(10, level);
+      row.set("dt_s", options.step);
     }
+    all.push_back(
+        {row, [flight](Row& of_case, const Deadline&) { fly(flight, of_case); }});
   }
-  return all;
 }
 
 /// The angular momentum lost by the rows that `speaks_of` picks: the least and the most.
@@ -134,7 +99,7 @@ template <typename SpeaksOf>
 Lost lost(const std::vector<Row>& rows, SpeaksOf speaks_of) {
   Lost found;
   for (const Row& row : rows) {
-    if (!row.has("dt_s") || !speaks_of(row)) continue;
+    if (row.text("test") != free_flight || !row.has("dt_s") || !speaks_of(row)) continue;
     ++found.run;
     if (!row.ok()) continue;
     ++found.finished;
@@ -145,7 +110,42 @@ Lost lost(const std::vector<Row>& rows, SpeaksOf speaks_of) {
   return found;
 }
 
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+}  // namespace
+
+std::vector<Case> free_flight_cases(const CommandLine& line, const Settings& settings) {
+  const std::vector<int> counts =
+      line.elements.empty() ? std::vector<int>{10} : line.elements;
+  std::vector<Case> all;
+  for (const ModelEntry* model : strand_models()) {
+    if (!has_word(*model, "root", "free") || !wanted(line.models, model->id)) continue;
+    for (const int elements : counts) {
+      const Parameters p = thrown(settings, *model, elements);
+      const auto system = model->make(p);
+      for (const IntegratorEntry& entry : integrators()) {
+        const auto formulations = usable_formulations(entry, *system);
+        if (!flies(entry, line) || formulations.empty()) continue;
+        Options options = settings.options();
+        if (!line.full && options.max_work == 0) options.max_work = most_work;
+        options.formulation = formulations.front();
+        add_flights(line, entry, {model, entry.id, options, p}, all);
+      }
+    }
+  }
+  return all;
+}
+
+Gloss free_flight_gloss() {
+  return {
+      "test",
+      free_flight,
+      {{"what", "thrown in space without gravity, spinning: what integrators change"},
+       {"source", "no force acts: momentum, angular momentum and energy are constant"},
+       {"parameter", "the step, or the tolerance of an adaptive method"},
+       {"quantity", "relative change of the three over 0.5 s"},
+       {"why", "nothing is asked of a model: the integrator makes the error"}}};
+}
+
+void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts) {
   const auto judge = [&](const std::string& claim, const Lost& of, bool held,
                          double value) {
     if (of.run == 0) {
@@ -168,25 +168,4 @@ void check(const std::vector<Row>& rows, Verdicts& verdicts) {
         kept.most);
 }
 
-/// An explicit step too large for a hair is a finding.
-bool finding(const Row&) { return true; }
-
-constexpr Unused unused[] = {not_repeated, not_random};
-
-}  // namespace
 }  // namespace tress
-
-int main(int argc, char** argv) {
-  using namespace tress;
-  const Experiment experiment{
-      .name = "free_flight",
-      .question = "what do integrators do to momentum and energy that no force changes?",
-      .example = "--models der --integrators backward_euler,implicit_midpoint",
-      .timed = false,
-      .columns = columns,
-      .unused = unused,
-      .cases = cases,
-      .checks = check,
-      .finding = finding};
-  return run_experiment(experiment, argc, argv);
-}
