@@ -148,8 +148,9 @@ std::vector<Method> all_methods(const CommandLine& line, bool others) {
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
+    // The two that are above.
     if (entry.id == "semi_implicit_euler" || entry.id == "backward_euler") continue;
-    if (!considered(line, entry)) continue;  // the two are above
+    if (!considered(line, entry)) continue;
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
     if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
   }

@@ -242,7 +242,7 @@ test('StabilityFinding_CountsWhereTheSolversAgree', () => {
     'stability_limit',
     (text) =>
       text.replace(
-        /^(grid,shake,super_helix,semi_implicit_euler,composite,stiff,bend_twist,20,none,)[^,]*/m,
+        /^(grid,shake,super_helix,semi_implicit_euler,composite,stiff,bend_twist,20,none,,)[^,]*/m,
         '$10.0003',
       ),
     (page) => assert.match(page, /in 89 of 90 cases \(largest difference \d+ %\)/),
