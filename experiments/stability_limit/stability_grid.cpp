@@ -157,17 +157,22 @@ std::vector<Method> all_methods(const CommandLine& line, bool others) {
   return all;
 }
 
-/// Whether the rows of a scene are for a damping and a number of elements, when nothing
-/// on the command line says so: all without damping; --quick shows what damping does on
-/// two scenes at two counts, the default on four at all.
-bool usual(const CommandLine& line, const StrandScene& scene, const Damping& damping,
-           int elements) {
+/// Whether a row is there when nothing on the command line says so. --quick shows what
+/// damping does on two scenes at two counts, the default on four at all.
+bool usual(const CommandLine& line, const StabilityCase& c) {
   if (line.full) return true;
-  if (damping.name == "none") return !line.quick || contains(quick_scenes, scene.name);
   constexpr std::string_view damped[] = {"shake", "curl_drop", "release", "whip"};
-  if (!line.quick) return contains(damped, scene.name);
-  return contains(std::span(damped).first(2), scene.name) &&
-         (elements == 5 || elements == usual_elements);
+  const std::string_view scene = c.scene->name;
+  const bool undamped_row = c.damping.name == undamped.name;
+  if (!line.quick) return undamped_row || contains(damped, scene);
+  if (!of_the_seed(c.model->id)) {
+    return undamped_row && contains(quick_scenes_of_others, scene) &&
+           std::ranges::find(quick_elements_of_others, c.elements) !=
+               std::end(quick_elements_of_others);
+  }
+  if (undamped_row) return contains(quick_scenes, scene);
+  return contains(std::span(damped).first(2), scene) &&
+         (c.elements == 5 || c.elements == usual_elements);
 }
 
 /// Whether the model has this solver and tangent, and the integrator takes it.
@@ -240,23 +245,15 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
   if (rows.word("study") == "nodal") return all;
   const bool chosen = rows.word("scene") != "all" || rows.word("damping") != "all" ||
                       !line.elements.empty();
-  // Of models that are not the seed's.
-  const auto too_many = [&](const StabilityCase& c) {
-    if (chosen || !line.quick || of_the_seed(c.model->id)) return false;
-    return c.damping.name != "none" || !contains(quick_scenes_of_others, c.scene->name) ||
-           std::ranges::find(quick_elements_of_others, c.elements) ==
-               std::end(quick_elements_of_others);
-  };
   for (const StrandScene& scene : strand_scenes()) {
     for (const Damping& damping : dampings) {
       for (const int elements : element_counts(line)) {
-        if (!chosen && !usual(line, scene, damping, elements)) continue;
         const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
                             (elements == usual_elements && damping.name == "none");
         for (const Method& m : all_methods(line, others)) {
           const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
                                 m.tangent, rows.word("modes"),   elements,     damping};
-          if (!c.selected(line, rows) || too_many(c)) continue;
+          if (!c.selected(line, rows) || !(chosen || usual(line, c))) continue;
           if (possible(c, settings)) all.push_back(c);
         }
       }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
+#include "contract/input_error.h"
 #include "experiments/numerics/momentum_drift.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
@@ -89,30 +91,31 @@ void add_flights(const CommandLine& line, const IntegratorEntry& entry, Flight f
   }
 }
 
-/// The angular momentum lost by the rows that `speaks_of` picks: the least and the most.
-struct Lost {
-  double least = INFINITY, most = -INFINITY;
-  int run = 0, finished = 0;
-};
-
-template <typename SpeaksOf>
-Lost lost(const std::vector<Row>& rows, SpeaksOf speaks_of) {
-  Lost found;
+/// That angular momentum changes as `holds` says in all rows of fixed steps that
+/// `speaks_of` picks and that finish, one at least; the worst is the last in their order.
+template <typename SpeaksOf, typename Holds, typename Order>
+void check_change(const std::string& claim, const std::vector<Row>& rows,
+                  SpeaksOf speaks_of, Holds holds, Order order, Verdicts& verdicts) {
+  bool run = false;
+  std::vector<double> changes;
   for (const Row& row : rows) {
     if (row.text("test") != free_flight || !row.has("dt_s") || !speaks_of(row)) continue;
-    ++found.run;
-    if (!row.ok()) continue;
-    ++found.finished;
-    const double error = row.number("angular_error_rel");
-    found.least = std::min(found.least, error);
-    found.most = std::max(found.most, error);
+    run = true;
+    if (row.ok()) changes.push_back(row.number("angular_error_rel"));
   }
-  return found;
+  if (!run) return verdicts.not_judged(claim);
+  const double worst =
+      changes.empty() ? std::nan("") : *std::ranges::max_element(changes, order);
+  verdicts.check(claim, holds(worst), worst);
 }
 
 }  // namespace
 
 std::vector<Case> free_flight_cases(const CommandLine& line, const Settings& settings) {
+  if (!settings.experiment().numbers("parameters").empty()) {
+    throw InputError("free_flight has no parameter", "--set parameters",
+                     "leave it out, or name other tests");
+  }
   const std::vector<int> counts =
       line.elements.empty() ? std::vector<int>{10} : line.elements;
   std::vector<Case> all;
@@ -146,26 +149,20 @@ Gloss free_flight_gloss() {
 }
 
 void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts) {
-  const auto judge = [&](const std::string& claim, const Lost& of, bool held,
-                         double value) {
-    if (of.run == 0) {
-      verdicts.not_judged(claim);
-    } else {
-      verdicts.check(claim, of.finished > 0 && held, value);
-    }
-  };
-  const Lost damped = lost(rows, [](const Row& row) {
-    return row.number("dt_s") > 5e-3 && row.text("integrator") == "backward_euler";
-  });
-  judge("backward_euler at 1/120 s changes angular momentum by over 1 %", damped,
-        damped.least > 0.01, damped.least);
-  const Lost kept = lost(rows, [](const Row& row) {
-    return row.text("integrator") == "implicit_midpoint" &&
-           row.text("model") == "mass_spring";
-  });
+  check_change(
+      "backward_euler at 1/120 s changes angular momentum by over 1 %", rows,
+      [](const Row& row) {
+        return row.number("dt_s") > 5e-3 && row.text("integrator") == "backward_euler";
+      },
+      [](double least) { return least > 0.01; }, std::greater{}, verdicts);
   // Of particles alone: der's kinetic energy does not keep the spin of sections (der.h).
-  judge("implicit_midpoint keeps that of mass_spring to 1e-9", kept, kept.most < 1e-9,
-        kept.most);
+  check_change(
+      "implicit_midpoint keeps that of mass_spring to 1e-9", rows,
+      [](const Row& row) {
+        return row.text("integrator") == "implicit_midpoint" &&
+               row.text("model") == "mass_spring";
+      },
+      [](double most) { return most < 1e-9; }, std::less{}, verdicts);
 }
 
 }  // namespace tress

@@ -75,37 +75,16 @@ void measure(const Work& work, Row& row, const Deadline& deadline) {
   }
 }
 
-struct Chosen {
-  std::vector<const ValidationTest*> published;
-  bool flight;
-};
-
-/// Those that --set tests names; with --integrators only those that leave a choice.
-Chosen chosen_tests(const CommandLine& line, const Settings& settings) {
-  Chosen chosen{};
-  const std::string names(settings.experiment().word("tests"));
-  if (names.empty()) {
-    for (const ValidationTest& test : validation_tests()) {
-      chosen.published.push_back(&test);
-    }
-    chosen.flight = true;
-  } else {
-    for (const std::string& name : split(names, ',', "--set tests")) {
-      if (name == free_flight) {
-        chosen.flight = true;
-      } else {
-        chosen.published.push_back(&find_validation_test(name));
-      }
-    }
+std::vector<std::string> chosen_tests(const CommandLine& line, const Settings& settings) {
+  const std::string_view names = settings.experiment().word("tests");
+  if (!names.empty()) return split(names, ',', "--set tests");
+  std::vector<std::string> all;
+  // Only free_flight leaves a choice of integrators.
+  if (line.integrators.empty()) {
+    for (const ValidationTest& test : validation_tests()) all.emplace_back(test.name);
   }
-  if (line.integrators.empty()) return chosen;
-  if (!names.empty() && !chosen.published.empty()) {
-    throw InputError(
-        std::string(chosen.published.front()->name) + " has an integrator of its own",
-        line.place("integrators"), "leave it out, or ask for --set tests=free_flight");
-  }
-  chosen.published.clear();
-  return chosen;
+  all.emplace_back(free_flight);
+  return all;
 }
 
 std::string range_text(const ValidationTest& test) {
@@ -139,6 +118,42 @@ Row identity(const ValidationTest& test, const ModelVariant& variant) {
   return row;
 }
 
+/// Of every variant of every model the test's grid, or one row that says why the test
+/// refuses it.
+void add_cases(const ValidationTest& test, const CommandLine& line,
+               const Settings& settings, std::vector<Case>& all) {
+  if (!line.integrators.empty()) {
+    throw InputError(std::string(test.name) + " has an integrator of its own",
+                     line.place("integrators"),
+                     "leave it out, or ask for --set tests=free_flight");
+  }
+  const auto [parameters, elements] = grid(test, line, settings);
+  for (const ModelVariant& variant : length_variants()) {
+    if (!wanted(line.models, variant.model->id)) continue;
+    const Row name = identity(test, variant);
+    std::string reason = test.refusal ? test.refusal(variant) : "";
+    const bool slow = std::ranges::find(test.slow, variant.model->id) != test.slow.end();
+    if (reason.empty() && slow && line.quick && line.models.empty()) {
+      reason = "takes minutes: left out by --quick";
+    }
+    if (!reason.empty()) {
+      all.push_back(
+          {name, [reason](Row& row, const Deadline&) { row.failed("refused", reason); }});
+      continue;
+    }
+    for (const double parameter : parameters) {
+      for (const int n : elements) {
+        Row row = name;
+        row.set("elements", n).set("parameter", parameter);
+        const Work work{&test, variant, n, parameter};
+        all.push_back({row, [work](Row& of_case, const Deadline& deadline) {
+                         measure(work, of_case, deadline);
+                       }});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::span<const Column> validation_columns() { return columns; }
@@ -162,42 +177,12 @@ std::span<const Parameter> validation_settings() { return settings_table; }
 
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {
   std::vector<Case> all;
-  const Chosen chosen = chosen_tests(line, settings);
-  for (const ValidationTest* test : chosen.published) {
-    const auto [parameters, elements] = grid(*test, line, settings);
-    for (const ModelVariant& variant : length_variants()) {
-      if (!wanted(line.models, variant.model->id)) continue;
-      const Row name = identity(*test, variant);
-      std::string reason = test->refusal ? test->refusal(variant) : "";
-      const bool slow =
-          std::ranges::find(test->slow, variant.model->id) != test->slow.end();
-      if (reason.empty() && slow && line.quick && line.models.empty()) {
-        reason = "takes minutes: left out by --quick";
-      }
-      if (!reason.empty()) {
-        all.push_back({name, [reason](Row& row, const Deadline&) {
-                         row.failed("refused", reason);
-                       }});
-        continue;
-      }
-      for (const double parameter : parameters) {
-        for (const int n : elements) {
-          Row row = name;
-          row.set("elements", n).set("parameter", parameter);
-          const Work work{test, variant, n, parameter};
-          all.push_back({row, [work](Row& of_case, const Deadline& deadline) {
-                           measure(work, of_case, deadline);
-                         }});
-        }
-      }
+  for (const std::string& name : chosen_tests(line, settings)) {
+    if (name == free_flight) {
+      std::ranges::move(free_flight_cases(line, settings), std::back_inserter(all));
+    } else {
+      add_cases(find_validation_test(name), line, settings, all);
     }
-  }
-  if (chosen.flight) {
-    if (!settings.experiment().numbers("parameters").empty()) {
-      throw InputError("free_flight has no parameter", "--set parameters",
-                       "leave it out, or name other tests");
-    }
-    std::ranges::move(free_flight_cases(line, settings), std::back_inserter(all));
   }
   return all;
 }
