@@ -1,6 +1,7 @@
 #include "experiments/constraint_drift/drift_claims.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -80,6 +81,19 @@ void check_recovery(const std::vector<Row>& rows, Verdicts& verdicts) {
                    ratio);
   }
   if (!any) verdicts.not_judged(claim);
+}
+
+void check_limits(const std::vector<Row>& rows, Verdicts& verdicts) {
+  bool any = false;
+  for (const Row& row : rows) {
+    if (!row.has("rel_gap")) continue;
+    any = true;
+    const double gap = row.number("rel_gap");
+    verdicts.check(std::string(row.text("integrator")) + ", zeta " +
+                       std::string(row.text("zeta")) + ": limit within 5 % of theory",
+                   std::abs(gap) <= 0.05, gap);
+  }
+  if (!any) verdicts.not_judged("explicit methods: limit within 5 % of theory");
 }
 
 /// Strands that predictor_corrector does not bring to the end at 1/120 s, and after how
@@ -179,6 +193,7 @@ void check_drift_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_strands(rows, verdicts);
   check_feedback(rows, verdicts);
   check_recovery(rows, verdicts);
+  check_limits(rows, verdicts);
   check_formulations(rows, verdicts);
 }
 

@@ -1,5 +1,6 @@
 // How far do constraints drift under each formulation, integrator, alpha, beta and dt,
-// what does stopping the drift cost, and how fast is a violated start recovered?
+// what does stopping the drift cost, how fast is a violated start recovered, and how
+// large may the gains of the feedback be?
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "experiments/constraint_drift/drift_claims.h"
 #include "experiments/constraint_drift/drift_studies.h"
+#include "experiments/constraint_drift/feedback_limits.h"
 #include "experiments/numerics/drift_monitor.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
@@ -17,13 +19,15 @@ namespace tress {
 namespace {
 
 constexpr Column columns[] = {
-    {"study", "formulation, grid (of gains), recovery, or strands (shaken)"},
+    {"study",
+     "formulation, grid (of gains), recovery, strands (shaken), limit (of gains)"},
     {"system", "what is simulated; of strands, the model"},
     {"variant", "how the strand keeps its length, where the model has a choice"},
     {"formulation", "how the constraint enters"},
     {"integrator", "method"},
     {"alpha", "Baumgarte's gain on g, 1/s^2"},
     {"beta", "Baumgarte's gain on g', 1/s"},
+    {"zeta", "limit: damping ratio beta / (2 sqrt alpha)"},
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance of an adaptive method"},
     {"suppress_algebraic", "ida: multipliers out of the error test"},
@@ -43,6 +47,10 @@ constexpr Column columns[] = {
     {"rank_deficiency", "redundant constraints met"},
     {"wall_s", "median time of the run without measuring (grid, recovery: with it, once)",
      true},
+    {"omega_h_predicted", "limit: of sqrt(alpha) dt, from the method's step matrix"},
+    {"omega_h_measured",
+     "limit: largest sqrt(alpha) dt at which a swinging bead stays on its wire"},
+    {"rel_gap", "limit: measured over predicted, minus one"},
 };
 
 // A bead that is this far (m) off its wire, or links this much too long, have failed.
@@ -147,6 +155,7 @@ std::vector<Case> cases(const CommandLine& line) {
                      measure(study, repeat, row);
                    }});
   }
+  std::ranges::move(feedback_limits(line, user), std::back_inserter(all));
   return all;
 }
 

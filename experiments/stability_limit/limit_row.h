@@ -1,15 +1,27 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "experiments/numerics/stability.h"
 #include "simulation/files/row.h"
 
 namespace tress {
 
-/// The columns about the limit that was found.
-void set_limit(const StepLimit& limit, const StepSearch& search, Row& row);
+/// The largest stable step (s), and the run at it.
+struct FoundLimit {
+  double step;
+  StabilityRun run;
+};
 
-/// The reason of a row whose method has no stable step, or whose search found none in its
-/// work; `last` broke at limit.unstable.
-void fail_without_limit(const StepLimit& limit, const StabilityRun* last, Row& row);
+/// Looks for the largest step that `judge` calls stable (empty: the work is used up) and
+/// fills the columns about it; the row fails where no stable step was found, which is
+/// when nothing is returned, or not in the work that there was.
+std::optional<FoundLimit> find_limit(
+    const StepSearch& search,
+    const std::function<std::optional<StabilityRun>(double dt)>& judge, Row& row);
+
+/// The columns about the run at the limit and what a step (s of wall time) of it costs.
+void set_cost(const FoundLimit& limit, double cost, Row& row);
 
 }  // namespace tress

@@ -2,7 +2,6 @@
 // what decides it: the solver, the tangent, damping or the scene?
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/run/experiment.h"
 #include "experiments/stability_limit/limit_row.h"
+#include "experiments/stability_limit/nodal_limits.h"
 #include "experiments/stability_limit/scene_limits.h"
 #include "experiments/stability_limit/stability_claims.h"
 #include "experiments/stability_limit/stability_grid.h"
@@ -20,6 +20,8 @@ namespace tress {
 namespace {
 
 constexpr Column columns[] = {
+    {"study",
+     "grid (of our hair), nodal (a claim about a nodal scheme), file (your scene)"},
     {"scene", "what happens to the strand"},
     {"model", "catalogue id"},
     {"integrator", "method"},
@@ -28,6 +30,8 @@ constexpr Column columns[] = {
     {"modes", "unknowns per element"},
     {"elements", "number of elements"},
     {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},
+    {"start",
+     "nodal: space, shaken in all directions by 1e-3 of its rates; plane, not out of it"},
     {"dt_max_s", "largest step such that every step tested up to it was stable"},
     {"dt_first_unstable_s", "smallest unstable step tested"},
     {"limited_by", "what broke there; cap: no larger step was tried"},
@@ -44,21 +48,12 @@ constexpr Column columns[] = {
     {"newton_iterations", "linear solves of that run"},
     {"cost_per_step_s", "wall time of a step at dt_max", true},
     {"realtime_factor", "simulated over wall time at dt_max", true},
+    {"at_claim", "nodal: what broke at steps of 1e-5 s; nothing: stable"},
+    {"t_claim_s", "nodal: when it ended"},
+    {"energy_gain_claim_j", "nodal: largest gain of energy until then"},
+    {"dt_theory_s", "nodal, explicit methods: limit over the grid's highest frequency"},
+    {"dt_bending_s", "nodal, explicit methods: the same of bending alone"},
 };
-
-double row_work(const CommandLine& line, const Parameters& rows) {
-  if (rows.number("row_work") > 0) return rows.number("row_work");
-  return line.quick ? 4e6 : line.full ? 1e8 : 2e7;
-}
-
-StepSearch step_search(const CommandLine& line, const Parameters& rows) {
-  const double usual_depth = line.quick ? 10 : 30;
-  const double depth = rows.number("depth");
-  return {.coarsest = rows.number("cap_s"),
-          .finest = rows.number("floor_s"),
-          .resolution = rows.number("resolution"),
-          .depth = depth > 0 ? std::max(depth, 1.0) : usual_depth};
-}
 
 /// Wall time (s) of a step, over at most so many steps that a row does not take long.
 double step_cost(const StabilityCase& c, System& system, const Options& options,
@@ -95,48 +90,45 @@ void measure(const Work& work, Row& row) {
       usable_formulations(find_integrator(c.integrator), *system).front();
   StabilityRuns tried(c.integrator, *system, options, start, c.scene->t_end, bounds,
                       work.most_work);
-  std::map<double, StabilityRun> runs;
-  const StepLimit limit =
-      find_step_limit(work.search, [&](double dt) -> std::optional<Broken> {
-        const auto run = tried.judge(dt);
-        if (!run) return {};
-        return (runs[dt] = *run).broken;
-      });
-
-  set_limit(limit, work.search, row);
-  if (!std::isnan(limit.stable)) {
-    const StabilityRun& run = runs.at(limit.stable);
-    if (bounds.energy < StabilityBounds::none) row.set("energy_gain_j", run.energy_gain);
-    if (bounds.speed < StabilityBounds::none) row.set("speed_max_m_s", run.speed);
-    row.set("steps", run.stats.steps);
-    row.set("newton_iterations", run.stats.newton_iterations);
-    options.step = limit.stable;
-    const double cost = step_cost(c, *system, options, work.repeat);
-    row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
-  }
-  const auto last = runs.find(limit.unstable);
-  fail_without_limit(limit, last == runs.end() ? nullptr : &last->second, row);
+  const auto limit = find_limit(
+      work.search, [&](double dt) { return tried.judge(dt); }, row);
+  if (!limit) return;
+  const StabilityRun& run = limit->run;
+  if (bounds.energy < StabilityBounds::none) row.set("energy_gain_j", run.energy_gain);
+  if (bounds.speed < StabilityBounds::none) row.set("speed_max_m_s", run.speed);
+  options.step = limit->step;
+  set_cost(*limit, step_cost(c, *system, options, work.repeat), row);
 }
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, stability_settings());
   const Parameters& rows = settings.experiment();
-  const StepSearch search = step_search(line, rows);
+  const StepSearch search = step_search(rows, 1e-6, line.quick ? 10 : 30);
+  const double row_work = set_or(rows, "row_work",
+                                 line.quick  ? 4e6
+                                 : line.full ? 1e8
+                                             : 2e7);
   if (!rows.word("scenes").empty()) {
     return scene_cases(line, split(rows.word("scenes"), ',', "scenes"),
-                       {search, row_work(line, rows), rows.number("horizon_s"),
+                       {search, row_work, set_or(rows, "horizon_s", 0.5),
                         static_cast<std::size_t>(rows.whole("strands")), line.repeat});
   }
   std::vector<Case> all;
   for (const StabilityCase& c : stability_cases(line, settings)) {
     StepSearch own = search;
     own.coarsest = std::min(own.coarsest, c.scene->coarsest);
-    const Work work{c,   c.parameters(settings), settings.options(),
-                    own, row_work(line, rows),   line.repeat};
+    const Work work{c,          c.parameters(settings), settings.options(), own, row_work,
+                    line.repeat};
     all.push_back(
         {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
   }
+  std::ranges::move(nodal_cases(line, settings), std::back_inserter(all));
   return all;
+}
+
+void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+  check_stability_claims(rows, verdicts);
+  check_nodal_claims(rows, verdicts);
 }
 
 constexpr OwnOption command_options[] = {
@@ -167,7 +159,7 @@ int main(int argc, char** argv) {
       .options = command_options,
       .unused = unused,
       .cases = cases,
-      .checks = check_stability_claims,
+      .checks = check,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

@@ -1,14 +1,14 @@
 #include "experiments/stability_limit/scene_limits.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <set>
 
 #include "contract/input_error.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/stability_limit/limit_row.h"
+#include "experiments/stability_limit/stability_grid.h"
 #include "integrators/catalogue.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/variants.h"
@@ -29,17 +29,6 @@ Broken broken_by(const Breach& breach) {
       break;
   }
   return Broken::energy;
-}
-
-/// Of --quick: those that a user is likely to consider.
-constexpr std::array quick_methods{
-    "semi_implicit_euler",        "backward_euler", "implicit_midpoint",
-    "linearly_implicit_midpoint", "bdf2",           "rk4"};
-
-bool considered(const CommandLine& line, const IntegratorEntry& entry) {
-  if (entry.adaptive) return false;  // has no step
-  if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
-  return !line.quick || std::ranges::find(quick_methods, entry.id) != quick_methods.end();
 }
 
 /// The scene's own tangent, and the usual one of the method that solves only once a step.
@@ -109,27 +98,14 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
   double left = how.most_work;
-  std::map<double, StabilityRun> runs;
-  StepLimit limit;
+  std::optional<FoundLimit> limit;
   try {
-    limit = find_step_limit(how.search, [&](double dt) -> std::optional<Broken> {
-      const auto run = judge(scene, dt, t_end, left);
-      if (!run) return {};
-      return (runs[dt] = *run).broken;
-    });
+    limit = find_limit(
+        how.search, [&](double dt) { return judge(scene, dt, t_end, left); }, row);
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
-    return;
   }
-  set_limit(limit, how.search, row);
-  if (!std::isnan(limit.stable)) {
-    const Stats& stats = runs.at(limit.stable).stats;
-    row.set("steps", stats.steps).set("newton_iterations", stats.newton_iterations);
-    const double cost = step_cost(scene, limit.stable, t_end, how.repeat);
-    row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
-  }
-  const auto last = runs.find(limit.unstable);
-  fail_without_limit(limit, last == runs.end() ? nullptr : &last->second, row);
+  if (limit) set_cost(*limit, step_cost(scene, limit->step, t_end, how.repeat), row);
 }
 
 }  // namespace
@@ -148,7 +124,8 @@ std::vector<Case> scene_cases(const CommandLine& line,
         own.integrator = entry.id;
         if (!tangent.empty()) own.model_options.set("tangent", tangent);
         Row row;
-        row.set("scene", scene.name).set("model", scene.model->id);
+        row.set("study", "file").set("scene", scene.name);
+        row.set("model", scene.model->id);
         row.set("integrator", entry.id).set("tangent", tangent);
         if (most_elements(scene) > 0) row.set("elements", most_elements(scene));
         all.push_back({row, [own, how](Row& of_case, const Deadline&) {

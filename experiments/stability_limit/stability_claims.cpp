@@ -12,8 +12,9 @@ namespace {
 /// All that tells rows apart but for the column that is compared.
 std::string setting_of(const Row& row, std::string_view compared) {
   std::string key;
-  for (const std::string_view column : {"scene", "model", "integrator", "solver",
-                                        "tangent", "modes", "elements", "damping"}) {
+  for (const std::string_view column :
+       {"scene", "model", "integrator", "solver", "tangent", "modes", "elements",
+        "damping", "study"}) {
     if (column != compared) key.append(row.text(column)).append("/");
   }
   return key;

@@ -7,12 +7,12 @@
 #include "contract/input_error.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
-#include "integrators/catalogue.h"
 
 namespace tress {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
+    {.name = "study", .help = "rows of one study", .choices = "all|grid|nodal"},
     {.name = "scene",
      .help = "rows of one scene",
      .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
@@ -29,10 +29,13 @@ constexpr Parameter settings_of_rows[] = {
      .help = "which modes the strands have",
      .choices = "bend_twist|bend|bend_planar"},
     {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
-    {.name = "floor_s", .help = "smallest step tried (s)", .number = 1e-6, .min = 1e-12},
+    {.name = "floor_s",
+     .help = "smallest step tried (s), 0: 1e-6, of study nodal 1e-7",
+     .number = 0,
+     .min = 0},
     {.name = "depth",
      .help = "test below a stable step until this factor is stable, 0: 30, with --quick "
-             "10",
+             "10, of study nodal 1",
      .number = 0,
      .min = 0},
     {.name = "resolution",
@@ -41,9 +44,12 @@ constexpr Parameter settings_of_rows[] = {
      .min = 1.0001},
     {.name = "scenes", .help = "scene files instead of our scenes", .text = true},
     {.name = "horizon_s",
-     .help = "of a scene file: time that a run simulates, at most the scene's (s)",
-     .number = 0.5,
-     .min = 1e-3,
+     .help =
+         "time that a run simulates (s), of a scene file (at most the scene's) and of "
+         "study nodal; 0: 0.5, of study nodal 1, with --quick 0.25, explicit methods "
+         "0.02",
+     .number = 0,
+     .min = 0,
      .max = 1e3},
     {.name = "strands",
      .help = "of a scene file whose strands do not touch: so many typical ones",
@@ -53,7 +59,7 @@ constexpr Parameter settings_of_rows[] = {
      .whole = true},
     {.name = "row_work",
      .help = "work of the search for one row (max_work), 0: 2e7, with --quick 4e6, "
-             "with --full 1e8",
+             "with --full 1e8, of study nodal 1e9, with --quick 1.5e8",
      .number = 0,
      .min = 0},
 };
@@ -62,7 +68,7 @@ constexpr Parameter settings_of_rows[] = {
 // The seed's gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
 // a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
 // leaves the motion as it is and only rounds off what the grid adds.
-constexpr Damping dampings[] = {{"none", "0"}, {"light", "1e-12"}, {"seed", "1e-10"}};
+constexpr Damping dampings[] = {undamped, {"light", "1e-12"}, {"seed", "1e-10"}};
 
 struct Method {
   std::string_view model, integrator, solver, tangent;
@@ -104,10 +110,16 @@ constexpr Method further_methods[] = {
 /// Where methods are compared.
 constexpr int usual_elements = 20;
 
-/// Of --quick; the others say nothing new about stability.
-constexpr std::string_view quick_integrators[] = {"rk4", "implicit_midpoint",
-                                                  "linearly_implicit_midpoint", "bdf2",
-                                                  "generalized_alpha"};
+/// Of --quick, a method of each kind that a user is likely to consider: explicit, of
+/// order 1, symplectic, with one solve a step, and two that damp fast modes. The others
+/// say nothing new about stability.
+constexpr std::string_view quick_integrators[] = {"rk4",
+                                                  "semi_implicit_euler",
+                                                  "backward_euler",
+                                                  "implicit_midpoint",
+                                                  "bdf2",
+                                                  "generalized_alpha",
+                                                  "linearly_implicit_midpoint"};
 constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
                                              "whip"};
 /// Of models that are not the seed's: these scenes and numbers of elements.
@@ -136,29 +148,30 @@ std::vector<Method> all_methods(const CommandLine& line, bool others) {
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
-    if (entry.adaptive) continue;  // has no step
     if (std::ranges::count(methods, entry.id, &Method::integrator) > 0) continue;
-    if (line.quick && line.integrators.empty() &&
-        !contains(quick_integrators, entry.id)) {
-      continue;
-    }
+    if (!considered(line, entry)) continue;
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
     if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
   }
   return all;
 }
 
-/// Whether the rows of a scene are for a damping and a number of elements, when nothing
-/// on the command line says so: all without damping; --quick shows what damping does on
-/// two scenes at two counts, the default on four at all.
-bool usual(const CommandLine& line, const StrandScene& scene, const Damping& damping,
-           int elements) {
+/// Whether a row is there when nothing on the command line says so. --quick shows what
+/// damping does on two scenes at two counts, the default on four at all.
+bool usual(const CommandLine& line, const StabilityCase& c) {
   if (line.full) return true;
-  if (damping.name == "none") return !line.quick || contains(quick_scenes, scene.name);
   constexpr std::string_view damped[] = {"shake", "curl_drop", "release", "whip"};
-  if (!line.quick) return contains(damped, scene.name);
-  return contains(std::span(damped).first(2), scene.name) &&
-         (elements == 5 || elements == usual_elements);
+  const std::string_view scene = c.scene->name;
+  const bool undamped_row = c.damping.name == undamped.name;
+  if (!line.quick) return undamped_row || contains(damped, scene);
+  if (!of_the_seed(c.model->id)) {
+    return undamped_row && contains(quick_scenes_of_others, scene) &&
+           std::ranges::find(quick_elements_of_others, c.elements) !=
+               std::end(quick_elements_of_others);
+  }
+  if (undamped_row) return contains(quick_scenes, scene);
+  return contains(std::span(damped).first(2), scene) &&
+         (c.elements == 5 || c.elements == usual_elements);
 }
 
 /// Whether the model has this solver and tangent, and the integrator takes it.
@@ -179,10 +192,21 @@ bool possible(const StabilityCase& c, const Settings& settings) {
 
 Row StabilityCase::identity() const {
   Row row;
-  row.set("scene", scene->name).set("model", model->id).set("integrator", integrator);
+  row.set("study", "grid").set("scene", scene->name);
+  row.set("model", model->id).set("integrator", integrator);
   row.set("solver", solver).set("tangent", tangent).set("modes", modes);
   row.set("elements", elements).set("damping", damping.name);
   return row;
+}
+
+bool StabilityCase::selected(const CommandLine& line, const Parameters& rows) const {
+  for (const auto& [key, word] : {std::pair{"scene", scene->name},
+                                  {"damping", damping.name},
+                                  {"solver", solver},
+                                  {"tangent", tangent}}) {
+    if (rows.word(key) != "all" && rows.word(key) != word) return false;
+  }
+  return wanted(line.models, model->id) && wanted(line.integrators, integrator);
 }
 
 Parameters StabilityCase::parameters(const Settings& settings) const {
@@ -196,36 +220,39 @@ Parameters StabilityCase::parameters(const Settings& settings) const {
 
 std::span<const Parameter> stability_settings() { return settings_of_rows; }
 
+double set_or(const Parameters& rows, std::string_view key, double usual) {
+  return rows.number(key) > 0 ? rows.number(key) : usual;
+}
+
+StepSearch step_search(const Parameters& rows, double finest, double depth) {
+  return {.coarsest = rows.number("cap_s"),
+          .finest = set_or(rows, "floor_s", finest),
+          .resolution = rows.number("resolution"),
+          .depth = std::max(set_or(rows, "depth", depth), 1.0)};
+}
+
+bool considered(const CommandLine& line, const IntegratorEntry& entry) {
+  if (entry.adaptive) return false;
+  if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
+  return !line.quick || contains(quick_integrators, entry.id);
+}
+
 std::vector<StabilityCase> stability_cases(const CommandLine& line,
                                            const Settings& settings) {
   const Parameters& rows = settings.experiment();
-  const auto keeps = [&rows](std::string_view key, std::string_view word) {
-    return rows.word(key) == "all" || rows.word(key) == word;
-  };
-  const bool scene_chosen = rows.word("scene") != "all";
-  const bool damping_chosen = rows.word("damping") != "all";
   std::vector<StabilityCase> all;
+  if (rows.word("study") == "nodal") return all;
+  const bool chosen = rows.word("scene") != "all" || rows.word("damping") != "all" ||
+                      !line.elements.empty();
   for (const StrandScene& scene : strand_scenes()) {
-    if (!keeps("scene", scene.name)) continue;
     for (const Damping& damping : dampings) {
-      if (!keeps("damping", damping.name)) continue;
       for (const int elements : element_counts(line)) {
-        const bool chosen = scene_chosen || damping_chosen || !line.elements.empty();
-        if (!chosen && !usual(line, scene, damping, elements)) continue;
         const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
                             (elements == usual_elements && damping.name == "none");
         for (const Method& m : all_methods(line, others)) {
-          if (!keeps("solver", m.solver) || !keeps("tangent", m.tangent)) continue;
-          if (!chosen && line.quick && !of_the_seed(m.model) &&
-              !(damping.name == "none" && contains(quick_scenes_of_others, scene.name) &&
-                std::ranges::find(quick_elements_of_others, elements) !=
-                    std::end(quick_elements_of_others))) {
-            continue;
-          }
-          if (!wanted(line.models, m.model)) continue;
-          if (!wanted(line.integrators, m.integrator)) continue;
           const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
                                 m.tangent, rows.word("modes"),   elements,     damping};
+          if (!c.selected(line, rows) || !(chosen || usual(line, c))) continue;
           if (possible(c, settings)) all.push_back(c);
         }
       }

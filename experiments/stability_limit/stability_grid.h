@@ -4,9 +4,11 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/numerics/stability.h"
 #include "experiments/problems/strand_scenes.h"
 #include "experiments/run/command_line.h"
 #include "experiments/run/settings.h"
+#include "integrators/catalogue.h"
 #include "simulation/files/row.h"
 
 namespace tress {
@@ -17,6 +19,8 @@ struct Damping {
   std::string_view internal_friction;
 };
 
+inline constexpr Damping undamped{"none", "0"};
+
 /// One row of stability_limit: which strand, how it moves and who steps it.
 struct StabilityCase {
   const StrandScene* scene;
@@ -26,12 +30,24 @@ struct StabilityCase {
   Damping damping;
 
   Row identity() const;
+  /// Whether the command line and the settings leave it in.
+  bool selected(const CommandLine& line, const Parameters& rows) const;
   /// The model's: defaults, the user's, the scene's, this row's.
   Parameters parameters(const Settings& settings) const;
 };
 
 /// Keys of --set that choose rows and say how steps are searched.
 std::span<const Parameter> stability_settings();
+
+/// What the user set this key to; `usual` where it was left at 0.
+double set_or(const Parameters& rows, std::string_view key, double usual);
+
+/// How steps are searched; `finest` (s) and `depth` where the user says nothing else.
+StepSearch step_search(const Parameters& rows, double finest, double depth);
+
+/// Whether a study of all integrators looks at this one: it has a step, and is among
+/// those that were named, or is one that --quick keeps.
+bool considered(const CommandLine& line, const IntegratorEntry& entry);
 
 /// The rows that the command line and its settings leave, without those whose model the
 /// integrator refuses.

@@ -10,6 +10,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
+#include "experiments/validation/free_flight.h"
 #include "simulation/files/parse.h"
 
 namespace tress {
@@ -28,11 +29,21 @@ constexpr Column columns[] = {
     {"judged", "whether the test asks so much of so few elements"},
     {"passed", "error_rel <= tolerance"},
     {"order", "error ~ elements^-order at this parameter"},
+    {"integrator", "free_flight: method; the other tests have one of their own"},
+    {"dt_s", "free_flight: fixed step"},
+    {"rtol", "free_flight: relative and absolute tolerance, adaptive methods"},
+    {"t_end_s", "length of the flight"},
+    {"linear_error_rel",
+     "largest change of linear momentum over the flight, over itself"},
+    {"angular_error_rel", "the same of angular momentum about the origin"},
+    {"angular_change_rel", "change of its size from start to end"},
+    {"energy_change_rel", "change of mechanical energy from start to end, over it"},
+    {"steps", "accepted steps of the flight"},
 };
 
 constexpr Parameter settings_table[] = {
     {.name = "tests",
-     .help = "which tests, as in cantilever,greenhill; empty: all",
+     .help = "which tests, as in cantilever,free_flight; empty: all",
      .text = true},
     {.name = "parameters",
      .help = "values of the tests' parameter instead of their own, as in 0.1;10",
@@ -64,17 +75,16 @@ void measure(const Work& work, Row& row, const Deadline& deadline) {
   }
 }
 
-std::vector<const ValidationTest*> chosen_tests(const Settings& settings) {
-  std::vector<const ValidationTest*> chosen;
-  const std::string names(settings.experiment().word("tests"));
-  if (names.empty()) {
-    for (const ValidationTest& test : validation_tests()) chosen.push_back(&test);
-  } else {
-    for (const std::string& name : split(names, ',', "--set tests")) {
-      chosen.push_back(&find_validation_test(name));
-    }
+std::vector<std::string> chosen_tests(const CommandLine& line, const Settings& settings) {
+  const std::string_view names = settings.experiment().word("tests");
+  if (!names.empty()) return split(names, ',', "--set tests");
+  std::vector<std::string> all;
+  // Only free_flight leaves a choice of integrators.
+  if (line.integrators.empty()) {
+    for (const ValidationTest& test : validation_tests()) all.emplace_back(test.name);
   }
-  return chosen;
+  all.emplace_back(free_flight);
+  return all;
 }
 
 std::string range_text(const ValidationTest& test) {
@@ -108,6 +118,42 @@ Row identity(const ValidationTest& test, const ModelVariant& variant) {
   return row;
 }
 
+/// Of every variant of every model the test's grid, or one row that says why the test
+/// refuses it.
+void add_cases(const ValidationTest& test, const CommandLine& line,
+               const Settings& settings, std::vector<Case>& all) {
+  if (!line.integrators.empty()) {
+    throw InputError(std::string(test.name) + " has an integrator of its own",
+                     line.place("integrators"),
+                     "leave it out, or ask for --set tests=free_flight");
+  }
+  const auto [parameters, elements] = grid(test, line, settings);
+  for (const ModelVariant& variant : length_variants()) {
+    if (!wanted(line.models, variant.model->id)) continue;
+    const Row name = identity(test, variant);
+    std::string reason = test.refusal ? test.refusal(variant) : "";
+    const bool slow = std::ranges::find(test.slow, variant.model->id) != test.slow.end();
+    if (reason.empty() && slow && line.quick && line.models.empty()) {
+      reason = "takes minutes: left out by --quick";
+    }
+    if (!reason.empty()) {
+      all.push_back(
+          {name, [reason](Row& row, const Deadline&) { row.failed("refused", reason); }});
+      continue;
+    }
+    for (const double parameter : parameters) {
+      for (const int n : elements) {
+        Row row = name;
+        row.set("elements", n).set("parameter", parameter);
+        const Work work{&test, variant, n, parameter};
+        all.push_back({row, [work](Row& of_case, const Deadline& deadline) {
+                         measure(work, of_case, deadline);
+                       }});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::span<const Column> validation_columns() { return columns; }
@@ -123,6 +169,7 @@ std::vector<Gloss> validation_glossary() {
                     {"quantity", test.quantity},
                     {"why", test.why}}});
   }
+  all.push_back(free_flight_gloss());
   return all;
 }
 
@@ -130,33 +177,11 @@ std::span<const Parameter> validation_settings() { return settings_table; }
 
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings) {
   std::vector<Case> all;
-  for (const ValidationTest* test : chosen_tests(settings)) {
-    const auto [parameters, elements] = grid(*test, line, settings);
-    for (const ModelVariant& variant : length_variants()) {
-      if (!wanted(line.models, variant.model->id)) continue;
-      const Row name = identity(*test, variant);
-      std::string reason = test->refusal ? test->refusal(variant) : "";
-      const bool slow =
-          std::ranges::find(test->slow, variant.model->id) != test->slow.end();
-      if (reason.empty() && slow && line.quick && line.models.empty()) {
-        reason = "takes minutes: left out by --quick";
-      }
-      if (!reason.empty()) {
-        all.push_back({name, [reason](Row& row, const Deadline&) {
-                         row.failed("refused", reason);
-                       }});
-        continue;
-      }
-      for (const double parameter : parameters) {
-        for (const int n : elements) {
-          Row row = name;
-          row.set("elements", n).set("parameter", parameter);
-          const Work work{test, variant, n, parameter};
-          all.push_back({row, [work](Row& of_case, const Deadline& deadline) {
-                           measure(work, of_case, deadline);
-                         }});
-        }
-      }
+  for (const std::string& name : chosen_tests(line, settings)) {
+    if (name == free_flight) {
+      std::ranges::move(free_flight_cases(line, settings), std::back_inserter(all));
+    } else {
+      add_cases(find_validation_test(name), line, settings, all);
     }
   }
   return all;
@@ -212,6 +237,7 @@ void check_validation(const std::vector<Row>& rows, Verdicts& verdicts) {
       }
     }
   }
+  check_free_flight(rows, verdicts);
 }
 
 }  // namespace tress

@@ -18,14 +18,15 @@ std::vector<Gloss> validation_glossary();
 std::span<const Parameter> validation_settings();
 
 /// Of every test and every variant of every model of a strand the test's grid, or one row
-/// that says why the test refuses it.
+/// that says why the test refuses it; then the rows of free_flight.h.
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings);
 
 /// Fills `order`: error ~ elements^-order at one parameter, by least squares over rows
 /// whose error is above what rounding leaves.
 void fit_validation_orders(std::vector<Row>& rows);
 
-/// That each test's claimed models pass it wherever they are judged.
+/// That each test's claimed models pass it wherever they are judged, and what
+/// free_flight.h says.
 void check_validation(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress

@@ -6,6 +6,7 @@
 #include "experiments/validation/cantilever.h"
 #include "experiments/validation/chain.h"
 #include "experiments/validation/curls.h"
+#include "experiments/validation/free_flight.h"
 #include "experiments/validation/hanging.h"
 #include "experiments/validation/localised_buckling.h"
 #include "experiments/validation/pendulum.h"
@@ -34,7 +35,7 @@ const std::vector<ValidationTest>& validation_tests() {
 }
 
 const ValidationTest& find_validation_test(std::string_view name) {
-  std::vector<std::string_view> names;
+  std::vector<std::string_view> names{free_flight};
   for (const ValidationTest& test : validation_tests()) {
     if (test.name == name) return test;
     names.push_back(test.name);

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "contract/input_error.h"
 #include "experiments/stability_limit/scene_limits.h"
+#include "experiments/stability_limit/stability_grid.h"
 
 namespace tress::test_scene_limits {
 
@@ -98,6 +100,24 @@ TEST_F(SceneLimit, EndsWithItsWork) {
   const auto found = rows(file("springs.toml", springs), {"rk4"}, how);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found.front().status(), "gave_up");
+}
+
+// What --quick leaves of the methods is the same for the user's scene and for our hair.
+TEST_F(SceneLimit, OfAQuickTableAreOfTheMethodsOfTheGrid) {
+  CommandLine line;
+  line.quick = true;
+  const std::string scene = file("springs.toml", springs);
+  std::set<std::string> of_scene, of_grid;
+  for (const Case& work : scene_cases(line, {scene}, {{}, 1e6, 0.05, 1, 1})) {
+    of_scene.emplace(work.identity.text("integrator"));
+  }
+  for (const StabilityCase& c :
+       stability_cases(line, Settings(line, stability_settings()))) {
+    of_grid.emplace(c.integrator);
+  }
+  EXPECT_EQ(of_scene, of_grid);
+  EXPECT_TRUE(of_scene.contains("backward_euler"));
+  EXPECT_FALSE(of_scene.contains("newmark"));
 }
 
 TEST_F(SceneLimit, DoesNotTakeWhatTheSceneSays) {

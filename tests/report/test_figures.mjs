@@ -9,8 +9,13 @@ import {
   series_style,
   shapes,
 } from '../../experiments/report/figures/palette.mjs';
-import { limit_spec } from '../../experiments/report/figures/stability_limit.mjs';
+import { model_steps } from '../../experiments/report/figures/model_steps.mjs';
+import { nodal_steps } from '../../experiments/report/figures/nodal_steps.mjs';
+import { limit_spec, stability_limit } from '../../experiments/report/figures/stability_limit.mjs';
+import { validation_cells } from '../../experiments/report/figures/validation.mjs';
 import { validation_orders } from '../../experiments/report/figures/validation_orders.mjs';
+import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
+import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
 
 // Relative luminance of sRGB, from 0 to 1, as CIE L*.
 function lightness(hex) {
@@ -57,6 +62,48 @@ test('OrdersOfTwoPoints_AreDashed', () => {
   assert.deepEqual(
     drawn.map(({ points }) => points),
     [3, 3, 3, 2, 2],
+  );
+});
+
+test('Studies_OfOneTableAreDrawnApart', () => {
+  const row = {
+    scene: 'release',
+    model: 'super_helix',
+    integrator: 'semi_implicit_euler',
+    solver: 'recursive',
+    tangent: 'stiff',
+    modes: 'bend_twist',
+    damping: 'none',
+    elements: 20,
+    dt_max_s: 1e-3,
+    status: 'ok',
+  };
+  const drawn = (study, figure) => figure.rows({ stability_limit: [{ ...row, study }] }).length;
+  assert.deepEqual(
+    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('grid', figure)),
+    [1, 1, 0],
+  );
+  assert.deepEqual(
+    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('nodal', figure)),
+    [0, 0, 1],
+  );
+  const nodal = { ...row, study: 'nodal', status: 'gave_up' };
+  assert.deepEqual(stability_findings({ stability_limit: [nodal] }), []);
+  const limit = { study: 'limit', status: 'unstable' };
+  assert.deepEqual(drift_findings({ constraint_drift: [limit] }), []);
+});
+
+test('FreeFlight_IsNoTestOfAModel', () => {
+  const row = { model: 'der', elements: 10, status: 'ok' };
+  const cells = validation_cells({
+    validation: [
+      { ...row, test: 'cantilever', error_rel: 0.001, tolerance: 0.01, judged: 'true', passed: 'true' },
+      { ...row, test: 'free_flight', integrator: 'rk4', status: 'diverged' },
+    ],
+  });
+  assert.deepEqual(
+    cells.map(({ test: name }) => name),
+    ['cantilever'],
   );
 });
 

@@ -24,7 +24,7 @@ const figures = [
   'bdf_order',
   'stability_limit',
   'equal_accuracy',
-  'nodal_limit',
+  'nodal_steps',
   'scaling',
   'swing',
   'force_transport',

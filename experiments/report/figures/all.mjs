@@ -12,7 +12,7 @@ import { equal_accuracy } from './equal_accuracy.mjs';
 import { family } from './family.mjs';
 import { force_transport } from './force_transport.mjs';
 import { model_steps } from './model_steps.mjs';
-import { nodal_limit } from './nodal_limit.mjs';
+import { nodal_steps } from './nodal_steps.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
 import { swing } from './swing.mjs';
@@ -33,8 +33,8 @@ export const figures = [
   bdf_order,
   stability_limit,
   model_steps,
+  nodal_steps,
   equal_accuracy,
-  nodal_limit,
   scaling,
   swing,
   force_transport,

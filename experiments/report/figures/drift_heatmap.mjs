@@ -1,25 +1,28 @@
 // Figure 2: max |g| over (alpha, beta), diverged cells, stability boundary, critical
 // damping.
-import { distinct, group_by, is_number, is_positive, succeeded } from '../src/tables.mjs';
+import {
+  distinct,
+  group_by,
+  is_number,
+  is_positive,
+  study_rows,
+  succeeded,
+} from '../src/tables.mjs';
 import { layout, log_extent, panels } from './common.mjs';
 import { cell_axis } from './grid.mjs';
 
 const keys = ['system', 'integrator', 'dt_s'];
 
-// The predicted boundary as polylines: drift_region.csv, else the points of
-// baumgarte_limit.csv through alpha = (omega h / dt)^2, beta = 2 zeta omega.
+// The predicted boundary as a polyline.
 function predicted(tables, integrator, dt) {
-  const region = (tables.drift_region ?? []).filter(
-    (row) => row.integrator === integrator && row.dt_s === dt,
-  );
-  if (region.length > 0) return region;
   return boundary_points(tables, integrator, dt, 'omega_h_predicted')
     .sort((a, b) => a.zeta - b.zeta)
     .map((row, i) => ({ ...row, i }));
 }
 
+// Limits of the feedback through alpha = (omega h / dt)^2, beta = 2 zeta omega.
 function boundary_points(tables, integrator, dt, column) {
-  return (tables.baumgarte_limit ?? [])
+  return study_rows(tables, 'constraint_drift', 'limit')
     .filter((row) => row.integrator === integrator && is_positive(row[column]))
     .map((row) => {
       const omega = row[column] / dt;
@@ -213,16 +216,13 @@ export const drift_heatmap = {
     g - beta g' (dark is small). Grey cells with a cross diverged. The solid white line is
     the boundary predicted for the integrator from the test equation; white dots are
     measured boundary points; the dotted line is critical damping, beta² = 4 alpha. Made from
-    the rows of constraint_drift.csv whose study is "gains"; the boundary is from
-    baumgarte_limit.csv, or from drift_region.csv where there is one.`,
+    the rows of constraint_drift.csv whose study is "grid"; the boundary from those whose
+    study is "limit".`,
 
   rows: (tables) =>
-    (tables.constraint_drift ?? []).filter(
+    study_rows(tables, 'constraint_drift', 'grid').filter(
       (row) =>
-        ['gains', 'grid'].includes(row.study) &&
-        row.formulation === 'baumgarte' &&
-        is_number(row.alpha) &&
-        is_number(row.beta),
+        row.formulation === 'baumgarte' && is_number(row.alpha) && is_number(row.beta),
     ),
 
   spec(tables, { width, theme }) {

@@ -1,5 +1,5 @@
 // Figure 9: largest stable time step against the number of elements, model by model.
-import { distinct, group_by } from '../src/tables.mjs';
+import { distinct, group_by, study_rows } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
 import { has_limit, is_capped, is_reduced, spaced } from '../src/strand.mjs';
 import { model_style } from './palette.mjs';
@@ -26,7 +26,7 @@ function shared(rows) {
 
 const rows_of = (tables) =>
   shared(
-    (tables.stability_limit ?? []).filter(
+    study_rows(tables, 'stability_limit', 'grid').filter(
       (row) =>
         row.damping === 'none' &&
         integrators.includes(row.integrator) &&

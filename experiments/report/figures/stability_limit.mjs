@@ -1,5 +1,5 @@
 // Figure 6: largest stable time step against the number of elements, scene x damping.
-import { distinct, group_by, is_positive } from '../src/tables.mjs';
+import { distinct, group_by, is_positive, study_rows } from '../src/tables.mjs';
 import {
   damping_name,
   damping_rank,
@@ -275,7 +275,9 @@ export const stability_limit = {
 
   rows: (tables) =>
     principal_runs(
-      (tables.stability_limit ?? []).filter((row) => is_reduced(row) && is_drawn(row)),
+      study_rows(tables, 'stability_limit', 'grid').filter(
+        (row) => is_reduced(row) && is_drawn(row),
+      ),
     ).map((row) => ({ ...row, method: run_name(row) })),
 
   spec(tables, options) {

@@ -5,7 +5,7 @@ import { family_findings } from '../figures/family.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
-import { nodal_limit_findings } from '../figures/nodal_limit.mjs';
+import { nodal_step_findings } from '../figures/nodal_steps.mjs';
 import { validation_findings } from '../figures/validation.mjs';
 import { figures, figure_spec } from '../figures/all.mjs';
 import { paper_theme, paper_width } from '../figures/common.mjs';
@@ -43,8 +43,8 @@ const measurements = [
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {
     figure: 'drift_heatmap',
-    findings: ({ baumgarte_limit = [] }) => boundary_sentences(baumgarte_limit),
-    tables: ['baumgarte_limit', 'drift_region'],
+    findings: boundary_sentences,
+    tables: [],
   },
   {
     figure: 'drift_recovery',
@@ -60,12 +60,12 @@ const measurements = [
     tables: ['stability_limit'],
   },
   { figure: 'model_steps', findings: model_step_findings, tables: [] },
+  { figure: 'nodal_steps', findings: nodal_step_findings, tables: [] },
   {
     figure: 'equal_accuracy',
     findings: equal_accuracy_findings,
     tables: ['equal_accuracy'],
   },
-  { figure: 'nodal_limit', findings: nodal_limit_findings, tables: ['nodal_limit'] },
   {
     figure: 'scaling',
     findings: scaling_findings,

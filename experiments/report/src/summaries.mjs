@@ -1,5 +1,5 @@
 // Small tables of selected numbers as HTML; the full tables stand below them.
-import { distinct, group_by, is_positive, succeeded } from './tables.mjs';
+import { distinct, group_by, is_positive, study_rows, succeeded } from './tables.mjs';
 import { escape_html, format_number } from './format.mjs';
 import {
   damping_name,
@@ -46,7 +46,8 @@ function limit_cell(row) {
     : spaced(row.status);
 }
 
-export function stability_summary({ stability_limit: rows = [] }) {
+export function stability_summary(tables) {
+  const rows = study_rows(tables, 'stability_limit', 'grid');
   const scenes = distinct(rows.map((row) => row.scene));
   const series = [
     ...group_by(rows, (row) =>

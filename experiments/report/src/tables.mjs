@@ -13,6 +13,14 @@ export const known_tables = {
       'error_rel',
       'tolerance',
       'order',
+      'dt_s',
+      'rtol',
+      't_end_s',
+      'linear_error_rel',
+      'angular_error_rel',
+      'angular_change_rel',
+      'energy_change_rel',
+      'steps',
     ],
     command: './tress run',
     program: 'validation',
@@ -82,14 +90,19 @@ export const known_tables = {
       'integrator',
       'alpha',
       'beta',
+      'zeta',
       'dt_s',
       'g_max',
       'wall_s',
+      'omega_h_predicted',
+      'omega_h_measured',
+      'rel_gap',
       'status',
     ],
     numeric: [
       'alpha',
       'beta',
+      'zeta',
       'dt_s',
       't_end_s',
       'violation',
@@ -101,32 +114,12 @@ export const known_tables = {
       'overshoot',
       'steps',
       'wall_s',
-    ],
-    command: './tress run',
-    program: 'constraint_drift',
-  },
-  baumgarte_limit: {
-    title: 'Measured and predicted stability boundary',
-    required: [
-      'integrator',
-      'zeta',
       'omega_h_predicted',
       'omega_h_measured',
       'rel_gap',
-      'dt_s',
-      'status',
     ],
-    numeric: ['zeta', 'omega_h_predicted', 'omega_h_measured', 'rel_gap', 'dt_s'],
-    command: './tress run',
-    program: 'baumgarte_limit',
-  },
-  drift_region: {
-    title: 'Predicted stability region',
-    required: ['integrator', 'dt_s', 'alpha', 'beta', 'i'],
-    numeric: ['dt_s', 'alpha', 'beta', 'i'],
     command: './tress run',
     program: 'constraint_drift',
-    optional: true,
   },
   work_precision: {
     title: 'Work and precision',
@@ -160,6 +153,7 @@ export const known_tables = {
   stability_limit: {
     title: 'Largest stable time step',
     required: [
+      'study',
       'scene',
       'model',
       'integrator',
@@ -176,6 +170,10 @@ export const known_tables = {
       'dt_first_unstable_s',
       'cost_per_step_s',
       'realtime_factor',
+      't_claim_s',
+      'energy_gain_claim_j',
+      'dt_theory_s',
+      'dt_bending_s',
     ],
     command: './tress run',
     program: 'stability_limit',
@@ -231,24 +229,6 @@ export const known_tables = {
     command: './tress run',
     program: 'equal_accuracy',
   },
-  nodal_limit: {
-    title: 'Steps of a nodal scheme',
-    required: ['integrator', 'tangent', 'start', 'elements', 'at_claim', 'dt_max_s', 'status'],
-    numeric: [
-      'elements',
-      't_claim_s',
-      'energy_gain_claim_j',
-      'dt_max_s',
-      'dt_first_unstable_s',
-      'dt_theory_s',
-      'dt_bending_s',
-      'runs',
-      't_end_s',
-      'energy_bound_j',
-    ],
-    command: './tress run',
-    program: 'nodal_limit',
-  },
   force_transport: {
     title: 'Force transport beside CORDE',
     required: ['comparison', 'scene', 'model', 'elements', 'youngs_modulus_pa', 'status'],
@@ -293,6 +273,10 @@ export const known_tables = {
     optional: true,
   },
 };
+
+// The rows of one study of a table that has several.
+export const study_rows = (tables, name, study) =>
+  (tables[name] ?? []).filter((row) => row.study === study);
 
 export const is_known = (name) => Object.hasOwn(known_tables, name);
 export const table_rules = (name) => (is_known(name) ? known_tables[name] : {});

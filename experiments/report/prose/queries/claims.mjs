@@ -37,9 +37,8 @@ export const stable_not_accurate = asserted((tables) => {
 }, 'Stable is not accurate: at the longer step backward Euler survives far more cases than it is accurate in');
 
 const nodal = (tables, integrator, tangent) =>
-  rows_of(tables, 'nodal_limit', { integrator, tangent, start: 'space' }).reduce((a, b) =>
-    b.elements > a.elements ? b : a,
-  );
+  rows_of(tables, 'stability_limit', { study: 'nodal', integrator, tangent, start: 'space' })
+    .reduce((a, b) => (b.elements > a.elements ? b : a));
 
 export const nodal_verdict = asserted(
   (tables) =>
@@ -64,7 +63,10 @@ export const transport_wrong = asserted((tables) => {
 
 export const midpoint_keeps = asserted(
   (tables) => {
-    const rows = ok_rows(tables, 'free_flight', { integrator: 'implicit_midpoint' });
+    const rows = ok_rows(tables, 'validation', {
+      test: 'free_flight',
+      integrator: 'implicit_midpoint',
+    });
     const worst = (model) =>
       Math.max(...rows.filter((row) => row.model === model).map((row) => row.angular_error_rel));
     return worst('mass_spring') < 1e-9 && worst('der') < 1e-5 && worst('super_helix') > 1e-9;

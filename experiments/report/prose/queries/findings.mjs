@@ -2,7 +2,7 @@
 import { cost_findings } from '../../figures/cost_of_accuracy.mjs';
 import { hard_findings } from '../../figures/hard_cases.mjs';
 import { model_step_findings } from '../../figures/model_steps.mjs';
-import { nodal_limit_findings } from '../../figures/nodal_limit.mjs';
+import { nodal_step_findings } from '../../figures/nodal_steps.mjs';
 import { transport_findings } from '../../figures/force_transport.mjs';
 import { validation_findings } from '../../figures/validation.mjs';
 import { boundary_sentences, drift_findings, recovery_sentences } from '../../src/findings/drift.mjs';
@@ -21,12 +21,12 @@ const listed = (sentences) => (tables) => {
 };
 
 export const bdf = listed(bdf_findings);
-export const boundary = listed(({ baumgarte_limit }) => boundary_sentences(baumgarte_limit));
+export const boundary = listed(boundary_sentences);
 export const cost = listed(cost_findings);
 export const drift = listed(drift_findings);
 export const hard = listed(hard_findings);
 export const models = listed(model_step_findings);
-export const nodal = listed(nodal_limit_findings);
+export const nodal = listed(nodal_step_findings);
 export const recovery = listed(({ constraint_drift }) => recovery_sentences(constraint_drift));
 export const scaling = listed(scaling_findings);
 export const stability = listed(stability_findings);

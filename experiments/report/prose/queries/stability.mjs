@@ -10,7 +10,7 @@ const step = (row) => {
   return `${is_capped(row) ? '≥ ' : ''}${time(row.dt_max_s)}`;
 };
 
-const helix = { model: 'super_helix', solver: 'recursive', modes: 'bend_twist' };
+const helix = { study: 'grid', model: 'super_helix', solver: 'recursive', modes: 'bend_twist' };
 const ways = [
   ['semi_implicit_euler', 'stiff'],
   ['semi_implicit_euler', 'less_implicit'],
@@ -59,8 +59,11 @@ export function shaken_stiff(tables) {
 
 // Every strand model at 20 elements: error, and largest steps.
 export function models_table(tables) {
-  const rows = rows_of(tables, 'stability_limit', { elements: 20, damping: 'none' }).filter(
-    (row) => ['release', 'shake'].includes(row.scene) && !/less_implicit/.test(row.tangent),
+  const rows = rows_of(tables, 'stability_limit', {
+    study: 'grid',
+    elements: 20,
+    damping: 'none',
+  }).filter((row) => ['release', 'shake'].includes(row.scene) && !/less_implicit/.test(row.tangent),
   );
   const lines = [...group_by(rows, (row) => row.model)].map(([model, members]) => [
     `\`${model}\``,

@@ -1,5 +1,4 @@
-// What constraint_drift.csv and baumgarte_limit.csv say, as sentences computed from their
-// rows.
+// What constraint_drift.csv says, as sentences computed from its rows.
 import {
   distinct,
   group_by,
@@ -7,6 +6,7 @@ import {
   is_positive,
   is_set,
   minimum_by,
+  study_rows,
   succeeded,
 } from '../tables.mjs';
 import { format_number, format_ratio } from '../format.mjs';
@@ -108,10 +108,10 @@ function index2_sentences(rows) {
   });
 }
 
-export function boundary_sentences(rows) {
+export function boundary_sentences(tables) {
   return [
     ...group_by(
-      rows.filter((row) => is_number(row.rel_gap)),
+      study_rows(tables, 'constraint_drift', 'limit').filter((row) => is_number(row.rel_gap)),
       (row) => row.integrator,
     ),
   ].map(([integrator, members]) => {
@@ -168,7 +168,8 @@ export function drift_findings({ constraint_drift: rows = [] }) {
     .concat(
       exact_sentences(rows),
       index2_sentences(rows).slice(0, 1),
-      failure_sentence(rows),
+      // A limit is a search of many runs, not one.
+      failure_sentence(rows.filter((row) => row.study !== 'limit')),
       [...helped.slice(2), ...hurt.slice(1)].map(feedback_sentence),
       index2_sentences(rows).slice(1),
     );

@@ -1,5 +1,5 @@
-// What stability_limit.csv says, as sentences computed from its rows.
-import { distinct, group_by } from '../tables.mjs';
+// What the grid of stability_limit.csv says, as sentences computed from its rows.
+import { distinct, group_by, study_rows } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
 import {
   damping_name,
@@ -68,7 +68,8 @@ const gain_words = ({ a, b }) =>
 
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-export function stability_finding({ stability_limit: rows = [] }) {
+export function stability_finding(tables) {
+  const rows = study_rows(tables, 'stability_limit', 'grid');
   const same = agreement(rows);
   const gain = tangent_gain(rows);
   return [
@@ -120,7 +121,8 @@ function damping_sentences(rows) {
   );
 }
 
-export function stability_findings({ stability_limit: rows = [] }) {
+export function stability_findings(tables) {
+  const rows = study_rows(tables, 'stability_limit', 'grid');
   const same = agreement(rows);
   return [
     ...(same

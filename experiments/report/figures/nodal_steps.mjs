@@ -1,5 +1,5 @@
 // Figure 11: the step that nodal finite differences of a rod need.
-import { distinct, is_positive } from '../src/tables.mjs';
+import { distinct, is_positive, study_rows } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
 import { is_capped, spaced } from '../src/strand.mjs';
 import {
@@ -25,7 +25,7 @@ const method_of = (row) =>
   (row.start === 'plane' ? ', in a plane' : '');
 
 const rows_of = (tables) =>
-  (tables.nodal_limit ?? [])
+  study_rows(tables, 'stability_limit', 'nodal')
     .filter((row) => is_positive(row.dt_max_s))
     .map((row) => ({
       ...row,
@@ -34,8 +34,8 @@ const rows_of = (tables) =>
       dt_us: 1e6 * row.dt_max_s,
     }));
 
-export function nodal_limit_findings(tables) {
-  const at = (tables.nodal_limit ?? []).filter(
+export function nodal_step_findings(tables) {
+  const at = study_rows(tables, 'stability_limit', 'nodal').filter(
     (row) => row.elements === claimed_nodes && row.at_claim,
   );
   return at.map((row) => {
@@ -53,14 +53,15 @@ export function nodal_limit_findings(tables) {
   });
 }
 
-export const nodal_limit = {
-  id: 'nodal_limit',
+export const nodal_steps = {
+  id: 'nodal_steps',
   title: 'The step of a nodal scheme',
-  table: 'nodal_limit',
+  table: 'stability_limit',
   caption: `Largest stable step of finite differences of Kirchhoff's equations in curvatures
     against the number of nodes, a straight hair of 10 cm let go horizontally. Split:
     implicit in the terms of highest order only. Hollow with an arrow: stable up to the end
-    of the scan, a lower bound. The large cross is the source's claim, 200 nodes at 10 µs. Made from nodal_limit.csv.`,
+    of the scan, a lower bound. The large cross is the source's claim, 200 nodes at 10 µs. Made from
+    the rows of stability_limit.csv whose study is "nodal".`,
 
   rows: rows_of,
 
