@@ -17,4 +17,7 @@ std::span<const Parameter> integrator_options();
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where);
 
+/// The field as text that apply() reads as the same.
+std::string text_of(const Options& options, std::string_view key);
+
 }  // namespace tress

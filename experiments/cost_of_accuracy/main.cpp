@@ -152,12 +152,12 @@ std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
   std::set<std::string> names;
   for (const std::string& file : scenes_of(settings.experiment())) {
-    const SceneText text(file);
-    if (!names.insert(text.given().name).second) {
+    const Scene given = read_open_scene(file);
+    if (!names.insert(given.name).second) {
       throw InputError("two scenes of one name", file, "rename one of them");
     }
     Row identity;
-    identity.set("scene", text.given().name);
+    identity.set("scene", given.name);
     all.push_back({identity, {}, [file, plan](const Row& row, const Deadline& deadline) {
                      return study_scene(file, plan, row, deadline);
                    }});
@@ -181,10 +181,10 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   write_all(1, lines, "standard output");
   const Row* best = advised(rows);
   if (best == nullptr || line.out == "-") return;
-  const SceneText text(file);
+  const Scene given = read_open_scene(file);
   const auto folder = std::filesystem::path(line.out).parent_path();
-  const std::string to = (folder / (text.given().name + ".advised.toml")).string();
-  replace_file(to, advised_text(text, *best, own.number("fps")));
+  const std::string to = (folder / (given.name + ".advised.toml")).string();
+  replace_file(to, advised_text(given, *best, own.number("fps")));
   tell("cost_of_accuracy: wrote {}\n", to);
 }
 
