@@ -21,7 +21,7 @@ namespace tress {
 namespace {
 
 /// How much longer than usual a run may take on a machine that does other things too.
-constexpr double noise = 1.5;
+constexpr double slow_run = 1.5;
 
 /// Of the work of a search; what is left is for the best of what was found.
 constexpr double coarse_share = 0.6;
@@ -123,7 +123,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
   }
-  search_plan.slack = ladder_slack(search_plan, noise);
+  search_plan.slack = ladder_slack(search_plan, slow_run);
   std::vector<Row> rows;
   if (search_plan.targets.empty()) {
     Row row = begin(study, "winner");
