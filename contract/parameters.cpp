@@ -18,12 +18,6 @@ std::string join(std::span<const std::string_view> words) {
   return text;
 }
 
-std::string shortest(double x) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, x);
-  return std::string(buffer, end.ptr);
-}
-
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -52,8 +46,8 @@ double parse_number(const Parameter& declared, std::string_view text,
   }
   if (x < declared.min || x > declared.max) {
     throw InputError(name + " = " + std::string(text) + " is out of range", where,
-                     "give a number between " + shortest(declared.min) + " and " +
-                         shortest(declared.max) + ": " + std::string(declared.help));
+                     "give a number between " + number_text(declared.min) + " and " +
+                         number_text(declared.max) + ": " + std::string(declared.help));
   }
   if (declared.whole && x != std::floor(x)) {
     throw InputError(name + " = " + std::string(text) + " is not a whole number", where,
@@ -94,6 +88,12 @@ std::vector<double> parse_numbers(const Parameter& declared, std::string_view te
 
 }  // namespace
 
+std::string number_text(double x) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, x);
+  return std::string(buffer, end.ptr);
+}
+
 std::vector<std::string_view> words_of(std::string_view choices) {
   return choices.empty() ? std::vector<std::string_view>{} : split(choices, '|');
 }
@@ -123,7 +123,7 @@ std::string suggestion(std::string_view word,
 std::string Parameter::default_text() const {
   if (!choices.empty()) return std::string(choices.substr(0, choices.find('|')));
   if (text || rows || components > 1) return std::string(fallback);
-  return shortest(number);
+  return number_text(number);
 }
 
 Parameters::Parameters(std::span<const Parameter> declared, std::string where)
@@ -192,6 +192,20 @@ Vec Parameters::vec(std::string_view key) const {
 
 std::span<const double> Parameters::numbers(std::string_view key) const {
   return value(key).numbers;
+}
+
+std::string Parameters::text(std::string_view key) const {
+  const std::size_t i = index(key, where_);
+  const Parameter& declared = declared_[i];
+  if (declared.text || !declared.choices.empty()) return values_[i].word;
+  std::string all;
+  int before = 0;  // components of the row so far
+  for (const double x : values_[i].numbers) {
+    if (!all.empty()) all += before == 0 ? ';' : ',';
+    all += number_text(x);
+    before = (before + 1) % declared.components;
+  }
+  return all;
 }
 
 }  // namespace tress

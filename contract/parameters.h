@@ -53,6 +53,8 @@ class Parameters {
   Vec vec(std::string_view key) const;                // of three components
   /// Components of all rows, one row after the other.
   std::span<const double> numbers(std::string_view key) const;
+  /// The value as set() takes it: setting it again gives the same to the last bit.
+  std::string text(std::string_view key) const;
 
  private:
   struct Value {
@@ -66,6 +68,9 @@ class Parameters {
   std::vector<Value> values_;
   std::string where_;
 };
+
+/// The shortest text that is read as x again.
+std::string number_text(double x);
 
 /// The words of a Parameter's `choices`.
 std::vector<std::string_view> words_of(std::string_view choices);

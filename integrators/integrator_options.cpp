@@ -1,40 +1,50 @@
 #include "integrators/integrator_options.h"
 
 #include <algorithm>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 namespace tress {
 namespace {
 
-using Assign = void (*)(Options&, const Parameters&, std::string_view key);
+/// How a field of Options is set from parameters, and what it is as their text.
+struct Access {
+  void (*assign)(Options&, const Parameters&, std::string_view key);
+  std::string (*text)(const Options&, std::string_view key);
+};
 
 struct Field {
   Parameter parameter;
-  Assign assign;
+  Access access;
 };
 
-template <double Options::*member>
-void real(Options& o, const Parameters& p, std::string_view key) {
-  o.*member = p.number(key);
-}
+/// A field that is a number.
+template <auto member>
+constexpr Access number{[](Options& o, const Parameters& p, std::string_view key) {
+                          using Type = std::remove_reference_t<decltype(o.*member)>;
+                          o.*member = static_cast<Type>(p.number(key));
+                        },
+                        [](const Options& o, std::string_view) {
+                          return number_text(static_cast<double>(o.*member));
+                        }};
 
-template <int Options::*member>
-void whole(Options& o, const Parameters& p, std::string_view key) {
-  o.*member = p.whole(key);
+std::vector<std::string_view> words(std::string_view key) {
+  const auto declared = std::ranges::find(common_options(), key, &Parameter::name);
+  return words_of(declared->choices);
 }
 
 /// Position of the word among the declared choices, which follow the enum's order.
-template <auto member, typename Enum>
-void choice(Options& o, const Parameters& p, std::string_view key) {
-  for (const Parameter& declared : common_options()) {
-    if (declared.name != key) continue;
-    const auto words = words_of(declared.choices);
-    o.*member = static_cast<Enum>(std::ranges::find(words, p.word(key)) - words.begin());
-  }
-}
-
-void max_steps(Options& o, const Parameters& p, std::string_view key) {
-  o.max_steps = static_cast<long>(p.number(key));
-}
+template <auto member>
+constexpr Access choice{
+    [](Options& o, const Parameters& p, std::string_view key) {
+      const auto all = words(key);
+      using Enum = std::remove_reference_t<decltype(o.*member)>;
+      o.*member = static_cast<Enum>(std::ranges::find(all, p.word(key)) - all.begin());
+    },
+    [](const Options& o, std::string_view key) {
+      return std::string(words(key)[static_cast<std::size_t>(o.*member)]);
+    }};
 
 const Options defaults;
 constexpr double smallest_step = 1e-12;       // s
@@ -47,89 +57,89 @@ const Field fields[] = {
       .help = "how constraints enter the equations",
       .choices = "parametric|acceleration|baumgarte|projection|index2_ggl|index3|rattle|"
                  "correction"},
-     choice<&Options::formulation, Formulation>},
+     choice<&Options::formulation>},
     {{.name = "alpha",
       .help = "Baumgarte's position gain (1/s^2)",
       .number = defaults.alpha,
       .min = -largest,
       .max = largest},
-     real<&Options::alpha>},
+     number<&Options::alpha>},
     {{.name = "beta",
       .help = "Baumgarte's velocity gain (1/s)",
       .number = defaults.beta,
       .min = -largest,
       .max = largest},
-     real<&Options::beta>},
+     number<&Options::beta>},
     {{.name = "step",
       .help = "time step of fixed-step methods (s)",
       .number = defaults.step,
       .min = smallest_step,
       .max = largest},
-     real<&Options::step>},
+     number<&Options::step>},
     {{.name = "rtol",
       .help = "relative tolerance of adaptive methods",
       .number = defaults.rtol,
       .min = smallest_tolerance,
       .max = 1},
-     real<&Options::rtol>},
+     number<&Options::rtol>},
     {{.name = "atol",
       .help = "absolute tolerance over the model's scale",
       .number = defaults.atol,
       .min = 0,
       .max = largest},
-     real<&Options::atol>},
+     number<&Options::atol>},
     {{.name = "max_step",
       .help = "largest step of adaptive methods (s), 0: unlimited",
       .number = defaults.max_step,
       .min = 0,
       .max = largest},
-     real<&Options::max_step>},
+     number<&Options::max_step>},
     {{.name = "max_steps",
       .help = "steps until a run counts as failed",
       .number = static_cast<double>(defaults.max_steps),
       .min = 1,
       .max = most_counted,
       .whole = true},
-     max_steps},
+     number<&Options::max_steps>},
     {{.name = "max_work",
       .help = "evaluations, solves and steps, times coordinates + 10, until a run counts "
               "as failed, 0: unlimited",
       .number = 0,
       .min = 0,
       .max = largest},
-     real<&Options::max_work>},
+     number<&Options::max_work>},
     {{.name = "max_order",
       .help = "order of multistep or Runge-Kutta methods, 0: default",
       .number = 0,
       .min = 0,
       .max = 13,
       .whole = true},
-     whole<&Options::max_order>},
+     number<&Options::max_order>},
     {{.name = "newton_tolerance",
       .help = "largest correction over the model's scale",
       .number = defaults.newton_tolerance,
       .min = smallest_tolerance,
       .max = 1},
-     real<&Options::newton_tolerance>},
+     number<&Options::newton_tolerance>},
     {{.name = "newton_iterations",
       .help = "Newton iterations allowed per step",
       .number = static_cast<double>(defaults.newton_iterations),
       .min = 1,
       .max = 1000,
       .whole = true},
-     whole<&Options::newton_iterations>},
+     number<&Options::newton_iterations>},
     {{.name = "refresh",
       .help = "when the Newton matrix is rebuilt",
       .choices = "every_iteration|every_step|when_slow"},
-     choice<&Options::refresh, Refresh>},
+     choice<&Options::refresh>},
     {{.name = "newton_coefficient",
       .help = "SUNDIALS' nonlinear coefficient, 0: SUNDIALS' default",
       .number = Options{}.newton_coefficient,
       .min = 0,
       .max = 1},
-     real<&Options::newton_coefficient>},
+     number<&Options::newton_coefficient>},
     {{.name = "linear", .help = "linear solver", .choices = "automatic|klu|banded|dense"},
-     choice<&Options::linear, LinearKind>},
+     choice<&Options::linear>},
 };
 
 }  // namespace
@@ -170,8 +180,17 @@ void apply(Options& options, std::string_view key, std::string_view value,
     return;
   }
   for (const Field& field : fields) {
-    if (field.parameter.name == key) field.assign(options, parameters, key);
+    if (field.parameter.name == key) field.access.assign(options, parameters, key);
   }
+}
+
+std::string text_of(const Options& options, std::string_view key) {
+  for (const Field& field : fields) {
+    if (field.parameter.name == key) return field.access.text(options, key);
+  }
+  const auto own = options.own.find(key);
+  if (own != options.own.end()) return own->second;
+  return Parameters(integrator_options(), "").text(key);
 }
 
 }  // namespace tress

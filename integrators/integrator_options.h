@@ -23,4 +23,7 @@ const IntegratorEntry* owner_of_option(std::string_view key);
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where);
 
+/// The field as text that apply() reads as the same.
+std::string text_of(const Options& options, std::string_view key);
+
 }  // namespace tress

@@ -2,7 +2,10 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "contract/parameters.h"
 #include "contract/system.h"
@@ -31,6 +34,9 @@ struct ModelEntry {
   std::unique_ptr<System> (*on_strands)(std::span<const Strand>, const Parameters&,
                                         std::vector<Effects>) = nullptr;
 };
+
+/// Parameters of a model by name, and what they are set to.
+using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
 std::span<const ModelEntry> models();
 

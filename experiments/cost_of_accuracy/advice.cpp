@@ -6,6 +6,7 @@
 
 #include "experiments/cost_of_accuracy/study_table.h"
 #include "experiments/problems/strand_models.h"
+#include "simulation/scene/write_scene.h"
 
 namespace tress {
 namespace {
@@ -131,11 +132,12 @@ std::string configuration_and_price(const Row& row) {
   return fmt::format("{}: {}", what(row), price(row));
 }
 
-std::string advised_text(const SceneText& text, const Row& row, double rate) {
+std::string advised_text(const Scene& given, const Row& row, double rate) {
   const Configuration taken = configuration(row, rate);
-  return fmt::format("# {} as advised for {} frames per second: {}.\n# {}\n\n{}",
-                     text.given().name, rate, price(row), what(row),
-                     text.with(taken.method, taken.elements, taken.substeps, rate));
+  return fmt::format(
+      "# {} as advised for {} frames per second: {}.\n# {}\n\n{}", given.name, rate,
+      price(row), what(row),
+      scene_text(trial_scene(given, taken.method, taken.elements, taken.substeps, rate)));
 }
 
 }  // namespace tress

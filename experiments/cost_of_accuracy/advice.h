@@ -22,6 +22,6 @@ std::string configuration_and_price(const Row& row);
 const Row* advised(const std::vector<Row>& rows);
 
 /// The scene file as advised, for `simulate`.
-std::string advised_text(const SceneText& text, const Row& row, double rate);
+std::string advised_text(const Scene& given, const Row& row, double rate);
 
 }  // namespace tress

@@ -4,28 +4,30 @@
 #include <functional>
 
 #include "experiments/numerics/tip_track.h"
-#include "simulation/run/variants.h"
+#include "simulation/run/tip_paths.h"
 
 namespace tress {
 
 Scene changed(Scene scene, Change change) {
   const double factor = change == Change::up ? 1 + data_change : 1 - data_change;
-  for (Strand& strand : scene.strands) {
+  std::vector<Strand> strands = scene.strands;
+  for (Strand& strand : strands) {
     strand.material.youngs_modulus *= factor;
     strand.material.shear_modulus *= factor;
     for (Segment& segment : strand.segments) segment.length *= factor;
   }
-  return scene;
+  return with_strands(std::move(scene), std::move(strands));
 }
 
 namespace {
 
 /// Tips up and down less those of the data as they are, as the two sides of a reference.
-SceneReference differences(const SceneText& text, const Comparison& comparison,
+SceneReference differences(const Scene& given, const Comparison& comparison,
                            const ReferenceCut& cut) {
   const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};
-  const Scene scene = compared(
-      text.scene(method, cut.elements, cut.substeps, comparison.rate), comparison);
+  const Scene scene =
+      compared(trial_scene(given, method, cut.elements, cut.substeps, comparison.rate),
+               comparison);
   const std::vector<double> as_it_is = tip_paths(scene, 0).x;
   const auto difference = [&](Change change) {
     std::vector<double> x = tip_paths(changed(scene, change), 0).x;
@@ -40,7 +42,7 @@ SceneReference differences(const SceneText& text, const Comparison& comparison,
 
 }  // namespace
 
-ChangedTips kept_changed_tips(const SceneText& text, const Comparison& comparison,
+ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
                               const SceneReference& reference, const ReferenceCut& cut,
                               const std::string& folder, const std::string& name) {
   static const ReferenceSides sides{
@@ -50,7 +52,7 @@ ChangedTips kept_changed_tips(const SceneText& text, const Comparison& compariso
   Comparison known = comparison;
   known.frames = reference.frames;
   const SceneReference moved = first_frames(
-      kept_sides(text, comparison, cut, folder, name + ".changed", sides, differences),
+      kept_sides(given, comparison, cut, folder, name + ".changed", sides, differences),
       known);
   const auto sum = [&reference](std::vector<double> x) {
     std::ranges::transform(x, reference.tips.tip, x.begin(), std::plus<>());

@@ -28,7 +28,7 @@ struct ChangedTips {
 /// The error e of the fine run cancels but for its own change with the data, a few times
 /// data_change e: with e = 1 % of the length less than 1e-3 of it. The change itself need
 /// not be small. Three runs; kept beside the reference as <name>.changed.
-ChangedTips kept_changed_tips(const SceneText& text, const Comparison& comparison,
+ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
                               const SceneReference& reference, const ReferenceCut& cut,
                               const std::string& folder, const std::string& name);
 

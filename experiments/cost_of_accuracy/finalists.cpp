@@ -17,9 +17,9 @@ constexpr int dearest = 16;
 
 }  // namespace
 
-Finalists::Finalists(Search& search, const SceneText& text, std::vector<Method>& methods,
+Finalists::Finalists(Search& search, const Scene& given, std::vector<Method>& methods,
                      Time time)
-    : search_(search), text_(text), methods_(methods), time_(std::move(time)) {}
+    : search_(search), given_(given), methods_(methods), time_(std::move(time)) {}
 
 std::vector<Trial> Finalists::runs() const {
   std::vector<Trial> all = search_.runs();
@@ -137,7 +137,7 @@ std::optional<Trial> Finalists::replaced(
 
 /// Makes sure that the methods with another word are there; false where there are none.
 bool Finalists::varied(const Method& method, std::string_view choice) {
-  const std::vector<Method> others = with_other_words(text_, method, choice);
+  const std::vector<Method> others = with_other_words(given_, method, choice);
   for (const Method& other : others) {
     const bool known = std::ranges::any_of(
         methods_, [&other](const Method& one) { return same(one, other); });

@@ -39,8 +39,7 @@ class Finalists {
  public:
   using Time = std::function<WallTime(const Trial&)>;
 
-  Finalists(Search& search, const SceneText& text, std::vector<Method>& methods,
-            Time time);
+  Finalists(Search& search, const Scene& given, std::vector<Method>& methods, Time time);
 
   /// Nothing where no run meets the target.
   std::optional<BestRuns> of(double target);
@@ -81,7 +80,7 @@ class Finalists {
   }
 
   Search& search_;
-  const SceneText& text_;
+  const Scene& given_;
   std::vector<Method>& methods_;
   Time time_;
   std::map<Place, WallTime> times_;

@@ -70,12 +70,12 @@ void add(const ModelEntry& model, const ModelSettings& options,
 
 }  // namespace
 
-std::vector<Method> methods(const SceneText& text, const MethodChoice& choice) {
+std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
   std::vector<Method> all;
   for (const ModelEntry& model : models()) {
     if (model.on_strand == nullptr || !wanted(choice.models, model.id)) continue;
     for (const ModelSettings& options : option_sets(model, choice.options)) {
-      const auto system = on_scene(model, options, text.given());
+      const auto system = on_scene(model, options, given);
       if (system == nullptr) continue;
       for (const IntegratorEntry& entry : integrators()) {
         if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
@@ -86,7 +86,7 @@ std::vector<Method> methods(const SceneText& text, const MethodChoice& choice) {
   return all;
 }
 
-std::vector<Method> with_other_words(const SceneText& text, const Method& method,
+std::vector<Method> with_other_words(const Scene& given, const Method& method,
                                      std::string_view choice) {
   std::vector<Method> all;
   for (const Parameter& p : method.model->parameters) {
@@ -96,7 +96,7 @@ std::vector<Method> with_other_words(const SceneText& text, const Method& method
       ModelSettings options = method.options;
       std::erase_if(options, [choice](const auto& one) { return one.first == choice; });
       if (word != words_of(p.choices).front()) options.emplace_back(choice, word);
-      const auto system = on_scene(*method.model, options, text.given());
+      const auto system = on_scene(*method.model, options, given);
       if (system == nullptr) continue;
       add(*method.model, options, find_integrator(method.integrator), *system, all);
     }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 
 namespace tress {
 
@@ -17,10 +17,10 @@ struct MethodChoice {
   /// `tangent` all pairs, of others one at a time.
   std::vector<std::string> options;
 };
-std::vector<Method> methods(const SceneText& text, const MethodChoice& choice);
+std::vector<Method> methods(const Scene& given, const MethodChoice& choice);
 
 /// Those that differ from `method` in this one choice of the model and can do the scene.
-std::vector<Method> with_other_words(const SceneText& text, const Method& method,
+std::vector<Method> with_other_words(const Scene& given, const Method& method,
                                      std::string_view choice);
 
 /// The choices that the model has.

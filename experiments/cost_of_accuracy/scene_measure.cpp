@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/tip_track.h"
-#include "simulation/run/variants.h"
+#include "simulation/run/tip_paths.h"
 
 namespace tress {
 namespace {
@@ -34,7 +34,8 @@ WallTime wall_time(const std::vector<double>& seconds) {
 }
 
 Scene SceneMeasure::scene(const Method& method, int elements, int substeps) const {
-  return compared(text_.scene(method, elements, substeps, comparison_.rate), comparison_);
+  return compared(trial_scene(given_, method, elements, substeps, comparison_.rate),
+                  comparison_);
 }
 
 std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int substeps,

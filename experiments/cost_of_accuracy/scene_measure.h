@@ -24,9 +24,9 @@ WallTime wall_time(const std::vector<double>& seconds);
 /// not depend on the machine, and only in an emergency after `most_s`.
 class SceneMeasure {
  public:
-  SceneMeasure(const SceneText& text, const Comparison& comparison,
+  SceneMeasure(const Scene& given, const Comparison& comparison,
                std::vector<double> reference, ChangedTips changed = {})
-      : text_(text),
+      : given_(given),
         comparison_(comparison),
         reference_(std::move(reference)),
         changed_(std::move(changed)) {}
@@ -50,7 +50,7 @@ class SceneMeasure {
  private:
   Scene scene(const Method& method, int elements, int substeps) const;
 
-  const SceneText& text_;
+  const Scene& given_;
   Comparison comparison_;
   std::vector<double> reference_;
   ChangedTips changed_;

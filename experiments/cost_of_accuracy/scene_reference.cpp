@@ -14,8 +14,8 @@
 #include "experiments/run/message.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
-#include "simulation/run/typical_strands.h"
-#include "simulation/run/variants.h"
+#include "simulation/run/tip_paths.h"
+#include "simulation/scene/typical_strands.h"
 
 namespace tress {
 namespace {
@@ -71,12 +71,12 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
 
 }  // namespace
 
-Comparison comparison(const SceneText& text, double rate, double horizon,
+Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands) {
   Comparison made{.rate = rate, .strands = strands};
-  const double span = std::min(horizon, text.given().duration);
+  const double span = std::min(horizon, given.duration);
   made.frames = static_cast<std::size_t>(std::max(1.0, std::floor(span * rate + 1e-9)));
-  const std::vector<Strand>& all = text.given().strands;
+  const std::vector<Strand>& all = given.strands;
   const std::vector<std::size_t> typical = typical_strands(all, strands);
   for (const std::size_t i : typical) made.length += all[i].length();
   made.length /= static_cast<double>(typical.size());
@@ -90,12 +90,13 @@ Scene compared(Scene scene, const Comparison& comparison) {
   return comparison.chosen.empty() ? scene : only(std::move(scene), comparison.chosen);
 }
 
-SceneReference scene_reference(const SceneText& text, const Comparison& comparison,
+SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut) {
   const auto tips = [&](std::string_view model, std::string_view integrator, int elements,
                         const Options& options) {
     const Method method{&find_model(model), {}, std::string(integrator)};
-    Scene scene = compared(text.scene(method, elements, 1, comparison.rate), comparison);
+    Scene scene =
+        compared(trial_scene(given, method, elements, 1, comparison.rate), comparison);
     scene.options = options;
     // Fast swings stretch der so quickly that an old Newton matrix fails.
     scene.options.refresh = Refresh::every_iteration;
@@ -181,7 +182,7 @@ void save_reference(const std::string& folder, const std::string& name,
   replace_file(meta_file(folder, name), meta.dump(2) + '\n');
 }
 
-std::string reference_key(const SceneText& text, const Comparison& comparison,
+std::string reference_key(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut) {
   std::string chosen;
   for (const std::size_t strand : comparison.chosen) {
@@ -189,25 +190,25 @@ std::string reference_key(const SceneText& text, const Comparison& comparison,
   }
   return hash(fmt::format("{} {} {} {}{} {} {}\n{}", reference_version, comparison.rate,
                           comparison.frames, comparison.strands, chosen, cut.elements,
-                          cut.substeps, text.physics()));
+                          cut.substeps, physics(given)));
 }
 
-SceneReference kept_sides(const SceneText& text, const Comparison& comparison,
+SceneReference kept_sides(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut, const std::string& folder,
                           const std::string& name, const ReferenceSides& sides,
                           const MakeReference& make) {
-  const std::string key = reference_key(text, comparison, cut);
+  const std::string key = reference_key(given, comparison, cut);
   if (auto found = load_reference(folder, name, key)) return *found;
   tell("{}: computing the reference, {} elements\n", name, cut.elements);
-  const SceneReference made = make(text, comparison, cut);
+  const SceneReference made = make(given, comparison, cut);
   save_reference(folder, name, key, made, comparison, cut, sides);
   return made;
 }
 
-SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
+SceneReference kept_reference(const Scene& given, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name) {
-  return kept_sides(text, comparison, cut, folder, name, rod_sides, scene_reference);
+  return kept_sides(given, comparison, cut, folder, name, rod_sides, scene_reference);
 }
 
 }  // namespace tress

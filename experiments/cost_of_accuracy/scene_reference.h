@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/problems/strand_reference.h"
 
 namespace tress {
@@ -23,7 +23,7 @@ struct Comparison {
 
   double horizon() const { return static_cast<double>(frames) / rate; }
 };
-Comparison comparison(const SceneText& text, double rate, double horizon,
+Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands);
 
 /// The scene as a run of the comparison: its strands, its frames.
@@ -43,7 +43,7 @@ struct ReferenceCut {
 };
 
 /// Computed anew. Throws std::runtime_error where one of the runs fails.
-SceneReference scene_reference(const SceneText& text, const Comparison& comparison,
+SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut);
 
 /// The reference up to the last frame at which the two sides are at most `gap` apart, rms
@@ -76,18 +76,18 @@ void save_reference(const std::string& folder, const std::string& name,
                     const ReferenceSides& sides);
 
 /// 16 hexadecimal digits of all that the reference depends on but the code.
-std::string reference_key(const SceneText& text, const Comparison& comparison,
+std::string reference_key(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut);
 
 /// Loaded where it is there, else computed by `make` and saved.
 using MakeReference = std::function<SceneReference(
-    const SceneText& text, const Comparison& comparison, const ReferenceCut& cut)>;
-SceneReference kept_sides(const SceneText& text, const Comparison& comparison,
+    const Scene& given, const Comparison& comparison, const ReferenceCut& cut)>;
+SceneReference kept_sides(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut, const std::string& folder,
                           const std::string& name, const ReferenceSides& sides,
                           const MakeReference& make);
 /// The same of the rod's tips, by scene_reference.
-SceneReference kept_reference(const SceneText& text, const Comparison& comparison,
+SceneReference kept_reference(const Scene& given, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name);
 

@@ -21,7 +21,7 @@ namespace tress {
 namespace {
 
 /// How much longer than usual a run may take on a machine that does other things too.
-constexpr double noise = 1.5;
+constexpr double slow_run = 1.5;
 
 /// Of the work of a search; what is left is for the best of what was found.
 constexpr double coarse_share = 0.6;
@@ -29,22 +29,22 @@ constexpr double coarse_share = 0.6;
 constexpr double last_share = 2;
 
 Study ready(const std::string& file, const StudyPlan& plan, const Row& identity) {
-  Study study{.plan = plan, .text = SceneText(file), .identity = identity};
-  const std::string name = study.text.given().name;
-  study.comparison = comparison(study.text, plan.rate, plan.horizon, plan.strands);
+  Study study{.plan = plan, .given = read_open_scene(file), .identity = identity};
+  const std::string name = study.given.name;
+  study.comparison = comparison(study.given, plan.rate, plan.horizon, plan.strands);
   const auto kept = [&](const ReferenceCut& cut, const std::string& as) {
-    return kept_reference(study.text, study.comparison, cut, plan.references, as);
+    return kept_reference(study.given, study.comparison, cut, plan.references, as);
   };
   const SceneReference whole = kept(plan.reference, name);
   std::optional<SceneReference> fine;
   if (plan.refine) fine = kept(plan.reference.refined(), name + ".refined");
   study.reference = agreed(whole, study.comparison, parted);
-  study.changed = kept_changed_tips(study.text, study.comparison, study.reference,
+  study.changed = kept_changed_tips(study.given, study.comparison, study.reference,
                                     plan.reference.halved(), plan.references, name);
   study.cut = study.reference.frames < study.comparison.frames;
   study.comparison.frames = study.reference.frames;
   if (fine) study.refined = first_frames(*fine, study.comparison);
-  study.methods = methods(study.text, plan.methods);
+  study.methods = methods(study.given, plan.methods);
   return study;
 }
 
@@ -86,7 +86,7 @@ class SearchProgress {
     const Trial* best = cheapest(search.runs(), target_);
     if (best == nullptr) best = most_accurate(search.runs(), never, 0);
     if (best == nullptr) return;
-    tell("{}: {} runs, best so far {}\n", study_.text.given().name, search.runs().size(),
+    tell("{}: {} runs, best so far {}\n", study_.given.name, search.runs().size(),
          configuration_and_price(row_of(study_, "winner", *best)));
   }
 
@@ -123,7 +123,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
   }
-  search_plan.slack = ladder_slack(search_plan, noise);
+  search_plan.slack = ladder_slack(search_plan, slow_run);
   std::vector<Row> rows;
   if (search_plan.targets.empty()) {
     Row row = begin(study, "winner");
@@ -160,7 +160,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   search.refine();
   if (search.cut()) how += ", cut while refining";
   search.go_on(work.until(last_share));
-  Finalists finalists(search, study.text, study.methods, [&](const Trial& run) {
+  Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });

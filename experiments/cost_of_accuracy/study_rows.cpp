@@ -43,7 +43,7 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
 }
 
 SceneMeasure measure_of(const Study& study) {
-  return {study.text, study.comparison, study.reference.tips.tip, study.changed};
+  return {study.given, study.comparison, study.reference.tips.tip, study.changed};
 }
 
 void add_target(const Study& study, Finalists& finalists, double target,
@@ -113,7 +113,7 @@ void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows
 }
 
 void add_given(const Study& study, std::vector<Row>& rows) {
-  const Scene& given = study.text.given();
+  const Scene& given = study.given;
   Row row = begin(study, "as_given");
   Method method{given.model, {}, given.integrator, given.options.formulation};
   for (const Parameter& p : model_table_parameters(*given.model)) {

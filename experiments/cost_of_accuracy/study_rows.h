@@ -13,7 +13,7 @@ namespace tress {
 /// What all rows of a scene are written from.
 struct Study {
   const StudyPlan& plan;
-  const SceneText text;
+  const Scene given;
   const Row& identity;
   Comparison comparison = {};  // cut where the references part
   bool cut = false;

@@ -15,7 +15,8 @@ constexpr Column columns[] = {
     {"scene", "name of the scene"},
     {"kind",
      "winner, runner_up (another model or integrator), without (one choice replaced), "
-     "budget, front (Pareto), as_given (by the scene file)"},
+     "budget, front (Pareto), as_given (by the scene file); method: the cheapest of one "
+     "model by one integrator"},
     {"choice", "of kind without: what is replaced; elements: twice, dt_s: half"},
     {"target_error_rel", "wanted error"},
     {"budget_ms", "of kind budget: wall time per frame that there is"},
@@ -47,6 +48,17 @@ constexpr Column columns[] = {
     {"wall_s_per_sim_s",
      "wall time per simulated second on one thread with nothing beside it", true},
     {"ms_per_frame", "the same per frame", true},
+    {"cost_per_step_s", "of kind method: wall time per step", true},
+    {"length_error_rel",
+     "of kind method: largest relative change of an element's length"},
+    {"linear_error_rel",
+     "of kind method, thrown: largest change of linear momentum, over m g 0.1 s"},
+    {"angular_error_rel", "the same of angular momentum, over itself"},
+    {"energy_error_rel",
+     "of kind method: largest change of mechanical energy, over the largest kinetic "
+     "energy"},
+    {"unknowns", "of kind method: coordinates and multipliers"},
+    {"nonzeros", "of the matrix of a step; unknowns squared where it is dense"},
     {"cost_factor", "wall time over the winner's", true},
     {"time_scatter", "how badly that time repeats: two halves of its repeats, less 1",
      true},

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "experiments/cost_of_accuracy/scene_text.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "simulation/files/row.h"
 
 namespace tress {

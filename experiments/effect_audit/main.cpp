@@ -12,7 +12,8 @@
 #include "experiments/run/settings.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/numbers.h"
-#include "simulation/run/variants.h"
+#include "simulation/run/tip_paths.h"
+#include "simulation/scene/changes.h"
 
 namespace tress {
 namespace {

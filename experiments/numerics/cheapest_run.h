@@ -29,6 +29,10 @@ struct Cheapest {
   bool complete;                // false: the work was used up before all were tried
 };
 
+/// For one model by one integrator, where all are to be compared and the same answer must
+/// come on every machine. What beats all others on one machine's clock, robustly, is what
+/// cost_of_accuracy's Search looks for.
+///
 /// The run of least work whose error is at most the target: for every number of elements
 /// the longest step that meets it. A number of elements is given up when a step half as
 /// long gains less than a fifth of an error near the target (what is left is not of

@@ -11,8 +11,8 @@
 #include "experiments/stability_limit/stability_grid.h"
 #include "integrators/catalogue.h"
 #include "simulation/run/timing.h"
-#include "simulation/run/variants.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/changes.h"
 
 namespace tress {
 namespace {

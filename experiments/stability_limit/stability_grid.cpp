@@ -70,13 +70,13 @@ constexpr Parameter settings_of_rows[] = {
 // leaves the motion as it is and only rounds off what the grid adds.
 constexpr Damping dampings[] = {undamped, {"light", "1e-12"}, {"seed", "1e-10"}};
 
-struct Method {
+struct Variation {
   std::string_view model, integrator, solver, tangent;
 };
 
 /// Against the number of elements: the seed's kind of step on every solver, our
 /// reconstruction of its recursion, the whole tangent, and the serial chain.
-constexpr Method methods[] = {
+constexpr Variation methods[] = {
     {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
     {"super_helix", "semi_implicit_euler", "composite", "stiff"},
     {"super_helix", "semi_implicit_euler", "recursive", "less_implicit"},
@@ -87,18 +87,18 @@ constexpr Method methods[] = {
 
 /// Every other strand model, by the usual step and by whole Newton steps: its first
 /// solver.
-std::vector<Method> methods_of(const ModelEntry& model) {
+std::vector<Variation> methods_of(const ModelEntry& model) {
   const std::string_view solver = first_word(model, "solver");
   return {{model.id, "semi_implicit_euler", solver, usual_tangent(model)},
           {model.id, "backward_euler", solver, first_word(model, "tangent")}};
 }
 
 bool of_the_seed(std::string_view model) {
-  return std::ranges::find(methods, model, &Method::model) != std::end(methods);
+  return std::ranges::find(methods, model, &Variation::model) != std::end(methods);
 }
 
 /// Only where methods are compared with each other.
-constexpr Method further_methods[] = {
+constexpr Variation further_methods[] = {
     {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
     {"super_helix", "semi_implicit_euler", "composite", "exact"},
     {"super_helix", "semi_implicit_euler", "sparse", "exact"},
@@ -138,17 +138,17 @@ std::vector<int> element_counts(const CommandLine& line) {
 
 /// `others`: and every other fixed-step integrator, by the linear-time solver with the
 /// whole tangent.
-std::vector<Method> all_methods(const CommandLine& line, bool others) {
-  std::vector<Method> all(std::begin(methods), std::end(methods));
+std::vector<Variation> all_methods(const CommandLine& line, bool others) {
+  std::vector<Variation> all(std::begin(methods), std::end(methods));
   for (const ModelEntry* model : strand_models()) {
     if (of_the_seed(model->id)) continue;
-    const std::vector<Method> own = methods_of(*model);
+    const std::vector<Variation> own = methods_of(*model);
     all.insert(all.end(), own.begin(), own.end());
   }
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
   for (const IntegratorEntry& entry : integrators()) {
-    if (std::ranges::count(methods, entry.id, &Method::integrator) > 0) continue;
+    if (std::ranges::count(methods, entry.id, &Variation::integrator) > 0) continue;
     if (!considered(line, entry)) continue;
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
     if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
@@ -249,7 +249,7 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
       for (const int elements : element_counts(line)) {
         const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
                             (elements == usual_elements && damping.name == "none");
-        for (const Method& m : all_methods(line, others)) {
+        for (const Variation& m : all_methods(line, others)) {
           const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
                                 m.tangent, rows.word("modes"),   elements,     damping};
           if (!c.selected(line, rows) || !(chosen || usual(line, c))) continue;

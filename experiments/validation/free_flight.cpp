@@ -26,12 +26,11 @@ Parameters thrown(const Settings& settings, const ModelEntry& model, int element
   return p;
 }
 
-/// Explicit methods follow the waves of stretching of a hair, microseconds long.
+/// Adaptive methods without the tangent follow the waves of stretching of a hair,
+/// microseconds long.
 bool flies(const IntegratorEntry& entry, const CommandLine& line) {
-  constexpr std::string_view slow[] = {"gsl_rkf45",   "gsl_rk8pd",  "gsl_msadams",
-                                       "cvode_adams", "arkode_erk", "gsl_bsimp"};
   if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
-  return line.full || std::ranges::find(slow, entry.id) == std::end(slow);
+  return line.full || !entry.adaptive || entry.tangent;
 }
 
 struct Flight {

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "contract/input_error.h"
+#include "contract/parameters.h"
 #include "simulation/files/parse.h"
 #include "simulation/files/toml_levels.h"
 
@@ -45,11 +44,7 @@ std::string scalar_text(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* yes = node.as_boolean()) return yes->get() ? "true" : "false";
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
-  if (const auto* real = node.as_floating_point()) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, real->get());
-    return std::string(buffer, end.ptr);
-  }
+  if (const auto* real = node.as_floating_point()) return number_text(real->get());
   return {};
 }
 

@@ -5,15 +5,12 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 
 namespace tress {
-
-using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// A model of the catalogue with the given parameters set.
 std::unique_ptr<System> make_model(std::string_view id,

@@ -59,28 +59,6 @@ Effects metered(const Effects& effects,
 
 }  // namespace
 
-Effects make_effects(const Scene& scene) {
-  Effects all;
-  for (const EffectChoice& choice : scene.effects) {
-    all.push_back(choice.entry->make(choice.parameters, scene.head));
-  }
-  return all;
-}
-
-std::vector<std::string> effect_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string_view id = scene.effects[i].entry->id;
-    const auto so_far = std::ranges::count(
-        scene.effects.begin(), scene.effects.begin() + static_cast<std::ptrdiff_t>(i), id,
-        [](const EffectChoice& choice) { return choice.entry->id; });
-    std::string name(id);
-    if (so_far > 0) name.append("_").append(std::to_string(so_far + 1));
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
 World::World(const Scene& scene, int threads)
     : integrator_(find_integrator(scene.integrator)),
       options_(scene.options),

@@ -136,9 +136,4 @@ class World {
   Crew crew_;
 };
 
-/// The effects of a scene, made for one strand.
-Effects make_effects(const Scene& scene);
-/// Their ids, the second body being body_2, the third body_3.
-std::vector<std::string> effect_names(const Scene& scene);
-
 }  // namespace tress

@@ -13,13 +13,15 @@
 #include "simulation/files/parse.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/read_table.h"
+#include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
 #include "simulation/scene/scene_tables.h"
+#include "simulation/scene/strand_table.h"
+#include "simulation/scene/strand_tables.h"
 
 namespace tress {
 namespace {
 
-constexpr std::size_t most_strands = 10'000, most_elements = 200'000;
 constexpr std::size_t most_effects = 1000;
 constexpr double most_frames = 1e6;
 
@@ -133,60 +135,42 @@ class Reader {
   }
 
   void read_strands() {
-    const Table material = read_or_default("material", material_table_parameters());
-    const Table root = read_or_default("root", root_table_parameters());
-    scene_.head = head_motion(root);
-    const std::optional<FreeRoot> free_root = free_motion(root);
-    const Common common{material, scene_.head, free_root, scene_.seed};
-    read_each("strand", strand_table_parameters(), [&](const Table& t, const Table* own) {
-      add({scene_strand(t, own, common, scene_.strands.size())}, t);
-    });
-    read_each("groom", groom_table_parameters(), [&](const Table& t, const Table* own) {
-      const auto each = static_cast<std::size_t>(t.values().whole("elements"));
-      const std::size_t most = std::min(most_strands - scene_.strands.size(),
-                                        (most_elements - elements_) / each);
-      add(groom_strands(t, own, common, scene_.strands.size(), most), t);
-    });
-    if (scene_.strands.empty()) {
+    StrandTables tables{read_or_default("material", material_table_parameters()),
+                        read_or_default("root", root_table_parameters()),
+                        {}};
+    scene_.head = head_motion(tables.root);
+    read_each("strand", strand_table_parameters(), tables);
+    read_each("groom", groom_table_parameters(), tables);
+    if (tables.sources.empty()) {
       throw InputError("a scene without strands", file_ + ":1:1",
                        "give a [strand], or a [groom] for many");
     }
+    CutStrands cut = cut_strands(tables, scene_.head, scene_.seed);
+    scene_.strands = std::move(cut.strands);
+    for (const std::size_t i : cut.source) {
+      places_.strands.push_back(tables.sources[i].table.place());
+    }
+    scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
   }
 
   /// Every [name] or [[name]] and its [name.material], if any.
-  template <class F>
   void read_each(const std::string& name, std::span<const Parameter> declared,
-                 const F& use) {
+                 StrandTables& tables) {
     const toml::node* node = root_.get(name);
     if (node == nullptr) return;
     for (const toml::table* one : each(*node, name, true)) {
-      const Table read =
-          read_table(*one, declared, "[" + name + "]", file_, material_table);
-      const toml::node* own = one->get("material");
-      if (own == nullptr) {
-        use(read, nullptr);
-        continue;
+      StrandSource source{
+          read_table(*one, declared, "[" + name + "]", file_, material_table),
+          {},
+          name == "groom"};
+      if (const toml::node* own = one->get("material")) {
+        const std::string own_name = name + ".material";
+        source.material =
+            read_table(as_table(*own, own_name, file_), material_table_parameters(),
+                       "[" + own_name + "]", file_);
       }
-      const std::string own_name = name + ".material";
-      const Table material =
-          read_table(as_table(*own, own_name, file_), material_table_parameters(),
-                     "[" + own_name + "]", file_);
-      use(read, &material);
+      tables.sources.push_back(std::move(source));
     }
-  }
-
-  void add(std::vector<Strand> strands, const Table& table) {
-    for (Strand& strand : strands) {
-      elements_ += strand.segments.size();
-      scene_.strands.push_back(std::move(strand));
-      places_.strands.push_back(table.place());
-    }
-    if (scene_.strands.size() <= most_strands && elements_ <= most_elements) return;
-    throw InputError(fmt::format("{} strands of {} elements altogether",
-                                 scene_.strands.size(), elements_),
-                     table.place(),
-                     fmt::format("give at most {} strands and {} elements", most_strands,
-                                 most_elements));
   }
 
   void read_effects() {
@@ -234,10 +218,31 @@ class Reader {
   const toml::table root_;
   Scene scene_;
   ScenePlaces places_;
-  std::size_t elements_ = 0;
 };
 
 }  // namespace
+
+Effects make_effects(const Scene& scene) {
+  Effects all;
+  for (const EffectChoice& choice : scene.effects) {
+    all.push_back(choice.entry->make(choice.parameters, scene.head));
+  }
+  return all;
+}
+
+std::vector<std::string> effect_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string_view id = scene.effects[i].entry->id;
+    const auto so_far = std::ranges::count(
+        scene.effects.begin(), scene.effects.begin() + static_cast<std::ptrdiff_t>(i), id,
+        [](const EffectChoice& choice) { return choice.entry->id; });
+    std::string name(id);
+    if (so_far > 0) name.append("_").append(std::to_string(so_far + 1));
+    names.push_back(std::move(name));
+  }
+  return names;
+}
 
 std::size_t Scene::last_frame() const {
   // 1e-9: a whole number of frames up to rounding is not one more.

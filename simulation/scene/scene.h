@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "models/strand/strand.h"
 
 namespace tress {
+
+struct StrandTables;
 
 /// One [effects.id] of a scene. What a scene does not name is not here.
 struct EffectChoice {
@@ -35,6 +38,8 @@ struct Scene {
   /// Ready to simulate: material, cut, shapes, and the root's rest place and motion,
   /// which is `head` for all of them.
   std::vector<Strand> strands;
+  /// What they were cut from; null where no table says them.
+  std::shared_ptr<const StrandTables> tables;
   RootMotion head;  // the rigid motion of roots and of bodies that follow them
 
   std::vector<EffectChoice> effects;
@@ -61,5 +66,10 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// The same of a text; `file` is its name in messages, and its folder that of files which
 /// the scene names.
 Scene parse_scene(const std::string& text, const std::string& file);
+
+/// The effects of a scene, made for one strand.
+Effects make_effects(const Scene& scene);
+/// Their ids, the second body being body_2, the third body_3.
+std::vector<std::string> effect_names(const Scene& scene);
 
 }  // namespace tress

@@ -9,27 +9,12 @@
 
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/scene_tables.h"
+#include "simulation/scene/write_scene.h"
 
 namespace tress {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// "1,2;3,4" in brackets: "[[1, 2], [3, 4]]".
-std::string list(std::string_view numbers, bool rows) {
-  std::string text;
-  for (const char c : numbers) {
-    if (c == ';') {
-      text += "], [";
-    } else if (c == ',') {
-      text += ", ";
-    } else {
-      text += c;
-    }
-  }
-  if (!rows) return fmt::format("[{}]", text);
-  return text.empty() ? "[]" : fmt::format("[[{}]]", text);
-}
 
 std::string range(const Parameter& p) {
   if (p.text) return "text";
@@ -156,12 +141,7 @@ void add_values(std::string& scene, std::span<const Parameter> parameters,
 
 }  // namespace
 
-std::string default_value(const Parameter& p) {
-  const std::string text = p.default_text();
-  if (p.choices == "true|false") return text;
-  if (p.text || !p.choices.empty()) return fmt::format("\"{}\"", text);
-  return p.rows || p.components > 1 ? list(text, p.rows) : text;
-}
+std::string default_value(const Parameter& p) { return toml_value(p, p.default_text()); }
 
 std::string scene_schema() {
   std::string page(page_head);

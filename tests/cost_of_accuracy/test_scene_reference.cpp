@@ -7,7 +7,7 @@
 #include "experiments/cost_of_accuracy/changed_data.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/numerics/tip_track.h"
-#include "simulation/run/typical_strands.h"
+#include "simulation/scene/typical_strands.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_reference {
@@ -40,9 +40,9 @@ SceneReference invented(std::size_t frames) {
 
 struct Kept {
   Scratch folder;
-  SceneText text{folder.write("scene.toml", sagging)};
-  Comparison compare = comparison(text, 60, 0.5, 1);
-  std::string key = reference_key(text, compare, coarse);
+  Scene given = read_open_scene(folder.write("scene.toml", sagging));
+  Comparison compare = comparison(given, 60, 0.5, 1);
+  std::string key = reference_key(given, compare, coarse);
 
   void save(const SceneReference& reference) const {
     save_reference(folder.folder(), "scene", key, reference, compare, coarse);
@@ -65,9 +65,10 @@ TEST(SceneReference, IsNotComputedTwice) {
   const Kept kept;
   const SceneReference made = invented(kept.compare.frames);
   kept.save(made);
-  EXPECT_EQ(kept_reference(kept.text, kept.compare, coarse, kept.folder.folder(), "scene")
-                .tips.tip,
-            made.tips.tip);
+  EXPECT_EQ(
+      kept_reference(kept.given, kept.compare, coarse, kept.folder.folder(), "scene")
+          .tips.tip,
+      made.tips.tip);
 }
 
 TEST(SceneReference, OfAnotherSceneIsComputedAnew) {
@@ -75,7 +76,7 @@ TEST(SceneReference, OfAnotherSceneIsComputedAnew) {
   kept.save(invented(kept.compare.frames));
   std::string heavier = sagging;
   heavier.replace(heavier.find("5e-5"), 4, "6e-5");
-  const SceneText other(kept.folder.write("other.toml", heavier));
+  const Scene other = read_open_scene(kept.folder.write("other.toml", heavier));
   const SceneReference fresh =
       kept_reference(other, kept.compare, coarse, kept.folder.folder(), "scene");
   EXPECT_NE(fresh.tips.tip, invented(kept.compare.frames).tips.tip);
@@ -90,8 +91,8 @@ TEST(SceneReference, KeyDependsOnTheComparisonAndTheCut) {
   const Kept kept;
   Comparison longer = kept.compare;
   ++longer.frames;
-  EXPECT_NE(reference_key(kept.text, longer, coarse), kept.key);
-  EXPECT_NE(reference_key(kept.text, kept.compare, coarse.refined()), kept.key);
+  EXPECT_NE(reference_key(kept.given, longer, coarse), kept.key);
+  EXPECT_NE(reference_key(kept.given, kept.compare, coarse.refined()), kept.key);
 }
 
 TEST(SceneReference, DamagedOrMissingIsNone) {
@@ -111,9 +112,9 @@ TEST(SceneReference, DamagedOrMissingIsNone) {
 // do, by four, when both are halved.
 TEST(SceneReference, ModelsAgreeBetterWhenRefined) {
   const Kept kept;
-  const SceneReference first = scene_reference(kept.text, kept.compare, {16, 16});
+  const SceneReference first = scene_reference(kept.given, kept.compare, {16, 16});
   const SceneReference second =
-      scene_reference(kept.text, kept.compare, ReferenceCut{16, 16}.refined());
+      scene_reference(kept.given, kept.compare, ReferenceCut{16, 16}.refined());
   EXPECT_LT(second.tips.gap, first.tips.gap / 4);
   EXPECT_LT(second.tips.gap, 1e-3);
 }
@@ -191,18 +192,18 @@ nu_kg_m_s = 5e-5
 // written with moduli and length 2 % up or down.
 TEST(ChangedData, MoveTheTipAsTheRodItself) {
   Scratch folder;
-  const auto text = [&](double factor) {
-    return SceneText(folder.write(
+  const auto with = [&](double factor) {
+    return read_open_scene(folder.write(
         "s.toml", fmt::format(fmt::runtime(elastic), 3e9 * factor, 0.1 * factor)));
   };
   constexpr ReferenceCut cut{24, 16};
-  const SceneText scene = text(1);
+  const Scene scene = with(1);
   const Comparison compare = comparison(scene, 60, 0.2, 1);
   const SceneReference reference = scene_reference(scene, compare, cut);
   const ChangedTips moved =
       kept_changed_tips(scene, compare, reference, cut.halved(), folder.folder(), "s");
-  const std::vector<double> up = scene_reference(text(1.02), compare, cut).tips.tip;
-  const std::vector<double> down = scene_reference(text(0.98), compare, cut).tips.tip;
+  const std::vector<double> up = scene_reference(with(1.02), compare, cut).tips.tip;
+  const std::vector<double> down = scene_reference(with(0.98), compare, cut).tips.tip;
   // A move of about the change itself; of it the fine run is wrong by its own relative
   // error, of order (1/12)^2, times a few.
   EXPECT_GT(tip_error(up, reference.tips.tip, compare.length), 0.5 * data_change);

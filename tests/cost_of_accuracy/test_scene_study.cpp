@@ -11,7 +11,7 @@
 #include "experiments/cost_of_accuracy/scene_study.h"
 #include "experiments/numerics/tip_track.h"
 #include "integrators/error_indicator.h"
-#include "simulation/run/variants.h"
+#include "simulation/run/tip_paths.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_study {
@@ -126,15 +126,15 @@ TEST(SceneStudy, RowsAndAdvisedScenesRepeatTheirError) {
   const Small& small = made().small;
   const Row* best = advised(made().rows);
   ASSERT_NE(best, nullptr);
-  const SceneText text(small.file);
+  const Scene given = read_open_scene(small.file);
   const std::string file =
-      small.folder.write("advised.toml", advised_text(text, *best, small.plan.rate));
+      small.folder.write("advised.toml", advised_text(given, *best, small.plan.rate));
   const Scene scene = read_scene(file);
   EXPECT_EQ(scene.options.step, best->number("dt_s"));
   EXPECT_EQ(static_cast<double>(scene.strands.front().segments.size()),
             best->number("elements"));
-  const Comparison compare = comparison(text, small.plan.rate, small.plan.horizon, 1);
-  const SceneReference reference = kept_reference(text, compare, small.plan.reference,
+  const Comparison compare = comparison(given, small.plan.rate, small.plan.horizon, 1);
+  const SceneReference reference = kept_reference(given, compare, small.plan.reference,
                                                   small.plan.references, "sagging");
   const TipPaths paths = tip_paths(compared(scene, compare), 0);
   EXPECT_EQ(tip_error(paths.x, reference.tips.tip, compare.length),
@@ -212,12 +212,12 @@ TEST(SceneStudy, LuckyRunOfTheSwingIsPassedOver) {
 }
 
 TipPaths swing_by_one_solve_a_step(int elements, int substeps) {
-  const SceneText text(TRESS_SCENES "/accuracy/swing.toml");
+  const Scene given = read_open_scene(TRESS_SCENES "/accuracy/swing.toml");
   const Method method{&find_model("super_helix"),
                       {{"modes", "bend_planar"}, {"tangent", "stiff"}},
                       "linearly_implicit_midpoint"};
-  const Comparison compare = comparison(text, 60, 0.5, 1);
-  Scene scene = compared(text.scene(method, elements, substeps, 60), compare);
+  const Comparison compare = comparison(given, 60, 0.5, 1);
+  Scene scene = compared(trial_scene(given, method, elements, substeps, 60), compare);
   scene.guard = false;  // it would end the run; here the method shall tell
   return tip_paths(scene, 0);
 }

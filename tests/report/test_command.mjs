@@ -28,7 +28,7 @@ const figures = {
   work_precision: ['wall time per simulated second (s/s)', 'relative error'],
   bdf_order: ['relative error', 'steps', 'wall time (s)'],
   stability_limit: ['largest stable dt (ms)', 'elements', '≥ 100', '33'],
-  equal_accuracy: ['wall time per simulated second (ms)', 'super helix'],
+  cost_by_model: ['wall time per simulated second (ms)', 'super helix'],
   nodal_steps: ['largest stable step (µs)', 'nodes'],
   scaling: ['cost per step (µs)', 'composite / recursive', 'composite: N^2.62'],
   swing: ['wall time (ms)', 'tip error (%)', '20 ms', '50 ms'],

@@ -13,7 +13,7 @@ import { fixture_directory, remove, run_page } from './support.mjs';
 const opening = {
   validation: ['validation', 'validation_tests', 'validation_orders'],
   hard_cases: ['hard_cases'],
-  cost_of_accuracy: ['cost_of_accuracy', 'cost_choices'],
+  cost_of_accuracy: ['cost_of_accuracy', 'cost_choices', 'cost_by_model'],
 };
 const figures = [
   'family',
@@ -23,7 +23,6 @@ const figures = [
   'work_precision',
   'bdf_order',
   'stability_limit',
-  'equal_accuracy',
   'nodal_steps',
   'scaling',
   'swing',

@@ -1,4 +1,5 @@
 // The figures in reading order.
+import { cost_by_model } from './cost_by_model.mjs';
 import { cost_choices, cost_of_accuracy } from './cost_of_accuracy.mjs';
 import { hard_cases } from './hard_cases.mjs';
 import { validation } from './validation.mjs';
@@ -8,7 +9,6 @@ import { bdf_order } from './bdf_order.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
-import { equal_accuracy } from './equal_accuracy.mjs';
 import { family } from './family.mjs';
 import { force_transport } from './force_transport.mjs';
 import { model_steps } from './model_steps.mjs';
@@ -25,6 +25,7 @@ export const figures = [
   hard_cases,
   cost_of_accuracy,
   cost_choices,
+  cost_by_model,
   family,
   drift_cost,
   drift_heatmap,
@@ -34,7 +35,6 @@ export const figures = [
   stability_limit,
   model_steps,
   nodal_steps,
-  equal_accuracy,
   scaling,
   swing,
   force_transport,

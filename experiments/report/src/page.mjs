@@ -1,6 +1,6 @@
 // The text of the page: tabs, sections, findings, places for figures and tables.
 import { cost_findings } from '../figures/cost_of_accuracy.mjs';
-import { equal_accuracy_findings } from '../figures/equal_accuracy.mjs';
+import { cost_by_model_findings } from '../figures/cost_by_model.mjs';
 import { family_findings } from '../figures/family.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
@@ -61,11 +61,6 @@ const measurements = [
   },
   { figure: 'model_steps', findings: model_step_findings, tables: [] },
   { figure: 'nodal_steps', findings: nodal_step_findings, tables: [] },
-  {
-    figure: 'equal_accuracy',
-    findings: equal_accuracy_findings,
-    tables: ['equal_accuracy'],
-  },
   {
     figure: 'scaling',
     findings: scaling_findings,
@@ -135,6 +130,7 @@ const questions = [
         tables: ['cost_of_accuracy'],
       },
       { figure: 'cost_choices', findings: none, tables: [] },
+      { figure: 'cost_by_model', findings: cost_by_model_findings, tables: [] },
     ],
   },
 ];

@@ -110,8 +110,12 @@ export function springs_and_correction(tables) {
 
 export function springs_ring(tables) {
   const error = (integrator) =>
-    ok_rows(tables, 'equal_accuracy', { scene: 'release', model: 'mass_spring', integrator })[0]
-      ?.length_error_rel;
+    ok_rows(tables, 'cost_of_accuracy', {
+      kind: 'method',
+      scene: 'release',
+      model: 'mass_spring',
+      integrator,
+    })[0]?.length_error_rel;
   const [midpoint, damped] = ['implicit_midpoint', 'generalized_alpha'].map(error);
   must(midpoint > 10 * damped, 'stretch springs ring on under the midpoint rule');
   return (

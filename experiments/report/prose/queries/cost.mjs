@@ -14,7 +14,11 @@ const of_kind = (tables, kind) =>
   rows_of(tables, 'cost_of_accuracy', { kind, target_error_rel: target });
 
 export const scenes = (tables) =>
-  String(distinct(rows_of(tables, 'cost_of_accuracy').map((row) => row.scene)).length);
+  String(
+    distinct(
+      rows_of(tables, 'cost_of_accuracy', { kind: 'winner' }).map((row) => row.scene),
+    ).length,
+  );
 
 const cheapest = (rows) => rows.filter((row) => is_positive(row.wall_s_per_sim_s));
 

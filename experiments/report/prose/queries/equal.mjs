@@ -5,9 +5,9 @@ import { number, ok_rows, table, time } from '../markdown.mjs';
 
 function scene_table(scene) {
   return (tables) => {
-    const rows = ok_rows(tables, 'equal_accuracy', { scene }).filter((row) =>
-      is_positive(row.wall_s_per_sim_s),
-    );
+    const rows = ok_rows(tables, 'cost_of_accuracy', { kind: 'method', scene })
+      .filter((row) => is_positive(row.wall_s_per_sim_s))
+      .map((row) => ({ ...row, variant: row.options }));
     const best = [...group_by(rows, variant_name).values()]
       .map((members) => minimum_by(members, (row) => row.wall_s_per_sim_s))
       .sort((a, b) => a.wall_s_per_sim_s - b.wall_s_per_sim_s);

@@ -1,35 +1,14 @@
-#include "simulation/run/variants.h"
+#include "simulation/scene/changes.h"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <stdexcept>
+#include <utility>
 
-#include "simulation/run/timing.h"
-#include "simulation/run/typical_strands.h"
-#include "simulation/run/world.h"
+#include "simulation/scene/scene_tables.h"
+#include "simulation/scene/strand_tables.h"
+#include "simulation/scene/typical_strands.h"
 
 namespace tress {
 namespace {
-
-void advance(World& world, double t) {
-  if (world.advance(t) != Status::ok) throw std::runtime_error(world.failure());
-}
-
-/// From frame to frame as tip_paths goes: the same steps to the last bit, so that what
-/// ran once runs again.
-void advance_by_frames(World& world, const Scene& scene) {
-  for (std::size_t f = 1; f <= scene.last_frame(); ++f) advance(world, scene.time_of(f));
-}
-
-void add_tips(World& world, std::vector<double>& tips) {
-  const std::vector<double>& x = world.positions();
-  std::size_t end = 0;
-  for (const int points : world.points()) {
-    end += 3 * static_cast<std::size_t>(points);
-    tips.insert(tips.end(), &x[end - 3], &x[end - 3] + 3);
-  }
-}
 
 /// Each half hangs on the other half of the same segment, or of the one it hung on.
 Strand halved(const Strand& strand) {
@@ -60,6 +39,45 @@ Ingredient mode(const std::string& name, const std::string& word) {
 }
 
 }  // namespace
+
+std::string_view Method::word(std::string_view choice) const {
+  for (const auto& [key, value] : options) {
+    if (key == choice) return value;
+  }
+  for (const Parameter& p : model->parameters) {
+    if (p.name == choice && !p.choices.empty()) return words_of(p.choices).front();
+  }
+  return {};
+}
+
+Scene with_method(Scene scene, const Method& method) {
+  scene.model = method.model;
+  scene.model_options = Parameters(model_table_parameters(*method.model), "[model]");
+  scene.model_options.set("id", method.model->id);
+  for (const auto& [key, value] : method.options) scene.model_options.set(key, value);
+  scene.integrator = method.integrator;
+  Options options;
+  options.step = scene.options.step;
+  options.formulation = method.formulation;
+  scene.options = options;
+  return scene;
+}
+
+Scene with_elements(Scene scene, int elements) {
+  if (scene.tables == nullptr) {
+    throw std::logic_error("strands that no table says cannot be cut anew");
+  }
+  auto tables = std::make_shared<StrandTables>(with_elements(*scene.tables, elements));
+  scene.strands = cut_strands(*tables, scene.head, scene.seed).strands;
+  scene.tables = std::move(tables);
+  return scene;
+}
+
+Scene with_strands(Scene scene, std::vector<Strand> strands) {
+  scene.strands = std::move(strands);
+  scene.tables.reset();
+  return scene;
+}
 
 std::vector<Ingredient> ingredients(const Scene& scene) {
   const std::vector<std::string> names = effect_names(scene);
@@ -108,6 +126,7 @@ Scene bare(Scene scene) {
 
 Scene thinned(Scene scene, std::size_t most) {
   if (scene.interaction) return scene;
+  if (scene.strands.size() <= most) return scene;
   const auto typical = typical_strands(scene.strands, most);
   return only(std::move(scene), typical);
 }
@@ -115,63 +134,14 @@ Scene thinned(Scene scene, std::size_t most) {
 Scene only(Scene scene, const std::vector<std::size_t>& strands) {
   std::vector<Strand> chosen;
   for (const std::size_t i : strands) chosen.push_back(scene.strands[i]);
-  scene.strands = std::move(chosen);
-  return scene;
+  return with_strands(std::move(scene), std::move(chosen));
 }
 
 Scene refined(Scene scene) {
-  for (Strand& strand : scene.strands) strand = halved(strand);
   scene.options.step /= 2;
-  return scene;
-}
-
-TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
-  TipPaths paths;
-  World world(scene);
-  for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
-    if (f > 0) paths.once_s += seconds_of([&] { advance(world, scene.time_of(f)); });
-    if (paths.once_s > limit.wall_s) throw std::runtime_error("takes too long");
-    const Stats stats = world.stats();
-    if (static_cast<double>(stats.newton_iterations) >
-        limit.iterations_per_step * static_cast<double>(stats.steps)) {
-      throw std::runtime_error("takes too many iterations");
-    }
-    add_tips(world, paths.x);
-  }
-  paths.indicator = world.error_indicator();
-  if (repeat == 0) return paths;
-  if (paths.once_s > long_run_s) {
-    paths.wall_s = paths.once_s;
-    return paths;
-  }
-  const Snapshot start = World(scene).snapshot();
-  paths.wall_s = time_run(repeat, [&] {
-    world.restore(start);
-    advance_by_frames(world, scene);
-  });
-  return paths;
-}
-
-std::vector<double> wall_times(const Scene& guarded, int runs, double at_least_s) {
-  Scene scene = guarded;
-  scene.guard = false;
-  World world(scene);
-  const Snapshot start = world.snapshot();
-  std::vector<double> times;
-  for (double all = 0; std::ssize(times) < runs || all < at_least_s;) {
-    world.restore(start);
-    times.push_back(seconds_of([&] { advance_by_frames(world, scene); }));
-    all += times.back();
-  }
-  return times;
-}
-
-double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene) {
-  double squares = 0, length = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) squares += std::pow(a.x[i] - b.x[i], 2);
-  for (const Strand& strand : scene.strands) length += strand.length();
-  length /= static_cast<double>(scene.strands.size());
-  return std::sqrt(squares / (static_cast<double>(a.x.size()) / 3)) / length;
+  std::vector<Strand> fine;
+  for (const Strand& strand : scene.strands) fine.push_back(halved(strand));
+  return with_strands(std::move(scene), std::move(fine));
 }
 
 }  // namespace tress

@@ -8,7 +8,7 @@
 #include "experiments/cost_of_accuracy/methods.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
-namespace tress::test_scene_text {
+namespace tress::test_trial_scene {
 
 const char* const curly = R"(
 title = "curly # not a comment"
@@ -30,14 +30,13 @@ shape = "material"
 shape = "sphere"
 )";
 
-TEST(SceneText, WritesASceneWithTheChoiceAndNothingElseChanged) {
+TEST(TrialScene, HasTheChoiceAndNothingElseChanged) {
   const Scratch folder;
-  const SceneText text(folder.write("curly.toml", curly));
+  const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const Method method{&find_model("super_helix"),
                       {{"modes", "bend"}, {"tangent", "stiff"}},
                       "implicit_midpoint"};
-  const Scene& given = text.given();
-  const Scene scene = parse_scene(text.with(method, 9, 7, 60), "written.toml");
+  const Scene scene = trial_scene(given, method, 9, 7, 60);
   EXPECT_EQ(scene.model->id, "super_helix");
   EXPECT_EQ(scene.model_options.word("modes"), "bend");
   EXPECT_EQ(scene.model_options.word("tangent"), "stiff");
@@ -56,7 +55,7 @@ TEST(SceneText, WritesASceneWithTheChoiceAndNothingElseChanged) {
   EXPECT_EQ(scene.duration, given.duration);
 }
 
-TEST(SceneText, PhysicsDoesNotDependOnWhatIsChosen) {
+TEST(TrialScene, PhysicsDoesNotDependOnWhatIsChosen) {
   const Scratch folder;
   std::string other = curly;
   for (const auto& [from, to] :
@@ -66,51 +65,61 @@ TEST(SceneText, PhysicsDoesNotDependOnWhatIsChosen) {
         {"[effects.gravity]", "# said otherwise\n\n[effects.gravity]"}}) {
     other.replace(other.find(from), from.size(), to);
   }
-  const SceneText one(folder.write("a.toml", curly)), same(folder.write("b.toml", other));
-  EXPECT_EQ(one.physics(), same.physics());
+  const auto of = [&folder](const std::string& text) {
+    return physics(read_open_scene(folder.write("scene.toml", text)));
+  };
+  EXPECT_EQ(of(curly), of(other));
   other.replace(other.find("african"), 7, "asian");
-  EXPECT_NE(one.physics(), SceneText(folder.write("c.toml", other)).physics());
+  EXPECT_NE(of(curly), of(other));
 }
 
-TEST(SceneText, NamesFilesInFull) {
-  const Scratch folder;
-  std::string ball = "4 4 4\n0 0 -1\n1\n";
-  for (int i = 0; i < 64; ++i) ball += "9\n";
-  folder.write("ball.txt", ball);
-  const std::string body = "[effects.body]\nshape = \"sdf\"\nsdf_file = \"ball.txt\"\n";
-  const SceneText text(folder.write("sdf.toml", "title = \"sdf\"\n[strand]\n" + body));
-  const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};
-  const std::string written = text.with(method, 4, 1, 60);
-  EXPECT_NE(written.find(folder.path("ball.txt")), std::string::npos) << written;
-  EXPECT_NO_THROW(parse_scene(written, "elsewhere/written.toml"));
+std::string ball(int distance) {
+  std::string text = "4 4 4\n0 0 -1\n1\n";
+  for (int i = 0; i < 64; ++i) text += std::to_string(distance) + "\n";
+  return text;
 }
 
-TEST(SceneText, RefusesASceneWithoutStrands) {
+// The same wherever the folder lies, another where the file has something else.
+TEST(TrialScene, PhysicsDependsOnWhatNamedFilesHave) {
+  const Scratch one, other;
+  const auto of = [](const Scratch& folder, int distance) {
+    folder.write("ball.txt", ball(distance));
+    return physics(read_open_scene(
+        folder.write("sdf.toml",
+                     "title = \"sdf\"\n[strand]\n[effects.body]\nshape = \"sdf\"\n"
+                     "sdf_file = \"ball.txt\"\n")));
+  };
+  const std::string first = of(one, 9);
+  EXPECT_EQ(first, of(other, 9));
+  EXPECT_NE(first, of(other, 8));
+}
+
+TEST(TrialScene, RefusesASceneWithoutStrands) {
   const Scratch folder;
   const std::string file =
       folder.write("bead.toml",
                    "title = \"bead\"\n[model]\nid = \"bead_on_wire\"\n[integrator]\n"
                    "id = \"backward_euler\"\nformulation = \"index3\"\n");
   EXPECT_NO_THROW(read_scene(file));
-  EXPECT_THROW(SceneText{file}, InputError);
+  EXPECT_THROW(read_open_scene(file), InputError);
 }
 
-TEST(SceneText, RefusesStrandsThatTouch) {
+TEST(TrialScene, RefusesStrandsThatTouch) {
   const Scratch folder;
   const std::string file =
       folder.write("two.toml",
                    "title = \"two\"\n[[strand]]\n[[strand]]\nposition_m = [0, 0.01, 0]\n"
                    "[effects.strand_interaction]\n");
   EXPECT_NO_THROW(read_scene(file));
-  EXPECT_THROW(SceneText{file}, InputError);
+  EXPECT_THROW(read_open_scene(file), InputError);
 }
 
 TEST(Methods, AreAllThatCanDoTheScene) {
   const Scratch folder;
-  const SceneText text(folder.write("curly.toml", curly));
-  const auto all = methods(text, {});
+  const Scene given = read_open_scene(folder.write("curly.toml", curly));
+  const auto all = methods(given, {});
   for (const Method& method : all) {
-    EXPECT_NO_THROW(text.scene(method, 6, 1, 60))
+    EXPECT_NO_THROW(trial_scene(given, method, 6, 1, 60))
         << method.model->id << ' ' << method.integrator;
   }
   const auto has = [&all](std::string_view model, std::string_view choice,
@@ -127,32 +136,32 @@ TEST(Methods, AreAllThatCanDoTheScene) {
 
 TEST(Methods, DifferInOneWord) {
   const Scratch folder;
-  const SceneText text(folder.write("curly.toml", curly));
+  const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const Method method{&find_model("super_helix"),
                       {{"modes", "bend"}, {"tangent", "stiff"}},
                       "implicit_midpoint"};
   EXPECT_TRUE(same(method, {&find_model("super_helix"),
                             {{"tangent", "stiff"}, {"modes", "bend"}},
                             "implicit_midpoint"}));
-  const auto others = with_other_words(text, method, "modes");
+  const auto others = with_other_words(given, method, "modes");
   ASSERT_EQ(others.size(), 1u);  // bend_planar refuses a curl
   EXPECT_EQ(others.front().word("modes"), "bend_twist");
   EXPECT_EQ(others.front().word("tangent"), "stiff");
   EXPECT_FALSE(same(method, others.front()));
-  EXPECT_TRUE(with_other_words(text, method, "bending").empty());
+  EXPECT_TRUE(with_other_words(given, method, "bending").empty());
 }
 
 TEST(Methods, AreThoseAskedFor) {
   const Scratch folder;
-  const SceneText text(folder.write("curly.toml", curly));
+  const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const auto some =
-      methods(text, {{"super_helix"}, {"implicit_midpoint"}, {"modes=bend"}});
+      methods(given, {{"super_helix"}, {"implicit_midpoint"}, {"modes=bend"}});
   ASSERT_EQ(some.size(), 2u);
   EXPECT_EQ(some[0].word("modes"), "bend_twist");
   EXPECT_EQ(some[1].word("modes"), "bend");
   // bend_planar refuses a curl: two modes, two tangents.
-  EXPECT_EQ(methods(text, {{"super_helix"}, {"rk4"}, {"modes", "tangent=stiff"}}).size(),
+  EXPECT_EQ(methods(given, {{"super_helix"}, {"rk4"}, {"modes", "tangent=stiff"}}).size(),
             4u);
 }
 
-}  // namespace tress::test_scene_text
+}  // namespace tress::test_trial_scene

@@ -1,36 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "simulation/scene/scene.h"
 
 namespace tress {
-
-/// One thing that a scene could do without: an effect it names, its strand-strand
-/// interaction, or a mode of its model.
-struct Ingredient {
-  std::string name;
-  std::function<Scene(const Scene&)> without;
-  /// The scene with none of its effects but this one. Empty for modes.
-  std::function<Scene(const Scene&)> alone;
-};
-
-std::vector<Ingredient> ingredients(const Scene& scene);
-
-/// The scene without any effect and interaction.
-Scene bare(Scene scene);
-
-/// At most `most` of its strands, typical ones; where they touch each other, all.
-Scene thinned(Scene scene, std::size_t most);
-/// These of its strands.
-Scene only(Scene scene, const std::vector<std::size_t>& strands);
-
-/// Segments cut in halves of the same shape, steps halved: what the difference from the
-/// scene itself says about its discretisation.
-Scene refined(Scene scene);
 
 /// Tips of all strands at every frame, and how long the run took.
 struct TipPaths {

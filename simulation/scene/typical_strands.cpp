@@ -1,4 +1,4 @@
-#include "simulation/run/typical_strands.h"
+#include "simulation/scene/typical_strands.h"
 
 #include <algorithm>
 #include <array>

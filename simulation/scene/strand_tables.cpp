@@ -1,0 +1,62 @@
+#include "simulation/scene/strand_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "contract/input_error.h"
+#include "simulation/scene/groom.h"
+#include "simulation/scene/root_table.h"
+#include "simulation/scene/strand_table.h"
+
+namespace tress {
+namespace {
+
+constexpr std::size_t most_strands = 10'000, most_elements = 200'000;
+
+std::vector<Strand> strands_of(const StrandSource& source, const Common& common,
+                               std::size_t strands, std::size_t elements) {
+  const Table* own = source.material ? &*source.material : nullptr;
+  if (!source.groom) return {scene_strand(source.table, own, common, strands)};
+  const auto each = static_cast<std::size_t>(source.table.values().whole("elements"));
+  const std::size_t most =
+      std::min(most_strands - strands, (most_elements - elements) / each);
+  return groom_strands(source.table, own, common, strands, most);
+}
+
+}  // namespace
+
+CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
+                       std::uint64_t seed) {
+  const std::optional<FreeRoot> free_root = free_motion(tables.root);
+  const Common common{tables.material, head, free_root, seed};
+  CutStrands all;
+  std::size_t elements = 0;
+  for (std::size_t i = 0; i < tables.sources.size(); ++i) {
+    const StrandSource& source = tables.sources[i];
+    for (Strand& strand : strands_of(source, common, all.strands.size(), elements)) {
+      elements += strand.segments.size();
+      all.strands.push_back(std::move(strand));
+      all.source.push_back(i);
+    }
+    if (all.strands.size() <= most_strands && elements <= most_elements) continue;
+    throw InputError(
+        fmt::format("{} strands of {} elements altogether", all.strands.size(), elements),
+        source.table.place(),
+        fmt::format("give at most {} strands and {} elements", most_strands,
+                    most_elements));
+  }
+  return all;
+}
+
+StrandTables with_elements(StrandTables tables, int elements) {
+  const std::string text = std::to_string(elements);
+  for (StrandSource& source : tables.sources) {
+    const std::string place = source.table.place("elements");
+    source.table.set("elements", text, place);
+  }
+  return tables;
+}
+
+}  // namespace tress

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "models/strand/strand.h"
+#include "simulation/scene/table.h"
+
+namespace tress {
+
+/// One [strand] or [groom] of a scene, with its own material if it has one.
+struct StrandSource {
+  Table table;
+  std::optional<Table> material;
+  bool groom = false;
+};
+
+/// What the strands of a scene are cut from: its tables as they were read.
+struct StrandTables {
+  Table material, root;
+  std::vector<StrandSource> sources;  // each [strand], then each [groom]
+};
+
+struct CutStrands {
+  std::vector<Strand> strands;
+  std::vector<std::size_t> source;  // of every strand, its index in StrandTables
+};
+
+/// Throws InputError with the place of the key that makes no sense, and on more strands
+/// and elements than a scene may have. `head` is head_motion(tables.root).
+CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
+                       std::uint64_t seed);
+
+/// The same tables with so many elements in every strand.
+StrandTables with_elements(StrandTables tables, int elements);
+
+}  // namespace tress
