@@ -48,7 +48,7 @@ bool finding(const Row& row) {
           row.status() == "space_error");
 }
 
-constexpr OwnOption own_options[] = {
+constexpr OwnOption command_options[] = {
     {"scene", "scenes",
      "your own scene says what the strand is; without data: what a "
      "record of it would tell",
@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
       .timed = false,
       .columns = columns,
       .settings = calibrate_settings(),
-      .options = own_options,
+      .options = command_options,
       .unused = unused,
       .cases = calibrate_cases,
       .checks = check_calibrate_claims,

@@ -6,8 +6,8 @@
 
 #include "contract/input_error.h"
 #include "models/strand/strand_parameters.h"
-#include "simulation/run/variants.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/changes.h"
 
 namespace tress {
 namespace {
@@ -22,6 +22,7 @@ auto drag_of(auto& scene) {
 
 Scene with_friction(Scene scene, const Friction& friction) {
   scene.strands.front().material.internal_friction = friction.gamma;
+  scene.tables.reset();
   auto drag = drag_of(scene);
   if (drag == scene.effects.end()) {
     const EffectEntry& entry = find_effect(drag_id, "effects");

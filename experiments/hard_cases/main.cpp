@@ -102,7 +102,7 @@ std::vector<Gloss> glossary() {
 /// What does not survive is what is looked for.
 bool finding(const Row& row) { return row.status() != "crashed"; }
 
-constexpr OwnOption own_options[] = {
+constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of our cases",
      true},
 };
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
       .quick_timeout_s = 120,  // an emergency: its work bounds a row
       .columns = columns,
       .settings = hard_case_settings(),
-      .options = own_options,
+      .options = command_options,
       .unused = unused,
       .cases = cases,
       .derive = fill,

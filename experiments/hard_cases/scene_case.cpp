@@ -12,7 +12,7 @@
 #include "experiments/problems/strand_models.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
-#include "simulation/run/variants.h"
+#include "simulation/scene/changes.h"
 #include "simulation/scene/scene_tables.h"
 
 namespace tress {
