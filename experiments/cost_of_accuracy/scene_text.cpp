@@ -45,16 +45,6 @@ void name_files_in_full(toml::table& scene, const std::string& file) {
 
 }  // namespace
 
-std::string_view Method::word(std::string_view choice) const {
-  for (const auto& [key, value] : options) {
-    if (key == choice) return value;
-  }
-  for (const Parameter& p : model->parameters) {
-    if (p.name == choice && !p.choices.empty()) return words_of(p.choices).front();
-  }
-  return {};
-}
-
 SceneText::SceneText(const std::string& file)
     : file_(file),
       text_(read_file(file, most_toml_bytes)),

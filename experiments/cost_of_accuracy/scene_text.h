@@ -3,21 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "simulation/run/simulation.h"
-#include "simulation/scene/scene.h"
+#include "simulation/scene/changes.h"
 
 namespace tress {
-
-/// How a scene is simulated, but for the cut in space and time.
-struct Method {
-  const ModelEntry* model = nullptr;
-  ModelSettings options;  // of the model, where not the default
-  std::string integrator;
-  Formulation formulation = Formulation::parametric;
-
-  /// The word of a choice of the model; empty where it has no such choice.
-  std::string_view word(std::string_view choice) const;
-};
 
 /// A scene file whose [model], [integrator], numbers of elements and steps are for others
 /// to choose. Frames come `rate` times a second, and steps divide a frame.

@@ -7,10 +7,11 @@
 #include <set>
 
 #include "contract/input_error.h"
+#include "experiments/numerics/step_cost.h"
+#include "experiments/problems/scene_files.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/stability_limit/limit_row.h"
 #include "integrators/catalogue.h"
-#include "simulation/run/timing.h"
 #include "simulation/run/variants.h"
 #include "simulation/run/world.h"
 
@@ -52,14 +53,6 @@ std::set<std::string> tangents_of(const Scene& scene, std::string_view integrato
   return all;
 }
 
-std::size_t most_elements(const Scene& scene) {
-  std::size_t most = 0;
-  for (const Strand& strand : scene.strands) {
-    most = std::max(most, strand.segments.size());
-  }
-  return most;
-}
-
 /// One step length of one search: stable, broken, or empty when the work is used up.
 std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& left) {
   if (left <= 0) return {};
@@ -91,22 +84,6 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   return run;
 }
 
-/// Wall time (s) of a step of the whole scene, over at most so many.
-double step_cost(Scene scene, double dt, double t_end, int repeat) {
-  constexpr double most_steps = 200;
-  const double steps = std::min(most_steps, std::ceil(t_end / dt - 1e-9));
-  scene.options.step = dt;
-  scene.guard = false;
-  World world(scene);
-  const Snapshot start = world.snapshot();
-  return time_run(repeat,
-                  [&] {
-                    world.restore(start);
-                    static_cast<void>(world.advance(steps * dt));
-                  }) /
-         steps;
-}
-
 void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
@@ -127,7 +104,7 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   if (!std::isnan(limit.stable)) {
     const Stats& stats = runs.at(limit.stable).stats;
     row.set("steps", stats.steps).set("newton_iterations", stats.newton_iterations);
-    const double cost = step_cost(scene, limit.stable, t_end, how.repeat);
+    const double cost = step_cost(scene, limit.stable, t_end / limit.stable, how.repeat);
     row.set("cost_per_step_s", cost).set("realtime_factor", limit.stable / cost);
   }
   const auto last = runs.find(limit.unstable);

@@ -10,6 +10,8 @@ const readersOfScenes = {
   simulate: (file) => [file, '--out', 'out'],
   cost_of_accuracy: (file) => ['--scene', file, '--out', 't.csv'],
   stability_limit: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  work_precision: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  scaling: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
 };
 const advise = (file) => ['--advise', file, '--out', 't.csv'];

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "simulation/run/simulation.h"
+#include "simulation/scene/scene.h"
+
+namespace tress {
+
+// A scene is a value: what is to be another scene is made from it by a function of here.
+// Nothing is read or checked again; what cannot be built is refused by whoever builds it
+// (World).
+
+/// How a scene is simulated, but for the cut in space and time.
+struct Method {
+  const ModelEntry* model = nullptr;
+  ModelSettings options;  // of the model, where not the default
+  std::string integrator;
+  Formulation formulation = Formulation::parametric;
+
+  /// The word of a choice of the model; empty where it has no such choice.
+  std::string_view word(std::string_view choice) const;
+};
+
+/// By this method; of the integrator's options only the step stays. Throws InputError on
+/// options that the model does not have.
+Scene with_method(Scene scene, const Method& method);
+
+/// The same strands in so many equal elements each, shapes averaged over them. Throws
+/// InputError unless there is one at least, and on strands that branch.
+Scene with_elements(Scene scene, int elements);
+
+}  // namespace tress
