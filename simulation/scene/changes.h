@@ -2,8 +2,9 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "simulation/run/simulation.h"
 #include "simulation/scene/scene.h"
 
 namespace tress {
@@ -15,7 +16,8 @@ namespace tress {
 /// How a scene is simulated, but for the cut in space and time.
 struct Method {
   const ModelEntry* model = nullptr;
-  ModelSettings options;  // of the model, where not the default
+  /// Of the model, where not the default: keys and values.
+  std::vector<std::pair<std::string, std::string>> options;
   std::string integrator;
   Formulation formulation = Formulation::parametric;
 

@@ -238,8 +238,8 @@ TEST(SceneCosts, OfSeveralStrandsGrowWithTheirNumber) {
   line.elements = {5};
   std::string many = soft;
   for (const char* y : {"0.1", "0.2", "0.3", "0.4"}) {
-    many += "[[strand]]\nelements = 5\nlength_m = 0.1\nposition_m = [0, " + std::string(y) +
-            ", 0]\n";
+    many += "[[strand]]\nelements = 5\nlength_m = 0.1\nposition_m = [0, " +
+            std::string(y) + ", 0]\n";
   }
   many.replace(many.find("[strand]"), 8, "[[strand]]");
   std::vector<double> counts;
