@@ -117,11 +117,7 @@ std::vector<double> points(System& system, const State& state) {
   return x;
 }
 
-std::unique_ptr<System> Problem::make(std::string_view solver) const {
-  ModelSettings all = settings;
-  if (!solver.empty()) all.emplace_back("solver", solver);
-  return make_model(model, all);
-}
+std::unique_ptr<System> Problem::make() const { return make_model(model, settings); }
 
 std::vector<Checkpoint> checkpoints(double t_end, int count) {
   std::vector<Checkpoint> times(static_cast<std::size_t>(count));
@@ -146,8 +142,8 @@ Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
 }
 
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
-                       const Options& options, std::string_view solver) {
-  const auto system = problem.make(solver);
+                       const Options& options) {
+  const auto system = problem.make();
   ProblemError error{0, 16};
   std::size_t next = 0;
   std::vector<double> stops;

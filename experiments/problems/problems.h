@@ -37,14 +37,7 @@ struct Problem {
   /// What is compared: coordinates, or material points where form must not matter.
   std::function<std::vector<double>(System&, const State&)> compared;
 
-  /// total: the reference is of the continuous body that the model cuts into elements.
-  std::string_view error_kind = "time";
-  int elements = 0;                                // of a strand
-  std::vector<std::string_view> integrators = {};  // to be tried; none: all
-  /// Solvers of the model, the first for every integrator, the others for `comparing`.
-  std::vector<std::string_view> solvers = {}, comparing = {};
-
-  std::unique_ptr<System> make(std::string_view solver = {}) const;
+  std::unique_ptr<System> make() const;
 };
 
 /// The material points of a state, three coordinates each.
@@ -57,7 +50,7 @@ struct ProblemRun {
   ProblemError error;  // over all checkpoints reached
 };
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
-                       const Options& options, std::string_view solver = {});
+                       const Options& options);
 
 /// The problem with its reference values filled in by an explicit Runge-Kutta method, and
 /// how far an Adams method is from them, both at 1e-13, with constraints as given.

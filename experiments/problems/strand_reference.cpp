@@ -13,6 +13,10 @@ constexpr double tolerance = 1e-5;
 
 constexpr int steps_per_sample = 8;
 
+// Of order 2 and from different families: the extrapolated sides of a reference.
+constexpr std::string_view one_method = "implicit_midpoint",
+                           other_method = "generalized_alpha";
+
 constexpr double newton_tolerance = 1e-4;  // corrections below 1e-6 of the length
 
 std::vector<double> tip(const MakeStrand& make, std::string_view model, int elements,
@@ -27,20 +31,27 @@ std::vector<double> tip(const MakeStrand& make, std::string_view model, int elem
   return std::move(run.tip);
 }
 
+std::vector<double> in_time(const TipsOf& tips, std::string_view model,
+                            std::string_view integrator, const Finest& finest) {
+  Options options;
+  options.refresh = Refresh::every_step;
+  options.newton_tolerance = newton_tolerance;
+  options.step = 2 * finest.step;
+  const auto coarse = tips(model, integrator, finest.elements, options);
+  options.step = finest.step;
+  const auto fine = tips(model, integrator, finest.elements, options);
+  return extrapolated(coarse, fine, 2);
+}
+
 std::vector<double> rod(const TipsOf& tips, std::string_view model,
                         std::string_view integrator, const Finest& finest) {
-  const auto converged_in_time = [&](int elements) {
-    Options options;
-    options.refresh = Refresh::every_step;
-    options.newton_tolerance = newton_tolerance;
-    options.step = 2 * finest.step;
-    const auto coarse = tips(model, integrator, elements, options);
-    options.step = finest.step;
-    const auto fine = tips(model, integrator, elements, options);
-    return extrapolated(coarse, fine, 2);
-  };
-  const auto half = converged_in_time(finest.elements / 2);
-  return extrapolated(half, converged_in_time(finest.elements), 2);
+  const auto half = in_time(tips, model, integrator, {finest.elements / 2, finest.step});
+  return extrapolated(half, in_time(tips, model, integrator, finest), 2);
+}
+
+TipReference both(std::vector<double> one, std::vector<double> other, double length) {
+  const double gap = tip_error(other, one, length);
+  return {std::move(one), std::move(other), gap};
 }
 
 }  // namespace
@@ -59,20 +70,21 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
   options.rtol = options.atol = tolerance;
   // Of few elements steps would be longer than what the cubic between them follows.
   options.max_step = sampling.t_end / sampling.samples / steps_per_sample;
-  TipReference reference;
-  reference.tip = tip(make, model, elements, "gsl_rk8pd", options, sampling);
-  reference.other = tip(make, model, elements, "cvode_adams", options, sampling);
-  reference.gap = tip_error(reference.other, reference.tip, sampling.length);
-  return reference;
+  return both(tip(make, model, elements, "gsl_rk8pd", options, sampling),
+              tip(make, model, elements, "cvode_adams", options, sampling),
+              sampling.length);
 }
 
 TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
                            const Finest& finest) {
-  TipReference reference;
-  reference.tip = rod(tips, models.one, "implicit_midpoint", finest);
-  reference.other = rod(tips, models.other, "generalized_alpha", finest);
-  reference.gap = tip_error(reference.other, reference.tip, length);
-  return reference;
+  return both(rod(tips, models.one, one_method, finest),
+              rod(tips, models.other, other_method, finest), length);
+}
+
+TipReference extrapolated_model(const TipsOf& tips, double length, std::string_view model,
+                                const Finest& finest) {
+  return both(in_time(tips, model, one_method, finest),
+              in_time(tips, model, other_method, finest), length);
 }
 
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,

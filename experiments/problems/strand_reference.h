@@ -60,7 +60,12 @@ using TipsOf =
 TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
                            const Finest& finest = {});
 
-/// The same of a strand of the catalogue. About 10 s for 2 s of a hair.
+/// The equations of one model at the elements of `finest`, extrapolated in the step alone
+/// by both methods: for scenes that explicit methods are too slow for.
+TipReference extrapolated_model(const TipsOf& tips, double length, std::string_view model,
+                                const Finest& finest);
+
+/// The rod of a strand of the catalogue. About 10 s for 2 s of a hair.
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models = clamped_rod);
 

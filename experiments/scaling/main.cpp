@@ -13,22 +13,28 @@
 #include "experiments/run/experiment.h"
 #include "experiments/scaling/scaling_claims.h"
 #include "experiments/scaling/scaling_grid.h"
+#include "experiments/scaling/scene_costs.h"
+#include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 
 namespace tress {
 namespace {
 
 constexpr Column columns[] = {
-    {"structure", "straight strand, or which tree"},
+    {"structure", "straight strand, which tree, or the scene file"},
     {"model", "catalogue id"},
     {"solver", "how the model solves S x = b"},
     {"tangent", "which terms S has"},
     {"modes", "unknowns per element"},
-    {"elements", "number of elements"},
+    {"grows", "of a scene file, what the series makes larger: elements or strands"},
+    {"elements", "number of elements; of a scene file, of a strand"},
+    {"strands", "of a scene file, number of strands"},
     {"unknowns", "number of coordinates"},
-    {"cost_per_step_s", "wall time of a semi-implicit step of the released strand", true},
+    {"cost_per_step_s",
+     "wall time of a semi-implicit step of the released strand, or of the scene", true},
     {"cost_per_element_step_s", "the same over the number of elements", true},
-    {"exponent", "p of cost ~ N^p from 20 elements on, of the series", true},
+    {"exponent", "p of cost ~ N^p of the series: N elements from 20 on, or strands",
+     true},
     {"dt_max_s", "largest stable step up to a frame, 1/30 s; solvers share it"},
     {"fps", "frames of 1/30 s computed per second with that step", true},
     {"seed_fps", "the seed's, on hardware of 2008: compare ratios"},
@@ -133,6 +139,8 @@ void measure(const Work& work, Row& row) {
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, scaling_settings());
+  const std::string_view files = settings.experiment().word("scenes");
+  if (!files.empty()) return scene_costs(line, split(files, ',', "scenes"));
   const double chosen = settings.experiment().number("row_s");
   const double time_s = chosen > 0 ? chosen : line.quick ? 0.02 : 1;
   std::vector<Case> all;
@@ -143,6 +151,13 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   return all;
 }
+
+constexpr OwnOption command_options[] = {
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+};
+
+/// A model that cannot do the scene of a file.
+bool finding(const Row& row) { return row.status() == "refused"; }
 
 constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_euler"},
                              not_random};
@@ -158,9 +173,11 @@ int main(int argc, char** argv) {
       .example = "--elements 20,100 --set solver=recursive",
       .columns = columns,
       .settings = scaling_settings(),
+      .options = command_options,
       .unused = unused,
       .cases = cases,
       .derive = add_exponents,
-      .checks = tell_scaling_figures};
+      .checks = tell_scaling_figures,
+      .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

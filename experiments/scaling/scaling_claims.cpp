@@ -15,7 +15,12 @@ namespace {
 constexpr double first_fitted = 20;
 
 std::string series_of(const Row& row) {
-  return joined(row, {"model", "solver", "tangent", "modes"});
+  return joined(row, {"structure", "model", "solver", "tangent", "modes", "grows"});
+}
+
+/// Trees have the size that they have.
+bool in_series(const Row& row) {
+  return row.text("structure") == straight || row.has("grows");
 }
 
 struct Which {
@@ -46,21 +51,22 @@ void tell_ratio(const std::vector<Row>& rows, const Which& dear, const Which& ch
 
 void add_exponents(std::vector<Row>& rows) {
   struct Series {
-    std::vector<double> elements, costs;
+    std::vector<double> sizes, costs;
   };
   std::map<std::string, Series> all;
   for (const Row& row : rows) {
-    if (!row.ok() || row.text("structure") != straight) continue;
-    if (row.number("elements") < first_fitted) continue;
+    if (!row.ok() || !in_series(row)) continue;
+    const bool of_strands = row.text("grows") == "strands";
+    if (!of_strands && row.number("elements") < first_fitted) continue;
     Series& series = all[series_of(row)];
-    series.elements.push_back(row.number("elements"));
+    series.sizes.push_back(row.number(of_strands ? "strands" : "elements"));
     series.costs.push_back(row.number("cost_per_step_s"));
   }
   for (Row& row : rows) {
     const auto found = all.find(series_of(row));
-    if (row.text("structure") != straight || found == all.end()) continue;
-    if (found->second.elements.size() < 3) continue;
-    row.set("exponent", log_log_slope(found->second.elements, found->second.costs));
+    if (!in_series(row) || found == all.end()) continue;
+    if (found->second.sizes.size() < 3) continue;
+    row.set("exponent", log_log_slope(found->second.sizes, found->second.costs));
   }
 }
 

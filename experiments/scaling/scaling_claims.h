@@ -8,8 +8,8 @@
 namespace tress {
 
 /// Fills `exponent` of every series of straight strands (same model, solver, tangent and
-/// modes): p of cost ~ N^p, fitted to what was measured from 20 elements on, three sizes
-/// at least.
+/// modes) and of scene files: p of cost ~ N^p, fitted to what was measured from 20
+/// elements on, or to all numbers of strands, three sizes at least.
 void add_exponents(std::vector<Row>& rows);
 
 /// What the table of scaling tells of the super-helix with the papers' tangent, as

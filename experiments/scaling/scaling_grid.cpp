@@ -29,14 +29,15 @@ constexpr Parameter settings_of_rows[] = {
      .help = "time to measure the step of one row (s), 0: 1, with --quick 0.02",
      .number = 0,
      .min = 0},
+    {.name = "scenes", .help = "scene files instead of our strands", .text = true},
 };
 
-struct Method {
+struct Variation {
   std::string_view model, solver, tangent, modes;
 };
 
-std::vector<Method> methods_of_strands() {
-  std::vector<Method> all;
+std::vector<Variation> methods_of_strands() {
+  std::vector<Variation> all;
   for (const std::string_view solver : {"recursive", "composite", "sparse"}) {
     for (const std::string_view tangent : {"stiff", "exact"}) {
       for (const std::string_view modes : {"bend_twist", "bend", "bend_planar"}) {
@@ -52,11 +53,11 @@ std::vector<Method> methods_of_strands() {
 
 /// Every other strand model: each of its solvers, or once where it has no choice, with
 /// the stiff tangent where it has one.
-std::vector<Method> methods_of_others() {
-  const std::vector<Method> known = methods_of_strands();
-  std::vector<Method> all;
+std::vector<Variation> methods_of_others() {
+  const std::vector<Variation> known = methods_of_strands();
+  std::vector<Variation> all;
   for (const ModelEntry* model : strand_models()) {
-    if (std::ranges::find(known, model->id, &Method::model) != known.end()) continue;
+    if (std::ranges::find(known, model->id, &Variation::model) != known.end()) continue;
     if (first_word(*model, "solver").empty()) {
       all.push_back({model->id, "", usual_tangent(*model), ""});
     }
@@ -69,7 +70,7 @@ std::vector<Method> methods_of_others() {
   return all;
 }
 
-constexpr Method methods_of_trees[] = {
+constexpr Variation methods_of_trees[] = {
     {"super_helix_tree", "recursive", "stiff", "bend_twist"},
     {"super_helix_tree", "composite", "stiff", "bend_twist"},
     {"super_helix_tree", "recursive", "exact", "bend_twist"},
@@ -165,17 +166,17 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
   const auto keeps = [&rows](std::string_view key, std::string_view word) {
     return rows.word(key) == "all" || rows.word(key) == word;
   };
-  const auto wanted_method = [&](const Method& m) {
+  const auto wanted_method = [&](const Variation& m) {
     return keeps("solver", m.solver) && keeps("tangent", m.tangent) &&
            (m.modes.empty() || keeps("modes", m.modes)) && wanted(line.models, m.model);
   };
-  std::vector<Method> methods = methods_of_strands();
-  const std::vector<Method> others = methods_of_others();
+  std::vector<Variation> methods = methods_of_strands();
+  const std::vector<Variation> others = methods_of_others();
   methods.insert(methods.end(), others.begin(), others.end());
   std::vector<ScalingCase> all;
   // Size by size: what is compared is measured within the same minute.
   for (const int elements : element_counts(line)) {
-    for (const Method& m : methods) {
+    for (const Variation& m : methods) {
       if (!keeps("structure", straight) || !wanted_method(m)) continue;
       const bool too_large = m.solver == "composite" && elements > largest_dense;
       if (too_large && !line.full && line.elements.empty()) continue;
@@ -187,7 +188,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
     if (!keeps("structure", tree)) continue;
     const auto elements = static_cast<int>(tree_segments(tree).size());
     if (!line.elements.empty() && !std::ranges::count(line.elements, elements)) continue;
-    for (const Method& m : methods_of_trees) {
+    for (const Variation& m : methods_of_trees) {
       if (!wanted_method(m)) continue;
       all.push_back({tree, &find_model(m.model), m.solver, m.tangent, m.modes, elements});
     }

@@ -6,11 +6,12 @@
 #include <set>
 
 #include "contract/input_error.h"
+#include "experiments/numerics/step_cost.h"
+#include "experiments/problems/scene_files.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/stability_limit/limit_row.h"
 #include "experiments/stability_limit/stability_grid.h"
 #include "integrators/catalogue.h"
-#include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
@@ -39,14 +40,6 @@ std::set<std::string> tangents_of(const Scene& scene, std::string_view integrato
     all.emplace(usual_tangent(*scene.model));
   }
   return all;
-}
-
-std::size_t most_elements(const Scene& scene) {
-  std::size_t most = 0;
-  for (const Strand& strand : scene.strands) {
-    most = std::max(most, strand.segments.size());
-  }
-  return most;
 }
 
 /// One step length of one search: stable, broken, or empty when the work is used up.
@@ -78,22 +71,6 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   return run;
 }
 
-/// Wall time (s) of a step of the whole scene, over at most so many.
-double step_cost(Scene scene, double dt, double t_end, int repeat) {
-  constexpr double most_steps = 200;
-  const double steps = std::min(most_steps, std::ceil(t_end / dt - 1e-9));
-  scene.options.step = dt;
-  scene.guard = false;
-  World world(scene);
-  const Snapshot start = world.snapshot();
-  return time_run(repeat,
-                  [&] {
-                    world.restore(start);
-                    static_cast<void>(world.advance(steps * dt));
-                  }) /
-         steps;
-}
-
 void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
@@ -105,7 +82,9 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   }
-  if (limit) set_cost(*limit, step_cost(scene, limit->step, t_end, how.repeat), row);
+  if (limit) {
+    set_cost(*limit, step_cost(scene, limit->step, t_end / limit->step, how.repeat), row);
+  }
 }
 
 }  // namespace

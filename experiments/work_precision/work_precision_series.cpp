@@ -7,6 +7,7 @@
 
 #include "experiments/numerics/fit.h"
 #include "experiments/numerics/pareto.h"
+#include "experiments/work_precision/strand_grid.h"
 
 namespace tress {
 namespace {
@@ -32,10 +33,16 @@ double slope(const std::vector<Point>& points) {
 
 bool is_total(const Row& row) { return row.text("error_kind") == "total"; }
 
+/// What tells curves of total errors apart.
+std::string curve_of(const Row& row) {
+  return joined(row, {"scene", "model", "integrator", "solver"});
+}
+
 /// Time errors fall with the step, total ones with the length of an element.
 std::string series_of(const Row& row) {
   return is_total(row) ? joined(row, {"scene", "model", "integrator", "solver", "dt_s"})
-                       : joined(row, {"scene", "integrator", "formulation", "solver"});
+                       : joined(row, {"scene", "model", "integrator", "formulation",
+                                      "solver", "elements"});
 }
 
 /// The smallest step of every series of total errors: where time adds least.
@@ -44,8 +51,7 @@ std::map<std::string, double> finest_steps(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (!is_total(row) || !row.ok()) continue;
     const double step = row.number("dt_s");
-    const auto [place, fresh] =
-        finest.emplace(joined(row, {"scene", "model", "integrator", "solver"}), step);
+    const auto [place, fresh] = finest.emplace(curve_of(row), step);
     place->second = std::min(place->second, step);
   }
   return finest;
@@ -54,10 +60,9 @@ std::map<std::string, double> finest_steps(const std::vector<Row>& rows) {
 void add_orders(std::vector<Row>& rows) {
   const auto finest = finest_steps(rows);
   const auto fitted = [&finest](const Row& row) {
-    if (!row.ok() || !row.has("dt_s")) return false;
-    return !is_total(row) ||
-           row.number("dt_s") ==
-               finest.at(joined(row, {"scene", "model", "integrator", "solver"}));
+    // Of the swing steps are balanced with elements and Newton's iteration ends early.
+    if (!row.ok() || !row.has("dt_s") || row.text("scene") == swing.name) return false;
+    return !is_total(row) || row.number("dt_s") == finest.at(curve_of(row));
   };
   std::map<std::string, std::vector<Point>> series;
   for (const Row& row : rows) {
@@ -84,7 +89,9 @@ void add_orders(std::vector<Row>& rows) {
 void add_series_columns(std::vector<Row>& rows) {
   add_orders(rows);
   add_pareto(rows, "error_rel", [](const Row& row) {
-    return joined(row, {"scene", "error_kind"});
+    // Total errors compete across numbers of elements, time errors do not.
+    return is_total(row) ? joined(row, {"scene", "error_kind"})
+                         : joined(row, {"scene", "error_kind", "elements"});
   });
 }
 

@@ -9,8 +9,9 @@ namespace tress {
 /// Fills what only the whole table knows: `order_fit` of every fixed-step series, the
 /// least-squares slope over its finest trusted points (same scene, integrator,
 /// formulation and solver, over steps; total errors: same model at its finest step, over
-/// element lengths), and `pareto` of every row (no run of its scene and kind of error is
-/// both faster and more accurate).
+/// element lengths; none of the swing), and
+/// `pareto` of every row (no run of its scene and kind of error, of time alone at its
+/// number of elements, is both faster and more accurate).
 void add_series_columns(std::vector<Row>& rows);
 
 }  // namespace tress

@@ -45,6 +45,7 @@ TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
     add_tips(world, paths.x);
   }
   paths.indicator = world.error_indicator();
+  paths.stats = world.stats();
   if (repeat == 0) return paths;
   if (paths.once_s > long_run_s) {
     paths.wall_s = paths.once_s;

@@ -13,6 +13,7 @@ struct TipPaths {
   double once_s = 0;      // wall time of stepping in the run that was read
   double wall_s = 0;      // the same where that is long, else the median of repeats
   double indicator = 0;   // World::error_indicator at the end
+  Stats stats;            // World::stats at the end
 };
 
 /// Where a run is given up, looked at after every frame.

@@ -11,6 +11,8 @@ const readersOfScenes = {
   cost_of_accuracy: (file) => ['--scene', file, '--out', 't.csv'],
   stability_limit: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   hard_cases: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  work_precision: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
+  scaling: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
   calibrate: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -99,8 +100,11 @@ TEST_P(SharedOptions, ChooseRowsOrAreRefused) {
 }
 
 TEST_P(SharedOptions, SeedAndRepeatAreReadOrRefused) {
-  const std::string folder = TRESS_SOURCE_DIR "/experiments/";
-  const std::string source = contents(folder + GetParam() + "/main.cpp");
+  std::string source;
+  for (const auto& file : std::filesystem::directory_iterator(
+           TRESS_SOURCE_DIR "/experiments/" + GetParam())) {
+    if (file.path().extension() == ".cpp") source += contents(file.path().string());
+  }
   for (const Option& option : {Option{"seed", "2", ""}, Option{"repeat", "2", ""}}) {
     if (source.find("line." + option.name) != std::string::npos) continue;
     EXPECT_TRUE(refused(plan(GetParam(), "--" + option.name + " 2"), option))

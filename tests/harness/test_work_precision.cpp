@@ -1,14 +1,22 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "experiments/problems/strand_problems.h"
+#include "experiments/work_precision/claims.h"
+#include "experiments/work_precision/problem_runs.h"
+#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/strand_runs.h"
 #include "experiments/work_precision/work_precision_series.h"
 
 namespace tress::test_work_precision {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
 
 Row run(std::string_view kind, std::string_view solver, int elements, double dt,
         double error, double wall = 1) {
@@ -61,55 +69,100 @@ TEST(SeriesColumns, KindsOfErrorDoNotCompete) {
   EXPECT_EQ(rows[2].text("pareto"), "false");
 }
 
-TEST(StrandProblems, AreOfTimeOnEverySolverAndOfTheRod) {
-  const auto all = strand_problems();
-  EXPECT_EQ(std::ranges::count(all, "time", &Problem::error_kind), 1);
-  EXPECT_GE(std::ranges::count(all, "total", &Problem::error_kind), 10);
-  for (const Problem& problem : all) {
-    EXPECT_EQ(problem.name, "strand_release");
-    EXPECT_GT(problem.reference_gap, 0);
-    for (const std::string_view solver : problem.solvers) {
-      EXPECT_NE(problem.make(solver), nullptr);
-    }
-    for (const Checkpoint& at : problem.reference) {
-      ASSERT_EQ(at.values.size(), 2u);
-      // The tip stays within the strand's 10 cm of the root.
-      EXPECT_LE(std::hypot(at.values[0], at.values[1]), 0.1 * (1 + 1e-4));
-    }
+std::vector<Row> rows_of(const CommandLine& line) {
+  std::vector<Row> all;
+  const Settings settings(line, row_settings());
+  for (const Case& work : problem_runs(line, settings)) {
+    all.push_back(work.identity);
+  }
+  return all;
+}
+
+TEST(ProblemRuns, TheBeamByBdfHasEveryOrderOnce) {
+  CommandLine line;
+  line.quick = true;
+  line.integrators = {"cvode_bdf"};
+  line.set = {{"scene", "beam"}};
+  std::map<std::string, int> orders;
+  std::set<std::string> identities;
+  for (const Row& row : rows_of(line)) {
+    EXPECT_EQ(row.text("scene"), "beam");
+    ++orders[std::string(row.text("max_order"))];
+    EXPECT_TRUE(identities.insert(describe(row)).second) << describe(row);
+  }
+  EXPECT_THAT(orders, ElementsAre(Pair("1", 4), Pair("2", 6), Pair("3", 4), Pair("4", 4),
+                                  Pair("5", 4)));
+  line.set.emplace_back("max_order", "3");
+  for (const Row& row : rows_of(line)) EXPECT_EQ(row.text("max_order"), "3");
+}
+
+TEST(ProblemRuns, AreNoneWhereTheChoiceIsAboutStrands) {
+  CommandLine line;
+  line.quick = true;
+  EXPECT_FALSE(rows_of(line).empty());
+  line.set = {{"modes", "bend"}};
+  EXPECT_TRUE(rows_of(line).empty());
+  line.set = {{"error", "total"}};
+  EXPECT_TRUE(rows_of(line).empty());
+  line.set.clear();
+  line.elements = {20};
+  EXPECT_TRUE(rows_of(line).empty());
+}
+
+/// The rows of the released hair by this model, run.
+std::vector<Row> released(const std::string& model, const std::vector<int>& elements) {
+  CommandLine line;
+  line.models = {model};
+  line.elements = elements;
+  line.quick = true;
+  line.repeat = 1;
+  line.set = {{"scene", "strand_release"}};
+  std::vector<Row> all;
+  for (const Case& work : strand_runs(line, Settings(line, row_settings()))) {
+    Row row = work.identity;
+    work.run(row, Deadline(600));
+    all.push_back(row);
+  }
+  return all;
+}
+
+TEST(StrandRuns, TotalErrorsFallWithElements) {
+  std::map<std::string, double> finest;  // error by elements: the last step is the finest
+  for (const Row& row : released("super_helix", {5, 10})) {
+    ASSERT_TRUE(row.ok()) << row.text("reason");
+    EXPECT_GT(row.number("error_rel"), 100 * row.number("reference_gap"));
+    EXPECT_EQ(row.number("wall_s_per_sim_s"), row.number("wall_s") / 0.25);
+    finest[std::string(row.text("elements"))] = row.number("error_rel");
+  }
+  ASSERT_EQ(finest.size(), 2u);
+  EXPECT_LE(finest["10"], finest["5"] / 2);
+}
+
+TEST(StrandRuns, AMotionThatPhysicsRulesOutIsNoResult) {
+  // Forces that are handed from element to element put energy into the released hair.
+  for (const Row& row : released("force_transport", {10})) {
+    EXPECT_EQ(row.status(), "solver_error");
+    EXPECT_THAT(std::string(row.text("reason")), HasSubstr("energy"));
   }
 }
 
-TEST(StrandProblems, SolversOfOneModelMakeOneError) {
-  const Problem& problem = strand_problems().front();
-  ASSERT_EQ(problem.error_kind, "time");
-  ASSERT_EQ(problem.solvers.size(), 3u);
-  Options options;
-  options.step = 1e-3;
-  std::vector<double> errors;
-  for (const std::string_view solver : problem.solvers) {
-    const ProblemRun run = run_problem(problem, "implicit_midpoint", options, solver);
-    ASSERT_EQ(run.end.status, Status::ok) << run.end.failure;
-    errors.push_back(run.error.relative);
-  }
-  EXPECT_GT(errors.front(), 100 * problem.reference_gap);
-  // Newton stops at 1e-10 of a curvature of 1/L in each of 250 steps.
-  for (const double error : errors) EXPECT_NEAR(error, errors.front(), 250e-10);
-}
-
-TEST(StrandProblems, TotalErrorsFallWithElements) {
-  Options options;
-  options.step = 2.5e-4;
-  std::vector<double> errors;
-  for (const Problem& problem : strand_problems()) {
-    if (problem.error_kind != "total" || problem.model != "super_helix") continue;
-    if (problem.elements != 5 && problem.elements != 10) continue;
-    const ProblemRun run = run_problem(problem, "implicit_midpoint", options);
-    ASSERT_EQ(run.end.status, Status::ok) << run.end.failure;
-    EXPECT_GT(run.error.relative, 100 * problem.reference_gap);
-    errors.push_back(run.error.relative);
-  }
-  ASSERT_EQ(errors.size(), 2u);
-  EXPECT_LE(errors[1], errors[0] / 2);
+TEST(Claims, BdfOrdersAreComparedOnTheBeam) {
+  const auto steps = [](int order, int count) {
+    Row row;
+    row.set("scene", "beam").set("integrator", "cvode_bdf").set("max_order", order);
+    return row.set("rtol", 1e-4).set("steps", count);
+  };
+  const auto state = [](const std::vector<Row>& rows) {
+    Verdicts all;
+    check_claims(rows, all);
+    for (const auto& verdict : all.all()) {
+      if (verdict.claim.starts_with("BDF up to order 5")) return verdict.state;
+    }
+    return Verdicts::State::figure;
+  };
+  EXPECT_EQ(state({steps(2, 100), steps(5, 1001)}), Verdicts::State::held);
+  EXPECT_EQ(state({steps(2, 100), steps(5, 999)}), Verdicts::State::broken);
+  EXPECT_EQ(state({steps(2, 100)}), Verdicts::State::not_judged);
 }
 
 }  // namespace tress::test_work_precision

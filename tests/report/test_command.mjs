@@ -129,10 +129,8 @@ test('MissingTables_SayHowToProduceThem', () => {
   for (const name of [
     'constraint_drift',
     'work_precision',
-    'bdf_order',
     'stability_limit',
     'scaling',
-    'swing',
     'force_transport',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);
@@ -156,23 +154,26 @@ function refusal(file, text) {
   assert.deepEqual(rest, []);
   assert.match(warning, /^report: warning: .*; run the experiment again or remove the file$/);
   assert.match(page, /Not everything could be used/);
-  if (file === 'bdf_order.csv') assert.match(page, /<strong>Left out\.<\/strong>[^<]*bdf_order\.csv/);
+  if (file === 'work_precision.csv') {
+    assert.match(page, /<strong>Left out\.<\/strong>[^<]*work_precision\.csv/);
+  }
   return warning;
 }
 
 test('MalformedTables_AreOneLineWithFileAndLine', () => {
-  const head = 'scene,integrator,label,error_rel,steps,wall_s,status\n';
+  const head =
+    'scene,model,integrator,elements,error_kind,error_rel,wall_s,wall_s_per_sim_s,steps,status\n';
   assert.match(
-    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,10,1,ok\nbeam,ida\n`),
-    /bdf_order\.csv:3: 2 fields where the header has 7/,
+    refusal('work_precision.csv', `${head}beam,beam,ida,40,time,1e-3,1,1,10,ok\nbeam,ida\n`),
+    /work_precision\.csv:3: 2 fields where the header has 10/,
   );
   assert.match(
-    refusal('bdf_order.csv', `${head}beam,ida,a,1e-3,many,1,ok\n`),
-    /bdf_order\.csv:2: 'many' in column 'steps' is not a number/,
+    refusal('work_precision.csv', `${head}beam,beam,ida,40,time,1e-3,1,1,many,ok\n`),
+    /work_precision\.csv:2: 'many' in column 'steps' is not a number/,
   );
   assert.match(
-    refusal('bdf_order.csv', 'scene,integrator\n'),
-    /bdf_order\.csv:1: column 'label'/,
+    refusal('work_precision.csv', 'scene,integrator\n'),
+    /work_precision\.csv:1: column 'model'/,
   );
   assert.match(refusal('x.csv', ''), /x\.csv:1: empty/);
   assert.match(refusal('x.csv', 'a,a\n1,2\n'), /x\.csv:1: column 'a' appears twice/);
@@ -279,8 +280,8 @@ test('SwingFinding_NamesTheTargetAndTheFastestPeer', () => {
     /1 % time error: cvode_adams .* within the target of 20 ms; the fastest published simulator \(MuJoCo 3, universal joints, implicitfast\) 38 ms/,
   );
   with_changed(
-    'swing',
-    (text) => text.replace(/^super_helix.*,(cvode_\w+|ida),20,.*,time,.*\n/gm, ''),
+    'work_precision',
+    (text) => text.replace(/^swing,super_helix,.*,(cvode_\w+|ida),.*,20,.*,time,.*\n/gm, ''),
     (page) => assert.match(page, /1 % time error: .* not within the target of 20 ms/),
   );
 });
@@ -342,13 +343,13 @@ test('Csv_ReadsQuotesAndSpecialNumbers', () => {
 });
 
 test('Manifest_ThatIsNoJsonIsLeftOut', () => {
-  const path = join(directory, 'bdf_order.meta.json');
+  const path = join(directory, 'family.meta.json');
   const text = readFileSync(path, 'utf8');
   writeFileSync(path, '{');
   const { status, stderr } = run_page(directory);
   assert.equal(status, 0);
-  assert.match(stderr, /warning: .*bdf_order\.meta\.json: not valid JSON/);
-  assert.match(page_text(), /Without a manifest: bdf_order\.csv/);
+  assert.match(stderr, /warning: .*family\.meta\.json: not valid JSON/);
+  assert.match(page_text(), /Without a manifest: family\.csv/);
   rmSync(path);
   assert.equal(run_page(directory).status, 0);
   writeFileSync(path, text);

@@ -1,5 +1,5 @@
 // Figure 5: what the maximum order of a BDF method does on a nearly undamped rod.
-import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
+import { distinct, group_by, is_positive, order_rows, succeeded } from '../src/tables.mjs';
 import {
   dimmed_unless,
   layout,
@@ -49,16 +49,16 @@ function label_style(rows) {
 export const bdf_order = {
   id: 'bdf_order',
   title: 'BDF order on a rod',
-  table: 'bdf_order',
+  table: 'work_precision',
   caption: `Steps and wall time against the error reached, cvode_bdf held to maximum order
     1 to 5 (solid) against other integrators (dashed); down and left is better. BDF of
     order 3 and more is not A-stable near the imaginary axis, where a rod's undamped
     bending waves lie; how much that costs is what to read here. Click a legend entry to
-    keep it and dim the others. Made from bdf_order.csv; failed runs are in the table
+    keep it and dim the others. Made from work_precision.csv; failed runs are in the table
     only.`,
 
   rows: (tables) =>
-    (tables.bdf_order ?? [])
+    order_rows(tables)
       .filter((row) => succeeded(row) && is_positive(row.error_rel))
       .map((row) => ({ dt_s: null, ...row, tightness: row.rtol ?? row.dt_s })),
 

@@ -1,5 +1,5 @@
 // Figure 8: wall time against tip error on the swinging strand, beside other simulators.
-import { distinct, group_by, is_positive } from '../src/tables.mjs';
+import { distinct, group_by, is_positive, swing_rows } from '../src/tables.mjs';
 import { fastest_at, spaced, swing_levels, swing_runs } from '../src/strand.mjs';
 import { swing_finding } from '../src/findings/swing.mjs';
 import {
@@ -22,9 +22,9 @@ const front_of = (runs) =>
     (row) =>
       !runs.some(
         (other) =>
-          other.tip_error_rel <= row.tip_error_rel &&
+          other.error_rel <= row.error_rel &&
           other.wall_s <= row.wall_s &&
-          (other.tip_error_rel < row.tip_error_rel || other.wall_s < row.wall_s),
+          (other.error_rel < row.error_rel || other.wall_s < row.wall_s),
       ),
   );
 
@@ -32,15 +32,15 @@ const front_of = (runs) =>
 const error_range = [1e-7, 1];
 
 const fronts = (tables, kind) =>
-  [...group_by(swing_runs(tables.swing ?? [], kind), (row) => row.series).values()]
+  [...group_by(swing_runs(swing_rows(tables), kind), (row) => row.series).values()]
     .flatMap(front_of)
     .filter(
-      ({ tip_error_rel }) =>
-        tip_error_rel >= error_range[0] && tip_error_rel <= error_range[1],
+      ({ error_rel }) =>
+        error_rel >= error_range[0] && error_rel <= error_range[1],
     )
     .map((row) => ({
       ...row,
-      error_pct: 100 * row.tip_error_rel,
+      error_pct: 100 * row.error_rel,
       wall_ms: 1e3 * row.wall_s,
     }));
 
@@ -152,7 +152,7 @@ function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ..
 
 // Every simulator as a row, sorted by the time it needs for 1 %; ours coloured among them.
 function ranking(tables, { width, style, theme }) {
-  const runs = swing_runs(tables.swing ?? [], 'time');
+  const runs = swing_runs(swing_rows(tables), 'time');
   const points = peer_points(tables).map((p) => ({
     ...p,
     name: p.peer,
@@ -261,7 +261,7 @@ function ranking(tables, { width, style, theme }) {
 export const swing = {
   id: 'swing',
   title: 'A swinging strand at a stated error, beside other simulators',
-  table: 'swing',
+  table: 'work_precision',
   finding: swing_finding,
   caption: `Wall time of 2 simulated seconds on one core against the tip error (root mean
     square over the run, over the strand's length); down and left is better. Each line
@@ -270,7 +270,7 @@ export const swing = {
     against their own finest run at 20 elements, measured on another machine of the same
     class, so trust ratios. Large rings are the targets, 20 ms and 50 ms. Errors under
     1e-5 % and over 100 % are not drawn. Made from
-    swing.csv and peers_swing.csv; failed runs are in the tables only.`,
+    work_precision.csv and peers_swing.csv; failed runs are in the tables only.`,
 
   rows: (tables) => [...fronts(tables, 'time'), ...fronts(tables, 'total')],
 

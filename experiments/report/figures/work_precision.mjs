@@ -5,6 +5,7 @@ import {
   is_positive,
   is_set,
   problem_name,
+  problem_rows,
   succeeded,
 } from '../src/tables.mjs';
 import {
@@ -258,7 +259,7 @@ export const work_precision = {
     the others. Made from work_precision.csv; failed runs are in the table only.`,
 
   rows: (tables) =>
-    (tables.work_precision ?? [])
+    problem_rows(tables)
       .filter(
         (row) =>
           succeeded(row) &&

@@ -52,7 +52,7 @@ const measurements = [
     tables: [],
   },
   { figure: 'work_precision', findings: work_findings, tables: ['work_precision'] },
-  { figure: 'bdf_order', findings: bdf_findings, tables: ['bdf_order'] },
+  { figure: 'bdf_order', findings: bdf_findings, tables: [] },
   {
     figure: 'stability_limit',
     findings: stability_findings,
@@ -71,7 +71,7 @@ const measurements = [
     figure: 'swing',
     findings: swing_findings,
     summary: swing_summary,
-    tables: ['swing', 'peers_swing'],
+    tables: ['peers_swing'],
   },
   {
     figure: 'force_transport',
@@ -253,7 +253,7 @@ function header_html({ objects, warnings }) {
 <dt>How large a time step does a strand bear?</dt>
 <dd id="answer-stability">${answer('stability_limit', stability_answer)}</dd>
 <dt>How long does a strand take at a stated error, and how long do other simulators?</dt>
-<dd id="answer-swing">${answer('swing', swing_answer)}</dd>
+<dd id="answer-swing">${answer('work_precision', swing_answer)}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 ${nav_html(measurements, 'Measurements')}`;

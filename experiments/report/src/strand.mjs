@@ -118,13 +118,13 @@ export const swing_levels = [
   { error: 1e-3, name: '0.1 %', target_s: 50e-3, peer: 'wall_0p1pct_s' },
 ];
 
-// Runs of swing.csv with one kind of error; time errors at the peers' element count.
+// Runs of the swing with one kind of error; time errors at the peers' element count.
 export function swing_runs(rows, kind) {
   const good = rows.filter(
     (row) =>
       succeeded(row) &&
       row.error_kind === kind &&
-      is_positive(row.tip_error_rel) &&
+      is_positive(row.error_rel) &&
       is_positive(row.wall_s),
   );
   const same = good.filter((row) => row.elements === 20);
@@ -137,6 +137,6 @@ export function swing_runs(rows, kind) {
 
 export const fastest_at = (runs, error) =>
   minimum_by(
-    runs.filter((row) => row.tip_error_rel <= error),
+    runs.filter((row) => row.error_rel <= error),
     (row) => row.wall_s,
   );

@@ -1,5 +1,12 @@
 // Small tables of selected numbers as HTML; the full tables stand below them.
-import { distinct, group_by, is_positive, study_rows, succeeded } from './tables.mjs';
+import {
+  distinct,
+  group_by,
+  is_positive,
+  study_rows,
+  succeeded,
+  swing_rows,
+} from './tables.mjs';
 import { escape_html, format_number } from './format.mjs';
 import {
   damping_name,
@@ -153,7 +160,8 @@ export function scaling_summary({ scaling: rows = [] }) {
   );
 }
 
-export function swing_summary({ swing = [], peers_swing = [] }) {
+export function swing_summary(tables) {
+  const { peers_swing = [] } = tables;
   const milliseconds = (value) => (is_positive(value) ? format_number(1e3 * value) : '');
   const peers = peers_swing.map((row) => ({
     name: row.peer,
@@ -163,7 +171,7 @@ export function swing_summary({ swing = [], peers_swing = [] }) {
     tenth: row.wall_0p1pct_s,
   }));
   const [one, tenth] = swing_levels;
-  const ours = [...group_by(swing_runs(swing, 'time'), (row) => row.series)].map(
+  const ours = [...group_by(swing_runs(swing_rows(tables), 'time'), (row) => row.series)].map(
     ([series, members]) => {
       const best = fastest_at(members, one.error);
       return {

@@ -130,7 +130,18 @@ export const known_tables = {
   },
   work_precision: {
     title: 'Work and precision',
-    required: ['scene', 'integrator', 'error_rel', 'wall_s_per_sim_s', 'status'],
+    required: [
+      'scene',
+      'model',
+      'integrator',
+      'elements',
+      'error_kind',
+      'error_rel',
+      'wall_s',
+      'wall_s_per_sim_s',
+      'steps',
+      'status',
+    ],
     numeric: [
       'elements',
       'dt_s',
@@ -147,13 +158,6 @@ export const known_tables = {
       'solves',
       'order_fit',
     ],
-    command: './tress run',
-    program: 'work_precision',
-  },
-  bdf_order: {
-    title: 'BDF order on a rod',
-    required: ['scene', 'integrator', 'label', 'error_rel', 'steps', 'wall_s', 'status'],
-    numeric: ['max_order', 'rtol', 'error_rel', 'scd', 'steps', 'wall_s'],
     command: './tress run',
     program: 'work_precision',
   },
@@ -200,21 +204,6 @@ export const known_tables = {
     command: './tress run',
     program: 'scaling',
   },
-  swing: {
-    title: 'Work and precision on the swinging strand',
-    required: [
-      'model',
-      'integrator',
-      'elements',
-      'error_kind',
-      'tip_error_rel',
-      'wall_s',
-      'status',
-    ],
-    numeric: ['elements', 'dt_s', 'rtol', 'tip_error_rel', 'wall_s', 'steps'],
-    command: './tress run',
-    program: 'swing',
-  },
   force_transport: {
     title: 'Force transport beside CORDE',
     required: ['comparison', 'scene', 'model', 'elements', 'youngs_modulus_pa', 'status'],
@@ -255,7 +244,7 @@ export const known_tables = {
       'wall_0p1pct_s',
     ],
     command: 'git checkout -- results/peers_swing.csv',
-    program: 'swing',
+    program: 'work_precision',
     optional: true,
   },
 };
@@ -273,6 +262,42 @@ export const is_positive = (value) => is_number(value) && value > 0;
 export const succeeded = (row) => row.status === 'ok';
 export const is_set = (flag) => /^(1|true|yes)$/i.test(String(flag ?? ''));
 export const distinct = (values) => [...new Set(values)];
+
+// Rows of work_precision.csv by their question. First the swinging strand on which other
+// simulators were measured.
+export const swing_rows = ({ work_precision = [] }) =>
+  work_precision.filter((row) => row.scene === 'swing');
+
+// The maximum order of BDF on the Beam, beside methods that are stable on the imaginary
+// axis and Adams.
+const beside_bdf = [
+  'arkode_dirk',
+  'cvode_adams',
+  'generalized_alpha',
+  'implicit_midpoint',
+  'bdf2',
+];
+export const order_rows = ({ work_precision = [] }) =>
+  work_precision
+    .filter(
+      (row) =>
+        row.scene === 'beam' &&
+        (is_positive(row.max_order) || beside_bdf.includes(row.integrator)),
+    )
+    .map((row) => ({
+      ...row,
+      label: is_positive(row.max_order)
+        ? `${row.integrator} <= ${row.max_order}`
+        : row.integrator,
+    }));
+
+// Every integrator on every other problem, BDF with the order it has unless told otherwise.
+const usual_order = 2;
+export const problem_rows = ({ work_precision = [] }) =>
+  work_precision.filter(
+    (row) =>
+      row.scene !== 'swing' && (!is_positive(row.max_order) || row.max_order === usual_order),
+  );
 
 // The problem a row of work_precision.csv belongs to: total errors apart from time errors.
 export const problem_name = (row) =>

@@ -106,7 +106,11 @@ export function errors_table(tables) {
   const finest = (members) => members.reduce((a, b) => (b.dt_s < a.dt_s ? b : a));
   return table(
     ['model', ...counts.map((n) => `${n} elements`)],
-    [...group_by(rows, (row) => row.model)].map(([model, members]) => [
+    // A model whose runs break off at all of these is not in the table.
+    [...group_by(
+      rows.filter((row) => counts.includes(row.elements)),
+      (row) => row.model,
+    )].map(([model, members]) => [
       `\`${model}\``,
       ...counts.map((n) => {
         const at = members.filter((row) => row.elements === n);

@@ -1,10 +1,10 @@
 // Accuracy on the swinging strand, beside other simulators.
 import { fastest_at, swing_levels, swing_runs } from '../../src/strand.mjs';
-import { is_positive, minimum_by } from '../../src/tables.mjs';
+import { is_positive, minimum_by, swing_rows } from '../../src/tables.mjs';
 import { rows_of, table, time } from '../markdown.mjs';
 
 const ours = (tables, kind, error) => {
-  const best = fastest_at(swing_runs(rows_of(tables, 'swing'), kind), error);
+  const best = fastest_at(swing_runs(swing_rows(tables), kind), error);
   if (best === undefined) return 'none';
   return `${time(best.wall_s)}, \`${best.model}\`, \`${best.integrator}\`, ${best.elements} elements`;
 };

@@ -1,5 +1,5 @@
-// What swing.csv and peers_swing.csv say, as sentences computed from their rows.
-import { is_positive, minimum_by } from '../tables.mjs';
+// What the swing's rows of work_precision.csv and peers_swing.csv say, as sentences.
+import { is_positive, minimum_by, swing_rows } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
 import { fastest_at, swing_levels, swing_runs } from '../strand.mjs';
 import { failure_sentence } from './drift.mjs';
@@ -18,11 +18,13 @@ function best_peer(rows, { peer }) {
   );
 }
 
-function level_sentence({ swing = [], peers_swing = [] }, level, kind) {
-  const best = fastest_at(swing_runs(swing, kind), level.error);
+function level_sentence(tables, level, kind) {
+  const { peers_swing = [] } = tables;
+  const runs = swing_runs(swing_rows(tables), kind);
+  const best = fastest_at(runs, level.error);
   const what = `${level.name} ${kind} error`;
   if (best === undefined)
-    return swing_runs(swing, kind).length > 0 ? [`No run reaches ${what}.`] : [];
+    return runs.length > 0 ? [`No run reaches ${what}.`] : [];
   const setting = [step(best), `${best.elements} elements`].filter(Boolean).join(', ');
   const ours = `${what}: ${best.series} (${setting}) takes ${format_time(best.wall_s)} for 2 simulated seconds`;
   if (kind !== 'time') return [`${ours}.`];
@@ -42,7 +44,7 @@ export const swing_finding = (tables) =>
 export function swing_findings(tables) {
   return [
     ...swing_levels.flatMap((level) => level_sentence(tables, level, 'total')),
-    ...failure_sentence(tables.swing ?? []),
+    ...failure_sentence(swing_rows(tables)),
   ];
 }
 

@@ -1,11 +1,13 @@
-// What work_precision.csv and bdf_order.csv say, as sentences computed from their rows.
+// What work_precision.csv says, as sentences computed from their rows.
 import {
   distinct,
   group_by,
   is_positive,
   is_set,
   minimum_by,
+  order_rows,
   problem_name,
+  problem_rows,
   succeeded,
 } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
@@ -79,7 +81,8 @@ function reference_sentence(rows) {
       ];
 }
 
-export function work_findings({ work_precision: rows = [] }) {
+export function work_findings(tables) {
+  const rows = problem_rows(tables);
   return [
     ...cheapest_sentences(rows),
     ...order_sentences(rows),
@@ -89,8 +92,8 @@ export function work_findings({ work_precision: rows = [] }) {
   ];
 }
 
-export function work_answer({ work_precision: rows = [] }) {
-  const problems = [...group_by(usable(rows), problem_name)];
+export function work_answer(tables) {
+  const problems = [...group_by(usable(problem_rows(tables)), problem_name)];
   const winners = problems.flatMap(([problem, members]) => {
     const best = cheapest(members, 1e-4);
     return best
@@ -124,7 +127,8 @@ export function bdf_comparison(rows, low, high) {
   return pairs.sort((a, b) => b.rtol - a.rtol);
 }
 
-export function bdf_findings({ bdf_order: rows = [] }) {
+export function bdf_findings(tables) {
+  const rows = order_rows(tables);
   const comparisons = [3, 4, 5].flatMap((order) => {
     const pairs = bdf_comparison(rows, 2, order);
     if (pairs.length === 0) return [];

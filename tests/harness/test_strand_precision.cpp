@@ -9,14 +9,16 @@
 #include "experiments/numerics/pareto.h"
 #include "experiments/numerics/tip_track.h"
 #include "experiments/peers/swing.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_reference.h"
 #include "experiments/problems/strand_scenes.h"
-#include "experiments/swing/swing_claims.h"
-#include "experiments/swing/swing_grid.h"
+#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/strand_claims.h"
+#include "experiments/work_precision/strand_grid.h"
 #include "models/strand/strand_parameters.h"
 #include "simulation/run/simulation.h"
 
-namespace tress::test_swing {
+namespace tress::test_strand_precision {
 
 // ---- the track of a tip -----------------------------------------------------------
 
@@ -208,15 +210,22 @@ TEST(SwingScene, IsTheOneOfThePeers) {
 
 // ---- rows -------------------------------------------------------------------------
 
-std::vector<SwingCase> cases(const CommandLine& line) {
-  return swing_cases(line, Settings(line, swing_settings()));
+/// The swing's, with what else was chosen.
+CommandLine of_swing() {
+  CommandLine line;
+  line.set = {{"scene", "swing"}};
+  return line;
 }
 
-TEST(SwingGrid, IdentitiesDifferAndIntegratorsAreThere) {
-  const std::vector<SwingCase> all = cases({});
+std::vector<StrandCase> cases(const CommandLine& line) {
+  return strand_cases(line, Settings(line, row_settings()));
+}
+
+TEST(StrandGrid, IdentitiesDifferAndIntegratorsAreThere) {
+  const std::vector<StrandCase> all = cases(of_swing());
   std::set<std::string> identities;
   std::set<std::string_view> integrators;
-  for (const SwingCase& c : all) {
+  for (const StrandCase& c : all) {
     EXPECT_TRUE(identities.insert(describe(c.identity())).second)
         << describe(c.identity());
     integrators.insert(c.integrator);
@@ -232,15 +241,18 @@ TEST(SwingGrid, IdentitiesDifferAndIntegratorsAreThere) {
   }
 }
 
-TEST(SwingGrid, FollowsTheCommandLine) {
+TEST(StrandGrid, FollowsTheCommandLine) {
   CommandLine line;
   line.integrators = {"implicit_midpoint"};
   line.models = {"articulated_chain"};
   line.elements = {9};
-  line.set = {{"error", "total"}, {"newton_tolerance", "1e-3"}, {"refresh", "when_slow"}};
-  const std::vector<SwingCase> chosen = cases(line);
+  line.set = {{"scene", "swing"},
+              {"error", "total"},
+              {"newton_tolerance", "1e-3"},
+              {"refresh", "when_slow"}};
+  const std::vector<StrandCase> chosen = cases(line);
   ASSERT_FALSE(chosen.empty());
-  for (const SwingCase& c : chosen) {
+  for (const StrandCase& c : chosen) {
     EXPECT_EQ(c.integrator, "implicit_midpoint");
     EXPECT_EQ(c.model->id, "articulated_chain");
     EXPECT_EQ(c.elements, 9);
@@ -250,12 +262,12 @@ TEST(SwingGrid, FollowsTheCommandLine) {
   }
 }
 
-TEST(SwingGrid, ParametersAreThoseOfTheRow) {
+TEST(StrandGrid, ParametersAreThoseOfTheRow) {
   CommandLine line;
   line.integrators = {"bdf2"};
-  line.set = {{"modes", "bend_twist"}, {"quadrature", "8"}};
-  const Settings settings(line, swing_settings());
-  for (const SwingCase& c : swing_cases(line, settings)) {
+  line.set = {{"scene", "swing"}, {"modes", "bend_twist"}, {"quadrature", "8"}};
+  const Settings settings(line, row_settings());
+  for (const StrandCase& c : strand_cases(line, settings)) {
     const Parameters p = c.parameters(settings);
     EXPECT_EQ(p.word("modes"), "bend_twist");
     EXPECT_EQ(p.word("tangent"), c.tangent);
@@ -265,12 +277,25 @@ TEST(SwingGrid, ParametersAreThoseOfTheRow) {
   }
 }
 
+TEST(StrandGrid, ReleasesEveryStrandModelForItsTotalError) {
+  CommandLine line;
+  line.set = {{"scene", "strand_release"}};
+  std::set<std::string_view> models;
+  for (const StrandCase& c : cases(line)) {
+    EXPECT_EQ(c.strand->name, "strand_release");
+    EXPECT_EQ(c.error_kind, "total");
+    models.insert(c.model->id);
+  }
+  EXPECT_EQ(models.size(), strand_models().size());
+}
+
 Row run(std::string_view kind, int elements, double error, double wall,
         std::string_view modes = "bend") {
   Row row;
-  row.set("error_kind", kind).set("model", "super_helix").set("modes", modes);
+  row.set("scene", "swing").set("error_kind", kind);
+  row.set("model", "super_helix").set("modes", modes);
   row.set("integrator", "implicit_midpoint").set("elements", elements);
-  row.set("tip_error_rel", error).set("wall_s", wall);
+  row.set("error_rel", error).set("wall_s", wall);
   return row;
 }
 
@@ -279,7 +304,7 @@ TEST(Pareto, IsWhatNothingBeatsInBoth) {
                         run("time", 20, 0.005, 3), run("time", 5, 0.02, 2),
                         run("time", 20, 0.01, 0.5)};
   rows.back().failed("diverged", "not counted");
-  add_pareto(rows, "tip_error_rel",
+  add_pareto(rows, "error_rel",
              [](const Row& row) { return std::string(row.text("elements")); });
   EXPECT_EQ(rows[0].text("pareto"), "true");
   EXPECT_EQ(rows[1].text("pareto"), "false");
@@ -314,6 +339,13 @@ TEST(SwingClaims, TakeTheFastestRunThatIsAccurateEnough) {
   EXPECT_EQ(swing.of("some run has 1 % total error").state, State::not_judged);
 }
 
+TEST(SwingClaims, AreOfTheSwingAlone) {
+  Judged other{{run("total", 9, 0.001, 0.001)}};
+  EXPECT_EQ(other.of("some run has 1 % total error").state, State::held);
+  other.rows[0].set("scene", "strand_release");
+  EXPECT_EQ(other.of("some run has 1 % total error").state, State::not_judged);
+}
+
 TEST(SwingClaims, DoNotHoldWhereNothingIsAccurateEnough) {
   Judged swing{{run("total", 9, 0.02, 0.001)}};
   EXPECT_EQ(swing.of("some run has 1 % total error").state, State::broken);
@@ -346,4 +378,4 @@ TEST(SwingClaims, ReferencesMustAgree) {
   EXPECT_EQ(swing.of("time:").state, State::not_judged);
 }
 
-}  // namespace tress::test_swing
+}  // namespace tress::test_strand_precision

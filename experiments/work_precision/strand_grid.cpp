@@ -1,27 +1,18 @@
-#include "experiments/swing/swing_grid.h"
+#include "experiments/work_precision/strand_grid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
 
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/problems/strand_scenes.h"
+#include "experiments/work_precision/row_settings.h"
 #include "integrators/catalogue.h"
 
 namespace tress {
 namespace {
-
-constexpr Parameter settings_of_rows[] = {
-    {.name = "error", .help = "rows of one kind of error", .choices = "all|time|total"},
-    {.name = "modes",
-     .help = "rows with these modes of the strand",
-     .choices = "all|bend|bend_twist"},
-    {.name = "solver",
-     .help = "rows of one solver of the model",
-     .choices = "all|recursive|composite|sparse"},
-    {.name = "tangent",
-     .help = "rows of one tangent of the model",
-     .choices = "all|stiff|exact"},
-};
 
 /// How far and with which matrix a step's equations are solved. Tolerances are over
 /// System::scale: 0.3 is a curvature of 0.3 over the length of the strand.
@@ -33,7 +24,7 @@ constexpr Newton converged{Refresh::every_iteration, 1e-10};
 constexpr Newton loose{Refresh::every_step, 0.3};
 constexpr Newton lazy{Refresh::when_slow, 0.1};
 
-struct Method {
+struct Variation {
   std::string_view integrator;
   std::string_view tangent = {};
   Newton newton = {};
@@ -41,7 +32,7 @@ struct Method {
   bool full_only = false;
 };
 
-constexpr Method methods[] = {
+constexpr Variation methods[] = {
     {"implicit_midpoint", "stiff", loose},
     {"implicit_midpoint", "stiff", lazy},
     {"implicit_midpoint", "exact", loose},
@@ -78,7 +69,7 @@ constexpr Method methods[] = {
 };
 
 /// What is compared on other strands and for the total error.
-constexpr Method best[] = {
+constexpr Variation best[] = {
     {"implicit_midpoint", "stiff", loose},
     {"linearly_implicit_midpoint", "stiff"},
 };
@@ -97,7 +88,7 @@ constexpr Body others[] = {
 // Twist has next to no mass, so what Newton leaves over of it comes back undamped and
 // larger: only converged steps or methods that damp fast modes get through.
 constexpr Body twisting{"super_helix", "bend_twist", "recursive"};
-constexpr Method twisting_methods[] = {
+constexpr Variation twisting_methods[] = {
     {"implicit_midpoint", "stiff", loose, 0, true},
     {"implicit_midpoint", "exact", converged},
     {"linearly_implicit_midpoint", "stiff"},
@@ -150,68 +141,114 @@ class Grid {
   Grid(const CommandLine& line, const Settings& settings)
       : line_(line), settings_(settings) {}
 
-  std::vector<SwingCase> cases() {
-    const std::span<const Method> total =
-        line_.integrators.empty() ? std::span<const Method>(best) : methods;
-    for (const int elements : counts({peer_elements})) {
-      for (const Method& m : methods) add("time", principal, m, elements, 1);
-      for (const Body& body : others) {
-        for (const Method& m : best) add("time", body, m, elements, 1);
-      }
-      for (const Method& m : twisting_methods) add("time", twisting, m, elements, 1);
+  std::vector<StrandCase> cases() {
+    if (keeps(settings_, "scene", swing.name)) {
+      add_swing_in_time();
+      add_swing_in_all();
     }
-    for (const int elements : counts({3, 5, 7, 9, 12, 16, 20, 28, 40})) {
-      for (const Body& body : {principal, chain}) {
-        for (const double grading : gradings) {
-          for (const Method& m : total) add("total", body, m, elements, grading);
-        }
-      }
-    }
+    if (keeps(settings_, "scene", strand_release.name)) add_release();
     return std::move(all_);
   }
 
  private:
+  void add_swing_in_time() {
+    for (const int elements : counts({peer_elements})) {
+      for (const Variation& m : methods) add_swing("time", principal, m, elements, 1);
+      for (const Body& body : others) {
+        for (const Variation& m : best) add_swing("time", body, m, elements, 1);
+      }
+      for (const Variation& m : twisting_methods) {
+        add_swing("time", twisting, m, elements, 1);
+      }
+    }
+  }
+
+  void add_swing_in_all() {
+    const std::span<const Variation> total =
+        line_.integrators.empty() ? std::span<const Variation>(best) : methods;
+    const std::vector<int> sizes =
+        counts(line_.quick ? std::initializer_list<int>{3, 5, 9, 12, 20, 40}
+                           : std::initializer_list<int>{3, 5, 7, 9, 12, 16, 20, 28, 40});
+    for (const int elements : sizes) {
+      for (const Body& body : {principal, chain}) {
+        for (const double grading : gradings) {
+          for (const Variation& m : total) add_swing("total", body, m, elements, grading);
+        }
+      }
+    }
+  }
+
+  void add_swing(std::string_view error, const Body& body, const Variation& m,
+                 int elements, double grading) {
+    if (m.full_only && !line_.full && line_.integrators.empty()) return;
+    const IntegratorEntry& entry = find_integrator(m.integrator);
+    StrandCase c{.strand = &swing,
+                 .error_kind = error,
+                 .model = &find_model(body.model),
+                 .modes = body.modes,
+                 .solver = body.solver,
+                 .tangent = m.tangent,
+                 .integrator = m.integrator,
+                 .adaptive = entry.adaptive,
+                 .newton = m.newton.tolerance > 0,
+                 .options = {},
+                 .elements = elements,
+                 .grading = grading};
+    c.options.max_order = m.max_order;
+    c.options.refresh = m.newton.refresh;
+    if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
+    add(c, ladder(entry, !m.tangent.empty(), line_));
+  }
+
+  /// Every model as it is by default. Half of the sizes show the order.
+  void add_release() {
+    const std::vector<int> sizes =
+        counts(line_.quick ? std::initializer_list<int>{3, 5, 10, 20, 40}
+                           : std::initializer_list<int>{3, 5, 7, 10, 14, 20, 28, 40});
+    for (const ModelEntry* model : strand_models()) {
+      for (const int elements : sizes) {
+        const StrandCase c{.strand = &strand_release,
+                           .error_kind = "total",
+                           .model = model,
+                           .modes = has_word(*model, "modes", "bend") ? "bend" : "",
+                           .solver = first_word(*model, "solver"),
+                           .tangent = first_word(*model, "tangent"),
+                           .integrator = "implicit_midpoint",
+                           .adaptive = false,
+                           .newton = false,
+                           .options = {},
+                           .elements = elements,
+                           .grading = 1};
+        // The finest steps add nothing to a total error.
+        add(c, {4e-3, 2, 1, line_.full ? 8 : line_.quick ? 3 : 5});
+      }
+    }
+  }
+
   std::vector<int> counts(std::initializer_list<int> usual) const {
     return line_.elements.empty() ? std::vector<int>(usual) : line_.elements;
   }
 
-  bool keeps(std::string_view key, std::string_view word) const {
-    const std::string_view chosen = settings_.experiment().word(key);
-    return chosen == "all" || chosen == word;
-  }
-
-  void add(std::string_view error, const Body& body, const Method& m, int elements,
-           double grading) {
-    if (m.full_only && !line_.full && line_.integrators.empty()) return;
-    if (!keeps("error", error) || !keeps("modes", body.modes)) return;
-    if (!keeps("solver", body.solver) || !keeps("tangent", m.tangent)) return;
-    if (!wanted(line_.models, body.model) || !wanted(line_.integrators, m.integrator)) {
-      return;
-    }
-    const IntegratorEntry& entry = find_integrator(m.integrator);
-    SwingCase c{.error_kind = error,
-                .model = &find_model(body.model),
-                .modes = body.modes,
-                .solver = body.solver,
-                .tangent = m.tangent,
-                .integrator = m.integrator,
-                .adaptive = entry.adaptive,
-                .newton = m.newton.tolerance > 0,
-                .options = {},
-                .elements = elements,
-                .grading = grading};
+  /// All rungs of one curve.
+  void add(StrandCase c, const Ladder& rungs) {
+    if (!keeps(settings_, "error", c.error_kind)) return;
+    if (!keeps(settings_, "modes", c.modes)) return;
+    if (!keeps(settings_, "solver", c.solver)) return;
+    if (!keeps(settings_, "tangent", c.tangent)) return;
+    if (!wanted(line_.models, c.model->id)) return;
+    if (!wanted(line_.integrators, c.integrator)) return;
+    const IntegratorEntry& entry = find_integrator(c.integrator);
     const auto system = c.model->make(c.parameters(settings_));
-    if (!refusal(entry, *system, Formulation::parametric).empty()) return;
-    c.options.max_order = m.max_order;
-    c.options.refresh = m.newton.refresh;
-    if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
+    const auto usable = usable_formulations(entry, *system);
+    if (usable.empty()) return;
     c.options = settings_.options(c.options);
-    const Ladder rungs = ladder(entry, !m.tangent.empty(), line_);
+    c.options.formulation = usable.front();
     for (int i = 0; i < rungs.rungs; ++i) {
       const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
-      if (error == "total" && !entry.adaptive && !balanced(x, elements)) continue;
-      (entry.adaptive ? c.options.rtol : c.options.step) = x;
-      if (entry.adaptive) c.options.atol = x;
+      const bool both = c.strand == &swing && c.error_kind == "total";
+      if (both && !c.adaptive && !balanced(x, c.elements)) continue;
+      (c.adaptive ? c.options.rtol : c.options.step) = x;
+      if (c.adaptive) c.options.atol = x;
       // --set can make two ways of iterating the same.
       if (known_.insert(describe(c.identity())).second) all_.push_back(c);
     }
@@ -219,16 +256,17 @@ class Grid {
 
   const CommandLine& line_;
   const Settings& settings_;
-  std::vector<SwingCase> all_;
+  std::vector<StrandCase> all_;
   std::set<std::string> known_;
 };
 
 }  // namespace
 
-Row SwingCase::identity() const {
+Row StrandCase::identity() const {
   Row row;
-  row.set("error_kind", error_kind).set("model", model->id).set("modes", modes);
-  row.set("solver", solver).set("tangent", tangent).set("integrator", integrator);
+  row.set("scene", strand->name).set("error_kind", error_kind).set("model", model->id);
+  row.set("modes", modes).set("solver", solver).set("tangent", tangent);
+  row.set("integrator", integrator).set("formulation", tress::name(options.formulation));
   if (options.max_order > 0) row.set("max_order", options.max_order);
   if (newton) {
     row.set("newton_tolerance", options.newton_tolerance);
@@ -238,26 +276,25 @@ Row SwingCase::identity() const {
   return adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
 }
 
-Parameters swing_parameters(const Settings& settings, const ModelEntry& model,
-                            int elements) {
+Parameters strand_parameters_of(const FollowedStrand& strand, const Settings& settings,
+                                const ModelEntry& model, int elements) {
   Parameters p = settings.parameters(model);
-  for (const auto& [key, value] : find_strand_scene("swing").settings) p.set(key, value);
+  set_known(p, find_strand_scene(strand.scene).settings);
+  set_known(p, {{"modes", "bend"}});
   p.set("elements", std::to_string(elements));
   return p;
 }
 
-Parameters SwingCase::parameters(const Settings& settings) const {
-  Parameters p = swing_parameters(settings, *model, elements);
+Parameters StrandCase::parameters(const Settings& settings) const {
+  Parameters p = strand_parameters_of(*strand, settings, *model, elements);
   p.set("grading", std::to_string(grading));
-  p.set("modes", modes);
-  p.set("solver", solver);
+  if (!modes.empty()) p.set("modes", modes);
+  if (!solver.empty()) p.set("solver", solver);
   if (!tangent.empty()) p.set("tangent", tangent);
   return p;
 }
 
-std::span<const Parameter> swing_settings() { return settings_of_rows; }
-
-std::vector<SwingCase> swing_cases(const CommandLine& line, const Settings& settings) {
+std::vector<StrandCase> strand_cases(const CommandLine& line, const Settings& settings) {
   return Grid(line, settings).cases();
 }
 

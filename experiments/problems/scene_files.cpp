@@ -1,0 +1,51 @@
+#include "experiments/problems/scene_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "experiments/problems/formulations.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/changes.h"
+
+namespace tress {
+
+std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files) {
+  std::vector<SceneFile> all;
+  for (Scene& scene : read_scenes(files)) {
+    const std::string& file = files[all.size()];
+    if (scene.strands.empty()) {
+      throw InputError(
+          "the model brings its own geometry: no other model can do this scene", file,
+          "give a scene with [strand] or [groom]");
+    }
+    all.push_back({std::filesystem::path(file).filename().string(), std::move(scene)});
+  }
+  return all;
+}
+
+Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry) {
+  if (scene.model != &model) scene = with_method(scene, {&model, {}, {}, {}});
+  const auto system =
+      model.on_strand(scene.strands.front(), scene.model_options, make_effects(scene));
+  const auto usable = usable_formulations(entry, *system);
+  if (usable.empty()) {
+    throw InputError(refusal(entry, *system, entry.formulations.front().formulation),
+                     std::string(entry.id) + " on " + std::string(model.id),
+                     "./tress list shows what can drive what");
+  }
+  scene.integrator = entry.id;
+  scene.options.formulation = usable.front();
+  return scene;
+}
+
+std::size_t most_elements(const Scene& scene) {
+  std::size_t most = 0;
+  for (const Strand& strand : scene.strands) {
+    most = std::max(most, strand.segments.size());
+  }
+  return most;
+}
+
+}  // namespace tress

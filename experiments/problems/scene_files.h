@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "integrators/catalogue.h"
+#include "simulation/scene/scene.h"
+
+namespace tress {
+
+/// A scene file under its own name, ending and all, which no scene of ours has.
+struct SceneFile {
+  std::string name;
+  Scene scene;
+};
+
+/// Reads what every strand model can be tried on. Throws InputError as read_scene does,
+/// on a scene whose model brings its own geometry, and on two files of one name.
+std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files);
+
+/// The scene by a model, with the file's own options if it is the file's own and its
+/// defaults otherwise, driven as the integrator does it best. Throws InputError where the
+/// model cannot do the scene or the integrator cannot drive the model.
+Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
+
+/// Of the strand that has most.
+std::size_t most_elements(const Scene& scene);
+
+}  // namespace tress

@@ -1,0 +1,142 @@
+#include "experiments/work_precision/problem_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "experiments/problems/formulations.h"
+#include "experiments/problems/problems.h"
+#include "experiments/work_precision/measured.h"
+#include "experiments/work_precision/row_settings.h"
+#include "simulation/run/timing.h"
+
+namespace tress {
+namespace {
+
+constexpr double quick_work = 1e7;  // of a run
+constexpr int usual_order = 2;      // the highest of cvode_bdf unless told otherwise
+
+struct Work {
+  const Problem& problem;
+  std::string_view integrator;
+  bool adaptive;
+  Options options;
+  int repeat;
+
+  Row identity() const {
+    Row row;
+    row.set("scene", problem.name).set("model", problem.model);
+    row.set("integrator", integrator).set("formulation", name(options.formulation));
+    if (options.max_order > 0) row.set("max_order", options.max_order);
+    return adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
+  }
+};
+
+void measure(const Work& work, Row& row) {
+  const Problem& problem = work.problem;
+  std::optional<ProblemRun> run;
+  const double wall = time_run(
+      work.repeat, [&] { run = run_problem(problem, work.integrator, work.options); });
+  const Stats& stats = run->end.stats;
+  row.set("elements", run->end.state.q.size()).set("solver", stats.solver);
+  set_counts(stats, row);
+  if (run->end.status != Status::ok) {
+    row.failed("solver_error", run->end.failure);
+    return;
+  }
+  const double error = run->error.relative;
+  if (!(error <= 10)) {
+    row.failed("diverged", "error above ten times the scale of the problem");
+    return;
+  }
+  row.set("error_kind", "time").set("scd", run->error.scd);
+  set_error(error, problem.reference_gap, row);
+  set_time(wall, problem.t_end, row);
+}
+
+/// The formulations a table of manageable size shows: the method's own best. --full: all.
+std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, bool full) {
+  std::vector<Formulation> list = usable_formulations(entry, system);
+  if (!full && list.size() > 1) list.erase(list.begin() + 1, list.end());
+  return list;
+}
+
+/// Builds the list; knows what the user asked for.
+class List {
+ public:
+  List(const CommandLine& line, const Settings& settings)
+      : line_(line),
+        base_(settings.options()),
+        chosen_order_(settings.chosen("max_order")) {}
+
+  void add(const Problem& problem) {
+    const auto system = problem.make();
+    for (const IntegratorEntry& entry : integrators()) {
+      if (!wanted(line_.integrators, entry.id)) continue;
+      for (const Formulation formulation : shown(entry, *system, line_.full)) {
+        add(problem, entry, formulation);
+      }
+    }
+  }
+
+  std::vector<Case> cases() { return std::move(all_); }
+
+ private:
+  void add(const Problem& problem, const IntegratorEntry& entry,
+           Formulation formulation) {
+    Work work{problem, entry.id, entry.adaptive, base_, line_.repeat};
+    work.options.formulation = formulation;
+    if (line_.quick && base_.max_work == 0) work.options.max_work = quick_work;
+    const int points = line_.full ? 10 : line_.quick ? 6 : 7;
+    const bool orders =
+        problem.name == "beam" && entry.id == "cvode_bdf" && !chosen_order_;
+    if (!orders) {
+      for (int level = 0; level < points; ++level) rung(work, level);
+      return;
+    }
+    // That high orders crawl is what these rows are for.
+    work.options.max_work = base_.max_work;
+    for (int order = 1; order <= 5; ++order) {
+      work.options.max_order = order;
+      const int last = order == usual_order ? points - 1 : line_.full ? 5 : 3;
+      for (double level = 0; level <= last; level += line_.quick ? 1 : 0.5) {
+        rung(work, level);
+      }
+    }
+  }
+
+  void rung(Work work, double level) {
+    if (work.adaptive) {
+      work.options.rtol = work.options.atol = std::pow(10, -3 - level);
+    } else {
+      work.options.step = work.problem.coarse_step / std::pow(2, level);
+    }
+    all_.push_back(
+        {work.identity(), [work](Row& row, const auto&) { measure(work, row); }});
+  }
+
+  const CommandLine& line_;
+  Options base_;
+  bool chosen_order_;
+  std::vector<Case> all_;
+};
+
+}  // namespace
+
+std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings) {
+  // What only strands have.
+  const bool of_strands = !line.elements.empty() || !keeps(settings, "error", "time") ||
+                          !keeps(settings, "modes", "") ||
+                          !keeps(settings, "solver", "") ||
+                          !keeps(settings, "tangent", "");
+  List list(line, settings);
+  if (of_strands) return {};
+  for (const Problem& problem : problems()) {
+    if (!wanted(line.models, problem.model)) continue;
+    if (keeps(settings, "scene", problem.name)) list.add(problem);
+  }
+  return list.cases();
+}
+
+}  // namespace tress

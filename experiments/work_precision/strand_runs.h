@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/run/experiment.h"
+#include "experiments/work_precision/strand_grid.h"
+
+namespace tress {
+
+/// The rows of strand_cases(): error of the tip, root mean square over the run, against
+/// wall time. Their references are computed here, once for all rows that share one.
+std::vector<Case> strand_runs(const CommandLine& line, const Settings& settings);
+
+}  // namespace tress
