@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/layers.h"
+
 /// The contract between what moves (models) and how time advances (integrators).
 ///
 /// A model is a mechanical system over coordinates q (n of them), q' = v, v' = a, with

@@ -3,7 +3,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// v_{n+1} = v_n + h a_{n+1}, q_{n+1} = q_n + h v_{n+1}. The last acceleration is the
@@ -36,4 +36,4 @@ IntegratorEntry backward_euler_entry() {
           .make = make_method<BackwardEuler>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -3,7 +3,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Two-step backward differentiation with variable-step coefficients, started by backward
@@ -61,4 +61,4 @@ IntegratorEntry bdf2_entry() {
           .make = make_method<Bdf2>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

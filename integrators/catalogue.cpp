@@ -32,14 +32,14 @@
   METHOD(arkode_dirk)                \
   METHOD(ida)
 
-namespace tress {
+namespace tress::integrators {
 
 // Each is defined in the file of its method.
 #define TRESS_DECLARE(id) IntegratorEntry id##_entry();
 TRESS_METHODS(TRESS_DECLARE)
 #undef TRESS_DECLARE
 
-std::span<const IntegratorEntry> integrators() {
+std::span<const IntegratorEntry> integrator_catalogue() {
 #define TRESS_ENTRY(id) id##_entry(),
   static const std::array entries{TRESS_METHODS(TRESS_ENTRY)};
 #undef TRESS_ENTRY
@@ -48,7 +48,7 @@ std::span<const IntegratorEntry> integrators() {
 
 const IntegratorEntry& find_integrator(std::string_view id) {
   std::vector<std::string_view> ids;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.id == id) return entry;
     ids.push_back(entry.id);
   }
@@ -84,4 +84,4 @@ std::unique_ptr<Integrator> make_integrator(std::string_view id, System& system,
   return entry.make(system, options);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

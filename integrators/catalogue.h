@@ -7,9 +7,9 @@
 
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 
-std::span<const IntegratorEntry> integrators();
+std::span<const IntegratorEntry> integrator_catalogue();
 
 /// Throws InputError naming the nearest id when there is no such integrator.
 const IntegratorEntry& find_integrator(std::string_view id);
@@ -22,4 +22,4 @@ std::string refusal(const IntegratorEntry& entry, System& system,
 std::unique_ptr<Integrator> make_integrator(std::string_view id, System& system,
                                             const Options& options);
 
-}  // namespace tress
+}  // namespace tress::integrators

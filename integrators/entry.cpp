@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// What `formulation` asks of a method, said of one that does not do it.
@@ -66,4 +66,4 @@ std::string constant_mass(System& system, Formulation /*formulation*/) {
   return "needs a constant mass matrix";
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

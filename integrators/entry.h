@@ -12,7 +12,7 @@
 
 /// What a method says of itself. Every method's own file ends with a function
 /// `IntegratorEntry <id>_entry()`, which the list in catalogue.cpp names.
-namespace tress {
+namespace tress::integrators {
 
 /// A formulation that a method can take on, and its order there: errors O(h^order) at a
 /// fixed time; of adaptive methods the highest order by default.
@@ -87,4 +87,4 @@ std::string inverts_mass(System& system, Formulation formulation);
 /// To a mass matrix that changes.
 std::string constant_mass(System& system, Formulation formulation);
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 
 #include "contract/integrator.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// What a method knows of its own error at no cost worth mentioning. A capability of some
 /// methods, not a part of every one.
@@ -23,4 +23,4 @@ inline double indicator_of(const Integrator& method) {
   return own != nullptr ? own->largest_indicator() : 0;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Order 1; amplifies oscillations for every h: a baseline.
@@ -31,4 +31,4 @@ IntegratorEntry explicit_euler_entry() {
           .make = make_method<ExplicitEuler>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

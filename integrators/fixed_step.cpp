@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 bool finite(In x) {
@@ -99,4 +99,4 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
   return Status::ok;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -8,7 +8,7 @@
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// The loop shared by every method with a fixed step: equal steps no longer than
 /// Options::step that land on t_end, then projection if asked for, System::accept and the
@@ -57,4 +57,4 @@ class FixedStep : public Integrator {
   Limit limit_ = Limit::none;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/stage.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr Parameter own[] = {{.name = "rho_inf",
@@ -101,4 +101,4 @@ IntegratorEntry generalized_alpha_entry() {
           .make = make_generalized_alpha};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

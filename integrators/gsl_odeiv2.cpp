@@ -11,7 +11,7 @@
 #include "integrators/vector_ops.h"
 #include "linear/finite.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 struct Free {
@@ -265,4 +265,4 @@ IntegratorEntry gsl_bsimp_entry() {
           .make = make_gsl<&gsl_odeiv2_step_bsimp>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

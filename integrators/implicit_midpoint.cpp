@@ -3,7 +3,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// The one-stage Gauss method. Order 2, A-stable, no damping, symplectic:
@@ -40,4 +40,4 @@ IntegratorEntry implicit_midpoint_entry() {
           .make = make_method<ImplicitMidpoint>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// How a field of Options is set from parameters, and what it is as their text.
@@ -156,7 +156,7 @@ std::span<const Parameter> common_options() {
 std::span<const Parameter> integrator_options() {
   static const std::vector<Parameter> parameters = [] {
     std::vector<Parameter> list(common_options().begin(), common_options().end());
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       list.insert(list.end(), entry.parameters.begin(), entry.parameters.end());
     }
     return list;
@@ -165,7 +165,7 @@ std::span<const Parameter> integrator_options() {
 }
 
 const IntegratorEntry* owner_of_option(std::string_view key) {
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (std::ranges::count(entry.parameters, key, &Parameter::name) > 0) return &entry;
   }
   return nullptr;
@@ -193,4 +193,4 @@ std::string text_of(const Options& options, std::string_view key) {
   return Parameters(integrator_options(), "").text(key);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -7,7 +7,7 @@
 #include "contract/parameters.h"
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// The fields of Options that `--set` reaches, with units, ranges and choices.
 std::span<const Parameter> common_options();
@@ -26,4 +26,4 @@ void apply(Options& options, std::string_view key, std::string_view value,
 /// The field as text that apply() reads as the same.
 std::string text_of(const Options& options, std::string_view key);
 
-}  // namespace tress
+}  // namespace tress::integrators

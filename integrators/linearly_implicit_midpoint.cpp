@@ -7,7 +7,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// One residual, one factorisation and one solve per step, like semi_implicit_euler, but
@@ -105,4 +105,4 @@ IntegratorEntry linearly_implicit_midpoint_entry() {
           .make = make_method<LinearlyImplicitMidpoint>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -3,7 +3,7 @@
 #include "integrators/formulation/relaxation.h"
 #include "integrators/semi_implicit_step.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr Parameter own[] = {
@@ -106,4 +106,4 @@ IntegratorEntry predictor_corrector_entry() {
           .make = make_method<PredictorCorrector>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

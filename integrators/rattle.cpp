@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Verlet's method with g = 0 and g' = 0 held by impulses. Order 2, symplectic, stable
@@ -56,4 +56,4 @@ IntegratorEntry rattle_entry() {
       .make = make_method<Rattle>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

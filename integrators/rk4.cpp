@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// The classical Runge-Kutta method. Order 4, stable for h omega < 2.83 on the imaginary
@@ -55,4 +55,4 @@ IntegratorEntry rk4_entry() {
           .make = make_method<Rk4>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

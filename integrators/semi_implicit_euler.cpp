@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/semi_implicit_step.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Backward Euler's first Newton step from constant velocity: one linear solve per step,
@@ -39,4 +39,4 @@ IntegratorEntry semi_implicit_euler_entry() {
           .make = make_method<SemiImplicitEuler>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -6,7 +6,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// S(1, h, h^2) a = -r(a = 0) at (q + h v, v), then v + h a and q + h (v + h a). S is
 /// taken at the last acceleration, none at the start: at a = 0 an exact tangent has the
@@ -37,4 +37,4 @@ class SemiImplicitStep {
   std::vector<double> a_, a_last_, q_bar_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -6,7 +6,7 @@
 
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // A kept matrix is rebuilt when corrections shrink by less than this per iteration.
@@ -146,4 +146,4 @@ Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, 
   return correct(t, q_bar, v_bar, w, false, a, lambda, correction);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

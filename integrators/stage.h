@@ -4,7 +4,7 @@
 
 #include "integrators/formulation/dynamics.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// Corrections that stop shrinking are rounding when they are this close to the
 /// tolerance.
@@ -88,4 +88,4 @@ class Stage {
   Side here_, there_, middle_;                                       // of a jump
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -4,7 +4,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // Damped steps are shorter, so there may be more of them; a step this much shorter than
@@ -93,4 +93,4 @@ Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, I
   return Status::ok;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

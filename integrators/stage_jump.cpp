@@ -6,7 +6,7 @@
 #include "integrators/stage.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // Newton's iteration goes back and forth when two steps in turn end this near to where
@@ -115,4 +115,4 @@ Status Stage::on_jump(double t, In q_bar, In v_bar, Weights w, InOut a,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

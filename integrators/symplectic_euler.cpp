@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// v += h a(q, v), q += h v. Order 1, symplectic for separable systems, stable for
@@ -33,4 +33,4 @@ IntegratorEntry symplectic_euler_entry() {
           .make = make_method<SymplecticEuler>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 #include "integrators/fixed_step.h"
 #include "integrators/vector_ops.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Half kick, drift, half kick. Order 2, symplectic for separable systems, stable for
@@ -41,4 +41,4 @@ IntegratorEntry velocity_verlet_entry() {
           .make = make_method<VelocityVerlet>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -5,7 +5,7 @@
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr Parameter own[] = {
@@ -182,4 +182,4 @@ IntegratorEntry xpbd_entry() {
           .make = make_method<Xpbd>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -23,7 +23,7 @@
 #include "models/splines/dynamic_spline.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using OnStrand = std::unique_ptr<System>(const Strand&, const Parameters&, Effects);
@@ -51,7 +51,7 @@ std::unique_ptr<System> together(std::span<const Strand> strands,
 }  // namespace
 
 // clang-format off
-std::span<const ModelEntry> models() {
+std::span<const ModelEntry> model_catalogue() {
   static const std::array entries = {
       ModelEntry{"bead_on_wire", "bead on a circle, ellipse, helix or trefoil; x with lambda, or one coordinate", "Witkin 1997", bead_on_wire_parameters(), make_bead_on_wire},
       ModelEntry{"tinkertoys", "3n particles as a chain, ring, net, tree or over-constrained truss", "Witkin 1997", tinkertoys_parameters(), make_tinkertoys},
@@ -78,7 +78,7 @@ std::span<const ModelEntry> models() {
 
 const ModelEntry& find_model(std::string_view id) {
   std::vector<std::string_view> ids;
-  for (const ModelEntry& entry : models()) {
+  for (const ModelEntry& entry : model_catalogue()) {
     if (entry.id == id) return entry;
     ids.push_back(entry.id);
   }
@@ -86,4 +86,4 @@ const ModelEntry& find_model(std::string_view id) {
                    suggestion(id, ids, "--list shows the models"));
 }
 
-}  // namespace tress
+}  // namespace tress::models

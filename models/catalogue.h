@@ -11,7 +11,7 @@
 #include "contract/system.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::models {
 
 struct Strand;
 
@@ -38,9 +38,9 @@ struct ModelEntry {
 /// Parameters of a model by name, and what they are set to.
 using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
-std::span<const ModelEntry> models();
+std::span<const ModelEntry> model_catalogue();
 
 /// Throws InputError naming the nearest id when there is no such model.
 const ModelEntry& find_model(std::string_view id);
 
-}  // namespace tress
+}  // namespace tress::models

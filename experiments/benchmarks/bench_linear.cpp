@@ -9,7 +9,7 @@
 #include "experiments/benchmarks/fixture.h"
 #include "integrators/formulation/dynamics.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr double h = 1e-3;  // s
@@ -147,11 +147,12 @@ bool requirement_met(const std::map<std::string, double>& seconds) {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::register_all();
-  const tress::Measured measured = tress::run_benchmarks(argc, argv);
+  tress::experiments::benchmarks::register_all();
+  const tress::experiments::benchmarks::Measured measured =
+      tress::experiments::benchmarks::run_benchmarks(argc, argv);
   if (measured.exit_code != 0) return measured.exit_code;
-  return tress::requirement_met(measured.seconds) ? 0 : 3;
+  return tress::experiments::benchmarks::requirement_met(measured.seconds) ? 0 : 3;
 }

@@ -6,7 +6,7 @@
 
 #include "experiments/benchmarks/fixture.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr double h = 1e-3;  // s
@@ -122,9 +122,10 @@ void register_model(const ModelEntry& entry) {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  for (const tress::ModelEntry& entry : tress::models()) tress::register_model(entry);
-  return tress::run_benchmarks(argc, argv).exit_code;
+  for (const tress::models::ModelEntry& entry : tress::models::model_catalogue())
+    tress::experiments::benchmarks::register_model(entry);
+  return tress::experiments::benchmarks::run_benchmarks(argc, argv).exit_code;
 }

@@ -10,7 +10,7 @@
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr std::array<std::string_view, 3> models = {"super_helix", "der", "corde"};
@@ -135,11 +135,12 @@ bool requirement_met() {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::register_all();
-  const tress::Measured measured = tress::run_benchmarks(argc, argv);
+  tress::experiments::benchmarks::register_all();
+  const tress::experiments::benchmarks::Measured measured =
+      tress::experiments::benchmarks::run_benchmarks(argc, argv);
   if (measured.exit_code != 0) return measured.exit_code;
-  return tress::requirement_met() ? 0 : 3;
+  return tress::experiments::benchmarks::requirement_met() ? 0 : 3;
 }

@@ -6,7 +6,7 @@
 
 #include "experiments/benchmarks/fixture.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr Formulation preferred[] = {Formulation::index3, Formulation::projection,
@@ -63,7 +63,7 @@ void register_all() {
   const auto chains =
       std::make_shared<MovingFamily>("inextensible_chain", spinning_chain);
   const auto chain = make_model("inextensible_chain");
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.adaptive) continue;
     const auto drivable = std::ranges::find_if(preferred, [&](Formulation formulation) {
       return refusal(entry, *chain, formulation).empty();
@@ -81,9 +81,9 @@ void register_all() {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::register_all();
-  return tress::run_benchmarks(argc, argv).exit_code;
+  tress::experiments::benchmarks::register_all();
+  return tress::experiments::benchmarks::run_benchmarks(argc, argv).exit_code;
 }

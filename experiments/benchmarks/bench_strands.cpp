@@ -17,7 +17,7 @@
 #include "models/reduced/super_helix.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr double h = 1e-3;  // s
@@ -300,14 +300,14 @@ void register_batches() {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::register_functions();
-  tress::register_parts<tress::Helix, 3>("bend_twist");
-  tress::register_parts<tress::Arc, 1>("bend_planar");
-  tress::register_systems();
-  tress::register_steps();
-  tress::register_batches();
-  return tress::run_benchmarks(argc, argv).exit_code;
+  tress::experiments::benchmarks::register_functions();
+  tress::experiments::benchmarks::register_parts<tress::models::Helix, 3>("bend_twist");
+  tress::experiments::benchmarks::register_parts<tress::models::Arc, 1>("bend_planar");
+  tress::experiments::benchmarks::register_systems();
+  tress::experiments::benchmarks::register_steps();
+  tress::experiments::benchmarks::register_batches();
+  return tress::experiments::benchmarks::run_benchmarks(argc, argv).exit_code;
 }

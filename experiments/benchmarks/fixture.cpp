@@ -9,8 +9,9 @@
 #include "experiments/run/sundials_speed.h"
 #include "integrators/formulation/dynamics.h"
 #include "simulation/files/build_facts.h"
+#include "simulation/files/source_state.h"
 
-namespace tress {
+namespace tress::experiments::benchmarks {
 namespace {
 
 constexpr double warming_step = 1e-3;  // s
@@ -130,4 +131,4 @@ Measured run_benchmarks(int argc, char** argv) {
   return std::move(collector.measured);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks

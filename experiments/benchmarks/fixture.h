@@ -14,7 +14,7 @@
 #include "simulation/run/simulation.h"
 
 /// What the benchmark programs share: systems in motion, and one way to run and report.
-namespace tress {
+namespace tress::experiments::benchmarks {
 
 /// A system some steps into its own motion, so that velocities, accelerations and
 /// multipliers are those of a real step. `status` is not ok when it did not get there.
@@ -80,4 +80,4 @@ struct Measured {
 /// JSON context and only medians, spreads and fits on the console when repeating.
 Measured run_benchmarks(int argc, char** argv);
 
-}  // namespace tress
+}  // namespace tress::experiments::benchmarks

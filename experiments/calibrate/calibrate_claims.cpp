@@ -5,7 +5,7 @@
 
 #include "experiments/calibrate/shipped_records.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 using calibrate::damping, calibrate::fitting;
@@ -53,4 +53,4 @@ void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -6,7 +6,7 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 namespace calibrate {
 
@@ -20,4 +20,4 @@ constexpr std::string_view damping = "backward_euler";
 /// itself) that the row says so.
 void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

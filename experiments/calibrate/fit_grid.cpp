@@ -13,7 +13,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 using calibrate::damping, calibrate::fitting;
@@ -120,7 +120,7 @@ class Cases {
     return chosen;
   }
 
-  std::vector<const ModelEntry*> models() const {
+  std::vector<const ModelEntry*> model_catalogue() const {
     if (line_.models.empty()) return {&find_model("super_helix")};
     std::vector<const ModelEntry*> chosen;
     for (const ModelEntry* model : strand_models()) {
@@ -225,7 +225,7 @@ class Cases {
          split(own_.word("data"), ',', line_.place("set:data"))) {
       const auto records =
           std::make_shared<const Records>(read_records(file, observed()));
-      for (const ModelEntry* model : models()) {
+      for (const ModelEntry* model : model_catalogue()) {
         for (const std::string_view method : methods(fitting)) {
           FitRow work{file, records, {}, model, {}, options(method, fit), 0};
           work.how.observed = observed();
@@ -250,7 +250,7 @@ class Cases {
       if (settings_.chosen("signal") && observed() != shipped.observed) continue;
       const auto records = std::make_shared<const Records>(
           read_records(file_of(shipped), shipped.observed));
-      for (const ModelEntry* model : models()) {
+      for (const ModelEntry* model : model_catalogue()) {
         for (const std::string_view method : methods(row.integrator)) {
           FitRow work{std::string(row.data),
                       records,
@@ -287,4 +287,4 @@ std::span<const Parameter> calibrate_settings() { return settings_of_rows; }
 
 std::vector<Case> calibrate_cases(const CommandLine& line) { return Cases(line).all(); }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -5,7 +5,7 @@
 
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// Keys of --set that choose records and how they are fitted.
 std::span<const Parameter> calibrate_settings();
@@ -14,4 +14,4 @@ std::span<const Parameter> calibrate_settings();
 /// of experiments/calibrate/data. Throws InputError on what cannot be read or made.
 std::vector<Case> calibrate_cases(const CommandLine& line);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

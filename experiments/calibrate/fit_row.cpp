@@ -2,7 +2,7 @@
 
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 void set(Row& row, const Estimate& estimate, const std::string& name,
@@ -73,4 +73,4 @@ void FitRow::measure(Row& row) const {
   if (fit.status != "ok") row.failed(fit.status, fit.reason);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

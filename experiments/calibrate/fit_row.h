@@ -9,7 +9,7 @@
 #include "experiments/calibrate/friction_fit.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// How a scene without data is watched.
 struct SceneRecord {
@@ -35,4 +35,4 @@ struct FitRow {
 
 std::string_view name(Fitted fitted);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -9,7 +9,7 @@
 #include "contract/input_error.h"
 #include "experiments/calibrate/friction_start.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 // Central differences in ln gamma and ln nu: 1e-3 is off by 2e-7 of the third derivative,
@@ -288,4 +288,4 @@ FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& st
   return Fit(records, strands, how).result();
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

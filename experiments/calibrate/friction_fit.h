@@ -8,7 +8,7 @@
 #include "experiments/calibrate/simulated_records.h"
 #include "experiments/numerics/least_squares.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// Which of the two a fit looks for; the other one is known.
 enum class Fitted { both, gamma, nu };
@@ -78,4 +78,4 @@ std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& strands,
                          const FitOptions& how);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 constexpr double negligible = 1e-30;  // in either unit: beside what is fitted alone
@@ -66,4 +66,4 @@ Friction friction_start(const Records& records, const std::vector<Specimen>& str
   return {best.gamma / 2, drag.nu / 2};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -5,7 +5,7 @@
 
 #include "experiments/calibrate/friction_fit.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// Rate (1/s) of the decay exp(-rate t) of a record: the logarithmic decrement of its
 /// halves' root mean squares about the mean of all, over the time between them. 0 when it
@@ -20,4 +20,4 @@ Friction friction_start(const Records& records, const std::vector<Specimen>& str
                         Observed observed, Fitted fitted,
                         const std::function<double(const Friction&)>& misfit);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

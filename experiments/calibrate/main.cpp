@@ -5,7 +5,7 @@
 #include "experiments/calibrate/fit_grid.h"
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 constexpr Column columns[] = {
@@ -58,10 +58,11 @@ constexpr OwnOption command_options[] = {
 constexpr Unused unused[] = {not_repeated, not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::calibrate
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::calibrate;
   const Experiment experiment{
       .name = "calibrate",
       .question =

@@ -12,7 +12,7 @@
 #include "simulation/files/csv.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 constexpr std::size_t fewest_points = 5;
@@ -147,4 +147,4 @@ Records read_records(const std::string& file, Observed observed) {
   return parse_records(read_file(file, most_table_bytes), file, observed);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

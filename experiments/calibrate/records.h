@@ -5,7 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::calibrate {
 
 /// What the amplitudes of a record are.
 ///
@@ -45,4 +47,4 @@ Records read_records(const std::string& file, Observed observed);
 /// The same of a text; `file` is its name in messages.
 Records parse_records(std::string_view text, const std::string& file, Observed observed);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

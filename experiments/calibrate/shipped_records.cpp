@@ -10,7 +10,7 @@
 #include "experiments/numerics/tip_signal.h"
 #include "experiments/problems/strand_models.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 constexpr const char* model = "super_helix";
@@ -174,4 +174,4 @@ std::string csv_of(const ShippedRecords& shipped, const Records& records) {
   return text;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

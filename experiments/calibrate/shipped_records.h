@@ -9,7 +9,7 @@
 #include "experiments/calibrate/records.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// Records under experiments/calibrate/data, none of them measured: simulated with known
 /// friction and drag, to which errors were added. The strands are hairs of default
@@ -47,4 +47,4 @@ Records synthetic(const ShippedRecords& shipped, std::uint64_t seed);
 /// As a file: to 0.1 ms and 1 um.
 std::string csv_of(const ShippedRecords& shipped, const Records& records);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -7,7 +7,7 @@
 
 #include "experiments/numerics/tip_signal.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 struct FreeGenerator {
@@ -70,4 +70,4 @@ bool fill_in(Records& records, const std::vector<BuiltStrand>& strands,
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

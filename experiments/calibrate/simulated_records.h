@@ -8,7 +8,7 @@
 #include "experiments/calibrate/records.h"
 #include "experiments/calibrate/specimen.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 /// How a simulated strand is watched.
 struct Watch {
@@ -41,4 +41,4 @@ struct Noise {
 bool fill_in(Records& records, const std::vector<BuiltStrand>& strands,
              const Watch& watch, const Noise& noise);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -9,7 +9,7 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 namespace {
 
 constexpr const char* drag_id = "linear_drag";
@@ -79,4 +79,4 @@ Specimen specimen(const Scene& scene) {
   return {{strand.material.internal_friction, nu}, strand.length(), strand.mass(), build};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -8,7 +8,7 @@
 #include "simulation/run/guarded_strand.h"
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::experiments::calibrate {
 
 // What parameters of strand models call them.
 inline constexpr const char* gamma_key = "internal_friction_kg_m3_s";
@@ -40,4 +40,4 @@ Specimen specimen(const ModelEntry& model, const Parameters& parameters);
 /// freely.
 Specimen specimen(const Scene& scene);
 
-}  // namespace tress
+}  // namespace tress::experiments::calibrate

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 namespace {
 
 const Row* find(const std::vector<Row>& rows, std::string_view study,
@@ -197,4 +197,4 @@ void check_drift_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_formulations(rows, verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift

@@ -8,7 +8,7 @@
 #include "experiments/problems/strand_scenes.h"
 #include "integrators/integrator_options.h"
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 namespace {
 
 struct Scene {
@@ -53,7 +53,7 @@ void add_formulations(const CommandLine& line, const Settings& user,
       line.full ? std::vector<double>{1e-4, 1e-6, 1e-8} : std::vector<double>{1e-6};
   for (const Scene& scene : scenes(user)) {
     const auto system = scene.model->make(scene.parameters);
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       for (const auto& [formulation, order] : entry.formulations) {
         if (!refusal(entry, *system, formulation).empty()) continue;
         // Redundant constraints are analysed anew at every factorisation: a tenth will
@@ -206,4 +206,4 @@ std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& u
   return studies;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift

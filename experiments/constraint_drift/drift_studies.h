@@ -7,7 +7,7 @@
 #include "experiments/run/command_line.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 
 /// One row of the table.
 struct DriftStudy {
@@ -30,4 +30,4 @@ struct DriftStudy {
 /// strands: lengths of a shaken hair by every strand model and the usual methods.
 std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& user);
 
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift

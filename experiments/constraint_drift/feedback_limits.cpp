@@ -7,7 +7,7 @@
 #include "models/catalogue.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 namespace {
 
 constexpr std::string_view bead = "bead_on_wire";
@@ -58,7 +58,7 @@ double measured(const FeedbackLimit& limit, double guess) {
 }
 
 void measure(const FeedbackLimit& limit, Row& row) {
-  const auto predicted = stability_limit(limit.integrator, limit.zeta);
+  const auto predicted = largest_stable_omega_h(limit.integrator, limit.zeta);
   if (!predicted) {
     if (stays(limit, beyond)) return;  // no limit predicted, none found
     row.failed("unstable", "predicted to have no limit, diverged at omega h = 50");
@@ -102,4 +102,4 @@ std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user)
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift

@@ -5,7 +5,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 
 /// The study `limit`: how large may Baumgarte's gains be before the feedback itself
 /// diverges, beside what the method's step matrix says (amplification.h). The prediction
@@ -13,4 +13,4 @@ namespace tress {
 /// that swings gently at the bottom of a circle.
 std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user);
 
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift

@@ -15,7 +15,7 @@
 #include "simulation/run/simulation.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments::constraint_drift {
 namespace {
 
 constexpr Column columns[] = {
@@ -172,10 +172,11 @@ bool finding(const Row& row) {
 constexpr Unused unused[] = {{"elements", "each system has its size"}, not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::constraint_drift
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::constraint_drift;
   const Experiment experiment{
       .name = "constraint_drift",
       .question = "how far do constraints drift, and what does stopping the drift cost?",

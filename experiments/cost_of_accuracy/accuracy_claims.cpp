@@ -7,7 +7,7 @@
 
 #include "experiments/cost_of_accuracy/finalists.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// A comparison with what is not a number must not pass.
@@ -68,4 +68,4 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

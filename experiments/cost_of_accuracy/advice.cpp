@@ -8,7 +8,7 @@
 #include "experiments/problems/strand_models.h"
 #include "simulation/scene/write_scene.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms"
@@ -140,4 +140,4 @@ std::string advised_text(const Scene& given, const Row& row, double rate) {
       scene_text(trial_scene(given, taken.method, taken.elements, taken.substeps, rate)));
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -5,7 +5,7 @@
 
 #include "experiments/cost_of_accuracy/scene_study.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// What a practitioner can act on, from the rows of one scene for one target (or one
 /// budget): the configuration to take, the next best, and what not to do, each in one
@@ -24,4 +24,4 @@ const Row* advised(const std::vector<Row>& rows);
 /// The scene file as advised, for `simulate`.
 std::string advised_text(const Scene& given, const Row& row, double rate);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -6,7 +6,7 @@
 #include "experiments/numerics/tip_track.h"
 #include "simulation/run/tip_paths.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 Scene changed(Scene scene, Change change) {
   const double factor = change == Change::up ? 1 + data_change : 1 - data_change;
@@ -61,4 +61,4 @@ ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
   return {sum(moved.tips.tip), sum(moved.tips.other)};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

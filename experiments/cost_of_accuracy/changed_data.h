@@ -5,7 +5,7 @@
 
 #include "experiments/cost_of_accuracy/scene_reference.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// The moduli and the length of strands, each up by data_change or down: nobody knows
 /// them better. Moduli of hair scatter by tens of per cent from one to the next, and two
@@ -32,4 +32,4 @@ ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
                               const SceneReference& reference, const ReferenceCut& cut,
                               const std::string& folder, const std::string& name);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

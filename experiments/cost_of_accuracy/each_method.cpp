@@ -19,7 +19,7 @@
 #include "simulation/run/simulation.h"
 #include "simulation/scene/scene_tables.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 constexpr double target = 0.01;
@@ -249,4 +249,4 @@ void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
       "what is thrown, implicit_midpoint: keeps angular momentum better than its tip");
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

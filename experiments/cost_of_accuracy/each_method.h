@@ -6,7 +6,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/verdicts.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// The cheapest run of every model by every usual integrator, a row of kind `method`
 /// each: beside the search for the best of all (study_scene) what each model costs, and
@@ -21,4 +21,4 @@ std::vector<Case> method_cases(const CommandLine& line, const std::string& file)
 /// The midpoint rule keeps the angular momentum of what is thrown better than its tip.
 void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// So many of the cheapest are timed again before one of them wins.
@@ -237,4 +237,4 @@ std::vector<Trial> Finalists::front(double floor, double loosest) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -13,7 +13,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/search.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// Runs whose times are this near, over the shorter, are tied: the search tells no less
 /// apart. Wider where the shorter does not repeat as well. One stands for all that are
@@ -86,4 +86,4 @@ class Finalists {
   std::map<Place, WallTime> times_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -21,7 +21,7 @@
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 constexpr Parameter own_settings[] = {
@@ -216,10 +216,11 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
 constexpr Unused unused[] = {not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::cost_of_accuracy;
   const Experiment experiment{
       .name = "cost_of_accuracy",
       .question =

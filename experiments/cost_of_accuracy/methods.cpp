@@ -9,7 +9,7 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/scene_tables.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// The combinations of options that are tried of one model.
@@ -72,12 +72,12 @@ void add(const ModelEntry& model, const ModelSettings& options,
 
 std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
   std::vector<Method> all;
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     if (model.on_strand == nullptr || !wanted(choice.models, model.id)) continue;
     for (const ModelSettings& options : option_sets(model, choice.options)) {
       const auto system = on_scene(model, options, given);
       if (system == nullptr) continue;
-      for (const IntegratorEntry& entry : integrators()) {
+      for (const IntegratorEntry& entry : integrator_catalogue()) {
         if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
         add(model, options, entry, *system, all);
       }
@@ -119,4 +119,4 @@ bool same(const Method& a, const Method& b) {
          });
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -6,7 +6,7 @@
 
 #include "experiments/cost_of_accuracy/trial_scene.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// Every strand model with its options and every fixed-step integrator that can drive it
 /// on this scene. Methods whose step is controlled by a tolerance are not here: what a
@@ -29,4 +29,4 @@ std::vector<std::string_view> choices_of(const ModelEntry& model);
 /// The same model, integrator and options.
 bool same(const Method& a, const Method& b);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

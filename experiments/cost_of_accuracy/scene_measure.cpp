@@ -8,7 +8,7 @@
 #include "experiments/numerics/tip_track.h"
 #include "simulation/run/tip_paths.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// Shorter runs are repeated: reading the clock at every frame is a part of them.
@@ -94,4 +94,4 @@ double SceneMeasure::error(const Method& method, int elements, int substeps,
                    comparison_.length);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -7,7 +7,7 @@
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/cost_of_accuracy/trial.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// Repeated times of one run: the least (s), since what else the machine does only adds
 /// to it, and how well it repeats, the least of every second one against that of the
@@ -56,4 +56,4 @@ class SceneMeasure {
   ChangedTips changed_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -17,7 +17,7 @@
 #include "simulation/run/tip_paths.h"
 #include "simulation/scene/typical_strands.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// Of the way references are made; raised when it changes, so that none of the old are
@@ -211,4 +211,4 @@ SceneReference kept_reference(const Scene& given, const Comparison& comparison,
   return kept_sides(given, comparison, cut, folder, name, rod_sides, scene_reference);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -9,7 +9,7 @@
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/problems/strand_reference.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// What of a scene is compared: tips of so many strands at all frames up to a horizon.
 struct Comparison {
@@ -91,4 +91,4 @@ SceneReference kept_reference(const Scene& given, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -17,7 +17,7 @@
 #include "experiments/run/message.h"
 #include "simulation/scene/scene_tables.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// How much longer than usual a run may take on a machine that does other things too.
@@ -197,4 +197,4 @@ std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
   return all_rows(*study, deadline);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

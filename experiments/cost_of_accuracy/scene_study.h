@@ -7,7 +7,7 @@
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// What is wanted of every scene.
 struct StudyPlan {
@@ -55,4 +55,4 @@ constexpr double parted = 0.01 / believed;
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
                              const Row& identity, const Deadline& deadline);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// Steps half as long that gain less than a fifth: what is left is not of time.
@@ -270,4 +270,4 @@ void Search::refine() {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -10,7 +10,7 @@
 
 #include "experiments/cost_of_accuracy/trial.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 struct SearchPlan {
   std::vector<double> targets;  // errors, descending
@@ -111,4 +111,4 @@ class Search {
   bool cut_ = false;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

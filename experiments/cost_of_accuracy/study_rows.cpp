@@ -5,7 +5,7 @@
 #include "experiments/cost_of_accuracy/study_table.h"
 #include "simulation/scene/scene_tables.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 void set_wall(const Study& study, double wall_s, Row& row) {
@@ -135,4 +135,4 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   rows.push_back(std::move(row));
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -8,7 +8,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/scene_study.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// What all rows of a scene are written from.
 struct Study {
@@ -41,4 +41,4 @@ void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows
 /// frames of the comparison.
 void add_given(const Study& study, std::vector<Row>& rows);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

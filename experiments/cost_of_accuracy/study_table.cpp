@@ -8,7 +8,7 @@
 #include "experiments/problems/strand_models.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 constexpr Column columns[] = {
@@ -114,4 +114,4 @@ Configuration configuration(const Row& row, double rate) {
   return made;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

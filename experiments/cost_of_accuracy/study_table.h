@@ -5,7 +5,7 @@
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// The columns of the table.
 std::span<const Column> study_columns();
@@ -20,4 +20,4 @@ struct Configuration {
 };
 Configuration configuration(const Row& row, double rate);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

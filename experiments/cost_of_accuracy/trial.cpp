@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// Of two runs on the front the cheaper stands for both when the other gains less.
@@ -47,4 +47,4 @@ std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor) {
   return front;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -5,7 +5,9 @@
 #include <limits>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::cost_of_accuracy {
 
 /// How far the errors of a run's neighbours may exceed the error that is asked for.
 inline constexpr double neighbour_allowance = 1.5;
@@ -58,4 +60,4 @@ const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double
 /// one. Errors below `floor` count as `floor`.
 std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor);
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

@@ -7,7 +7,7 @@
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/write_scene.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 Scene read_open_scene(const std::string& file) {
   Scene scene = read_scene(file);
@@ -36,7 +36,7 @@ Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
 std::string physics(Scene scene) {
   scene.title = scene.source = {};
   scene.frame_rate = scene.checkpoint = 0;
-  scene = with_method(std::move(scene), {&models().front(), {}, {}});
+  scene = with_method(std::move(scene), {&model_catalogue().front(), {}, {}});
   scene.options = {};
   // Not cut anew: one element may be too few.
   scene.tables = std::make_shared<const StrandTables>(with_elements(*scene.tables, 1));
@@ -52,4 +52,4 @@ std::string physics(Scene scene) {
   return files.empty() ? text : text + contents_checksum(files);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

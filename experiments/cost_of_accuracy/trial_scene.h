@@ -4,7 +4,7 @@
 
 #include "simulation/scene/changes.h"
 
-namespace tress {
+namespace tress::experiments::cost_of_accuracy {
 
 /// A scene whose model, integrator, numbers of elements and steps are for others to
 /// choose. Throws InputError as read_scene does, and where the scene has no strand or
@@ -24,4 +24,4 @@ std::string physics(Scene scene);
 /// smallest error that is asked for.
 inline constexpr double newton_tolerance = 1e-6;
 
-}  // namespace tress
+}  // namespace tress::experiments::cost_of_accuracy

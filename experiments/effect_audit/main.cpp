@@ -15,7 +15,7 @@
 #include "simulation/run/tip_paths.h"
 #include "simulation/scene/changes.h"
 
-namespace tress {
+namespace tress::experiments::effect_audit {
 namespace {
 
 constexpr Column columns[] = {
@@ -235,10 +235,11 @@ constexpr Unused unused[] = {{"models", "the scenes say theirs"},
                              not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::effect_audit
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::effect_audit;
   const Experiment experiment{
       .name = "effect_audit",
       .question = "which effects of a scene change the result, and what does each cost?",

@@ -7,7 +7,7 @@
 #include "experiments/family/study.h"
 #include "experiments/numerics/tip_track.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
@@ -113,4 +113,4 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
 
 const Study bdf_order{"bdf_order", claims, run};
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

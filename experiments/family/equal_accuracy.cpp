@@ -12,7 +12,7 @@
 #include "experiments/problems/strand_reference.h"
 #include "simulation/run/timing.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
@@ -123,4 +123,4 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
 
 const Study equal_accuracy{"equal_accuracy", claims, run};
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

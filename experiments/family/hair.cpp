@@ -14,7 +14,7 @@
 #include "models/strand/strand_parameters.h"
 #include "simulation/scene/random.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr double density = 1300;  // kg/m^3
@@ -186,4 +186,4 @@ Guard make_guard(const Hair& hair, std::string_view model, int elements, System&
   return {system, {guarded_strand(strand(p), effects_of(hair, p))}};
 }
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

@@ -10,7 +10,7 @@
 #include "simulation/files/row.h"
 #include "simulation/run/guard.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 
 /// What moves a hair. By `level` in [0, 1]: shake by 1 to 5 cm; a head that turns by 0.2
 /// to 0.8 rad, 10 cm behind the root; nothing (let go horizontally); a sideways wind of
@@ -69,4 +69,4 @@ Guard make_guard(const Hair& hair, std::string_view model, int elements, System&
 double wind_speed(const Hair& hair);
 inline constexpr double wind_drag = 2e-5;  // kg/(m s), linear drag per length
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

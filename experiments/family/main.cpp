@@ -12,7 +12,7 @@
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Parameter settings[] = {
@@ -90,10 +90,11 @@ constexpr Unused unused[] = {{"models", "each study compares its own"},
                              not_repeated};
 
 }  // namespace
-}  // namespace tress::family
+}  // namespace tress::experiments::family
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::family;
   const std::vector<Column> columns = family::columns_of_table();
   const Experiment experiment{
       .name = "family",

@@ -10,7 +10,7 @@
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/strand_scenes.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
@@ -93,4 +93,4 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
 
 const Study stable_steps{"stable_steps", claims, run};
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace tress::family {
+namespace tress::experiments::family {
 
 std::span<const Study> studies() {
   static const std::array all{stable_steps, twist, bdf_order, equal_accuracy};
@@ -24,4 +24,4 @@ Row no_answer(Row row, const Claim& claim, std::string_view status,
   return row.set("claim", claim.id).failed(status, reason);
 }
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

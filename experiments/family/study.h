@@ -7,7 +7,7 @@
 #include "experiments/family/hair.h"
 #include "simulation/files/row.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 
 /// A statement that the README makes about one hair, to be tested on all.
 struct Claim {
@@ -40,4 +40,4 @@ Row no_answer(Row row, const Claim& claim, std::string_view status,
 
 extern const Study stable_steps, twist, bdf_order, equal_accuracy;
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

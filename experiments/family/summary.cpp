@@ -6,7 +6,7 @@
 
 #include "experiments/family/study.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Column columns[] = {
@@ -181,4 +181,4 @@ std::vector<Row> summarize(std::span<const Row> rows) {
 
 std::span<const Column> summary_columns() { return columns; }
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

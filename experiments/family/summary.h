@@ -7,7 +7,7 @@
 
 #include "simulation/files/row.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 
 /// Linear interpolation between order statistics [Hyndman & Fan 1996, type 7];
 /// `share` in [0, 1], `values` not empty.
@@ -37,4 +37,4 @@ std::vector<Row> summarize(std::span<const Row> rows);
 
 std::span<const Column> summary_columns();
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

@@ -5,7 +5,7 @@
 #include "experiments/family/study.h"
 #include "experiments/numerics/tip_track.h"
 
-namespace tress::family {
+namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
@@ -73,4 +73,4 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
 
 const Study twist{"twist", claims, run};
 
-}  // namespace tress::family
+}  // namespace tress::experiments::family

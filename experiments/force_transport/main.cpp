@@ -17,7 +17,7 @@
 #include "experiments/run/settings.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::experiments::force_transport {
 namespace {
 
 constexpr Column columns[] = {
@@ -316,10 +316,11 @@ constexpr Unused unused[] = {{"repeat", "its costs are medians of five runs"},
                              {"seed", "its small starts are always the same"}};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::force_transport
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::force_transport;
   const Experiment experiment{
       .name = "force_transport",
       .question = "what does it cost to let the rest of the strand move rigidly?",

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-namespace tress {
+namespace tress::experiments::force_transport {
 namespace {
 
 using namespace transport;
@@ -151,4 +151,4 @@ void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
           [](double rate) { return rate == 0; });
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::force_transport

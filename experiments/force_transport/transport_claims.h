@@ -6,7 +6,7 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::force_transport {
 
 /// The models that the experiment force_transport compares, and the second seed's E.
 namespace transport {
@@ -22,4 +22,4 @@ void compare_with_corde(std::vector<Row>& rows);
 /// What the table shows of force_transport, claim by claim.
 void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::force_transport

@@ -5,7 +5,7 @@
 
 #include "experiments/hard_cases/hard_case.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 /// Time at which it breaks, or the measure, in the column named.
@@ -52,7 +52,7 @@ void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts) {
   const auto missing = std::ranges::count_if(
       rows, [](const Row& row) { return row.text("outcome").empty(); });
   verdicts.check("every cell has an outcome", missing == 0, static_cast<double>(missing));
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     std::string claim = std::string(hard.name) +
                         ": super_helix, exact tangent, backward_euler passes at 1/30 s";
     const Row* row = claimed(rows, hard.name);
@@ -72,4 +72,4 @@ void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

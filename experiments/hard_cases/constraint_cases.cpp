@@ -4,7 +4,7 @@
 #include "experiments/hard_cases/gauges.h"
 #include "experiments/problems/strand_models.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr double displaced = 0.1;  // of the length
@@ -98,4 +98,4 @@ std::vector<HardCase> constraint_cases() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

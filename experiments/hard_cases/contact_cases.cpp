@@ -5,7 +5,7 @@
 #include "models/effects/self_contact.h"
 #include "models/effects/tether.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr double touch = 1.2e-3, separation = 0.02;  // m, of the coil's turns
@@ -125,4 +125,4 @@ std::vector<HardCase> contact_cases() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -3,7 +3,7 @@
 
 #include "experiments/hard_cases/gauges.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr std::string_view no_energy =
@@ -177,4 +177,4 @@ std::vector<HardCase> extreme_cases() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -8,7 +8,7 @@
 #include "math/closest.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr double never = StabilityBounds::none;
@@ -233,4 +233,4 @@ std::unique_ptr<Gauge> recovery_gauge(const Situation& s, double energy) {
   return std::make_unique<RecoveryGauge>(s, energy);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -3,7 +3,7 @@
 #include "experiments/hard_cases/hard_case.h"
 
 /// What the cases measure. Each reads the system of the situation, which outlives it.
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// Depth (m) of a strand's surface in a Body that a right simulator may have: the radius,
 /// by which its axis stays outside, and 0.07 of the last element's length, by which the
@@ -48,4 +48,4 @@ std::unique_ptr<Gauge> violation_gauge(const Situation& situation);
 /// scale and of the energy gained since the start over `energy` (J).
 std::unique_ptr<Gauge> recovery_gauge(const Situation& situation, double energy);
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

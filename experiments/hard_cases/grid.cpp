@@ -9,7 +9,7 @@
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
@@ -98,7 +98,7 @@ std::span<const Parameter> hard_case_settings() { return settings_of_rows; }
 
 std::vector<std::string_view> tried_integrators(const CommandLine& line) {
   std::vector<std::string_view> all;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.adaptive) continue;  // has no step
     const auto place = std::ranges::find(usual, entry.id) - std::begin(usual);
     const bool is_usual =
@@ -142,7 +142,7 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
   constexpr double quick_part = 0.005;  // of a million steps
   Grid grid;
   std::vector<std::string_view> names;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     names.push_back(hard.name);
     if (only != "all" && only != hard.name) continue;
     for (const Subject& subject : subjects_of(line, hard)) {
@@ -174,4 +174,4 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
   return grid;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

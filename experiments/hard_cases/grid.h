@@ -10,7 +10,7 @@
 #include "experiments/run/settings.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// One row: an attempt, and which reference it is compared with.
 struct Cell {
@@ -48,4 +48,4 @@ std::vector<std::string_view> tried_tangents(const CommandLine& line,
 /// semi_implicit_euler has the tangent of the seed's papers where there is one.
 Grid hard_grid(const CommandLine& line, const Settings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

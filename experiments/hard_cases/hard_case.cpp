@@ -5,7 +5,7 @@
 #include "experiments/problems/strand_scenes.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr double energy_tolerance = 0.01;  // as strand_scenes.h has it
@@ -34,7 +34,7 @@ double hanging(const Situation& s) {
 
 }  // namespace
 
-std::span<const HardCase> hard_cases() {
+std::span<const HardCase> hard_case_catalogue() {
   static const std::vector<HardCase> all = all_cases();
   return all;
 }
@@ -92,4 +92,4 @@ StabilityBounds driven_bounds(const Situation& s, double t_end) {
 
 StabilityBounds no_bounds(const Situation&, double) { return {}; }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

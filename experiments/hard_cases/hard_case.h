@@ -12,7 +12,7 @@
 #include "models/strand/strand.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// A model with the words that make it a variant.
 struct Subject {
@@ -89,7 +89,7 @@ struct HardCase {
 };
 
 /// All of them.
-std::span<const HardCase> hard_cases();
+std::span<const HardCase> hard_case_catalogue();
 
 // By what makes them hard.
 std::vector<HardCase> extreme_cases();     // sizes, stiffness, numbers of elements
@@ -116,4 +116,4 @@ StabilityBounds driven_bounds(const Situation& situation, double t_end);
 /// Only finite numbers: the gauge says the rest.
 StabilityBounds no_bounds(const Situation& situation, double t_end);
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -8,7 +8,7 @@
 #include "experiments/hard_cases/scene_case.h"
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr Column columns[] = {
@@ -92,7 +92,7 @@ void fill(std::vector<Row>& rows) {
 
 std::vector<Gloss> glossary() {
   std::vector<Gloss> all;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     all.push_back(
         {"case", hard.name, {{"hard_because", hard.why}, {"criterion", hard.criterion}}});
   }
@@ -111,10 +111,11 @@ constexpr Unused unused[] = {
     {"elements", "how many there are belongs to each case"}, not_repeated, not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::hard_cases;
   const Experiment experiment{
       .name = "hard_cases",
       .question =

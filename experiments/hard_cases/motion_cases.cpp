@@ -5,7 +5,7 @@
 #include "experiments/problems/strand_scenes.h"
 #include "models/effects/tether.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr std::string_view within_reach =
@@ -143,4 +143,4 @@ std::vector<HardCase> motion_cases() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

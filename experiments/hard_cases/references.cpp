@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 enum Stage : int { unknown, in_work, known };
@@ -60,4 +60,4 @@ Reference References::get(std::size_t index, double patience_s,
   return {{slot.tip, slot.tip + slot.tips}, slot.gap, slot.why};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

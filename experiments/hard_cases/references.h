@@ -6,7 +6,7 @@
 
 #include "experiments/hard_cases/hard_case.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// Where the tip goes by the same equations at a much finer step, and how far that is
 /// from the same at twice that step, over the length; `why`, where there is none.
@@ -38,4 +38,4 @@ class References {
   Slot* slots_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

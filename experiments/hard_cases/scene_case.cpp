@@ -15,7 +15,7 @@
 #include "simulation/scene/changes.h"
 #include "simulation/scene/scene_tables.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 /// The tangents that are tried; of the scene's own model the scene's, and the usual one
@@ -86,7 +86,7 @@ std::vector<double> steps_of(const CommandLine& line, const Scene& scene, double
 
 std::vector<const ModelEntry*> models_of(const CommandLine& line, const Scene& scene) {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     const bool able =
         scene.strands.empty() ? &model == scene.model : model.on_strand != nullptr;
     if (able && wanted(line.models, model.id)) all.push_back(&model);
@@ -193,4 +193,4 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -10,7 +10,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// With the criterion that does not hold, or the one that has used up the most of its
 /// limit; it has a name and a limit where it is one of SceneCriteria.
@@ -34,4 +34,4 @@ SceneSurvival survive(const Scene& scene, const SceneCriteria& criteria, double 
 /// InputError on settings that a scene says itself.
 std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -8,13 +8,13 @@
 
 #include "experiments/hard_cases/gauges.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 double allowed_depth(const Scene& scene) {
   double most = 0;
   for (const Strand& strand : scene.strands) {
-    most = std::max(most, allowed_depth(strand));
+    most = std::max(most, hard_cases::allowed_depth(strand));
   }
   return most;
 }
@@ -116,4 +116,4 @@ std::string SceneGauge::place(std::size_t point, std::string_view what) const {
                      what == "element" ? point - 1 : point);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

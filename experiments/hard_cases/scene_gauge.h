@@ -7,7 +7,7 @@
 
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// What a run of a scene keeps besides what the guard of simulations asks for (Guard).
 struct SceneCriteria {
@@ -49,4 +49,4 @@ class SceneGauge {
   std::vector<Criterion> criteria_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -10,7 +10,7 @@
 #include "experiments/problems/formulations.h"
 #include "simulation/run/method_run.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr std::string_view names[] = {"refused", "not finished", "unstable", "stable",
@@ -273,4 +273,4 @@ Survival survive(const Attempt& attempt, const WorkLimit& limit,
   return result;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -8,7 +8,7 @@
 #include "experiments/hard_cases/references.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::hard_cases {
 
 /// How a run of a case ended. `unstable`: a bound of the case did not hold, its measure
 /// among them. `not_finished`: its work was done before a bound was broken.
@@ -66,4 +66,4 @@ Reference reference(const HardCase& hard, const Subject& subject,
 Survival survive(const Attempt& attempt, const WorkLimit& limit,
                  const std::function<Reference()>& find);
 
-}  // namespace tress
+}  // namespace tress::experiments::hard_cases

@@ -4,7 +4,7 @@
 
 #include "experiments/numerics/dense_algebra.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 double spectral_radius(const Eigen::MatrixXd& step) {
@@ -56,7 +56,7 @@ std::optional<double> amplification(std::string_view integrator, double omega_h,
   return {};
 }
 
-std::optional<double> stability_limit(std::string_view integrator, double zeta) {
+std::optional<double> largest_stable_omega_h(std::string_view integrator, double zeta) {
   // A double root on the unit circle computes to a radius of one plus sqrt(eps).
   constexpr double on_the_circle = 1 + 1e-7;
   // The scan goes up from below every limit of interest in steps finer than any island.
@@ -76,4 +76,4 @@ std::optional<double> stability_limit(std::string_view integrator, double zeta) 
   return low;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -3,7 +3,9 @@
 #include <optional>
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// What one step of a fixed-step method does to the violation C of a constraint under
 /// Baumgarte feedback: the test equation
@@ -20,6 +22,6 @@ std::optional<double> amplification(std::string_view integrator, double omega_h,
 /// (its limit is infinite: both roots of the test equation lie in the left half-plane).
 /// Known values at zeta = 1: explicit_euler 2, symplectic_euler 2 (sqrt 2 - 1),
 /// rk4 2.785.
-std::optional<double> stability_limit(std::string_view integrator, double zeta);
+std::optional<double> largest_stable_omega_h(std::string_view integrator, double zeta);
 
-}  // namespace tress
+}  // namespace tress::experiments

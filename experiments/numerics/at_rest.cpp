@@ -7,7 +7,7 @@
 #include "simulation/files/row.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr int loads = 8;            // gravity in steps of
@@ -54,4 +54,4 @@ AtRest at_rest(const ModelEntry& model, const Parameters& parameters) {
   return rest;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -5,7 +5,7 @@
 
 #include "models/catalogue.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// A strand in equilibrium with its weight.
 struct AtRest {
@@ -18,4 +18,4 @@ struct AtRest {
 /// tangent is exact. Throws std::runtime_error when it does not converge.
 AtRest at_rest(const ModelEntry& model, const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr double little_gain = 0.8;
@@ -38,4 +38,4 @@ Cheapest cheapest_run(const CheapSearch& search,
   return {best, true};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

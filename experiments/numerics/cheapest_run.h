@@ -7,7 +7,7 @@
 
 #include "experiments/numerics/tip_track.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// One way to meet a wanted error.
 struct CheapRun {
@@ -41,4 +41,4 @@ struct Cheapest {
 Cheapest cheapest_run(const CheapSearch& search,
                       const std::function<CheapRun(int elements, double dt)>& run);
 
-}  // namespace tress
+}  // namespace tress::experiments

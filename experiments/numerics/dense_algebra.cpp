@@ -6,7 +6,7 @@
 
 #include "linear/dense_lu.h"
 
-namespace tress {
+namespace tress::experiments {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -52,4 +52,4 @@ Eigenpairs symmetric_eigenpairs(const MatrixXd& a, const MatrixXd& b) {
   return {pairs.eigenvalues(), pairs.eigenvectors()};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 
+#include "contract/layers.h"
+
 /// Decompositions of dense matrices, O(n^3), compiled once: each takes the compiler some
 /// seconds wherever it is used.
-namespace tress {
+namespace tress::experiments {
 
 /// x of a x = b, by LU.
 Eigen::MatrixXd solution(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
@@ -31,4 +33,4 @@ Eigenpairs real_eigenpairs(const Eigen::MatrixXd& matrix);
 /// a x = value b x, a symmetric and b symmetric and positive definite, ascending.
 Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 void require(Status s) {
@@ -91,4 +91,4 @@ Eigen::MatrixXd dense_curvature(System& system, double t, In q, In lambda) {
   return dense(pattern, values);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

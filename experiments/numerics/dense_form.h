@@ -5,7 +5,7 @@
 #include "contract/system.h"
 
 /// The matrices of a system at rest as dense ones, for decompositions of the whole.
-namespace tress {
+namespace tress::experiments {
 
 /// M = dr/da at (t, q): from the sparse form where there is one, else column by column
 /// from the residual, which is linear in a. Throws std::runtime_error where the residual
@@ -22,4 +22,4 @@ Eigen::MatrixXd dense_gradient(System& system, double t, In q);
 /// d(G^T lambda)/dq.
 Eigen::MatrixXd dense_curvature(System& system, double t, In q, In lambda);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 // Beyond this length error nothing is left of a strand.
@@ -71,4 +71,4 @@ double DriftMonitor::energy_drift() const {
   return kinetic_max_ > 0 ? energy_error_ / kinetic_max_ : 0;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -4,7 +4,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Watches a run for what constraints and energy do; an Observer that never allocates.
 /// Parametric systems have no constraints: their violation is zero by construction.
@@ -44,4 +44,4 @@ class DriftMonitor {
   bool escaped_ = false;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

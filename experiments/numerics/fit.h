@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <span>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// Slope of log y against log x by least squares, the exponent p of y ~ x^p. All entries
 /// positive, at least two different x.
@@ -24,4 +26,4 @@ inline double log_log_slope(std::span<const double> x, std::span<const double> y
   return xy / xx;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -12,7 +12,7 @@
 #include <memory>
 #include <numeric>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr int most_iterations = 60;
@@ -192,4 +192,4 @@ LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
   return fit;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

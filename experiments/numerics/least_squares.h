@@ -7,7 +7,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Fills the n residuals at x; false: there are none, x is too far off.
 using ResidualAt = std::function<bool(In x, Out r)>;
@@ -40,4 +40,4 @@ struct LeastSquares {
 LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
                            double difference, double tolerance);
 
-}  // namespace tress
+}  // namespace tress::experiments

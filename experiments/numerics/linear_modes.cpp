@@ -8,7 +8,7 @@
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/dense_form.h"
 
-namespace tress {
+namespace tress::experiments {
 
 LinearModes linear_modes(System& system, In q) {
   const Eigen::MatrixXd mass = dense_mass(system, 0, q);
@@ -29,4 +29,4 @@ LinearModes linear_modes(System& system, In q) {
   return modes;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

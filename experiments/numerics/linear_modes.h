@@ -2,7 +2,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Small undamped motions about a state of rest q, x'' = -M^-1 K x with K = dr/dq: x ~
 /// exp(s t), s^2 = -(eigenvalues of M^-1 K). Those of a symmetric M and K that are
@@ -16,4 +16,4 @@ struct LinearModes {
 /// For models without constraints whose M is regular, whatever its symmetry. O(n^3).
 LinearModes linear_modes(System& system, In q);
 
-}  // namespace tress
+}  // namespace tress::experiments

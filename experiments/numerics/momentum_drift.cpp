@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::experiments {
 
 MomentumDrift::MomentumDrift(Energetics& energetics, In q, In v)
     : energetics_(energetics) {
@@ -23,4 +23,4 @@ double MomentumDrift::distance(const Three& x, const Three& y) {
   return norm({x[0] - y[0], x[1] - y[1], x[2] - y[2]});
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

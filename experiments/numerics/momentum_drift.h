@@ -2,7 +2,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Watches momentum over a run of a free body.
 class MomentumDrift {
@@ -28,4 +28,4 @@ class MomentumDrift {
   double linear_ = 0, angular_ = 0;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace tress {
+namespace tress::experiments {
 
 void add_pareto(std::vector<Row>& rows, std::string_view error,
                 const std::function<std::string(const Row&)>& group) {
@@ -26,4 +26,4 @@ void add_pareto(std::vector<Row>& rows, std::string_view error,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

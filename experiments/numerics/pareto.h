@@ -7,11 +7,11 @@
 
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Fills `pareto` of every row that is ok: no other such row of its group has both less
 /// wall_s and less of the column `error`.
 void add_pareto(std::vector<Row>& rows, std::string_view error,
                 const std::function<std::string(const Row&)>& group);
 
-}  // namespace tress
+}  // namespace tress::experiments

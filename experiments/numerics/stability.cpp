@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 bool finite(In x) {
@@ -178,4 +178,4 @@ StepLimit find_step_limit(const StepSearch& search,
   return limit;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

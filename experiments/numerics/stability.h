@@ -10,7 +10,7 @@
 
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// What a stable run keeps, besides staying finite. Energy bounds are for passive scenes;
 /// a moving root puts energy in, so driven scenes are bounded by where the tip gets and
@@ -126,4 +126,4 @@ struct StepLimit {
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,7 @@
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::experiments {
 
 double step_cost(Scene scene, double dt, double steps, int repeat) {
   constexpr double most_steps = 200;
@@ -25,4 +25,4 @@ double step_cost(Scene scene, double dt, double steps, int repeat) {
   return wall / count;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

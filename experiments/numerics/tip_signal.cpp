@@ -6,7 +6,7 @@
 
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// The cubic of the step that ends at `i`, at the share s of it.
@@ -128,4 +128,4 @@ std::vector<double> envelope(const TipSignal& signal, In times) {
   return a;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,7 @@
 #include "contract/integrator.h"
 #include "simulation/run/guard.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// The displacement of a strand's tip from its root along one axis, at the start and
 /// after every step of a run from the initial state.
@@ -40,4 +40,4 @@ Swings swings(const TipSignal& signal);
 /// fewer than two swings.
 std::vector<double> envelope(const TipSignal& signal, In times);
 
-}  // namespace tress
+}  // namespace tress::experiments

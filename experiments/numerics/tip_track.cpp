@@ -8,7 +8,7 @@
 #include "simulation/run/method_run.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments {
 
 TipSamples::TipSamples(System& system, double t_end, int count, double growth)
     : points_(*system.material_points()),
@@ -92,4 +92,4 @@ double tip_error(In tip, In reference, double length) {
   return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

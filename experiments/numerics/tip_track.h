@@ -8,7 +8,7 @@
 #include "math/vec3.h"
 #include "simulation/run/guard.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Where a tip, the last material point, is at t_end k / count, k = 1 .. count. Steps do
 /// not land on these times: in between, the tip is on the cubic through its places and
@@ -63,4 +63,4 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
 /// missing or not finite.
 double tip_error(In tip, In reference, double length);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -10,7 +10,7 @@
 
 #include "experiments/peers/peer.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 namespace {
 
 btVector3 bt(const Vec& a) { return {a.x, a.y, a.z}; }
@@ -100,4 +100,4 @@ constexpr Method methods[] = {
 
 std::span<const Method> bullet_methods() { return methods; }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

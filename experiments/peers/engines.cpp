@@ -3,7 +3,7 @@
 
 #include "experiments/peers/peer.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 
 std::span<const Engine> engines() {
   static const std::vector<Engine> found = {
@@ -41,4 +41,4 @@ std::span<const std::string_view> missing() {
   return packages;
 }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

@@ -13,7 +13,7 @@
 
 #include "experiments/peers/peer.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 namespace {
 
 enum class Joint { ball, universal };
@@ -128,4 +128,4 @@ constexpr Method methods[] = {
 
 std::span<const Method> mujoco_methods() { return methods; }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

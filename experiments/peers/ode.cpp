@@ -7,7 +7,7 @@
 
 #include "experiments/peers/peer.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 namespace {
 
 class Ode : public Peer {
@@ -112,4 +112,4 @@ constexpr Method methods[] = {
 
 std::span<const Method> ode_methods() { return methods; }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

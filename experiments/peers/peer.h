@@ -4,9 +4,10 @@
 #include <span>
 #include <string_view>
 
+#include "contract/layers.h"
 #include "experiments/peers/swing.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 
 /// What is looked at between steps, seen from the clamp (mm, mg, s). An engine that gave
 /// up returns a tip that is not finite.
@@ -47,4 +48,4 @@ std::span<const Method> bullet_methods();
 std::span<const Method> mujoco_methods();
 std::span<const Method> ode_methods();
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

@@ -16,7 +16,7 @@
 #include "experiments/run/settings.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments::peers {
 namespace {
 
 using peers::Engine;
@@ -287,10 +287,11 @@ constexpr Unused unused[] = {
     not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::peers
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::peers;
   const Experiment experiment{
       .name = "peers",
       .question = "what do other simulators pay for the same strand?",

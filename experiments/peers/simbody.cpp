@@ -15,7 +15,7 @@ bool operator==(const Index& a, const Index& b) {
 
 #include "experiments/peers/peer.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 namespace {
 
 SimTK::Vec3 simtk(const Vec& a) { return {a.x, a.y, a.z}; }
@@ -133,4 +133,4 @@ constexpr Method methods[] = {
 
 std::span<const Method> simbody_methods() { return methods; }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

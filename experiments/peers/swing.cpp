@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 namespace {
 
 constexpr double amplitude = 50;                // of the clamp, mm
@@ -39,4 +39,4 @@ Vec rotation_vector(double w, const Vec& xyz) {
   return (angle / sine) * xyz;
 }
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/vec3.h"
 
-namespace tress::peers {
+namespace tress::experiments::peers {
 
 /// Scene `swing`: one strand clamped at its root, released horizontally along +x from
 /// rest, straight when unloaded, clamp moved y_c(t) = 0.05 (1 - cos 2 pi t) m, gravity
@@ -48,4 +49,4 @@ struct Swing {
 /// zero.
 Vec rotation_vector(double w, const Vec& xyz);
 
-}  // namespace tress::peers
+}  // namespace tress::experiments::peers

@@ -1,6 +1,6 @@
 #include "experiments/problems/formulations.h"
 
-namespace tress {
+namespace tress::experiments {
 
 std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
                                              System& system) {
@@ -15,4 +15,4 @@ std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
   return list;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

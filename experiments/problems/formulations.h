@@ -4,11 +4,11 @@
 
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// The formulations by which an integrator drives a system, its own best first. Without
 /// Baumgarte's feedback, whose gains are the subject of constraint_drift.
 std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
                                              System& system);
 
-}  // namespace tress
+}  // namespace tress::experiments

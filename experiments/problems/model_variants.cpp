@@ -1,6 +1,6 @@
 #include "experiments/problems/model_variants.h"
 
-namespace tress {
+namespace tress::experiments {
 
 std::vector<ModelVariant> length_variants() {
   std::vector<ModelVariant> all;
@@ -18,4 +18,4 @@ std::vector<ModelVariant> length_variants() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

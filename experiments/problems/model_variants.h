@@ -5,7 +5,7 @@
 
 #include "experiments/problems/strand_models.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// A strand model with its choices of how lengths are kept.
 struct ModelVariant {
@@ -18,4 +18,4 @@ struct ModelVariant {
 /// `stretch_springs`.
 std::vector<ModelVariant> length_variants();
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 double quarter_period(double m) {
@@ -56,4 +56,4 @@ double PendulumReference::period() const {
   return 2 * quarter_period(1 / m_) / (std::sqrt(m_) * omega_);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

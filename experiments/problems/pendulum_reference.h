@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// Exact motion of the plane pendulum theta'' = -omega^2 sin theta, theta from the
 /// downward vertical, by Jacobi's elliptic functions. With m = sin^2(theta0/2) +
@@ -28,4 +30,4 @@ class PendulumReference {
   double sense_;  // of rotation, +-1
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

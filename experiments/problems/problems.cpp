@@ -8,7 +8,7 @@
 #include "experiments/problems/reference.h"
 #include "models/published/references.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 using Values = std::vector<double>;
@@ -166,4 +166,4 @@ std::span<const Problem> problems() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -9,7 +9,7 @@
 
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 
 struct ProblemError {
   double relative;  // largest error over the scale of its entry
@@ -62,4 +62,4 @@ std::vector<Checkpoint> checkpoints(double t_end, int count);
 /// Made once, at the first call; the doubly computed references take about a second.
 std::span<const Problem> problems();
 
-}  // namespace tress
+}  // namespace tress::experiments

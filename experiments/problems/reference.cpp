@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace tress {
+namespace tress::experiments {
 
 ErrorNorms error_norms(In value, In reference, In scale) {
   if (value.size() != reference.size() ||
@@ -53,4 +53,4 @@ void ReferenceGap::mark(Row& row, double relative_error) const {
                          relative_error, margin, gap_));
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

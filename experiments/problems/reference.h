@@ -5,7 +5,7 @@
 #include "contract/system.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Distances between a value and its reference, entry by entry over a typical size.
 struct ErrorNorms {
@@ -42,4 +42,4 @@ class ReferenceGap {
   double gap_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -9,7 +9,7 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
-namespace tress {
+namespace tress::experiments {
 
 std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files) {
   std::vector<SceneFile> all;
@@ -48,4 +48,4 @@ std::size_t most_elements(const Scene& scene) {
   return most;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// A scene file under its own name, ending and all, which no scene of ours has.
 struct SceneFile {
@@ -27,4 +27,4 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
 /// Of the strand that has most.
 std::size_t most_elements(const Scene& scene);
 
-}  // namespace tress
+}  // namespace tress::experiments

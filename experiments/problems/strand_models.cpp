@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 const Parameter* parameter(const ModelEntry& model, std::string_view key) {
@@ -14,7 +14,7 @@ const Parameter* parameter(const ModelEntry& model, std::string_view key) {
 
 std::vector<const ModelEntry*> strand_models() {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     if (parameter(model, "elements") != nullptr && parameter(model, "root") != nullptr)
       all.push_back(&model);
   }
@@ -59,4 +59,4 @@ ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings) {
   return known;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -8,7 +8,7 @@
 #include "models/catalogue.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// The models of the catalogue that take a strand as models/strand/strand_parameters.h
 /// describes it: every strand scene runs on each of them.
@@ -32,4 +32,4 @@ void set_known(Parameters& parameters, const ModelSettings& settings);
 /// The settings whose keys the model knows.
 ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -5,7 +5,7 @@
 
 #include "experiments/numerics/tip_track.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 // Local errors of 1e-5 leave 1e-7 of the length after 2 s, as the gap of the two shows.
@@ -96,4 +96,4 @@ TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
   return converged_rod(tips, sampling.length, models);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

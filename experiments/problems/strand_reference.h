@@ -7,7 +7,7 @@
 
 #include "contract/integrator.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// A strand of one scene by a model of the catalogue, cut into equal elements.
 using MakeStrand =
@@ -73,4 +73,4 @@ TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
 /// was made with steps or elements `ratio` times as fine [Richardson 1911].
 std::vector<double> extrapolated(In coarse, In fine, double ratio);
 
-}  // namespace tress
+}  // namespace tress::experiments

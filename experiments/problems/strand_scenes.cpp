@@ -11,7 +11,7 @@
 #include "math/vec3.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 // Even 0.1 s, the longest step tried, is three steps a period of the shaken clamps.
@@ -206,4 +206,4 @@ StabilityBounds release_bounds(System& system, const State& start, double t_end)
   return {.energy = energy_tolerance * kinetic};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

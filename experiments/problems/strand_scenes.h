@@ -7,7 +7,7 @@
 #include "experiments/numerics/stability.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// One strand in one situation, as parameters that every strand model has; what is not
 /// set keeps its default, a hair of 10 cm and 40 um radius (EI = 6e-9 N m^2, 6.5e-7 kg).
@@ -62,4 +62,4 @@ StabilityBounds release_bounds(System& system, const State& start, double t_end)
 /// that comes |omega| L, from the clamp's frame to one that does not turn.
 double strand_speed_bound(const Parameters& parameters, double t_end);
 
-}  // namespace tress
+}  // namespace tress::experiments

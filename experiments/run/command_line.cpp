@@ -12,7 +12,7 @@
 #include "simulation/files/build_facts.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr int most_jobs = 1024;
@@ -255,4 +255,4 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   return line;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 enum class ProgressMode { automatic, none, json };
 
@@ -70,4 +72,4 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::span<const OwnOption> own = {},
                                std::span<const Unused> unused = {});
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -11,7 +11,7 @@
 #include "experiments/run/message.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// One line; of a long one, say with a key of a megabyte in it, the beginning and the
@@ -44,4 +44,4 @@ int exit_code(std::string_view program, const std::function<int()>& run) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -3,7 +3,9 @@
 #include <functional>
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// What every program of ours ends with.
 enum ExitCode {
@@ -20,4 +22,4 @@ enum ExitCode {
 /// once with `interrupted` where nothing else answers them (Interruption, sweep).
 int exit_code(std::string_view program, const std::function<int()>& run);
 
-}  // namespace tress
+}  // namespace tress::experiments

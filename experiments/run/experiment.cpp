@@ -25,7 +25,7 @@
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr const char* standard_output = "-";
@@ -347,8 +347,10 @@ int answer(const Experiment& experiment, int argc, char** argv) {
   }
   const Settings checked(line, experiment.settings);
   if (line.list) {
-    write_all(STDOUT_FILENO, catalogue_text(models(), integrators(), experiment.settings),
-              "standard output");
+    write_all(
+        STDOUT_FILENO,
+        catalogue_text(model_catalogue(), integrator_catalogue(), experiment.settings),
+        "standard output");
     return done;
   }
   if (!line.merge.empty()) {
@@ -364,4 +366,4 @@ int run_experiment(const Experiment& experiment, int argc, char** argv) {
   return exit_code(experiment.name, [&] { return answer(experiment, argc, argv); });
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -12,7 +12,7 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// When a case has to end. One that looks at `passed()` can stop by itself with what it
 /// measured; one that does not is killed shortly after.
@@ -85,4 +85,4 @@ struct Experiment {
 /// interrupted (resumable).
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
-}  // namespace tress
+}  // namespace tress::experiments

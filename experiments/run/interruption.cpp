@@ -9,7 +9,7 @@
 #include "experiments/run/exit_code.h"
 #include "experiments/run/message.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 sigset_t both_signals() {
@@ -64,4 +64,4 @@ Interruption::Save::~Save() {
   of_.save_ = nullptr;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,9 @@
 #include <string_view>
 #include <thread>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// SIGINT and SIGTERM end the program at any moment, whatever its other threads are at: a
 /// thread of its own waits for them, calls what is to be saved, says that --resume goes
@@ -47,4 +49,4 @@ class Interruption {
   std::thread thread_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

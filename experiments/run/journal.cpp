@@ -12,7 +12,7 @@
 #include "simulation/files/checksum.h"
 #include "simulation/files/files.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 using nlohmann::json;
@@ -99,4 +99,4 @@ void Journal::append(const Row& row) {
 
 void Journal::remove() { file_.remove(); }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -9,7 +9,7 @@
 #include "simulation/files/row.h"
 #include "simulation/files/run_key.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Rows as they finish, one line of JSON each behind its checksum, so that nothing
 /// finished is ever lost. One process at a time holds a journal; a last line torn by a
@@ -41,4 +41,4 @@ class Journal {
 std::string to_json_line(const Row& row);
 Row from_json_line(std::string_view line);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -9,7 +9,7 @@
 
 #include "integrators/integrator_options.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// One letter per formulation, for the cells of the matrix.
@@ -162,4 +162,4 @@ std::string catalogue_text(std::span<const ModelEntry> models,
   return text + matrix(models, integrators);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

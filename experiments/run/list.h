@@ -7,7 +7,7 @@
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// What --list prints: models with their parameters, integrators, the experiment's and
 /// the integrators' keys, and which integrator drives which model under which formulation
@@ -16,4 +16,4 @@ std::string catalogue_text(std::span<const ModelEntry> models,
                            std::span<const IntegratorEntry> integrators,
                            std::span<const Parameter> experiment_settings);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -14,7 +14,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 std::string first_line(const std::string& file) {
@@ -94,4 +94,4 @@ Versions library_versions() {
                                NLOHMANN_JSON_VERSION_PATCH)}};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

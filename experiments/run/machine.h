@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// What a timing depends on. Deliberately no host name: tables are published.
 struct Machine {
@@ -23,4 +25,4 @@ std::array<double, 3> load_average();
 using Versions = std::vector<std::pair<std::string, std::string>>;
 Versions library_versions();
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -13,7 +13,7 @@
 #include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 using nlohmann::ordered_json;
@@ -137,4 +137,4 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,7 @@
 #include "experiments/run/machine.h"
 #include "simulation/files/source_state.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// How a table was made: written next to it as <table>.meta.json.
 class Manifest {
@@ -36,4 +36,4 @@ class Manifest {
 /// "--set", seed, quick and the like in canonical order: what a resumed run must repeat.
 std::string settings_text(const CommandLine& line);
 
-}  // namespace tress
+}  // namespace tress::experiments

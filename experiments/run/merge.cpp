@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// Name of the first column, timings left out, in which the rows differ; empty when none.
@@ -62,4 +62,4 @@ Merged merge(std::span<const std::string> files, std::span<const Column> columns
   return merged;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -6,7 +6,7 @@
 
 #include "simulation/files/csv.h"
 
-namespace tress {
+namespace tress::experiments {
 
 struct Merged {
   std::vector<Row> rows;               // one per run_id, in order of first appearance
@@ -22,4 +22,4 @@ Merged merge(std::span<const std::string> files, std::span<const Column> columns
 void check_header(const CsvTable& table, std::span<const Column> columns,
                   const std::string& file);
 
-}  // namespace tress
+}  // namespace tress::experiments

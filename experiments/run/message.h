@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <string>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// Writes to standard error. A closed or full standard error must not end a long sweep,
 /// so failures to write are ignored here (and only here).
@@ -15,4 +17,4 @@ void tell(fmt::format_string<Args...> format, Args&&... args) {
   std::fputs(text.c_str(), stderr);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -10,7 +10,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/files/toml_text.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// A scalar, or a list of scalars joined by commas: what the option of that name accepts.
@@ -137,4 +137,4 @@ void read_options_file(const std::string& file, CommandLine& line) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -4,7 +4,7 @@
 
 #include "experiments/run/command_line.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Reads the options that a file of them may give into `line`, leaving what the command
 /// line gave already. Top-level keys: title, models, integrators, elements, timeout,
@@ -13,4 +13,4 @@ namespace tress {
 /// of the wrong type.
 void read_options_file(const std::string& file, CommandLine& line);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -10,7 +10,7 @@
 
 #include "experiments/run/message.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr std::chrono::milliseconds between_bars{100};
@@ -84,4 +84,4 @@ void Progress::print_bar(double left_s) const {
   std::fflush(stderr);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -7,7 +7,7 @@
 #include "experiments/run/command_line.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// How far a sweep is, on standard error: a bar with the time left on a terminal, a plain
 /// line now and then otherwise, one JSON object per row with `json`, nothing with `none`.
@@ -36,4 +36,4 @@ class Progress {
 /// 42 s, 3 min 20 s, 2 h 05 min.
 std::string readable_duration(double seconds);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -8,7 +8,7 @@
 #include "integrators/catalogue.h"
 #include "integrators/integrator_options.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 bool declares(std::span<const Parameter> parameters, std::string_view key) {
@@ -38,8 +38,9 @@ bool selected(const CommandLine& line, const ModelEntry& model) {
 
 Settings::Settings(const CommandLine& line, std::span<const Parameter> experiment)
     : line_(line), declared_(experiment), experiment_(experiment, "--set") {
-  check_ids(line_.models, models(), "model", line_.place("models"));
-  check_ids(line_.integrators, integrators(), "integrator", line_.place("integrators"));
+  check_ids(line_.models, model_catalogue(), "model", line_.place("models"));
+  check_ids(line_.integrators, integrator_catalogue(), "integrator",
+            line_.place("integrators"));
   for (const auto& [key, value] : line_.set) {
     const std::string where = line_.place("set:" + key);
     if (owner(key, where) != Owner::experiment) continue;
@@ -48,7 +49,7 @@ Settings::Settings(const CommandLine& line, std::span<const Parameter> experimen
     experiment_.set(key, value);
   }
   static_cast<void>(options());
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     if (selected(line_, model)) static_cast<void>(parameters(model));
   }
 }
@@ -97,9 +98,10 @@ void Settings::refuse_foreign(std::string_view key, const std::string& where) co
 }
 
 bool Settings::some_model_knows(std::string_view key) const {
-  return std::any_of(models().begin(), models().end(), [&](const ModelEntry& model) {
-    return selected(line_, model) && declares(model.parameters, key);
-  });
+  return std::any_of(model_catalogue().begin(), model_catalogue().end(),
+                     [&](const ModelEntry& model) {
+                       return selected(line_, model) && declares(model.parameters, key);
+                     });
 }
 
 Settings::Owner Settings::owner(std::string_view key, const std::string& where) const {
@@ -109,7 +111,7 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
   std::vector<std::string_view> known;
   for (const Parameter& p : declared_) known.push_back(p.name);
   for (const Parameter& p : integrator_options()) known.push_back(p.name);
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     if (!selected(line_, model)) continue;
     for (const Parameter& p : model.parameters) known.push_back(p.name);
   }
@@ -129,4 +131,4 @@ void leave_strands_to_the_scene(const CommandLine& line) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

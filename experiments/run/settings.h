@@ -9,7 +9,7 @@
 #include "experiments/run/command_line.h"
 #include "models/catalogue.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// Who takes each `--set key=value`: the first of the experiment's own settings, the
 /// integrators' options and the parameters of the selected models (all models when none
@@ -51,4 +51,4 @@ class Settings {
 /// has and how its strands are cut.
 void leave_strands_to_the_scene(const CommandLine& line);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -8,7 +8,7 @@
 
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr int entries = 1000;  // three vectors: 24 kB
@@ -50,4 +50,4 @@ double sundials_speed_ratio() {
   return theirs / ours;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// Above it SUNDIALS was built without optimisation, as some distributions ship it, and
 /// comparisons with our own methods mean nothing.
@@ -10,4 +12,4 @@ constexpr double slow_sundials_ratio = 4;
 /// the first-level cache. About 1 for a Release build. Takes a few milliseconds.
 double sundials_speed_ratio();
 
-}  // namespace tress
+}  // namespace tress::experiments

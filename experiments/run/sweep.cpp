@@ -12,7 +12,7 @@
 
 #include "experiments/run/worker.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 constexpr int longest_wait_ms = 200;
@@ -92,4 +92,4 @@ SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
   return SweepEnd::complete;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

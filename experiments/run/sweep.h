@@ -5,7 +5,7 @@
 
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments {
 
 enum class SweepEnd { complete, interrupted };
 
@@ -15,4 +15,4 @@ enum class SweepEnd { complete, interrupted };
 SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
                const std::function<void(std::vector<Row>, double seconds)>& finished);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace tress {
+namespace tress::experiments {
 
 void Verdicts::check_found(std::string claim, bool held, bool complete, double value) {
   if (held || complete) {
@@ -56,4 +56,4 @@ std::string_view name(Verdicts::State state) {
   return "figure";
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -4,7 +4,9 @@
 #include <string_view>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments {
 
 /// A claim that is known not to hold, why, and the number that decides it: as long as
 /// that stays within these bounds it is a finding and no alarm.
@@ -61,4 +63,4 @@ class Verdicts {
 
 std::string_view name(Verdicts::State state);
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -17,7 +17,7 @@
 #include "experiments/run/journal.h"
 #include "simulation/files/files.h"
 
-namespace tress {
+namespace tress::experiments {
 namespace {
 
 /// Time between the deadline that a case may honour and the kill: a tenth of the timeout,
@@ -177,4 +177,4 @@ std::vector<Row> Worker::result(int wait_status, bool timed_out) const {
   return {row};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments

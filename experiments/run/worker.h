@@ -9,7 +9,7 @@
 
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments {
 
 /// One case in a forked process of its own group, which dies with its parent. Its row
 /// comes back through a pipe (its rows, of Case::run_rows); what it prints goes to
@@ -43,4 +43,4 @@ class Worker {
   std::string received_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments

@@ -17,7 +17,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 namespace {
 
 constexpr Column columns[] = {
@@ -163,10 +163,11 @@ constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_e
                              not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::scaling
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::scaling;
   const Experiment experiment{
       .name = "scaling",
       .question = "what does a step cost against the number of elements?",

@@ -8,7 +8,7 @@
 #include "experiments/numerics/fit.h"
 #include "experiments/scaling/scaling_grid.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 namespace {
 
 // Smaller strands are mostly what a step costs without any element.
@@ -89,4 +89,4 @@ void tell_scaling_figures(const std::vector<Row>& rows, Verdicts& verdicts) {
              "recursive, N = 20: bend_twist over bend_planar", verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

@@ -5,7 +5,7 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 
 /// Fills `exponent` of every series of straight strands (same model, solver, tangent and
 /// modes) and of scene files: p of cost ~ N^p, fitted to what was measured from 20
@@ -17,4 +17,4 @@ void add_exponents(std::vector<Row>& rows);
 /// how much the composite is dearer, and what fewer unknowns save.
 void tell_scaling_figures(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

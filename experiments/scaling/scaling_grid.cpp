@@ -9,7 +9,7 @@
 #include "models/catalogue.h"
 #include "models/reduced/trees.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
@@ -196,4 +196,4 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

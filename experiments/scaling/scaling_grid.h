@@ -10,7 +10,7 @@
 #include "experiments/run/settings.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 
 /// A straight strand, by this name in the column `structure`; other names are trees.
 inline constexpr std::string_view straight = "straight";
@@ -40,4 +40,4 @@ std::span<const Parameter> scaling_settings();
 /// of modes over the sizes, dense matrices up to a size, and the five trees.
 std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

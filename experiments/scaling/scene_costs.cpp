@@ -11,7 +11,7 @@
 #include "simulation/scene/changes.h"
 #include "simulation/scene/typical_strands.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 namespace {
 
 // s; what a step costs does not depend on it: short enough for models that come apart.
@@ -65,7 +65,7 @@ class SceneCosts {
 
  private:
   void add(std::string_view grows, const Scene& scene) {
-    for (const ModelEntry& model : models()) {
+    for (const ModelEntry& model : model_catalogue()) {
       if (model.on_strand == nullptr || !wanted(line_.models, model.id)) continue;
       Row identity;
       identity.set("structure", file_.name).set("model", model.id).set("grows", grows);
@@ -98,4 +98,4 @@ std::vector<Case> scene_costs(const CommandLine& line,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

@@ -5,7 +5,7 @@
 
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::scaling {
 
 /// Rows about scene files: what a semi-implicit step costs by every strand model that the
 /// user leaves in, against the number of elements (of one typical strand; of all, where
@@ -14,4 +14,4 @@ namespace tress {
 std::vector<Case> scene_costs(const CommandLine& line,
                               const std::vector<std::string>& files);
 
-}  // namespace tress
+}  // namespace tress::experiments::scaling

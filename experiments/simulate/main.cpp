@@ -15,7 +15,7 @@
 #include "simulation/files/files.h"
 #include "simulation/scene/schema.h"
 
-namespace tress {
+namespace tress::experiments::scene_runs {
 namespace {
 
 struct Arguments {
@@ -175,9 +175,10 @@ int answer(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::scene_runs
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::scene_runs;
   return exit_code("simulate", [&] { return answer(argc, argv); });
 }

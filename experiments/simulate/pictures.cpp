@@ -5,7 +5,7 @@
 
 #include "simulation/files/files.h"
 
-namespace tress {
+namespace tress::experiments::scene_runs {
 
 Pictures::Pictures(const Scene& scene, const World& world, const Readout& readout,
                    const SceneRunOptions& options)
@@ -47,4 +47,4 @@ void Pictures::write_vtk(const Animation& animation) const {
   replace_file(folder + name + ".pvd", pvd(animation, name));
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::scene_runs

@@ -6,7 +6,7 @@
 #include "experiments/simulate/scene_run.h"
 #include "simulation/export/full_hair.h"
 
-namespace tress {
+namespace tress::experiments::scene_runs {
 
 /// What a run looks like, for the report page and for other programs: <stem>.json, and
 /// where asked for <stem>_vtk/ and <stem>.usda, all with the same lines.
@@ -27,4 +27,4 @@ class Pictures {
   std::vector<DrawnLine> lines_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::scene_runs

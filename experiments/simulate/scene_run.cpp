@@ -13,7 +13,7 @@
 #include "experiments/simulate/pictures.h"
 #include "simulation/export/recording.h"
 
-namespace tress {
+namespace tress::experiments::scene_runs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -138,4 +138,4 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   return run;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::scene_runs

@@ -7,7 +7,7 @@
 #include "simulation/files/run_key.h"
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::experiments::scene_runs {
 
 struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
@@ -40,4 +40,4 @@ struct SceneRun {
 SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
                    Interruption& interruption);
 
-}  // namespace tress
+}  // namespace tress::experiments::scene_runs

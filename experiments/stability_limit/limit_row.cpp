@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 void set_limit(const StepLimit& limit, const StepSearch& search, Row& row) {
@@ -47,4 +47,4 @@ void set_cost(const FoundLimit& limit, double cost, Row& row) {
   row.set("cost_per_step_s", cost).set("realtime_factor", limit.step / cost);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

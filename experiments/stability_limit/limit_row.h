@@ -6,7 +6,7 @@
 #include "experiments/numerics/stability.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 
 /// The largest stable step (s), and the run at it.
 struct FoundLimit {
@@ -24,4 +24,4 @@ std::optional<FoundLimit> find_limit(
 /// The columns about the run at the limit and what a step (s of wall time) of it costs.
 void set_cost(const FoundLimit& limit, double cost, Row& row);
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -16,7 +16,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 constexpr Column columns[] = {
@@ -145,10 +145,11 @@ bool finding(const Row& row) {
 constexpr Unused unused[] = {not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::stability_limit;
   const Experiment experiment{
       .name = "stability_limit",
       .question = "what is the largest stable step against the number of elements?",

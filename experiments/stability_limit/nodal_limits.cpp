@@ -11,7 +11,7 @@
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 constexpr double claimed_step = 1e-5;  // s
@@ -76,7 +76,7 @@ void measure(const NodalCase& c, Row& row) {
                          c.most_work);
   };
   row.set("t_end_s", c.t_end).set("energy_bound_j", bounds.energy);
-  const auto of_explicit = stability_limit(c.which.integrator, 0);
+  const auto of_explicit = largest_stable_omega_h(c.which.integrator, 0);
   if (of_explicit) {
     const auto [bending, twist] = highest(c.parameters);
     row.set("dt_theory_s", *of_explicit / std::max(bending, twist));
@@ -176,9 +176,9 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
                                 undamped};
       if (!which.selected(line, rows)) continue;
       // Waves that an explicit step makes grow are seen after a few tens of steps.
-      const double t_end = stability_limit(m.integrator, 0) ? 0.02
-                           : line.quick                     ? 0.25
-                                                            : 1;
+      const double t_end = largest_stable_omega_h(m.integrator, 0) ? 0.02
+                           : line.quick                            ? 0.25
+                                                                   : 1;
       const NodalCase c{which,
                         m.start,
                         which.parameters(settings),
@@ -200,4 +200,4 @@ void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_explicit_limits(rows, verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

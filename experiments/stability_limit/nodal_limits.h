@@ -5,7 +5,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 
 /// The study `nodal`: is a nodal scheme of Kirchhoff's equations with the stiffness of
 /// curvature removed unstable for a hair of 200 nodes at steps of 1e-5 s [Bertails 2006],
@@ -16,4 +16,4 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
 /// limits of explicit methods are those of the grid's highest frequency.
 void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -15,7 +15,7 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 Broken broken_by(const Breach& breach) {
@@ -96,7 +96,7 @@ std::vector<Case> scene_cases(const CommandLine& line,
   std::vector<Case> all;
   for (const Scene& given : read_scenes(files)) {
     const Scene scene = thinned(given, how.strands);
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!considered(line, entry)) continue;
       for (const std::string& tangent : tangents_of(scene, entry.id)) {
         Scene own = scene;
@@ -116,4 +116,4 @@ std::vector<Case> scene_cases(const CommandLine& line,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

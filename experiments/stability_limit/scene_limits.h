@@ -7,7 +7,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 
 /// How the limits of scenes are looked for.
 struct SceneLimits {
@@ -26,4 +26,4 @@ std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how);
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 /// All that tells rows apart but for the column that is compared.
@@ -122,4 +122,4 @@ void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
         [](double dt) { return dt < 0.002; });
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -5,11 +5,11 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 
 /// What the table of stability_limit must show. Two limits are the same when the brackets
 /// of their bisections, from dt_max_s to dt_first_unstable_s, have a step in common; the
 /// number that decides is the ratio of the two dt_max_s of the worst pair.
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -8,7 +8,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
@@ -147,7 +147,7 @@ std::vector<Variation> all_methods(const CommandLine& line, bool others) {
   }
   if (!others) return all;
   all.insert(all.end(), std::begin(further_methods), std::end(further_methods));
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (std::ranges::count(methods, entry.id, &Variation::integrator) > 0) continue;
     if (!considered(line, entry)) continue;
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
@@ -261,4 +261,4 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -11,7 +11,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::stability_limit {
 
 /// Internal friction gamma (kg m^3/s) by name.
 struct Damping {
@@ -54,4 +54,4 @@ bool considered(const CommandLine& line, const IntegratorEntry& entry);
 std::vector<StabilityCase> stability_cases(const CommandLine& line,
                                            const Settings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments::stability_limit

@@ -12,7 +12,7 @@
 #include "experiments/validation/rods/statics.h"
 #include "models/effects/tether.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -329,4 +329,4 @@ std::vector<ValidationTest> buckling_tests() {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,7 +7,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 constexpr double small_load = 0.1;  // Gamma or alpha: linear bending
@@ -106,4 +106,4 @@ std::vector<ValidationTest> cantilever_tests() {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

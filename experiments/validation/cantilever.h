@@ -4,9 +4,9 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A clamped strand bent by its weight or by a force at its tip.
 std::vector<ValidationTest> cantilever_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/signals.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -182,4 +182,4 @@ std::vector<ValidationTest> chain_tests() {
       }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

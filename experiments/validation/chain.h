@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A strand that is a chain: one metre long, without bending stiffness to speak of
 /// (EI/(rho g S L^3) = 1e-7) and stretched by its weight by 1e-5.
@@ -25,4 +25,4 @@ namespace tress {
 ///   circle, changes neither energy at the same x as long as it falls upright.
 std::vector<ValidationTest> chain_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

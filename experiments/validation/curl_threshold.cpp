@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "experiments/validation/rods/numerics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 struct Curl {
@@ -79,4 +79,4 @@ double curl_threshold(double phi, double poisson_ratio) {
                    "give an angle of 1.8 pi or more (nu = 0.5)");
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// A strand clamped with its tangent down whose natural shape is an arc of angle phi in a
 /// plane [Miller, Lazarus, Audoly & Reis 2014; Romero et al. 2021]: under much weight it
@@ -24,4 +26,4 @@ namespace tress {
 /// strands of this phi are stable at any weight (below 1.8 pi at nu = 0.5).
 double curl_threshold(double phi, double poisson_ratio);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -224,4 +224,4 @@ std::vector<ValidationTest> curl_tests() {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

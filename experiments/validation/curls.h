@@ -4,9 +4,9 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// Strands with a natural curvature or twist.
 std::vector<ValidationTest> curl_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -11,7 +11,7 @@
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 constexpr double flight_time = 0.5;  // s: three quarters of a turn
@@ -123,7 +123,7 @@ std::vector<Case> free_flight_cases(const CommandLine& line, const Settings& set
     for (const int elements : counts) {
       const Parameters p = thrown(settings, *model, elements);
       const auto system = model->make(p);
-      for (const IntegratorEntry& entry : integrators()) {
+      for (const IntegratorEntry& entry : integrator_catalogue()) {
         const auto formulations = usable_formulations(entry, *system);
         if (!flies(entry, line) || formulations.empty()) continue;
         Options options = settings.options();
@@ -164,4 +164,4 @@ void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts) {
       [](double most) { return most < 1e-9; }, std::less{}, verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

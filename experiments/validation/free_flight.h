@@ -6,7 +6,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The rows `free_flight`: a hair thrown in space without gravity, spinning. No force
 /// changes its momentum, its angular momentum or its energy, and no damping: what changes
@@ -22,4 +22,4 @@ Gloss free_flight_gloss();
 /// particles.
 void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -8,7 +8,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 /// An inextensible rope of length 1 between two ends at one height, `span` apart: z = a
@@ -90,4 +90,4 @@ std::vector<ValidationTest> hanging_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,9 +4,9 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A strand so heavy that it does not feel its stiffness, held at both ends.
 std::vector<ValidationTest> hanging_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

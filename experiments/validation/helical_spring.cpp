@@ -5,7 +5,7 @@
 
 #include "experiments/validation/rods/numerics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force) {
   const double c0 = std::cos(natural_pitch_angle), s0 = std::sin(natural_pitch_angle);
@@ -24,4 +24,4 @@ PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, doubl
   return {1 / turns(a), a};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// A uniform helix of round section pulled along its axis by a force F, free to turn
 /// about it [Love 1927, section 271]: radius r, pitch angle a (natural 1 and a_0, lengths
@@ -13,4 +15,4 @@ struct PulledHelix {
 };
 PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,7 +7,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -105,4 +105,4 @@ std::vector<ValidationTest> localised_buckling_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

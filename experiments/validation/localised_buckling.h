@@ -5,7 +5,7 @@
 #include "experiments/validation/test.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The equilibrium of a long straight isotropic rod, pulled and twisted at its ends,
 /// whose tilt from the line of the pull decays to both sides of its middle [Coyne 1990;
@@ -29,4 +29,4 @@ struct LocalisedHelix {
 
 std::vector<ValidationTest> localised_buckling_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,7 +4,7 @@
 #include "experiments/validation/free_flight.h"
 #include "experiments/validation/table.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 std::vector<Case> cases(const CommandLine& line) {
@@ -22,10 +22,11 @@ bool finding(const Row& row) {
 constexpr Unused unused[] = {not_repeated, not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::validation
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::validation;
   const Experiment experiment{
       .name = "validation",
       .question = "is the physics right: what do published tests of rods say?",

@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/signals.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -118,4 +118,4 @@ std::vector<ValidationTest> pendulum_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The pendulum limit of a strand: a stiff rod of length L and mass m that hangs on a
 /// hinge, one thin short segment of length l and bending stiffness k (N m per rad),
@@ -23,4 +23,4 @@ std::vector<ValidationTest> pendulum_tests();
 /// Period (s) of the equation above for the test's rod.
 double pendulum_period(double amplitude);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

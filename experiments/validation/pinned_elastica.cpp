@@ -4,7 +4,7 @@
 
 #include "experiments/validation/rods/numerics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 PinnedElastica pinned_elastica(double eps) {
   struct End {
@@ -40,4 +40,4 @@ PinnedElastica pinned_elastica(double eps) {
           tip + turn};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

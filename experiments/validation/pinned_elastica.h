@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// A clamped strand whose pinned tip stays on the line of the clamp's tangent, at (1 -
 /// eps) L from it: theta'' = -(H cos theta + P sin theta)/EI, theta(0) = 0, theta'(L) =
@@ -15,4 +17,4 @@ struct PinnedElastica {
 };
 PinnedElastica pinned_elastica(double eps);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

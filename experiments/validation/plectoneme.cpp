@@ -16,7 +16,7 @@
 #include "models/effects/self_contact.h"
 #include "models/effects/tether.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -116,7 +116,7 @@ double measured_angle(const ModelTrial& trial) {
   if (found.pairs == 0 || !(tension > 0)) {
     throw std::runtime_error("it makes no plectoneme");
   }
-  const double bending = tress::stiffness(material, {radius, radius}).y;
+  const double bending = models::stiffness(material, {radius, radius}).y;
   return found.angle / ply_angle(tension * found.radius * found.radius / bending);
 }
 
@@ -198,4 +198,4 @@ std::vector<ValidationTest> plectoneme_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -5,7 +5,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The plectoneme experiment: a thread is twisted by 12 turns at its clamp, then let in
 /// by 0.3 L against a handle that cannot turn. It snaps into a loop that winds itself up,
@@ -35,4 +35,4 @@ struct Ply {
 };
 Ply ply(std::span<const double> x, double apart, double separation, double reach);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

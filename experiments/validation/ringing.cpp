@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/signals.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -120,4 +120,4 @@ std::vector<ValidationTest> ringing_tests() {
           }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

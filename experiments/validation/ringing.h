@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A straight hair, without weight, that rings in one of its modes, seen in time.
 ///
@@ -18,4 +18,4 @@ namespace tress {
 ///   tip turns.
 std::vector<ValidationTest> ringing_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

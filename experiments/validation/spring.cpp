@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/signals.h"
 #include "models/effects/gravity.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using std::numbers::pi;
@@ -101,4 +101,4 @@ std::vector<ValidationTest> spring_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The spring experiment: a curly strand, a slender helix of radius r and pitch angle a
 /// about a vertical axis, hangs from a clamp and bounces.
@@ -31,4 +31,4 @@ struct SpringModes {
 };
 SpringModes spring_modes(double turns);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

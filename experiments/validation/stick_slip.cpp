@@ -11,7 +11,7 @@
 #include "models/effects/body.h"
 #include "models/effects/linear_drag.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 const double rod_length = TestRod().length;  // m
@@ -101,4 +101,4 @@ std::vector<ValidationTest> stick_slip_tests() {
   }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

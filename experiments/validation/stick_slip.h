@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A clamped strand that stands on a plane by its tip, normal to it, and is lowered by
 /// eps L after it has touched: it bows out, and its tip slips away when the plane's
@@ -18,4 +18,4 @@ namespace tress {
 /// found by halving between half and twice mu_c, to 0.5 %.
 std::vector<ValidationTest> stick_slip_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -13,7 +13,7 @@
 #include "experiments/validation/free_flight.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 constexpr Column columns[] = {
@@ -240,4 +240,4 @@ void check_validation(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_free_flight(rows, verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -8,7 +8,7 @@
 #include "experiments/validation/test.h"
 
 /// The table of validation: which rows there are and what they must show.
-namespace tress {
+namespace tress::experiments::validation {
 
 std::span<const Column> validation_columns();
 /// What each test is, where it comes from, and what is asked why.
@@ -29,4 +29,4 @@ void fit_validation_orders(std::vector<Row>& rows);
 /// free_flight.h says.
 void check_validation(const std::vector<Row>& rows, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -8,7 +8,7 @@
 #include "experiments/problems/model_variants.h"
 #include "experiments/run/experiment.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// One model of the catalogue put to one test.
 struct ModelTrial {
@@ -68,4 +68,4 @@ const std::vector<ValidationTest>& validation_tests();
 /// Throws InputError naming the nearest test when there is no such test.
 const ValidationTest& find_validation_test(std::string_view name);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -18,7 +18,7 @@
 #include "experiments/validation/vibration.h"
 #include "experiments/validation/wisp.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
@@ -44,4 +44,4 @@ const ValidationTest& find_validation_test(std::string_view name) {
                    suggestion(name, names, "leave it out to run all of them"));
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

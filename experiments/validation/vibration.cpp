@@ -7,7 +7,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 constexpr std::string_view one_per_cent = "1 % is wanted";
@@ -151,4 +151,4 @@ std::vector<ValidationTest> vibration_tests() {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,9 +4,9 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// Frequencies of small free vibrations about a state of rest.
 std::vector<ValidationTest> vibration_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

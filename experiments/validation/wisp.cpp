@@ -11,7 +11,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/effects/tether.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 const double length = TestRod().length;  // m
@@ -127,4 +127,4 @@ std::vector<ValidationTest> wisp_tests() {
       }};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -4,7 +4,7 @@
 
 #include "experiments/validation/test.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The buckling of a wisp held between two hands that come nearer: a clamped strand whose
 /// tip is held in place, free to turn, while the clamp goes down by eps L. First it
@@ -18,4 +18,4 @@ namespace tress {
 ///   begins in the plane and nothing leads out of it.
 std::vector<ValidationTest> wisp_tests();
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

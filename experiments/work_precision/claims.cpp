@@ -8,7 +8,7 @@
 
 #include "experiments/work_precision/strand_claims.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 /// Most correct digits that a method has on a problem; none: it was not run.
@@ -104,4 +104,4 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_swing_claims(rows, verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

@@ -14,7 +14,7 @@
 #include "experiments/work_precision/work_precision_series.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 constexpr Column columns[] = {
@@ -77,10 +77,11 @@ constexpr OwnOption command_options[] = {
 constexpr Unused unused[] = {not_random};
 
 }  // namespace
-}  // namespace tress
+}  // namespace tress::experiments::work_precision
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::work_precision;
   const Experiment experiment{
       .name = "work_precision",
       .question = "what does accuracy cost in time, per integrator?",

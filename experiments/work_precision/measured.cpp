@@ -2,7 +2,7 @@
 
 #include "experiments/problems/reference.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 void set_counts(const Stats& stats, Row& row) {
   row.set("steps", stats.steps).set("rejected", stats.rejected);
@@ -19,4 +19,4 @@ void set_time(double wall, double simulated, Row& row) {
   row.set("wall_s", wall).set("wall_s_per_sim_s", wall / simulated);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

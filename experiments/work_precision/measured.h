@@ -3,7 +3,7 @@
 #include "contract/integrator.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 /// The columns that every run fills: what it counted,
 void set_counts(const Stats& stats, Row& row);
@@ -12,4 +12,4 @@ void set_error(double relative, double gap, Row& row);
 /// and what it took (s).
 void set_time(double wall, double simulated, Row& row);
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

@@ -11,7 +11,7 @@
 #include "experiments/work_precision/row_settings.h"
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 constexpr double quick_work = 1e7;  // of a run
@@ -72,7 +72,7 @@ class List {
 
   void add(const Problem& problem) {
     const auto system = problem.make();
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!wanted(line_.integrators, entry.id)) continue;
       for (const Formulation formulation : shown(entry, *system, line_.full)) {
         add(problem, entry, formulation);
@@ -139,4 +139,4 @@ std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings
   return list.cases();
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

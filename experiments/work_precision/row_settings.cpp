@@ -1,6 +1,6 @@
 #include "experiments/work_precision/row_settings.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
@@ -46,4 +46,4 @@ bool keeps(const Settings& settings, std::string_view key, std::string_view word
   return chosen == "all" || chosen == word;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

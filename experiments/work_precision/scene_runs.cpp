@@ -18,7 +18,7 @@
 #include "simulation/scene/changes.h"
 #include "simulation/scene/typical_strands.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 constexpr double rate = 60;  // 1/s, of the instants at which tips are compared
@@ -205,7 +205,7 @@ class SceneRows {
     const std::vector<int> cuts =
         line_.elements.empty() ? std::vector<int>{0} : line_.elements;
     for (const int elements : cuts) {
-      for (const ModelEntry& model : models()) {
+      for (const ModelEntry& model : model_catalogue()) {
         if (model.on_strand == nullptr || !wanted(line_.models, model.id)) continue;
         add(model, elements, rod);
       }
@@ -254,7 +254,7 @@ class SceneRows {
       if (!sides->time) all_.push_back(without(identity, "time", why));
     }
     if (!sides->time && !sides->total && !line_.dry_run) return;
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!wanted(line_.integrators, entry.id)) continue;
       if (line_.quick && line_.integrators.empty() && entry.adaptive) continue;
       const Curve work{study_, cut, &model, &entry, sides, settings_.options(), extent_};
@@ -290,4 +290,4 @@ std::vector<Case> scene_runs(const CommandLine& line, const Settings& settings,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

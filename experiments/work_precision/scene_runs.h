@@ -6,7 +6,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 /// Rows about scene files: the tips' error against wall time, root mean square over the
 /// run and over the length, by every strand model and integrator that the user leaves in.
@@ -19,4 +19,4 @@ namespace tress {
 std::vector<Case> scene_runs(const CommandLine& line, const Settings& settings,
                              const std::vector<std::string>& files);
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

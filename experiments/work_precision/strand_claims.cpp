@@ -11,7 +11,7 @@
 #include "experiments/problems/reference.h"
 #include "experiments/work_precision/strand_grid.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -110,4 +110,4 @@ void check_swing_claims(const std::vector<Row>& all, Verdicts& verdicts) {
                    "rod: super-helices and articulated chains agree to 0.01 %", verdicts);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

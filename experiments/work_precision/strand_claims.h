@@ -5,11 +5,11 @@
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 /// What the rows of the swing must show: runs with a time error of 1 % and of 0.1 % at
 /// the peers' number of elements and with a total error of 1 %, whose times are figures;
 /// that twist does not matter; that the references agree.
 void check_swing_claims(const std::vector<Row>& all, Verdicts& verdicts);
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

@@ -11,7 +11,7 @@
 #include "experiments/work_precision/row_settings.h"
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 /// How far and with which matrix a step's equations are solved. Tolerances are over
@@ -298,4 +298,4 @@ std::vector<StrandCase> strand_cases(const CommandLine& line, const Settings& se
   return Grid(line, settings).cases();
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

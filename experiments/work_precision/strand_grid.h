@@ -10,7 +10,7 @@
 #include "models/catalogue.h"
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 /// A strand whose tip is followed: the name in the column `scene`, that of the strand
 /// scene it runs, and when and over which length tips are compared.
@@ -55,4 +55,4 @@ Parameters strand_parameters_of(const FollowedStrand& strand, const Settings& se
 /// released hair against the continuous rod.
 std::vector<StrandCase> strand_cases(const CommandLine& line, const Settings& settings);
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

@@ -11,7 +11,7 @@
 #include "experiments/run/message.h"
 #include "experiments/work_precision/measured.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 /// What errors are measured against: made before any row runs, since rows run in
@@ -92,4 +92,4 @@ std::vector<Case> strand_runs(const CommandLine& line, const Settings& settings)
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

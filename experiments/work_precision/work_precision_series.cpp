@@ -9,7 +9,7 @@
 #include "experiments/numerics/pareto.h"
 #include "experiments/work_precision/strand_grid.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 namespace {
 
 // Finest points that make a slope; coarser ones are often before the asymptotic range.
@@ -95,4 +95,4 @@ void add_series_columns(std::vector<Row>& rows) {
   });
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

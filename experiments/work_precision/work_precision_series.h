@@ -4,7 +4,7 @@
 
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::experiments::work_precision {
 
 /// Fills what only the whole table knows: `order_fit` of every fixed-step series, the
 /// least-squares slope over its finest trusted points (same scene, integrator,
@@ -14,4 +14,4 @@ namespace tress {
 /// number of elements, is both faster and more accurate).
 void add_series_columns(std::vector<Row>& rows);
 
-}  // namespace tress
+}  // namespace tress::experiments::work_precision

@@ -6,7 +6,7 @@
 
 #include "linear/finite.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
@@ -208,4 +208,4 @@ std::string Dynamics::culprit(double t, In q, In v) {
   return words;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

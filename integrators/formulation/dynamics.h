@@ -7,7 +7,7 @@
 #include "contract/integrator.h"
 #include "linear/kkt.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// A system together with the form its constraints take, as one set of equations in the
 /// accelerations a (n) and multipliers lambda (m):
@@ -113,4 +113,4 @@ class Dynamics {
 /// Largest |x_i| / typ_i; infinity when any entry is not finite.
 double scaled_norm(In x, In typ) noexcept;
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // Simplified Newton steps gain at least two digits each near the manifold; a state that
@@ -78,4 +78,4 @@ Status Projection::velocities(double t, In q, InOut v) noexcept {
   });
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 
 #include "integrators/formulation/dynamics.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// Mass-orthogonal projection of a state onto g = 0 and g' = 0:
 ///     M dq = G^T mu, g(q + dq) = 0   and   M dv = G^T nu, G (v + dv) + g_t = 0.
@@ -23,4 +23,4 @@ class Projection {
   std::vector<double> step_, g_, zero_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -6,7 +6,7 @@
 
 #include "integrators/formulation/dynamics.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // Of g before g and G are taken anew: their change is of second order in the step.
@@ -107,4 +107,4 @@ Status Relaxation::positions(double t, InOut q) noexcept {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -5,7 +5,7 @@
 
 #include "contract/integrator.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// Of M at the start; nothing where M is not diagonal or cannot be had.
 std::optional<std::vector<double>> diagonal_mass(System& system);
@@ -44,4 +44,4 @@ class Relaxation {
   std::vector<double> g_, g_typ_, stiffness_, values_;  // (m), (m), G_k W G_k^T, G^T
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

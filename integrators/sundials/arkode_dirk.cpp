@@ -5,7 +5,7 @@
 #include "contract/input_error.h"
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr std::string_view id = "arkode_dirk";
@@ -132,4 +132,4 @@ IntegratorEntry arkode_dirk_entry() {
           .make = make_method<ArkodeDirk>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

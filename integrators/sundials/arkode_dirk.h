@@ -3,7 +3,7 @@
 #include "integrators/sundials/driver.h"
 #include "integrators/sundials/first_order.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// ARKODE's diagonally implicit Runge-Kutta methods on the ODE form with the eliminated
 /// Newton matrix of FirstOrder. By default ESDIRK4(3)6L[2]SA, stiffly accurate and
@@ -28,4 +28,4 @@ class ArkodeDirk final : public Driver {
   LinearAdapter linear_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

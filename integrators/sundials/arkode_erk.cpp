@@ -4,7 +4,7 @@
 
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr std::string_view id = "arkode_erk";
@@ -74,4 +74,4 @@ IntegratorEntry arkode_erk_entry() {
           .make = make_method<ArkodeErk>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

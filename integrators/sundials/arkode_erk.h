@@ -3,7 +3,7 @@
 #include "integrators/sundials/driver.h"
 #include "integrators/sundials/first_order.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS'
 /// defaults by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound
@@ -27,4 +27,4 @@ class ArkodeErk final : public Driver {
   ErkstepMemory memory_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

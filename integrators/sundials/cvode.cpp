@@ -1,6 +1,6 @@
 #include "integrators/sundials/cvode.h"
 
-namespace tress {
+namespace tress::integrators {
 
 Cvode::Cvode(std::string_view id, System& system, const Options& options,
              std::span<const Formulation> formulations, int method, int order)
@@ -50,4 +50,4 @@ std::string Cvode::reason(int code) const {
   return code_name(&CVodeGetReturnFlagName, code);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

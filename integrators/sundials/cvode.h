@@ -3,7 +3,7 @@
 #include "integrators/sundials/driver.h"
 #include "integrators/sundials/first_order.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// What CVODE's two families share: the ODE form and the calls into the library.
 class Cvode : public Driver {
@@ -23,4 +23,4 @@ class Cvode : public Driver {
   CvodeMemory memory_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -4,7 +4,7 @@
 
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr std::string_view id = "cvode_adams";
@@ -35,4 +35,4 @@ IntegratorEntry cvode_adams_entry() {
           .make = make_method<CvodeAdams>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

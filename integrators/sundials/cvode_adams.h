@@ -2,7 +2,7 @@
 
 #include "integrators/sundials/cvode.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// CVODE's Adams-Moulton formulas of order 1 to 12 (variable step and order), solved by
 /// fixed-point iteration: no Newton matrix, so the step is bound by the fastest mode.
@@ -15,4 +15,4 @@ class CvodeAdams final : public Cvode {
   NonlinearSolver fixed_point_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr std::string_view id = "cvode_bdf";
@@ -43,4 +43,4 @@ IntegratorEntry cvode_bdf_entry() {
           .make = make_method<CvodeBdf>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 
 #include "integrators/sundials/cvode.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// CVODE's backward differentiation formulas (variable step and order) with the
 /// eliminated Newton matrix of FirstOrder. Order 2 at most by default: BDF 3 to 5 are
@@ -20,4 +20,4 @@ class CvodeBdf final : public Cvode {
   LinearAdapter linear_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

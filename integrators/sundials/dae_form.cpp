@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// To Dynamics GGL is index 3: its own constraint row is g, the row of g' is added here.
@@ -104,4 +104,4 @@ void DaeForm::differential(Out id) const {
   std::ranges::fill(id.subspan(2 * n), 0.0);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

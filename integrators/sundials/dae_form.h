@@ -2,7 +2,7 @@
 
 #include "integrators/formulation/dynamics.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// The system as a residual F(t, y, y') = 0 with y = (q, v, lambda, mu):
 ///
@@ -50,4 +50,4 @@ class DaeForm {
   std::vector<double> gt_, mass_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

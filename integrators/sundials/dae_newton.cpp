@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 /// Put on the multipliers' diagonal (whose Schur complement G G^T is of order one in the
@@ -204,4 +204,4 @@ Stats AssembledNewton::work() const {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -5,7 +5,7 @@
 #include "linear/block_matrix.h"
 #include "linear/rank.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// IDA's matrix of a DaeForm, dF/dy + cj dF/dy'.
 class DaeNewton : public NewtonMatrix {
@@ -76,4 +76,4 @@ class AssembledNewton final : public DaeNewton {
   double condition_ = 0;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

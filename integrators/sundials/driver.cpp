@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 // A stretch this short (relative to the time itself) is below the resolution of time;
@@ -173,4 +173,4 @@ int chosen_order(std::string_view id, const Options& options, int standard, int 
   return options.max_order;
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -6,7 +6,7 @@
 #include "integrators/formulation/dynamics.h"
 #include "integrators/sundials/sundials.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// What all SUNDIALS integrators share: the state y = (q, v, ...) in our memory, absolute
 /// tolerances atol * System::scale, one internal step at a time with the end of the
@@ -76,4 +76,4 @@ class Driver : public Integrator {
 int chosen_order(std::string_view id, const Options& options, int standard, int least,
                  int most);
 
-}  // namespace tress
+}  // namespace tress::integrators

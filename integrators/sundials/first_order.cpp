@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::integrators {
 
 FirstOrder::FirstOrder(System& system, const Options& options)
     : rates_(system, options),
@@ -128,4 +128,4 @@ int FirstOrder::rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot,
   return sundials_code(status);
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -6,7 +6,7 @@
 #include "integrators/formulation/projection.h"
 #include "integrators/sundials/linear_adapter.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// The system as an ODE: y = (q, v), y' = (v, a(t, q, v)) with a, lambda from
 /// Dynamics::accelerate, and its Newton matrix I - gamma J in eliminated form.
@@ -74,4 +74,4 @@ class FirstOrder final : public NewtonMatrix {
   std::vector<double> g_dot_, g_dot_0_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -4,7 +4,7 @@
 
 #include "integrators/entry.h"
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 constexpr std::string_view id = "ida";
@@ -111,4 +111,4 @@ IntegratorEntry ida_entry() {
       .make = make_method<Ida>};
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

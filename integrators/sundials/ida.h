@@ -3,7 +3,7 @@
 #include "integrators/sundials/dae_newton.h"
 #include "integrators/sundials/driver.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// IDA: variable-order BDF (1 to 5) on the residual form, with constraints at index 1,
 /// 2 (GGL) or 3. Multipliers stay out of the local error test (suppress_algebraic) and
@@ -38,4 +38,4 @@ class Ida final : public Driver {
   double multiplier_atol_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tress {
+namespace tress::integrators {
 namespace {
 
 NewtonMatrix& newton(SUNMatrix matrix) {
@@ -77,4 +77,4 @@ void LinearAdapter::attach(const IdaMemory& memory) const {
   require(IDASetJacFn(memory.get(), &ida_jacobian), "IDASetJacFn");
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

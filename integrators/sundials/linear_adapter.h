@@ -2,7 +2,7 @@
 
 #include "integrators/sundials/sundials.h"
 
-namespace tress {
+namespace tress::integrators {
 
 /// The Newton matrix of one integrator, as SUNDIALS sees it: something to rebuild at a
 /// state when its own rules ask for it, and to solve with until then.
@@ -40,4 +40,4 @@ class LinearAdapter {
   std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeSolver> solver_;
 };
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -24,7 +24,7 @@
 
 /// Ownership and return codes of SUNDIALS in one place. Everything that differs between
 /// 6.4 and 7.x stands below; the rest of this folder is written for both.
-namespace tress {
+namespace tress::integrators {
 
 /// What a callback answers: 0, try a smaller step (+1), give up (-1).
 constexpr int sundials_code(Status status) noexcept {
@@ -172,4 +172,4 @@ inline std::string code_name(char* (*name_of)(long int), int code) {
   return text == nullptr ? "code " + std::to_string(code) : std::string(text.get());
 }
 
-}  // namespace tress
+}  // namespace tress::integrators

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr std::size_t width = Pack::lanes;
@@ -113,4 +113,4 @@ PackedStrands packed(std::span<const Strand> all_strands, Unknown unknown,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "models/reduced/reduced_strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Up to four strands, one in each lane; lanes without one hold the first again.
 struct PackedStrands {
@@ -24,4 +24,4 @@ ReducedOptions with_same_points(std::span<const Strand> strands, Unknown unknown
 PackedStrands packed(std::span<const Strand> strands, Unknown unknown,
                      const ReducedOptions& options, std::vector<Effects> effects);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// `alone` makes one strand; `PlanarKernel` is that of one unknown a segment.
@@ -59,4 +59,4 @@ std::unique_ptr<System> force_transport_batch(std::span<const Strand> strands,
       strands, Unknown::joint_angle, options, std::move(effects), force_transport);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/transport_sweeps.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The equations of ReducedSystem with the stiff tangent, solved recursively; of four
 /// strands where the kernel's numbers are packs.
@@ -152,4 +152,4 @@ class ReducedBatch final : public StrandBlock {
   std::vector<Pack> q_, v_, a_, zero_, r_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tress {
+namespace tress::models {
 
 StrandBlock::StrandBlock(std::vector<std::unique_ptr<System>> strands)
     : strands_(std::move(strands)),
@@ -107,4 +107,4 @@ bool StrandBlock::stretch(double t, In q, double& relative) {
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Strands of equally many unknowns as one system: coordinates, material points, energy
 /// and power are those of the strands, one after the other. Derived classes bring the
@@ -58,4 +58,4 @@ class StrandBlock : public System,
   int points_;  // of each strand
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr double least_angle = 1e-3;  // rad; C loses digits like 1/sin(theta0)
@@ -129,4 +129,4 @@ std::unique_ptr<Constraint> rigid_triangle(Node a, Node b, Node c,
   return std::make_unique<Module<Triangle>>(std::array{a, b, c}, Triangle{edges});
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/constrained/constraint.h"
 #include "models/constrained/joints.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Fixed angle theta0 at b between u = a - b and v = c - b:
 ///     C = (cos theta0 - cos theta) / sin theta0,   cos theta = u.v / (|u| |v|),
@@ -58,4 +58,4 @@ std::unique_ptr<Constraint> angle(Node a, Node vertex, Node c, double theta);
 std::unique_ptr<Constraint> rigid_triangle(Node a, Node b, Node c,
                                            std::array<double, 3> edges);
 
-}  // namespace tress
+}  // namespace tress::models

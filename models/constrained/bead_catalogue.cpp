@@ -7,7 +7,7 @@
 #include "models/constrained/on_curve.h"
 #include "models/effects/gravity.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter declared[] = {
@@ -129,4 +129,4 @@ std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters) {
   return std::make_unique<BeadOnWire>(std::move(setup), std::move(scene.effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Where the bead is; x, u and tangent are what effects see.
 struct BeadOnWire::State {
@@ -152,4 +152,4 @@ void BeadOnWire::velocities(double, In q, In v, Out u) {
   store3(v[0] * setup_.curve->at(q[0]).d1, &u[0]);
 }
 
-}  // namespace tress
+}  // namespace tress::models

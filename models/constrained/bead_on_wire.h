@@ -9,7 +9,7 @@
 #include "models/constrained/particles.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A bead of mass m on a wire x = c(s), the parametric form: one coordinate s, no
 /// constraint (its violation is zero because no g exists),
@@ -80,4 +80,4 @@ class BeadOnWire final : public System,
 std::span<const Parameter> bead_on_wire_parameters();
 std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

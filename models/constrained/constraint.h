@@ -6,7 +6,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What a constraint is attached to: a particle (3 coordinates), a massless parameter
 /// (1 coordinate) or an anchor (3 numbers prescribed in time, no coordinates).
@@ -121,4 +121,4 @@ struct Difference {
   }
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/input_error.h"
 #include "linear/sparse_pattern.h"
 
-namespace tress {
+namespace tress::models {
 
 /// One module's inputs and results, on the stack.
 struct ConstraintSet::Local {
@@ -290,4 +290,4 @@ Status ConstraintSet::add_curvature(double t, In q, In lambda, double factor,
   return Status::ok;
 }
 
-}  // namespace tress
+}  // namespace tress::models

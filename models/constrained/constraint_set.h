@@ -6,7 +6,7 @@
 #include "models/constrained/constraint.h"
 #include "models/constrained/curve.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A point whose place is prescribed: fixed at x, or moving as `motion` says (then x
 /// unused).
@@ -79,4 +79,4 @@ class ConstraintSet final : public ConstraintForm {
   std::vector<double> place_, velocity_, acceleration_;  // (3 anchors)
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace tress {
+namespace tress::models {
 
 CurvePoint FourierCurve::at(double s) const noexcept {
   const double rate = shape_.rate;
@@ -56,4 +56,4 @@ std::unique_ptr<FourierCurve> orbit(Vec centre, Vec a, Vec b, double frequency_h
   return std::make_unique<FourierCurve>(std::move(shape));
 }
 
-}  // namespace tress
+}  // namespace tress::models

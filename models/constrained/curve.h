@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "contract/layers.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Position (m) and its first three derivatives by the curve's parameter.
 struct CurvePoint {
@@ -70,4 +71,4 @@ std::unique_ptr<FourierCurve> shake(Vec centre, Vec amplitude, double frequency_
 /// centre + a cos(2 pi f t) + b sin(2 pi f t).
 std::unique_ptr<FourierCurve> orbit(Vec centre, Vec a, Vec b, double frequency_hz);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter declared[] = {
@@ -118,4 +118,4 @@ std::unique_ptr<System> make_inextensible_chain(const Parameters& parameters) {
   return std::make_unique<ParticleSystem>(inextensible_chain(shape));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "models/constrained/particles.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A hanging strand of n rigid massless links of length L/n with point masses m/n at
 /// their ends, as particles and distance constraints.
@@ -39,4 +39,4 @@ void spin_about_z(ParticleScene& scene, double spin);
 std::span<const Parameter> inextensible_chain_parameters();
 std::unique_ptr<System> make_inextensible_chain(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 
 void Coincidence::gradient(const double*, double* g) const {
   std::fill_n(g, 9, 0.0);
@@ -84,4 +84,4 @@ std::unique_ptr<Constraint> point_on_plane(Node x, Node origin, Vec normal) {
                                           Kernel{{(1 / size) * normal}});
 }
 
-}  // namespace tress
+}  // namespace tress::models

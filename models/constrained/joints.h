@@ -3,7 +3,7 @@
 #include "math/vec3.h"
 #include "models/constrained/constraint.h"
 
-namespace tress {
+namespace tress::models {
 
 /// C = d (3 rows, m).
 struct Coincidence {
@@ -77,4 +77,4 @@ std::unique_ptr<Constraint> across(Node x, Node vertex, Node c, double length);
 /// normal.(x - origin) = 0; the normal is normalised here.
 std::unique_ptr<Constraint> point_on_plane(Node x, Node origin, Vec normal);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr double alignment = 1e-9;  // relative error of a frame given by the caller
@@ -106,4 +106,4 @@ std::unique_ptr<Constraint> point_on_curve(Node x, Node parameter,
                                            OnCurve{std::move(curve)});
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/constrained/constraint.h"
 #include "models/constrained/curve.h"
 
-namespace tress {
+namespace tress::models {
 
 /// On the ellipse of semi-axes a, b along unit vectors e1, e2 (2 rows, m):
 ///     C1 = sqrt(ab)/2 ((y1/a)^2 + (y2/b)^2 - 1),   C2 = y3,   y_i = e_i.d, e3 = e1 x e2.
@@ -76,4 +76,4 @@ std::unique_ptr<Constraint> point_on_helix(Node x, Node centre, Vec a, Vec b, Ve
 std::unique_ptr<Constraint> point_on_curve(Node x, Node parameter,
                                            std::shared_ptr<const Curve> curve);
 
-}  // namespace tress
+}  // namespace tress::models

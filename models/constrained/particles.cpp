@@ -9,7 +9,7 @@
 #include "linear/sparse_pattern.h"
 #include "models/strand/not_finite.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr double consistency = 1e-9;  // relative error allowed in an initial state
@@ -308,4 +308,4 @@ void ParticleSystem::velocities(double, In, In v, Out u) {
   std::copy_n(v.begin(), 3 * particles_, u.begin());
 }
 
-}  // namespace tress
+}  // namespace tress::models

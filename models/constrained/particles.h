@@ -6,7 +6,7 @@
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What a particle system is made of; built on the fly, e.g. a two-link pendulum:
 ///
@@ -113,4 +113,4 @@ class ParticleSystem final : public System,
   std::vector<double> inverse_;  // (9 particles)
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -12,7 +12,7 @@
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr std::string_view structure_names[] = {"chain", "ring", "net", "tree", "truss"};
@@ -206,4 +206,4 @@ std::unique_ptr<System> make_tinkertoys(const Parameters& parameters) {
   return std::make_unique<ParticleSystem>(tinkertoys(shape));
 }
 
-}  // namespace tress
+}  // namespace tress::models

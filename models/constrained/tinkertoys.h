@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "models/constrained/particles.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Structures made of particles and modular constraints, each of one `size` s, at rest or
 /// spinning rigidly about the vertical through the origin.
@@ -40,4 +40,4 @@ ParticleScene tinkertoys(const ToyShape& shape);
 std::span<const Parameter> tinkertoys_parameters();
 std::unique_ptr<System> make_tinkertoys(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

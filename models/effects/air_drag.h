@@ -8,7 +8,7 @@
 #include "models/effects/effect.h"
 #include "models/effects/wind_field.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Force of air that moves with w(t, x) on a strand, by any law of air_law.h in any field
 /// of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All of its work is
@@ -133,4 +133,4 @@ std::unique_ptr<const Effect> with_anisotropic_law(const Parameters& parameters,
   return make(AnisotropicAirLaw<SquareDrag>{normal, tangential});
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -9,7 +9,7 @@
 /// it. `slope` is dforce/du at a fixed tangent, `by_tangent` dforce/dt at a fixed u. A
 /// law says whether it looks at the tangent and whether u counts the velocity of the
 /// point or only that of the air.
-namespace tress {
+namespace tress::models {
 
 /// -nu l u, nu in kg/(m s).
 struct LinearAirLaw {
@@ -110,4 +110,4 @@ struct AnisotropicAirLaw {
   }
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_body[] = {
@@ -292,4 +292,4 @@ std::optional<double> Body::penetration(double t, In x) const {
   return deepest;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -10,7 +10,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> body_parameters();
 
@@ -67,4 +67,4 @@ class Body final : public Effect {
 std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                                         const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/layers.h"
 #include "math/mat3.h"
 #include "models/effects/body_shapes.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Penalty contact with friction, per length of strand. With the signed distance phi of
 /// the centre line, g = grad phi, n = g/|g|, the depth d = offset - phi > 0 and the
@@ -102,4 +103,4 @@ struct BodyContact {
   };
 };
 
-}  // namespace tress
+}  // namespace tress::models

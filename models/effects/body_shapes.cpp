@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The distance from a point, and upwards at the point itself.
@@ -105,4 +105,4 @@ Mat3 Ellipsoid::curvature(const Vec& x) const {
   return (1 / denominator) * (shape + (y.phi * gauss) * across);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/mat3.h"
 
 /// Surfaces of bodies in their own frames, by the signed distance phi(x) from them (m,
 /// < 0 inside), its gradient (of length 1) and its second derivatives. All are finite
 /// everywhere: where the nearest point is not unique (centre, axis) one is taken.
-namespace tress {
+namespace tress::models {
 
 struct Distance {
   double value = 0;  // m
@@ -63,4 +64,4 @@ class Ellipsoid {
   Vec a_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -14,7 +14,7 @@
 #include "models/effects/tether.h"
 #include "models/effects/wind.h"
 
-namespace tress {
+namespace tress::models {
 
 // clang-format off
 std::span<const EffectEntry> effects() {
@@ -45,4 +45,4 @@ const EffectEntry& find_effect(std::string_view id, const std::string& where) {
                    suggestion(id, ids, "use one of: " + all));
 }
 
-}  // namespace tress
+}  // namespace tress::models

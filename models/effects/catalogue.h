@@ -7,7 +7,7 @@
 #include "contract/parameters.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::models {
 
 struct RootMotion;
 
@@ -28,4 +28,4 @@ std::span<const EffectEntry> effects();
 /// Throws InputError naming `where` and the nearest id when there is no such effect.
 const EffectEntry& find_effect(std::string_view id, const std::string& where);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_force[] = {{.name = "force_n_m",
@@ -56,4 +56,4 @@ double ConstantForce::potential(double, const Points& p) const noexcept {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> constant_force_parameters();
 
@@ -38,4 +38,4 @@ class ConstantForce final : public Effect {
 std::unique_ptr<const Effect> make_constant_force(const Parameters& parameters,
                                                   const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_contact[] = {
@@ -98,4 +98,4 @@ double ContactLaw::potential(const Vec& d) const noexcept {
   return law_.stiffness / 2 * depth * depth;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,10 +4,11 @@
 #include <span>
 #include <string>
 
+#include "contract/layers.h"
 #include "contract/parameters.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What two strands do to each other per length (N/m), over the gap d from the other
 /// strand's nearest point and the velocity u against it:
@@ -61,4 +62,4 @@ class ContactLaw {
 /// The table entries that give a ContactLaw.
 std::span<const Parameter> contact_parameters();
 
-}  // namespace tress
+}  // namespace tress::models

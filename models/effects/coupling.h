@@ -3,9 +3,10 @@
 #include <array>
 #include <cstddef>
 
+#include "contract/layers.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What the loads of one contact on its four points owe to the places and velocities of
 /// all four,
@@ -37,4 +38,4 @@ struct Coupling {
   }
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include "linear/sparse_pattern.h"
 
-namespace tress {
+namespace tress::models {
 
 void CouplingColumns::add(const FourPoints& contact) {
   std::vector<int> all;
@@ -50,4 +50,4 @@ void add_coupling(const Pattern& pattern, const std::vector<MaterialPoints::Mean
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "contract/system.h"
 #include "models/effects/coupling.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Numbers of the four points of a contact.
 using FourPoints = std::array<std::size_t, 4>;
@@ -30,4 +30,4 @@ class CouplingColumns {
 void add_coupling(const Pattern& pattern, const std::vector<MaterialPoints::Mean>& means,
                   const Coupling& contact, double pos, double vel, InOut values) noexcept;
 
-}  // namespace tress
+}  // namespace tress::models

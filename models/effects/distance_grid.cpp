@@ -10,7 +10,7 @@
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr std::size_t most_points = 20'000'000;
@@ -213,4 +213,4 @@ DistanceGrid read_distance_grid(const std::string& file) {
   return DistanceGrid(std::move(s), file);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 
 #include "models/effects/body_shapes.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A signed distance sampled at the points of a regular grid, interpolated by cubic
 /// convolution in each direction [Keys 1981, IEEE Trans. ASSP 29(6), eq. 15]: once
@@ -50,4 +50,4 @@ class DistanceGrid {
 /// Throws InputError with the file and line.
 DistanceGrid read_distance_grid(const std::string& file);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -10,7 +10,7 @@
 #include "math/vec3.h"
 #include "models/effects/coupling.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The material points that an effect acts on; spans an effect does not need may be
 /// empty.
@@ -95,4 +95,4 @@ inline Needs needs(const Effects& effects) {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::models

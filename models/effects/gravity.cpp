@@ -4,7 +4,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_gravity[] = {{.name = "acceleration_m_s2",
@@ -45,4 +45,4 @@ double Gravity::potential(double, const Points& p) const noexcept {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::models

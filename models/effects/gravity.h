@@ -5,7 +5,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 /// How every model's catalogue entry asks for its strength.
 inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
@@ -39,4 +39,4 @@ class Gravity final : public Effect {
 std::unique_ptr<const Effect> make_gravity(const Parameters& parameters,
                                            const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

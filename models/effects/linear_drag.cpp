@@ -5,7 +5,7 @@
 #include "contract/input_error.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_drag[] = {
@@ -67,4 +67,4 @@ double LinearDrag::power(double, const Points& p) const noexcept {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> linear_drag_parameters();
 
@@ -37,4 +37,4 @@ class LinearDrag final : public Effect {
 std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
                                                const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

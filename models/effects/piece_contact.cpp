@@ -1,6 +1,6 @@
 #include "models/effects/piece_contact.h"
 
-namespace tress {
+namespace tress::models {
 
 PieceContact::PieceContact(const Points& x, const Points& v, double sigma, double at,
                            double length)
@@ -44,4 +44,4 @@ Coupling PieceContact::coupling(const ContactLaw& law,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "models/effects/contact_law.h"
 #include "models/effects/coupling.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A sample of one straight piece, (1 - sigma) x_0 + sigma x_1, against the nearest point
 /// of another, (1 - s) x_2 + s x_3, by the law's force per length times `length`. With
@@ -51,4 +51,4 @@ class PieceContact {
   std::array<Vec, 4> s_by_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include "models/effects/air_drag.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_quadratic_drag[] = {
@@ -24,4 +24,4 @@ std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
       });
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> quadratic_drag_parameters();
 
@@ -16,4 +16,4 @@ std::span<const Parameter> quadratic_drag_parameters();
 std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
                                                   const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr double margin = 0.5;  // of the reach
@@ -109,4 +109,4 @@ void SegmentGrid::mark(const StraightPiece& piece, int segment) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "contract/system.h"
 #include "math/closest.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Broad phase: which segments of many polylines may lie within `reach` of a point. A
 /// uniform grid, its cells in a hash table [Teschner et al. 2003]; a segment stands in
@@ -90,4 +90,4 @@ inline SegmentGrid::Cell SegmentGrid::cell(const Vec& x) const noexcept {
   return {index(x.x), index(x.y), index(x.z)};
 }
 
-}  // namespace tress
+}  // namespace tress::models

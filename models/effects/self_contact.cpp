@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 const std::string where = "effects.self_contact";
@@ -183,4 +183,4 @@ double SelfContact::power(double, const Points& p) const noexcept {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -9,7 +9,7 @@
 #include "models/effects/piece_contact.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> self_contact_parameters();
 
@@ -67,4 +67,4 @@ class SelfContact final : public Effect {
 std::unique_ptr<const Effect> make_self_contact(const Parameters& parameters,
                                                 const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -9,7 +9,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 const std::string where_interaction = "effects.strand_interaction";
@@ -231,4 +231,4 @@ double StrandInteraction::mean_distance() const {
   return sum / total;
 }
 
-}  // namespace tress
+}  // namespace tress::models

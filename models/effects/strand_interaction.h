@@ -9,7 +9,7 @@
 #include "models/effects/effect.h"
 #include "models/effects/segment_grid.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The table [effects.strand_interaction] of a scene: `coupling` and the contact law.
 std::span<const Parameter> strand_interaction_parameters();
@@ -78,4 +78,4 @@ class StrandInteraction {
   long updates_ = 0;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "math/mat3.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -191,4 +191,4 @@ double Tether::power(double t, const Points& p) const noexcept {
          strength_rate(t) * energy(d);
 }
 
-}  // namespace tress
+}  // namespace tress::models

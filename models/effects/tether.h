@@ -5,7 +5,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> tether_parameters();
 
@@ -65,4 +65,4 @@ class Tether final : public Effect {
 std::unique_ptr<const Effect> make_tether(const Parameters& parameters,
                                           const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include "contract/input_error.h"
 #include "models/effects/air_drag.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_wind[] = {
@@ -108,4 +108,4 @@ std::unique_ptr<const Effect> make_wind(const Parameters& parameters, const Root
   return in_wind(LinearAirLaw{parameters.number("nu_kg_m_s")}, parameters);
 }
 
-}  // namespace tress
+}  // namespace tress::models

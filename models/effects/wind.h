@@ -7,7 +7,7 @@
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 std::span<const Parameter> wind_parameters();
 
@@ -19,4 +19,4 @@ std::span<const Parameter> wind_parameters();
 std::unique_ptr<const Effect> make_wind(const Parameters& parameters,
                                         const RootMotion& head);
 
-}  // namespace tress
+}  // namespace tress::models

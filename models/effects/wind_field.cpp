@@ -2,7 +2,7 @@
 
 #include <random>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -69,4 +69,4 @@ Mat3 Gusts::gradient(double t, const Vec& x) const {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::models

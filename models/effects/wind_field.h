@@ -5,11 +5,12 @@
 #include <numbers>
 #include <vector>
 
+#include "contract/layers.h"
 #include "math/mat3.h"
 
 /// Velocity fields of the air, w(t, x) in m/s. at(t) is the flow at one instant;
 /// a uniform flow never looks at x.
-namespace tress {
+namespace tress::models {
 
 struct UniformFlow {
   static constexpr bool uniform = true;
@@ -88,4 +89,4 @@ class Gusts {
   std::vector<Wave> waves_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

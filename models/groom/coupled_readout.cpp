@@ -3,7 +3,7 @@
 
 #include "models/groom/coupled_strands.h"
 
-namespace tress {
+namespace tress::models {
 
 std::string CoupledStrands::not_finite(double t, In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) {
@@ -108,4 +108,4 @@ bool CoupledStrands::mean(int point, Mean& mean) {
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "linear/finite.h"
 #include "models/effects/coupling_pattern.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 const std::string where_monolithic = "effects.strand_interaction, coupling = monolithic";
@@ -221,4 +221,4 @@ void CoupledStrands::recall(In memory) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -9,7 +9,7 @@
 #include "linear/linear_solver.h"
 #include "models/groom/strand_contacts.h"
 
-namespace tress {
+namespace tress::models {
 
 /// All strands of a scene as one System, coupling = monolithic: q, v and r are those of
 /// the strands one after the other, and
@@ -95,4 +95,4 @@ class CoupledStrands final : public System, private Energetics, private Material
   bool uncoupled_ = false;  // factored: each strand's own mass
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr double margin = 0.5;  // of the reach: pairs may come so much nearer
@@ -59,4 +59,4 @@ bool StrandContacts::renew(In x) {
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::models

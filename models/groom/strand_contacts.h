@@ -8,7 +8,7 @@
 #include "models/effects/piece_contact.h"
 #include "models/effects/segment_grid.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Contacts between the polylines of many strands, both ways: samples stand on every
 /// segment, at first no farther apart than half the inner radius, and each meets the
@@ -99,4 +99,4 @@ void StrandContacts::each_contact(In x, In v, F of_contact) const {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "linear/finite.h"
 
-namespace tress {
+namespace tress::models {
 
 Status CoupledSolver::factor(In values, const std::vector<Coupling>& contacts,
                              Weights w) {
@@ -43,4 +43,4 @@ void CoupledSolver::build() {
   solver_ = make_linear_solver(LinearKind::klu, matrix_->pattern());
 }
 
-}  // namespace tress
+}  // namespace tress::models

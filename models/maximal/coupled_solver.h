@@ -7,7 +7,7 @@
 #include "linear/linear_solver.h"
 #include "models/effects/coupling_pattern.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Solves with a matrix of fixed pattern and what contacts add between distant points, by
 /// KLU. The pattern follows the contacts: where other points touch than before, factor()
@@ -36,4 +36,4 @@ class CoupledSolver {
   std::unique_ptr<LinearSolver> solver_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

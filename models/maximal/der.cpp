@@ -5,7 +5,7 @@
 #include "models/maximal/nodal_strand.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 
 std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
                             Effects effects) {
@@ -66,4 +66,4 @@ std::unique_ptr<System> make_der(const Strand& strand, const Parameters& paramet
   return der(strand, options, std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

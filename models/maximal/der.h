@@ -8,7 +8,7 @@
 #include "models/maximal/maximal_system.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Discrete elastic rod [Bergou et al. 2008, 2010]: n edges between nodes x_i, an angle
 /// theta per edge for its material frame. With integrated strains kappa (twist and two
@@ -51,4 +51,4 @@ std::span<const Parameter> der_parameters();
 std::unique_ptr<System> make_der(const Strand& strand, const Parameters& parameters,
                                  Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
@@ -348,4 +348,4 @@ void DerElasticity::recall(In memory) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/maximal/rod_edge.h"
 #include "models/maximal/rod_joint.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Stretching, bending and twisting of a discrete rod (der.h), coordinates z = (x_0, ...,
 /// x_n, theta_0, ..., theta_{n-1}).
@@ -81,4 +81,4 @@ class DerElasticity final : public Elasticity {
   bool placed_ = false;  // at these, with the present references
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "models/maximal/groups.h"
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A strand of redundant coordinates as its internal forces see it: all coordinates
 /// z = [held; q], those that the clamp prescribes first, their rates, and the clamp.
@@ -59,4 +59,4 @@ class Elasticity {
   virtual StrainForm* strain_form() { return nullptr; }
 };
 
-}  // namespace tress
+}  // namespace tress::models

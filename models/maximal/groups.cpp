@@ -2,7 +2,7 @@
 
 #include "linear/sparse_pattern.h"
 
-namespace tress {
+namespace tress::models {
 
 Groups::Groups(const std::vector<std::vector<int>>& groups, int held) : held_(held) {
   for (const std::vector<int>& group : groups) {
@@ -36,4 +36,4 @@ void Groups::bind(const Pattern& pattern) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "math/pack.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Which entries of a sparse symmetric-pattern matrix square matrices over groups of
 /// coordinates touch. Coordinates below `held` are prescribed: their rows and columns are
@@ -69,4 +69,4 @@ class GroupSum {
   Out values_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,10 +2,11 @@
 
 #include <cmath>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "math/pack.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Bending and twisting between two neighbouring frames (e0 the tangent) of a discrete
 /// rod, integrated over the joint (rad): twist, curvature about e1, curvature about e2.
@@ -133,4 +134,4 @@ struct JointStrain {
   Vec twist, curvature1, curvature2;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/maximal/nodal_system.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The vector of Cayley's map that turns one frame into the other: 2 tan(angle/2) along
@@ -81,4 +81,4 @@ std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
                          std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

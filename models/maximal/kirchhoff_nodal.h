@@ -8,7 +8,7 @@
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Kirchhoff's equations of an inextensible rod by finite differences, in the variables
 /// of [Hou, Klapper, Si 1998]: material curvatures and twist (1/m) of n nodes. With the
@@ -73,4 +73,4 @@ std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
                                              const Parameters& parameters,
                                              Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/maximal/rod_joint.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using Bending = MassSpringOptions::Bending;
@@ -178,4 +178,4 @@ std::unique_ptr<System> make_inextensible_strand(const Strand& strand,
   return mass_spring(strand, "inextensible_strand", options, std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -10,7 +10,7 @@
 #include "models/maximal/spring_elasticity.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A strand of point masses at the segments' ends and springs between them [Rosenblum,
 /// Carlson & Tripp 1991]. With edges e of rest length l:
@@ -77,4 +77,4 @@ std::unique_ptr<System> make_inextensible_strand(const Strand& strand,
                                                  const Parameters& parameters,
                                                  Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

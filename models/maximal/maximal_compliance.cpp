@@ -4,7 +4,7 @@
 #include "linear/finite.h"
 #include "models/maximal/maximal_system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Every mass point is a node of its own.
 bool MaximalSystem::diagonal_mass() const {
@@ -66,4 +66,4 @@ void MaximalSystem::evaluate(double t, std::size_t k, In x, Value& value) noexce
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

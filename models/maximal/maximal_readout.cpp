@@ -7,7 +7,7 @@
 #include "models/maximal/maximal_system.h"
 #include "models/strand/not_finite.h"
 
-namespace tress {
+namespace tress::models {
 
 Energy MaximalSystem::energy(double t, In q, In v) {
   place(t, q, v);
@@ -154,4 +154,4 @@ std::string MaximalSystem::not_finite(double t, In q, In v) {
                      });
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "linear/finite.h"
 #include "linear/sparse_pattern.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 std::vector<int> coordinates_of(const NodeMean& mean) {
@@ -277,4 +277,4 @@ Status MaximalSystem::acceleration(double t, In q, In v, Out a) noexcept {
   return mass_solver_->solve(a);
 }
 
-}  // namespace tress
+}  // namespace tress::models

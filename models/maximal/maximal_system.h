@@ -13,7 +13,7 @@
 #include "models/maximal/elasticity.h"
 #include "models/maximal/point_directions.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What a strand of redundant coordinates is made of. All coordinates are
 /// z = (x_0, ..., x_n, others): nodes' positions (m), then what the model adds (angles,
@@ -144,4 +144,4 @@ class MaximalSystem final : public System,
   std::vector<std::size_t> prescribed_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

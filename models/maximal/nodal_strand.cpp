@@ -7,7 +7,7 @@
 #include "models/constrained/joints.h"
 #include "models/maximal/rod_edge.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The path of a point fixed to the root's frame, as constraints want it.
@@ -135,4 +135,4 @@ LinearKind maximal_solver(const Parameters& parameters) {
   return word == "klu" ? LinearKind::klu : LinearKind::automatic;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/strand/geometry.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Where the root, clamped or free, is at t = 0 and how it moves there. The strand starts
 /// as a rigid body with it.
@@ -57,4 +57,4 @@ inline constexpr Parameter maximal_solver_parameter{
     .choices = "auto|banded|klu"};
 LinearKind maximal_solver(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "linear/sparse_pattern.h"
 #include "models/strand/not_finite.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// A fourth difference couples a joint with two on either side.
@@ -307,4 +307,4 @@ std::string NodalSystem::not_finite(double t, In q, In v) {
                      });
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "models/effects/effect.h"
 #include "models/maximal/staggered_rod.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What the system of kirchhoff_nodal.h is made of.
 struct NodalParts {
@@ -85,4 +85,4 @@ class NodalSystem final : public System,
   std::unique_ptr<LinearSolver> solver_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

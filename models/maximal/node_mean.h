@@ -5,7 +5,7 @@
 #include "contract/system.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A point of the strand as the weighted mean of up to four consecutive nodes.
 struct NodeMean {
@@ -23,4 +23,4 @@ struct NodeMean {
   }
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "math/mat3.h"
 
-namespace tress {
+namespace tress::models {
 
 PointDirections::PointDirections(std::vector<NodeMean> points, int held)
     : points_(std::move(points)), groups_(groups(), held) {}
@@ -60,4 +60,4 @@ void PointDirections::add_tangent(In x, In t, In blocks, Out s) const {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "models/maximal/groups.h"
 #include "models/maximal/node_mean.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Unit tangents of a strand at its mass points, t_i = d/|d| with d from the point before
 /// to the one behind, at the ends from or to the point itself, and what their derivatives
@@ -38,4 +38,4 @@ class PointDirections {
       groups_;  // of each point, from the first node of `before` to the last of `behind`
 };
 
-}  // namespace tress
+}  // namespace tress::models

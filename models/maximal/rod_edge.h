@@ -3,10 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "math/pack.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Material frame of the edge e (m) of a discrete rod at angle theta from its reference
 /// direction: with a = reference.e0 and t = e/|e|, the reference is turned from a to t on
@@ -103,4 +104,4 @@ inline bool renew_reference(Frame& reference, const Vec& e, const Vec& de, doubl
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::models

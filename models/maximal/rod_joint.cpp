@@ -1,6 +1,6 @@
 #include "models/maximal/rod_joint.h"
 
-namespace tress {
+namespace tress::models {
 
 RodJoint rod_joint(const Material& material, const Segment* before, const Segment& after,
                    const Vec& rest) {
@@ -13,4 +13,4 @@ RodJoint rod_joint(const Material& material, const Segment* before, const Segmen
   return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Bending and twisting between two neighbouring segments of a discrete rod, a length l
 /// apart, in integrated strains (twist, curvature about e1, curvature about e2):
@@ -31,4 +32,4 @@ void to_nodes(const double (&h)[3 + others][3 + others],
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 template <class Strain>
@@ -238,4 +238,4 @@ void SpringElasticity::strain(std::size_t k, const RootPose& root, const double*
   });
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "models/maximal/elasticity.h"
 #include "models/maximal/spring_strain.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Energy k (s - rest)^2/2 and friction c s' of a strain s (spring_strain.h) over
 /// neighbouring edges.
@@ -57,4 +57,4 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   std::vector<std::size_t> along_;  // numbers of all springs, from the root to the tip
 };
 
-}  // namespace tress
+}  // namespace tress::models

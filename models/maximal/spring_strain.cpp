@@ -1,6 +1,6 @@
 #include "models/maximal/spring_strain.h"
 
-namespace tress {
+namespace tress::models {
 
 Hinge::Parts::Parts(const Vec* e)
     : length{std::sqrt(dot(e[0], e[0])), std::sqrt(dot(e[1], e[1]))},
@@ -133,4 +133,4 @@ void WallBend::hessian(const Vec* e, EdgeMatrix<1>& h) const {
   h.add_product(kappa / (w * length), &direction, &direction);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 
 /// What the springs of a chain of points measure, each a function of neighbouring edges e
@@ -9,7 +10,7 @@
 /// derivatives, written out. A strain that is the length of a vector b also has `metric`,
 /// J^T J with J = db/de, which is what is left of the second derivative of |b|^2/2
 /// without that of b.
-namespace tress {
+namespace tress::models {
 
 /// A matrix over edges, row-major in blocks of 3 x 3.
 template <int edges>
@@ -179,4 +180,4 @@ struct WallBend {
   void hessian(const Vec* e, EdgeMatrix<1>& h) const;
 };
 
-}  // namespace tress
+}  // namespace tress::models

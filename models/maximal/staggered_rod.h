@@ -5,7 +5,7 @@
 
 #include "models/maximal/rod_joint.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A clamped rod cut for kirchhoff_nodal.h: n edges between the nodes 0 (at the clamp) to
 /// n; joint j turns edge j from edge j - 1, joint 0 from the clamp.
@@ -218,4 +218,4 @@ void StaggeredMotion<T>::accelerate(const StaggeredRod& rod, const RootPose& roo
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

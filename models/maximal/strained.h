@@ -14,7 +14,7 @@
 ///     /// h += sum_k stress_k d^2 s_k/dx^2
 ///     void add_second(const double* x, const double* stress,
 ///                     double (&h)[coordinates][coordinates]) const;
-namespace tress {
+namespace tress::models {
 
 /// sum k s^2/2.
 template <class Part, class T>
@@ -101,4 +101,4 @@ ComplianceForm::Block strain_block(const Part& part, std::vector<int> coordinate
   return block;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "contract/input_error.h"
 #include "models/motion/signals.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// Times, values and second derivatives at the knots of a cubic spline.
@@ -108,4 +108,4 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
   };
 }
 
-}  // namespace tress
+}  // namespace tress::models

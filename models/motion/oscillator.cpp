@@ -4,7 +4,7 @@
 #include "contract/input_error.h"
 #include "models/motion/signals.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The two solutions of y'' + d2 y = 0 with (y, y') = (1, 0) and (0, 1) at t = 0; their
@@ -71,4 +71,4 @@ Signal driven_oscillator(const Oscillator& body, double t0) {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::models

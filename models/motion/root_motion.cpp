@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -117,4 +117,4 @@ void check(const RootMotion& motion, const std::string& where) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A twice differentiable function of time at one instant.
 struct SignalValue {
@@ -71,4 +72,4 @@ struct RootMotion {
 /// part has a signal and all numbers are finite.
 void check(const RootMotion& motion, const std::string& where);
 
-}  // namespace tress
+}  // namespace tress::models

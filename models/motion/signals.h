@@ -4,7 +4,7 @@
 
 #include "models/motion/root_motion.h"
 
-namespace tress {
+namespace tress::models {
 
 /// To `height` in `duration` from t = 0 on, and back in another: two smooth_steps.
 Signal there_and_back(double height, double duration);
@@ -36,4 +36,4 @@ Signal driven_oscillator(const Oscillator& body, double t0);
 /// rest adds at either end, x' = x'' = 0. Throws InputError on other times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "models/published/dense_system.h"
 #include "models/published/loop_closure.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 enum Coordinate { beta, theta, gamma_, phi, delta, omega, epsilon, coordinates };
@@ -179,4 +179,4 @@ std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters) {
   return std::make_unique<AndrewsSqueezer>(tangent_choice(parameters));
 }
 
-}  // namespace tress
+}  // namespace tress::models

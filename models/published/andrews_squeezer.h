@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Andrews' squeezing mechanism: seven planar bodies, a spring, and a drive of constant
 /// torque, closed by three loops that meet in one moving joint.
@@ -21,4 +21,4 @@ namespace tress {
 std::span<const Parameter> andrews_squeezer_parameters();
 std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -9,7 +9,7 @@
 #include "contract/tangent_choice.h"
 #include "math/banded_lu.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 struct Vec2 {
@@ -246,4 +246,4 @@ std::unique_ptr<System> make_beam(const Parameters& p) {
   return std::make_unique<Beam>(p.whole("segments"), p.number("load"), tangent_choice(p));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The Beam problem: an inextensible elastic rod (length 1 m, mass 1 kg/m, bending
 /// stiffness 1 N m^2) of n straight segments, clamped at one end, pushed at the free end
@@ -29,4 +29,4 @@ namespace tress {
 std::span<const Parameter> beam_parameters();
 std::unique_ptr<System> make_beam(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

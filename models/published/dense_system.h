@@ -7,7 +7,7 @@
 #include "contract/system.h"
 #include "math/dual.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Base of systems with a handful of coordinates: S(w) is a full n x n matrix. The kernel
 /// states the mechanics once, for any scalar:
@@ -115,4 +115,4 @@ class DenseSystem : public System, public SparseForm {
   Eigen::PartialPivLU<Matrix> lu_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

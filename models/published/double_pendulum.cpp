@@ -7,7 +7,7 @@
 
 #include "models/published/dense_system.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 struct Pendulum {
@@ -129,4 +129,4 @@ std::unique_ptr<System> make_double_pendulum(const Parameters& p) {
       std::array<double, 2>{p.number("angle_1"), p.number("angle_2")});
 }
 
-}  // namespace tress
+}  // namespace tress::models

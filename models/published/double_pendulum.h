@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Double pendulum: two point masses on massless rods in the plane, angles q = (theta_1,
 /// theta_2) in rad from the downward vertical, no constraints, no damping:
@@ -20,4 +20,4 @@ namespace tress {
 std::span<const Parameter> double_pendulum_parameters();
 std::unique_ptr<System> make_double_pendulum(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 // Any per-coordinate vector summed as the term's angle is.
@@ -120,4 +120,4 @@ Status LoopClosure::add_curvature(double, In q, In lambda, double factor,
   return Status::ok;
 }
 
-}  // namespace tress
+}  // namespace tress::models

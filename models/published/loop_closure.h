@@ -5,7 +5,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// One link of a planar loop: length * trig(angle), its angle q_i or q_i + q_j.
 struct LoopTerm {
@@ -51,4 +51,4 @@ class LoopClosure final : public ConstraintForm {
   Pattern pattern_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

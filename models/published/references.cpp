@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr std::array<double, 7> squeezer_q = {
@@ -98,4 +98,4 @@ const PublishedEnd* published_end(std::string_view model) {
   return nullptr;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// State at the end time of a published problem, at its default parameters (SI).
 ///
@@ -34,4 +34,4 @@ struct PublishedEnd {
 /// The published end state of a model, null when there is none.
 const PublishedEnd* published_end(std::string_view model);
 
-}  // namespace tress
+}  // namespace tress::models

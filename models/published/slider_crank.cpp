@@ -8,7 +8,7 @@
 #include "contract/tangent_choice.h"
 #include "models/published/dense_system.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr int modes = 4;
@@ -256,4 +256,4 @@ std::unique_ptr<System> make_slider_crank(const Parameters& p) {
       p.word("start") == "rigid" ? Start::rigid : Start::smooth, tangent_choice(p));
 }
 
-}  // namespace tress
+}  // namespace tress::models

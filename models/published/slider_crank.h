@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Slider crank whose connecting rod is flexible: crank driven at constant angular
 /// velocity, rod with two lateral sine modes and two longitudinal quadratic modes,
@@ -29,4 +29,4 @@ namespace tress {
 std::span<const Parameter> slider_crank_parameters();
 std::unique_ptr<System> make_slider_crank(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

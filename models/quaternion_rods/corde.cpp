@@ -7,7 +7,7 @@
 #include "models/quaternion_rods/quaternion_rod.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 CordeEdge edge(const Material& material, const Segment& segment,
@@ -60,4 +60,4 @@ std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& param
                std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

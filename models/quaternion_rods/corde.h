@@ -8,7 +8,7 @@
 #include "models/maximal/maximal_system.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// CoRdE [Spillmann & Teschner 2007]: n edges between nodes x_i, a quaternion q_i for the
 /// material frame of each. With e an edge, l its length at rest and t(q) the first axis,
@@ -54,4 +54,4 @@ std::span<const Parameter> corde_parameters();
 std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& parameters,
                                    Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

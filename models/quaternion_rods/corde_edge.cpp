@@ -1,6 +1,6 @@
 #include "models/quaternion_rods/corde_edge.h"
 
-namespace tress {
+namespace tress::models {
 
 /// With t = e/|e|, dt/de = (1 - t t^T)/|e|.
 void CordeEdge::gradient(const double* x, double (&g)[strains][coordinates]) const {
@@ -50,4 +50,4 @@ void CordeEdge::add_second(const double* x, const double* stress,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "contract/layers.h"
 #include "math/quaternion.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Strains of one edge of corde.h over x = (e, q), e from node to node (m):
 ///
@@ -34,4 +35,4 @@ struct CordeEdge {
                   double (&h)[coordinates][coordinates]) const;
 };
 
-}  // namespace tress
+}  // namespace tress::models

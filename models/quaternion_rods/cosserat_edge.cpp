@@ -1,6 +1,6 @@
 #include "models/quaternion_rods/cosserat_edge.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// N = vec(conj(q) e q) = |q|^2 R^T e is a quadratic form of q; dN/dq, linear in both.
@@ -71,4 +71,4 @@ void CosseratEdge::add_second(const double* x, const double* stress,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/quaternion.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Strains of one edge of xpbd_cosserat.h over x = (e, q), e from node to node (m):
 ///
@@ -30,4 +31,4 @@ struct CosseratEdge {
                   double (&h)[coordinates][coordinates]) const;
 };
 
-}  // namespace tress
+}  // namespace tress::models

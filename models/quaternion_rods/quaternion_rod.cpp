@@ -6,7 +6,7 @@
 #include "models/quaternion_rods/corde_edge.h"
 #include "models/quaternion_rods/cosserat_edge.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The frame of a clamp as the quaternion before q, and its rate.
@@ -314,4 +314,4 @@ template std::unique_ptr<System> quaternion_rod(
     const Strand&, const std::string&, const std::function<CosseratEdge(const Segment&)>&,
     double, Effects, LinearKind);
 
-}  // namespace tress
+}  // namespace tress::models

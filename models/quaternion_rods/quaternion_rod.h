@@ -9,7 +9,7 @@
 #include "models/maximal/rod_joint.h"
 #include "models/maximal/strained.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Bending and twisting between neighbouring quaternions x = (q_j, q_{j+1}) of a rod, or
 /// of a clamp's frame and the first: strains 2 vec(conj(q_j) q_{j+1}) less those at rest.
@@ -90,4 +90,4 @@ std::unique_ptr<System> quaternion_rod(const Strand& strand, const std::string& 
                                        const std::function<Edge(const Segment&)>& edge_of,
                                        double rotary, Effects effects, LinearKind solver);
 
-}  // namespace tress
+}  // namespace tress::models

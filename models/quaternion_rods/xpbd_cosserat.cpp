@@ -7,7 +7,7 @@
 #include "models/quaternion_rods/quaternion_rod.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 CosseratEdge edge(const Material& material, const Segment& segment,
@@ -63,4 +63,4 @@ std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                        std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

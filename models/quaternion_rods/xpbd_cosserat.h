@@ -8,7 +8,7 @@
 #include "models/maximal/maximal_system.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The Cosserat rod of position-based methods [Kugelstadt & Schoemer 2016, with the
 /// compliances of Deul et al. 2018]: n edges between nodes x_i, a quaternion q_i for the
@@ -61,4 +61,4 @@ std::span<const Parameter> xpbd_cosserat_parameters();
 std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                                            const Parameters& parameters, Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

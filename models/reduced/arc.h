@@ -1,9 +1,10 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "math/helix.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A helix (helix.h) without twist that bends about e1 alone: with kappa = (0, k, 0), a
 /// circular arc in the plane of e0 and e2,
@@ -156,4 +157,4 @@ class ArcOf {
 
 using Arc = ArcOf<double>;
 
-}  // namespace tress
+}  // namespace tress::models

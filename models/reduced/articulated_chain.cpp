@@ -3,7 +3,7 @@
 #include "models/reduced/ball_chain.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 
 template class ReducedSystem<BallLink, 1>;
 template class ReducedSystem<BallLink, 2>;
@@ -38,4 +38,4 @@ std::unique_ptr<System> make_articulated_chain(const Strand& strand,
   return articulated_chain(strand, reduced_options(parameters), std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "models/reduced/reduced_strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Serial chain of rigid links with ball joints, bending and twisting springs and rest
 /// angles [Hadap, Magnenat-Thalmann 2001; Hadap 2006]. Unknowns are the rotation vectors
@@ -28,4 +28,4 @@ std::unique_ptr<System> make_articulated_chain(const Strand& strand,
                                                const Parameters& parameters,
                                                Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

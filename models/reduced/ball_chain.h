@@ -3,7 +3,7 @@
 #include "models/reduced/ball_link.h"
 #include "models/reduced/reduced_system.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Chains of rigid links: compiled once, in articulated_chain.cpp.
 extern template class ReducedSystem<BallLink, 1>;
@@ -13,4 +13,4 @@ extern template class ExactTangent<BallLink, 1>;
 extern template class ExactTangent<BallLink, 2>;
 extern template class ExactTangent<BallLink, 3>;
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "models/reduced/helix.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Kinematics of a rigid straight link behind a ball joint: with the rotation vector
 /// theta of the joint, E = exp([theta]x), the link points along E e0 and turns with W(1)
@@ -104,4 +105,4 @@ class BallLinkOf {
 
 using BallLink = BallLinkOf<double>;
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,9 +3,10 @@
 #include <Eigen/Core>
 #include <type_traits>
 
+#include "contract/layers.h"
 #include "math/lanes.h"
 
-namespace tress {
+namespace tress::models {
 
 /// sum += weight a for a column of a product (below).
 template <int rows>
@@ -155,4 +156,4 @@ inline auto product(const A& a, const B& b) {
   return c;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/reduced/coupled_matrix.h"
 #include "models/reduced/tree_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The dense matrix of all unknowns, as in [Bertails et al. 2006], but assembled in
 /// O(N^2) by composite bodies [Featherstone's CRBA]: what hangs on a tip, with its joints
@@ -134,4 +134,4 @@ class CompositeMatrix {
   Eigen::MatrixXd& dense_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

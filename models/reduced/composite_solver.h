@@ -4,7 +4,7 @@
 #include "models/reduced/dense_factor.h"
 #include "models/reduced/tree_solver.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The dense matrix of all unknowns by Cholesky or LU, O(N^3).
 template <class Shape>
@@ -26,4 +26,4 @@ class CompositeSolver final : public TreeSolver<Shape> {
   CompositeMatrix<Shape> composite_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

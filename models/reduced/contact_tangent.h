@@ -5,7 +5,7 @@
 #include "models/effects/coupling.h"
 #include "models/reduced/mass_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What a contact adds to an exact tangent (ExactTangent): how the places and velocities
 /// of its points vary with their segments' states and unknowns, and what a force on them
@@ -95,4 +95,4 @@ class ContactTangent {
   const Kinematics<Kernel, dofs>& kinematics_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

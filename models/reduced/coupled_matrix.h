@@ -7,7 +7,7 @@
 #include "models/reduced/dense_factor.h"
 #include "models/reduced/tree_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The couplings of a tangent in terms of all unknowns: what each y owes to them, and
 /// what it puts on their equations, by one walk from the far end of each to the root,
@@ -55,8 +55,8 @@ class CoupledMatrix {
         Eigen::Matrix<double, Shape::rows, rank> onto = product(segment.lift, load);
         for (auto& end : left) {
           if (end == nullptr || end->segment != i) continue;
-          tress::add(end->by, by);
-          tress::add(end->onto, onto);
+          models::add(end->by, by);
+          models::add(end->onto, onto);
           end = nullptr;
         }
         copy(part<rank, n>(by, 0, states), part<rank, n>(by_, row, n * i));
@@ -75,4 +75,4 @@ class CoupledMatrix {
   Eigen::MatrixXd by_, onto_;  // (4 couplings x unknowns), (unknowns x 4 couplings)
 };
 
-}  // namespace tress
+}  // namespace tress::models

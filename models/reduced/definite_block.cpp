@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// By leading minors.
@@ -25,4 +25,4 @@ void make_semidefinite(InOut blocks) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 
 DenseFactor::DenseFactor(int size, bool symmetric)
     : matrix(size, size),
@@ -41,4 +41,4 @@ void add_dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
   c.noalias() += a * b;
 }
 
-}  // namespace tress
+}  // namespace tress::models

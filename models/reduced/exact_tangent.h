@@ -4,7 +4,7 @@
 #include "models/reduced/mass_tangent.h"
 #include "models/reduced/point_matrix.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Every derivative of the residual of one segment (InverseDynamics), at the motion that
 /// Kinematics holds. States are variations of a frame in its own components: displacement
@@ -377,4 +377,4 @@ class ExactTangent {
   const InverseDynamics<Kernel, dofs>& dynamics_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/strand/geometry.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 template <int dofs>
@@ -134,4 +134,4 @@ std::unique_ptr<System> make_force_transport(const Strand& strand,
   return force_transport(strand, reduced_options(parameters), std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "models/reduced/reduced_strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// "Force transport" [Wang, Efficient Strand Dynamics for Real-Time Hair Simulation,
 /// thesis, National Chiao Tung University]: a strand of rigid segments whose
@@ -67,4 +67,4 @@ std::unique_ptr<System> make_force_transport(const Strand& strand,
                                              const Parameters& parameters,
                                              Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

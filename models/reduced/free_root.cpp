@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 // Where the rotation vector is moved back to zero: well inside its 2 pi.
@@ -60,4 +60,4 @@ bool FreeRootFrame::rebase(InOut q, InOut v) {
   return true;
 }
 
-}  // namespace tress
+}  // namespace tress::models

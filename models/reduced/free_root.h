@@ -4,7 +4,7 @@
 #include "models/reduced/helix.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Motion of a frame: in its own components, relative to the world.
 template <class T>
@@ -47,4 +47,4 @@ class FreeRootFrame {
   Frame frame_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

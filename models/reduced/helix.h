@@ -1,9 +1,10 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "math/helix.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Kinematics of an element of constant Darboux vector kappa (twist, curvatures; in the
 /// material frame, e0 the tangent), seen from the frame at its start [Bertails et al.
@@ -195,4 +196,4 @@ class HelixOf {
 
 using Helix = HelixOf<double>;
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "models/effects/effect.h"
 #include "models/reduced/kinematics.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Force and moment about a frame's origin, in its components.
 template <class T>
@@ -263,4 +263,4 @@ class InverseDynamics {
   Wrench at_root_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

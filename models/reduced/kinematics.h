@@ -11,7 +11,7 @@
 #include "models/reduced/shapes.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Where everything is and how it moves, for unknowns q, v, a: one sweep from the root to
 /// the free ends. What depends on q alone is kept and used again at the same q. Of one
@@ -264,4 +264,4 @@ class Kinematics {
   std::vector<Real> shaped_;  // the q of geometry_
 };
 
-}  // namespace tress
+}  // namespace tress::models

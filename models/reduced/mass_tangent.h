@@ -4,7 +4,7 @@
 #include "models/reduced/point_matrix.h"
 #include "models/reduced/tree_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What tangents of both kinds do with a segment's frames.
 template <class Shape>
@@ -246,4 +246,4 @@ void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "math/lanes.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A 3x3 matrix of each of four points, in the components of a segment's start.
 struct PointMatrix {
@@ -31,4 +32,4 @@ struct PointMatrix {
   Vec3<Pack> column[3];
 };
 
-}  // namespace tress
+}  // namespace tress::models

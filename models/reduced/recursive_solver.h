@@ -7,7 +7,7 @@
 
 #include "models/reduced/tree_solver.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Two sweeps, O(N) [Featherstone 1983; Bertails 2009]. From the free ends to the root
 /// every segment eliminates its unknowns, x = u - Z s, and hands on what hangs below it
@@ -297,4 +297,4 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<double> b_, left_, correction_;  // of refine()
 };
 
-}  // namespace tress
+}  // namespace tress::models

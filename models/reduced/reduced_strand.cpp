@@ -8,7 +8,7 @@
 #include "math/gauss_legendre.h"
 #include "models/strand/geometry.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter own_parameters[] = {
@@ -238,4 +238,4 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   return reduced;
 }
 
-}  // namespace tress
+}  // namespace tress::models

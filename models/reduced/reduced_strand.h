@@ -10,7 +10,7 @@
 #include "models/reduced/tree_solver.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Quadrature points that carry the mass of a segment: four at a time, or, in a batch,
 /// the same one of four strands.
@@ -86,4 +86,4 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
 /// then within 1e-8 of its integral (tests/models/reduced/test_quadrature.cpp).
 int quadrature_points(double angle);
 
-}  // namespace tress
+}  // namespace tress::models

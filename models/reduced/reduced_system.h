@@ -11,7 +11,7 @@
 #include "models/reduced/tree_solver.h"
 #include "models/strand/not_finite.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
 /// BallLink), behind the contract of contract/system.h. residual: Newton-Euler, O(N).
@@ -347,4 +347,4 @@ std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include "math/vec3.h"
 #include "models/reduced/tree_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The directions in which the frames of a strand move. With two or three unknowns a
 /// segment it is all of space; a strand of one unknown a segment (bending about e1 alone)
@@ -28,4 +28,4 @@ using MassShape = TreeShape<Space<dofs>::size, Space<dofs>::size, dofs, Real>;
 template <int dofs>
 using ExactShape = TreeShape<3 * Space<dofs>::size, Space<dofs>::size, dofs>;
 
-}  // namespace tress
+}  // namespace tress::models

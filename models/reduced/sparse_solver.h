@@ -7,7 +7,7 @@
 #include "linear/klu.h"
 #include "models/reduced/tree_solver.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The equations of TreeTangent as they stand, nothing eliminated: per segment its
 /// unknowns x, the state of its tip and the wrench at its start, in one sparse matrix for
@@ -167,4 +167,4 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
   bool free_root_ = false;
 };
 
-}  // namespace tress
+}  // namespace tress::models

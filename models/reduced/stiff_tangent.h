@@ -4,7 +4,7 @@
 #include "models/reduced/inverse_dynamics.h"
 #include "models/reduced/mass_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A tangent of the right size for the segments of Kinematics; its zero blocks stay.
 template <class Shape, class K>
@@ -78,4 +78,4 @@ class StiffTangent {
   std::vector<double> of_effects_;  // 9 a point
 };
 
-}  // namespace tress
+}  // namespace tress::models

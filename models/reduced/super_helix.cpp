@@ -5,7 +5,7 @@
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects) {
@@ -50,4 +50,4 @@ std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters) {
   return super_helix(tree, reduced_options(parameters), strand_effects(parameters));
 }
 
-}  // namespace tress
+}  // namespace tress::models

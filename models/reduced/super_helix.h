@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "models/reduced/reduced_strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Super-helix [Bertails, Audoly, Cani, Querleux, Leroy, Leveque 2006]: an inextensible
 /// Kirchhoff rod of N segments, each a helix of constant Darboux vector; unknowns are its
@@ -38,4 +38,4 @@ std::unique_ptr<System> make_super_helix(const Strand& strand,
 std::span<const Parameter> super_helix_tree_parameters();
 std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -7,7 +7,7 @@
 #include "models/reduced/kinematics.h"
 #include "models/reduced/mass_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// M_ft of ForceTransport: the block lower triangle, diagonal included, of the mass
 /// matrix of a chain of rigid links behind ball joints. With I_j the composite inertia of
@@ -47,8 +47,8 @@ class TransportMatrix {
     sweep(a);
     for (std::size_t i = 0; i < full_.size(); ++i) {
       const auto equation = at(r, i);
-      tress::add_product(coupling(i), start_[i], equation);
-      tress::add_product(own(i), at(a, i), equation);
+      models::add_product(coupling(i), start_[i], equation);
+      models::add_product(own(i), at(a, i), equation);
     }
   }
 
@@ -117,7 +117,7 @@ class TransportMatrix {
         copy(turned, by_l);
         add(crossed(g.turn[l], motion), by_l, -1);
         State load = crossed(g.turn[l], wrench);
-        tress::add_product(inertia(m), by_l, load);
+        models::add_product(inertia(m), by_l, load);
         for (int k = 0; k < dofs; ++k) {
           const Vec axis = Kinematics<Kernel, dofs>::unit(k);
           block(dense, m, m)(k, l) +=
@@ -175,7 +175,7 @@ class TransportMatrix {
   template <class X>
   void move(std::size_t i, const State& start, const X& x, State& tip) const {
     multiply<1, false>(rigid(i), start, tip);
-    tress::add_product(from_axes(i), x, tip);
+    models::add_product(from_axes(i), x, tip);
   }
   void sweep(In a) {
     start_[0].setZero();
@@ -205,7 +205,7 @@ class TransportMatrix {
   /// Block column m below the diagonal, of motions of the tip of link m.
   void add_below(std::size_t m, Axes motion, Eigen::MatrixXd& dense) const {
     for (std::size_t j = m + 1; j < full_.size(); ++j) {
-      tress::add_product(coupling(j), motion, block(dense, j, m));
+      models::add_product(coupling(j), motion, block(dense, j, m));
       motion = product(rigid(j), motion);
     }
   }
@@ -225,7 +225,7 @@ class TransportMatrix {
         subtract_product(inertia(m), crossed(turn, motion), by_l);
       }
       const Eigen::Matrix<Real, dofs, size> onto = axes.transpose();
-      tress::add_product(onto, change, block(dense, j, m));
+      models::add_product(onto, change, block(dense, j, m));
       motion = product(rigid(m), motion);
       axes = product(rigid(m), axes);
     }
@@ -238,4 +238,4 @@ class TransportMatrix {
   Real acc_{};
 };
 
-}  // namespace tress
+}  // namespace tress::models

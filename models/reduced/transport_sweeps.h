@@ -3,7 +3,7 @@
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/transport_matrix.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The equations of ForceTransport and their stiff tangent, in O(n).
 template <class Kernel, int dofs>
@@ -42,7 +42,7 @@ class TransportSweeps {
   }
   In restoring(Weights w) {
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const auto of_segment = tress::restoring(kinematics_.segments()[i], w);
+      const auto of_segment = models::restoring(kinematics_.segments()[i], w);
       for (int k = 0; k < dofs; ++k) {
         restoring_[dofs * i + static_cast<std::size_t>(k)] = dot(K::unit(k), of_segment);
       }
@@ -59,4 +59,4 @@ class TransportSweeps {
   std::vector<typename K::Real> zero_, restoring_, composed_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 #include "models/reduced/shapes.h"
 #include "models/reduced/sparse_solver.h"
 
-namespace tress {
+namespace tress::models {
 
 template <class Shape>
 std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
@@ -42,4 +42,4 @@ template std::unique_ptr<TreeSolver<ExactShape<2>>> make_tree_solver(
 template std::unique_ptr<TreeSolver<ExactShape<1>>> make_tree_solver(
     TreeMethod, const TreeTangent<ExactShape<1>>&);
 
-}  // namespace tress
+}  // namespace tress::models

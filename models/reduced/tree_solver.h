@@ -5,7 +5,7 @@
 #include "contract/system.h"
 #include "models/reduced/tree_tangent.h"
 
-namespace tress {
+namespace tress::models {
 
 /// How the linear problem of a tree is solved; all but `less_implicit` give the same x.
 enum class TreeMethod {
@@ -36,4 +36,4 @@ template <class Shape>
 std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
                                                     const TreeTangent<Shape>& structure);
 
-}  // namespace tress
+}  // namespace tress::models

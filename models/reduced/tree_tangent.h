@@ -6,7 +6,7 @@
 
 #include "models/reduced/block_product.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers
 /// from its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs`
@@ -126,4 +126,4 @@ struct TreeTangent {
   }
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -11,7 +11,7 @@
 #include "contract/parameters.h"
 #include "math/helix.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -291,4 +291,4 @@ Material tree_material(std::string_view name) { return find_tree(name).material;
 
 Frame upright() { return {up, {0, 1, 0}, {-1, 0, 0}}; }
 
-}  // namespace tress
+}  // namespace tress::models

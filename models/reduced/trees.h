@@ -5,7 +5,7 @@
 
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The five trees of [Bertails-Descoubes 2010, "Performance results"]. The source gives
 /// names and element counts; the geometry is ours.
@@ -46,4 +46,4 @@ Material tree_material(std::string_view name);
 /// The root frame: tangent up (e0 = z), e1 = y, e2 = -x. The man faces x.
 Frame upright();
 
-}  // namespace tress
+}  // namespace tress::models

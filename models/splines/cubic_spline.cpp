@@ -5,7 +5,7 @@
 
 #include "math/banded_lu.h"
 
-namespace tress {
+namespace tress::models {
 
 CubicSpline::CubicSpline(const std::vector<double>& spans) : knots_{0} {
   for (const double span : spans) knots_.push_back(knots_.back() + span);
@@ -84,4 +84,4 @@ std::vector<Vec> CubicSpline::through(const std::vector<StrandPlace>& places) co
   return points;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "models/strand/geometry.h"
 
-namespace tress {
+namespace tress::models {
 
 /// A cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, the arc length at
 /// rest), ends included in the knots four times: n spans and n + 3 control points, r and
@@ -33,4 +33,4 @@ class CubicSpline {
   std::vector<double> knots_;  // each once
 };
 
-}  // namespace tress
+}  // namespace tress::models

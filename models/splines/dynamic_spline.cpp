@@ -10,7 +10,7 @@
 #include "models/splines/framed_spline.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr int mass_points = 4, bend_points = 2;
@@ -236,4 +236,4 @@ std::unique_ptr<System> make_dynamic_spline(const Strand& strand,
   return dynamic_spline(strand, options, std::move(effects));
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -8,7 +8,7 @@
 #include "models/maximal/maximal_system.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Dynamic spline [Lenoir et al. 2004; Theetten et al. 2008]: the centreline is a cubic
 /// B-spline (cubic_spline.h) whose control points are coordinates, with an angle theta at
@@ -60,4 +60,4 @@ std::unique_ptr<System> make_dynamic_spline(const Strand& strand,
                                             const Parameters& parameters,
                                             Effects effects);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -5,7 +5,7 @@
 
 #include "models/maximal/strained.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using Span = FramedSpline::Span;
@@ -246,4 +246,4 @@ void FramedSpline::recall(In memory) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

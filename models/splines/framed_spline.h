@@ -3,7 +3,7 @@
 #include "models/splines/spline_elasticity.h"
 #include "models/splines/spline_strain.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Stretching, bending and twisting of a cubic spline with material frames at its knots
 /// (dynamic_spline.h), coordinates z = (control points, theta at the knots; with
@@ -77,4 +77,4 @@ class FramedSpline final : public Elasticity {
   bool clamped_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using Point = SplineElasticity::Point;
@@ -108,4 +108,4 @@ double SplineElasticity::stretch(const Placement& p) noexcept {
   return most;
 }
 
-}  // namespace tress
+}  // namespace tress::models

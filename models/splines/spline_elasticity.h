@@ -4,7 +4,7 @@
 
 #include "models/maximal/elasticity.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Energy (J) of one point of quadrature of dynamic_spline.h: a = r', b = r'',
 ///
@@ -54,4 +54,4 @@ class SplineElasticity final : public Elasticity {
   std::vector<Point> points_;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -1,6 +1,6 @@
 #include "models/splines/spline_strain.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// The frame at a knot and how it turns with y = (r', theta).
@@ -157,4 +157,4 @@ void SplineBend::add_second(const double* x, const double* stress,
   point.add_second(mixed, h);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 /// Strains of a span of a spline with material frames at its knots (framed_spline.h),
 /// parts in the sense of strained.h. With - the knot before and + the one behind, the
 /// frames are edge_frame (rod_edge.h) of r' and the angle theta at the knot.
-namespace tress {
+namespace tress::models {
 
 /// Twist over the span (rad): that of joint_strain.h between the frames of its knots.
 /// x = (r'-, theta-, r'+, theta+).
@@ -53,4 +53,4 @@ struct SplineBend {
   void add_second(const double* x, const double* stress, double (&h)[14][14]) const;
 };
 
-}  // namespace tress
+}  // namespace tress::models

@@ -3,7 +3,7 @@
 #include "contract/input_error.h"
 #include "math/helix.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 /// y -> (along_y y + along_u darboux x y + along_z darboux x (darboux x y)).
@@ -74,4 +74,4 @@ void check_unbranched(const Strand& strand, const std::string& model) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -4,7 +4,7 @@
 
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The frame at `s` (m) of a helix of constant Darboux vector (1/m), in the components of
 /// the one at 0.
@@ -25,4 +25,4 @@ std::vector<StrandPlace> middles(const Strand& strand, ShapeOf shape,
 /// tip of segment i - 1, in its direction.
 void check_unbranched(const Strand& strand, const std::string& model);
 
-}  // namespace tress
+}  // namespace tress::models

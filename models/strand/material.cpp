@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -46,4 +46,4 @@ void check(const CrossSection& section, const std::string& where) {
   require_positive(section.a2, "half-axis a2 of the section", where);
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "contract/layers.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::models {
 
 /// What a strand is made of. Linear elastic, with Kelvin-Voigt friction in bending and
 /// twisting.
@@ -43,4 +44,4 @@ Vec stiffness(const Material& material, const CrossSection& section);
 void check(const Material& material, const std::string& where);
 void check(const CrossSection& section, const std::string& where);
 
-}  // namespace tress
+}  // namespace tress::models

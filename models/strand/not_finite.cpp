@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tress {
+namespace tress::models {
 
 std::string not_finite_place(In values, std::size_t each, std::string_view words,
                              std::size_t first) {
@@ -32,4 +32,4 @@ std::string not_finite_clamp(const Vec& x, const Vec& v, const Vec& a) {
   return finite ? "" : "motion of the clamp";
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::models {
 
 /// Words for System::not_finite, each empty where all is finite. Asked for after a
 /// failure only: both may allocate.
@@ -31,4 +31,4 @@ std::string first_words(const Ask&... ask) {
   return words;
 }
 
-}  // namespace tress
+}  // namespace tress::models

@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 using std::numbers::pi;
@@ -153,4 +153,4 @@ void check(const Strand& strand) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::models

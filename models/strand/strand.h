@@ -9,7 +9,7 @@
 #include "models/motion/root_motion.h"
 #include "models/strand/material.h"
 
-namespace tress {
+namespace tress::models {
 
 /// One piece of a strand: starts at the tip of `parent`, or at the root.
 struct Segment {
@@ -73,4 +73,4 @@ Strand make_strand(const Material& material, const CrossSection& section,
 /// positive, mounts are rotations and all numbers finite; the same for material and root.
 void check(const Strand& strand);
 
-}  // namespace tress
+}  // namespace tress::models

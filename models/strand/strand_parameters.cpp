@@ -8,7 +8,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/motion/signals.h"
 
-namespace tress {
+namespace tress::models {
 namespace {
 
 constexpr Parameter geometry_parameters[] = {
@@ -265,4 +265,4 @@ Strand strand(const Parameters& parameters) {
   return strand;
 }
 
-}  // namespace tress
+}  // namespace tress::models

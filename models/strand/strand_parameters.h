@@ -9,7 +9,7 @@
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::models {
 
 /// The words of `root` for models whose root cannot move freely.
 inline constexpr std::string_view bound_root_choices =
@@ -52,4 +52,4 @@ bool shared_by_strands(std::string_view parameter);
 /// not depend on ellipticity.
 Strand strand(const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::models

@@ -11,7 +11,7 @@
 #include "math/quaternion.h"
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 std::string base64(std::string_view bytes) {
@@ -185,4 +185,4 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   return page.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

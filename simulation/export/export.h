@@ -6,7 +6,7 @@
 
 #include "simulation/export/smooth_lines.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Whose line it is, and how thick.
 struct DrawnLine {
@@ -46,4 +46,4 @@ std::string vtp_name(const std::string& stem, std::size_t frame);
 /// codes count the scene's frames, and primvars:strand is the strand of each curve.
 std::string usda(const Animation& animation);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,7 +2,7 @@
 
 #include "simulation/export/export.h"
 
-namespace tress {
+namespace tress::simulation {
 
 std::string usda(const Animation& animation) {
   const Scene& scene = animation.scene;
@@ -45,4 +45,4 @@ std::string usda(const Animation& animation) {
       fmt::join(animation.curves.lines(), ", "), attributes, samples);
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 
 #include "simulation/export/export.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 template <class T>
@@ -104,4 +104,4 @@ std::string pvd(const Animation& animation, const std::string& stem) {
   return text + "</Collection>\n</VTKFile>\n";
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

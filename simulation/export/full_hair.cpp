@@ -4,7 +4,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr std::size_t most_frames = 60;
@@ -86,4 +86,4 @@ Frame3d FullHair::grown(const Frame3d& guides) const {
   return full;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

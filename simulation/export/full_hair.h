@@ -7,7 +7,7 @@
 #include "simulation/export/export.h"
 #include "simulation/export/guide_hair.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Hairs drawn between simulated strands (GuideHair), after them in every frame; of about
 /// 60 frames of a recording, evenly chosen. What a channel says of a hair is what it says
@@ -31,4 +31,4 @@ class FullHair {
   std::optional<GuideHair> hair_;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

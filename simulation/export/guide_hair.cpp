@@ -8,7 +8,7 @@
 #include "contract/input_error.h"
 #include "simulation/scene/random.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -222,4 +222,4 @@ void GuideHair::grow(std::span<const Vec> guides, const Frame& head,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// `count` roots between those of the guides: root h lies in the triangle of guide
 /// h mod guides and two of its four nearest, drawn at random, each place of it as
@@ -83,4 +84,4 @@ class GuideHair {
   std::vector<double> clumpiness_;  // of each hair
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -11,7 +11,7 @@
 #include "simulation/scene/directions.h"
 #include "simulation/scene/shapes.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double least = 1e-9;        // m between two points
@@ -167,4 +167,4 @@ PointCurve through_points(std::span<const double> points, int elements, double g
   return made;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -9,7 +9,7 @@
 #include "contract/input_error.h"
 #include "simulation/files/csv.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Numbers one after the other, as the machine holds them.
@@ -209,4 +209,4 @@ void Recording::close() {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -10,7 +10,7 @@
 #include "simulation/files/run_key.h"
 #include "simulation/run/readout.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// A run on disk while it goes on: every frame (<stem>.frames), the time series
 /// (<stem>.csv) and the last saved state (<stem>.state), which holds the checksum of the
@@ -47,4 +47,4 @@ class Recording {
   std::optional<File> csv_;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

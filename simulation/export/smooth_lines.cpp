@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double error_over_length = 1e-3;
@@ -182,4 +182,4 @@ std::vector<float> SmoothLines::channels(const Frame3d& frame) const {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 
 #include "simulation/run/readout.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Lines drawn as curves through their points x_i instead of as polygons. Where points
 /// lie evenly on a helix (a super-helix element, a curl, a circle) the curve is that
@@ -48,4 +48,4 @@ class SmoothLines {
   std::size_t points_ = 0;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

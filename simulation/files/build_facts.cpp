@@ -1,6 +1,6 @@
 #include "simulation/files/build_facts.h"
 
-namespace tress {
+namespace tress::simulation {
 
 const BuildFacts& build_facts() {
   static constexpr BuildFacts facts{TRESS_VERSION,  TRESS_GIT_COMMIT, TRESS_SOURCE_TREE,
@@ -8,4 +8,4 @@ const BuildFacts& build_facts() {
   return facts;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,7 +2,9 @@
 
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// What this build was made from: written into manifests and keys of runs.
 struct BuildFacts {
@@ -13,4 +15,4 @@ struct BuildFacts {
 
 const BuildFacts& build_facts();
 
-}  // namespace tress
+}  // namespace tress::simulation

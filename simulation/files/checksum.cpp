@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace tress {
+namespace tress::simulation {
 
 Checksum& Checksum::add(std::string_view bytes) {
   for (const char c : bytes) {
@@ -30,4 +30,4 @@ std::string_view unsealed(std::string_view text) {
   throw std::runtime_error("its checksum does not fit");
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -4,7 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// FNV-1a, 64 bits [Fowler, Noll, Vo]: tells texts and files apart, and that a file is no
 /// longer what was written. Every step is a bijection of the hash, so that one changed
@@ -26,4 +28,4 @@ std::string sealed(std::string_view bytes);
 /// The bytes of a sealed text; throws std::runtime_error when they are not as written.
 std::string_view unsealed(std::string_view text);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr const char* repair = "repair or delete the file; it must be RFC 4180 CSV";
@@ -143,4 +143,4 @@ CsvTable read_csv(const std::string& file) {
   return parse_csv(read_file(file, most_table_bytes), file);
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

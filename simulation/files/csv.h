@@ -7,7 +7,7 @@
 
 #include "simulation/files/row.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Where a cell of a file begins, counted from 1.
 struct CellPlace {
@@ -39,4 +39,4 @@ CsvTable parse_csv(std::string_view text, const std::string& file);
 
 CsvTable read_csv(const std::string& file);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -10,7 +10,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ std::string beside(const std::string& file, std::string_view ending) {
          std::string(ending);
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -3,9 +3,10 @@
 #include <string>
 #include <string_view>
 
+#include "contract/layers.h"
 #include "contract/read_file.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// An open file; closed on every path.
 class File {
@@ -36,4 +37,4 @@ void check_output(const std::string& file);
 /// `file` without a final ".csv", followed by `ending`.
 std::string beside(const std::string& file, std::string_view ending);
 
-}  // namespace tress
+}  // namespace tress::simulation

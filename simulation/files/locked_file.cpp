@@ -10,7 +10,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 [[noreturn]] void cannot_write(const std::string& file, const std::string& problem) {
@@ -79,4 +79,4 @@ void LockedFile::truncate(std::size_t bytes) const {
 
 void LockedFile::remove() const { ::unlink(file_.c_str()); }
 
-}  // namespace tress
+}  // namespace tress::simulation

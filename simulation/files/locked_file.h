@@ -3,7 +3,9 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// A file that one process at a time writes; a second one is refused while it is open.
 class LockedFile {
@@ -30,4 +32,4 @@ class LockedFile {
   int descriptor_ = -1;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -8,7 +8,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr int most_elements = 10'000'000;
@@ -117,4 +117,4 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

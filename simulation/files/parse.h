@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// "1,2,5,10:40:10" -> 1 2 5 10 20 30 40: counts and first:last:step ranges (step 1 when
 /// left out), in the order given, repeats dropped. `where` is quoted in the InputError.
@@ -32,4 +34,4 @@ std::vector<std::string> split(std::string_view text, char separator,
 /// Control characters replaced by blanks, so that a message stays one line.
 std::string one_line(std::string_view text);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -10,7 +10,7 @@
 
 #include "simulation/files/checksum.h"
 
-namespace tress {
+namespace tress::simulation {
 
 Row& Row::set(std::string_view column, std::string_view text) {
   for (Cell& cell : cells_) {
@@ -106,4 +106,4 @@ std::vector<std::string> in_order(const Row& row, std::span<const std::string> h
   return line;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

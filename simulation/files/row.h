@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// One column of a result table; the unit is part of the name ("dt_s", "error_rel").
 struct Column {
@@ -77,4 +79,4 @@ std::vector<std::string> header(std::span<const Column> columns);
 /// column that the header lacks.
 std::vector<std::string> in_order(const Row& row, std::span<const std::string> header);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -11,7 +11,7 @@
 #include "simulation/files/files.h"
 #include "simulation/files/source_state.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 using nlohmann::ordered_json;
@@ -93,4 +93,4 @@ std::string contents_checksum(const std::vector<std::string>& files) {
   return sum.text();
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

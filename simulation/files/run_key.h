@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// What must agree between a run that was interrupted and the one that continues it: what
 /// it is called and its value. One line of a file, as JSON.
@@ -29,4 +31,4 @@ class RunKey {
 /// counts as empty: whoever reads it complains.
 std::string contents_checksum(const std::vector<std::string>& files);
 
-}  // namespace tress
+}  // namespace tress::simulation

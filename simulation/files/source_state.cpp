@@ -7,7 +7,7 @@
 
 #include "simulation/files/build_facts.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 struct Output {
@@ -45,4 +45,4 @@ SourceState source_state() {
   return {.commit = commit.text, .dirty = !changes.text.empty()};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// The source tree's commit when this runs, or the one it was built from.
 struct SourceState {
@@ -11,4 +13,4 @@ struct SourceState {
 };
 SourceState source_state();
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr int most_levels = 100;
@@ -118,4 +118,4 @@ void refuse_deep(std::string_view text, const std::string& file) {
   Levels(text, file).check();
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -3,7 +3,9 @@
 #include <string>
 #include <string_view>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// Throws InputError with file:line:column where a value of `text` lies more than 100
 /// levels deep: toml++ and what reads its tables go down one call per level, and the
@@ -12,4 +14,4 @@ namespace tress {
 /// holds up to the first error, where toml++ stops.
 void refuse_deep(std::string_view text, const std::string& file);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/files/toml_levels.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// toml++ has aborted on NUL bytes in some builds, so they are looked for first.
@@ -48,4 +48,4 @@ std::string scalar_text(const toml::node& node) {
   return {};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

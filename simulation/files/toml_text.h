@@ -4,7 +4,9 @@
 
 #include <string>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// file:line:column of the start of `source`.
 std::string place_of(const toml::source_region& source, const std::string& file);
@@ -20,4 +22,4 @@ toml::table parse_toml(const std::string& text, const std::string& file);
 /// ones; empty when it is not a scalar (a date, a list, a table).
 std::string scalar_text(const toml::node& node);
 
-}  // namespace tress
+}  // namespace tress::simulation

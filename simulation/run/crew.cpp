@@ -1,6 +1,6 @@
 #include "simulation/run/crew.h"
 
-namespace tress {
+namespace tress::simulation {
 
 Crew::Crew(int workers) : workers_(static_cast<std::size_t>(workers)), gate_(workers) {
   for (std::size_t w = 1; w < workers_; ++w) {
@@ -32,4 +32,4 @@ void Crew::share(std::size_t worker) {
   for (std::size_t i = worker; i < count_; i += workers_) (*work_)(i);
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

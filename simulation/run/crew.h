@@ -5,7 +5,9 @@
 #include <thread>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// Threads that share loops: run() calls work(i) for every i < count once, worker w the
 /// indices w, w + workers, ... so who computes what does not depend on timing.
@@ -29,4 +31,4 @@ class Crew {
   std::vector<std::jthread> threads_;  // all workers but the caller
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

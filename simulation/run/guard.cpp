@@ -7,7 +7,7 @@
 
 #include "integrators/catalogue.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double most_stretch = 0.5;  // of a piece, over its length
@@ -302,4 +302,4 @@ Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& s
   return run;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -9,7 +9,7 @@
 #include "simulation/run/guarded_strand.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// What no motion of the system does, as a guard found it.
 struct Breach {
@@ -123,4 +123,4 @@ Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& s
                             const Options& options, const State& start, double t_end,
                             const Observer& each_step = {});
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,7 +6,7 @@
 #include "models/reduced/trees.h"
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Loads of uniform effects at any place, added up by size.
@@ -81,4 +81,4 @@ std::vector<GuardedStrand> guarded_strands(const ModelEntry& model,
   return {guarded_strand(strand(parameters), strand_effects(parameters))};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

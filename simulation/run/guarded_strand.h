@@ -6,7 +6,7 @@
 #include "models/catalogue.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Half of each neighbouring segment and its mass, at the root and the tips of segments,
 /// which are the material points of every strand model.
@@ -39,4 +39,4 @@ GuardedStrand guarded_strand(const Strand& strand, Effects effects);
 std::vector<GuardedStrand> guarded_strands(const ModelEntry& model,
                                            const Parameters& parameters);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -13,7 +13,7 @@
 #include "contract/input_error.h"
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr std::size_t measured = 8;   // strands
@@ -70,4 +70,4 @@ void refuse_too_large(const Scene& scene) {
       scene.name, "give fewer strands or elements");
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

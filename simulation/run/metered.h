@@ -4,7 +4,7 @@
 
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// An effect that keeps the potential energy it was last asked for: whoever asks a model
 /// for its energy then knows the part of each effect. One for every strand.
@@ -50,4 +50,4 @@ class Metered final : public Effect {
   mutable double last_ = 0;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

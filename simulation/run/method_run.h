@@ -2,7 +2,7 @@
 
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// As simulate(), by a method that the caller has made of the system, and may ask for its
 /// stats meanwhile.
@@ -11,4 +11,4 @@ Simulation run_method(Integrator& method, System& system, const State& start,
                       const std::function<void(const State&)>& at_stop,
                       const Observer& each_step = {});
 
-}  // namespace tress
+}  // namespace tress::simulation

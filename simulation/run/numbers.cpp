@@ -5,7 +5,7 @@
 
 #include "simulation/run/readout.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double earth = 9.81;  // m/s^2
@@ -62,4 +62,4 @@ double load_over_weight(const Scene& scene, std::string_view effect) {
          (earth * line_density(scene.strands.front()));
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -4,7 +4,7 @@
 
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// What decides which effects matter, without dimension, of the first strand.
 struct ScaleNumbers {
@@ -18,4 +18,4 @@ ScaleNumbers scale_numbers(const Scene& scene);
 /// the weight at 9.81 m/s^2; NaN when there is no such effect.
 double load_over_weight(const Scene& scene, std::string_view effect);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 
 #include "models/effects/effect.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Of the circle that turns from one chord into the next over half of each.
@@ -171,4 +171,4 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
   if (world.interaction() != nullptr) read(*world.interaction()->effect(k));
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

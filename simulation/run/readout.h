@@ -5,7 +5,7 @@
 
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// One column of the time series, or one number per material point for pictures.
 struct Reading {
@@ -52,4 +52,4 @@ class Readout {
   Stats before_;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

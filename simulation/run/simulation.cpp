@@ -4,7 +4,7 @@
 
 #include "simulation/run/method_run.h"
 
-namespace tress {
+namespace tress::simulation {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
   const ModelEntry& entry = find_model(id);
@@ -50,4 +50,4 @@ Simulation simulate(std::string_view integrator, System& system, const Options& 
   return simulate(integrator, system, options, start, {&t_end, 1}, {}, each_step);
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -10,7 +10,7 @@
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// A model of the catalogue with the given parameters set.
 std::unique_ptr<System> make_model(std::string_view id,
@@ -42,4 +42,4 @@ Simulation simulate(std::string_view integrator, System& system, const Options& 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, double t_end, const Observer& each_step = {});
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -1,6 +1,6 @@
 #include "simulation/run/timing.h"
 
-namespace tress {
+namespace tress::simulation {
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -16,4 +16,4 @@ Timing summarize(const std::vector<double>& seconds) {
           .repeats = static_cast<int>(seconds.size())};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// The middle value (mean of the two middle ones); 0 of none.
 double median(std::vector<double> values);
@@ -54,4 +56,4 @@ double time_run(int repeats, F&& f) {
   return first > long_run_s ? first : time_calls(repeats, f).median_s;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 void advance(World& world, double t) {
@@ -81,4 +81,4 @@ double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene) {
   return std::sqrt(squares / (static_cast<double>(a.x.size()) / 3)) / length;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

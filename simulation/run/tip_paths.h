@@ -5,7 +5,7 @@
 
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Tips of all strands at every frame, and how long the run took.
 struct TipPaths {
@@ -33,4 +33,4 @@ std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s =
 /// Root mean square distance over frames and strands, over the strands' mean length.
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene);
 
-}  // namespace tress
+}  // namespace tress::simulation

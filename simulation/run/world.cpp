@@ -12,7 +12,7 @@
 #include "math/pack.h"
 #include "simulation/run/memory.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Root and tips of segments of every strand.
@@ -315,4 +315,4 @@ void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
   to.done = true;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -12,7 +12,7 @@
 #include "simulation/run/metered.h"
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// State of a scene between two steps. Worlds of the same scene that were built and given
 /// the same snapshot continue alike, bit by bit.
@@ -136,4 +136,4 @@ class World {
   Crew crew_;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -9,7 +9,7 @@
 #include "integrators/error_indicator.h"
 #include "simulation/run/world.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// A step without a solution is tried in 2, 4 ... 2^halvings.
@@ -162,4 +162,4 @@ double World::work() const {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 
 #include "simulation/scene/directions.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Where a share of the last of ascending sums is reached, in cells.
@@ -72,4 +72,4 @@ Cap::Place Cap::place(double along, double around) const {
           1 / std::hypot(normal.x, normal.y, normal.z) * normal};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,9 +2,10 @@
 
 #include <vector>
 
+#include "contract/layers.h"
 #include "math/vec3.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// The part of an ellipsoid x = centre + diag(half) u, |u| = 1, where u is within `angle`
 /// (rad, in (0, pi]) of a unit vector.
@@ -34,4 +35,4 @@ class Cap {
   std::vector<double> before_;  // (cells (cells + 1)) the same within a ring
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/typical_strands.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Each half hangs on the other half of the same segment, or of the one it hung on.
@@ -144,4 +144,4 @@ Scene refined(Scene scene) {
   return with_strands(std::move(scene), std::move(fine));
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

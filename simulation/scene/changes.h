@@ -7,7 +7,7 @@
 
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 // A scene is a value: what is to be another scene is made from it by a function of here.
 // Nothing is read or checked again; what cannot be built is refused by whoever builds it
@@ -58,4 +58,4 @@ struct Ingredient {
 
 std::vector<Ingredient> ingredients(const Scene& scene);
 
-}  // namespace tress
+}  // namespace tress::simulation

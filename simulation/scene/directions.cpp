@@ -5,7 +5,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 // Of any numbers that a user may write, 1e200 among them.
@@ -33,4 +33,4 @@ Frame frame_of(const Vec& tangent, const Vec& normal) {
   return {tangent, normal, cross(tangent, normal)};
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,10 +2,11 @@
 
 #include <string_view>
 
+#include "contract/layers.h"
 #include "math/frame.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// The vector of `key`, its length 1. Throws InputError at its place when it is 0.
 Vec direction(const Table& table, std::string_view key);
@@ -17,4 +18,4 @@ Vec across(const Vec& axis, const Vec& x);
 /// Of unit tangent e0 and e1 nearest to `normal`, which is across() it and not 0.
 Frame frame_of(const Vec& tangent, const Vec& normal);
 
-}  // namespace tress
+}  // namespace tress::simulation

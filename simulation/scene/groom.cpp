@@ -12,7 +12,7 @@
 #include "simulation/scene/random.h"
 #include "simulation/scene/shapes.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -165,4 +165,4 @@ std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
   return strands;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -4,7 +4,7 @@
 
 #include "simulation/scene/strand_table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// [groom]: many strands from a few numbers, their roots on an ellipsoid with axes along
 /// x, y and z.
@@ -20,4 +20,4 @@ std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
                                   const Common& common, std::uint64_t first_stream,
                                   std::size_t most);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -10,7 +10,7 @@
 #include "contract/input_error.h"
 #include "simulation/scene/shared_parameter.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 // clang-format off
@@ -113,4 +113,4 @@ StrandMaterial strand_material(const Table& scene, const Table* own) {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,7 +6,7 @@
 #include "models/strand/material.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// What [material] says.
 struct StrandMaterial {
@@ -22,4 +22,4 @@ std::span<const Parameter> material_table_parameters();
 /// the key that a custom material lacks.
 StrandMaterial strand_material(const Table& scene, const Table* own);
 
-}  // namespace tress
+}  // namespace tress::simulation

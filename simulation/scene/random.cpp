@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// Spreads neighbouring seeds (splitmix64, Steele, Lea & Flood 2014).
@@ -26,4 +26,4 @@ double Random::normal() {
   return radius * std::cos(2 * std::numbers::pi * uniform());
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <random>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::simulation {
 
 /// Random numbers that are the same wherever they are drawn: the generator is that of the
 /// C++ standard, whose distributions are left to each library.
@@ -19,4 +21,4 @@ class Random {
   std::mt19937_64 bits_;
 };
 
-}  // namespace tress
+}  // namespace tress::simulation

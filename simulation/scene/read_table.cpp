@@ -9,7 +9,7 @@
 #include "contract/input_error.h"
 #include "simulation/files/parse.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 std::string_view wanted(const Parameter& p) {
@@ -125,4 +125,4 @@ const toml::table& as_table(const toml::node& node, const std::string& name,
                    fmt::format("write [{}] and below it key = value", name));
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

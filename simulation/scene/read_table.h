@@ -7,7 +7,7 @@
 #include "simulation/files/toml_text.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// The table of a scene as one with `declared` parameters. A number is a TOML number, a
 /// word or a text a string (or true, false), components a list of numbers, rows a list of
@@ -26,4 +26,4 @@ void read_key(const toml::table& table, std::string_view key, const std::string&
 const toml::table& as_table(const toml::node& node, const std::string& name,
                             const std::string& file);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,7 +6,7 @@
 #include "models/motion/signals.h"
 #include "simulation/scene/directions.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double largest_number = 1e6;
@@ -222,4 +222,4 @@ void set_root(Strand& strand, const RootMotion& head,
   }
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,7 +6,7 @@
 #include "models/strand/strand.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// [root]: what all roots do together.
 std::span<const Parameter> root_table_parameters();
@@ -23,4 +23,4 @@ std::optional<FreeRoot> free_motion(const Table& root);
 void set_root(Strand& strand, const RootMotion& head,
               const std::optional<FreeRoot>& free_root, Vec position, const Frame& frame);
 
-}  // namespace tress
+}  // namespace tress::simulation

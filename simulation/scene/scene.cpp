@@ -19,7 +19,7 @@
 #include "simulation/scene/strand_table.h"
 #include "simulation/scene/strand_tables.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr std::size_t most_effects = 1000;
@@ -101,7 +101,7 @@ class Reader {
 
   void read_model() {
     // Which keys belong here depends on the id, which alone is read first.
-    Table id(model_table_parameters(models().front()).first(1), "[model]", "");
+    Table id(model_table_parameters(model_catalogue().front()).first(1), "[model]", "");
     if (const toml::table* given = table("model")) read_key(*given, "id", file_, id);
     const ModelEntry* model = &find_model(id.values().word("id"));
     const Table options = read_or_default("model", model_table_parameters(*model));
@@ -269,4 +269,4 @@ Scene parse_scene(const std::string& text, const std::string& file) {
   return Reader(text, file).read();
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -12,7 +12,7 @@
 #include "models/effects/catalogue.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::simulation {
 
 struct StrandTables;
 
@@ -72,4 +72,4 @@ Effects make_effects(const Scene& scene);
 /// Their ids, the second body being body_2, the third body_3.
 std::vector<std::string> effect_names(const Scene& scene);
 
-}  // namespace tress
+}  // namespace tress::simulation

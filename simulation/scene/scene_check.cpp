@@ -8,7 +8,7 @@
 #include "integrators/catalogue.h"
 #include "models/effects/contact_law.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// What `make` gives; its InputErrors know no file, so the place is added.
@@ -42,7 +42,7 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
     return;
   }
   std::string able;
-  for (const IntegratorEntry& other : integrators()) {
+  for (const IntegratorEntry& other : integrator_catalogue()) {
     if (!refusal(other, system, scene.options.formulation).empty()) continue;
     able += (able.empty() ? "" : ", ") + std::string(other.id);
   }
@@ -82,4 +82,4 @@ void check(const Scene& scene, const ScenePlaces& places) {
   }
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Where a scene says what can be wrong with it only as a whole.
 struct ScenePlaces {
@@ -19,4 +19,4 @@ struct ScenePlaces {
 /// integrator. Throws InputError with the place of what refuses.
 void check(const Scene& scene, const ScenePlaces& places);
 
-}  // namespace tress
+}  // namespace tress::simulation

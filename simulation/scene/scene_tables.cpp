@@ -15,7 +15,7 @@
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/strand_table.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr Parameter top[] = {
@@ -73,17 +73,19 @@ std::vector<Parameter> options_of(const ModelEntry& model, std::string_view ids)
 std::span<const Parameter> top_parameters() { return top; }
 
 std::span<const Parameter> model_table_parameters(const ModelEntry& model) {
-  static const std::string ids = choices_of(models(), "super_helix");
+  static const std::string ids = choices_of(model_catalogue(), "super_helix");
   static const auto all = [] {
     std::map<std::string_view, std::vector<Parameter>> lists;
-    for (const ModelEntry& one : models()) lists.emplace(one.id, options_of(one, ids));
+    for (const ModelEntry& one : model_catalogue())
+      lists.emplace(one.id, options_of(one, ids));
     return lists;
   }();
   return all.at(model.id);
 }
 
 std::span<const Parameter> integrator_table_parameters() {
-  static const std::string ids = choices_of(integrators(), "semi_implicit_euler");
+  static const std::string ids =
+      choices_of(integrator_catalogue(), "semi_implicit_euler");
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
     for (Parameter p : integrator_options()) {
@@ -98,7 +100,7 @@ std::span<const Parameter> integrator_table_parameters() {
 std::span<const Use> integrator_uses() {
   static const auto keys_of = [] {  // a Use only names them
     std::map<std::string_view, std::string> all;
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       for (const Parameter& p : entry.parameters) {
         std::string& keys = all[entry.id];
         keys += (keys.empty() ? "" : "|") + std::string(p.name);
@@ -160,4 +162,4 @@ std::vector<TableEntry> table_entries() {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -8,7 +8,7 @@
 #include "models/catalogue.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 // What every table of a scene may hold: the reader, the schema page and the scene of
 // defaults take it from here.
@@ -42,4 +42,4 @@ struct TableEntry {
 /// All tables but [model], in the order in which a scene is written.
 std::vector<TableEntry> table_entries();
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -11,7 +11,7 @@
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/write_scene.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -102,7 +102,7 @@ void add_models(std::string& page) {
       "own geometry takes no\n`[strand]`, `[groom]`, `[material]`, `[root]` and "
       "`[effects.*]`.\n";
   const auto out = std::back_inserter(page);
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     fmt::format_to(out, "\n### id = \"{}\"\n\n{} ({}).{}\n", model.id, model.summary,
                    model.source,
                    model.on_strand == nullptr ? " Brings its own geometry." : "");
@@ -174,4 +174,4 @@ std::string scene_defaults() {
   return scene;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -3,9 +3,10 @@
 #include <span>
 #include <string>
 
+#include "contract/layers.h"
 #include "contract/parameters.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Every table and key of a scene with default, range and unit as Markdown: the content
 /// of scenes/README.md.
@@ -18,4 +19,4 @@ std::string scene_defaults();
 /// The default as a value of TOML.
 std::string default_value(const Parameter& parameter);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "simulation/scene/random.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr Parameter shape_table[] = {
@@ -105,4 +105,4 @@ Shape natural_shape(const Table& table, const StrandMaterial& material,
   return uniform_shape({});
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

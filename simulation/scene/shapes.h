@@ -8,7 +8,7 @@
 #include "models/strand/strand.h"
 #include "simulation/scene/material_table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Curvatures about e1 and e2 that vary smoothly and at random along the strand: 32 waves
 /// of random phase and wave number, so that over all seeds either has mean 0, the root
@@ -46,4 +46,4 @@ std::span<const Use> shape_uses();
 Shape natural_shape(const Table& table, const StrandMaterial& material,
                     std::uint64_t seed, std::uint64_t stream);
 
-}  // namespace tress
+}  // namespace tress::simulation

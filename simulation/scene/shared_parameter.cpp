@@ -6,7 +6,7 @@
 
 #include "models/strand/strand_parameters.h"
 
-namespace tress {
+namespace tress::simulation {
 
 Parameter shared_parameter(std::string_view name) {
   for (const Parameter& p : with_strand_parameters({})) {
@@ -15,4 +15,4 @@ Parameter shared_parameter(std::string_view name) {
   throw std::logic_error("no shared parameter " + std::string(name));
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -2,11 +2,12 @@
 
 #include <string_view>
 
+#include "contract/layers.h"
 #include "contract/parameters.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// The parameter that every strand model has under this name, with its range and help.
 Parameter shared_parameter(std::string_view name);
 
-}  // namespace tress
+}  // namespace tress::simulation

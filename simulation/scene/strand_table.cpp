@@ -9,7 +9,7 @@
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/shared_parameter.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr double most = 1e6;
@@ -124,4 +124,4 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   return strand;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

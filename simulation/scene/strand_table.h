@@ -9,7 +9,7 @@
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/root_table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// What holds for every strand of a scene.
 struct Common {
@@ -35,4 +35,4 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
                   const Shape& natural);
 
-}  // namespace tress
+}  // namespace tress::simulation

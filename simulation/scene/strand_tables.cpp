@@ -10,7 +10,7 @@
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/strand_table.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr std::size_t most_strands = 10'000, most_elements = 200'000;
@@ -59,4 +59,4 @@ StrandTables with_elements(StrandTables tables, int elements) {
   return tables;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

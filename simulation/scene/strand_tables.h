@@ -7,7 +7,7 @@
 #include "models/strand/strand.h"
 #include "simulation/scene/table.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// One [strand] or [groom] of a scene, with its own material if it has one.
 struct StrandSource {
@@ -35,4 +35,4 @@ CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
 /// The same tables with so many elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
 
-}  // namespace tress
+}  // namespace tress::simulation

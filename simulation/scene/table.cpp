@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 bool names(const Use& use, std::string_view key) {
@@ -60,4 +60,4 @@ void Table::refuse_unused(std::string_view choice, std::span<const Use> uses) co
   }
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

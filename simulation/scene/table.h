@@ -5,9 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "contract/layers.h"
 #include "contract/parameters.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Which keys go with one word of a table's choice, separated by '|'.
 struct Use {
@@ -51,4 +52,4 @@ class Table {
 /// Whether `uses` leaves `key` to `word`: it names it there, or nowhere.
 bool used(std::span<const Use> uses, std::string_view word, std::string_view key);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 constexpr std::size_t features = 4;
@@ -104,4 +104,4 @@ std::vector<std::size_t> typical_strands(const std::vector<Strand>& strands,
   return chosen;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -5,7 +5,7 @@
 
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// Indices of at most `most` strands that stand for all, ascending. What tells strands
 /// apart: length and bending stiffness (logarithms), how far the natural shape turns
@@ -16,4 +16,4 @@ namespace tress {
 std::vector<std::size_t> typical_strands(const std::vector<Strand>& strands,
                                          std::size_t most);
 
-}  // namespace tress
+}  // namespace tress::simulation

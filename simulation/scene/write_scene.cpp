@@ -11,7 +11,7 @@
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 
-namespace tress {
+namespace tress::simulation {
 namespace {
 
 /// "1,2;3,4" in brackets: "[[1, 2], [3, 4]]".
@@ -153,4 +153,4 @@ std::string scene_text(const Scene& scene) {
   return text;
 }
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "simulation/scene/scene.h"
 
-namespace tress {
+namespace tress::simulation {
 
 /// The scene as a file: reading it gives the same scene to the last bit. What has its
 /// default is left out, and files that it names are named by their full paths, so that it
@@ -17,4 +17,4 @@ std::string scene_text(const Scene& scene);
 /// A value as a scene has it, from the text that Parameters::set takes.
 std::string toml_value(const Parameter& parameter, std::string_view text);
 
-}  // namespace tress
+}  // namespace tress::simulation

@@ -32,6 +32,9 @@ void* realloc(void* pointer, std::size_t size) {
 #endif
 
 namespace tress {
+
+using namespace integrators;
+using namespace models;
 namespace {
 
 using namespace testing_support;

@@ -9,6 +9,8 @@
 
 namespace tress::test_effect_cost {
 
+using namespace simulation;
+
 struct Seen {
   int calls = 0;
   bool position = false, velocity = false, tangent = false;
@@ -99,7 +101,7 @@ TEST_P(EffectCost, NoEffectIsNoTerm) {
 
 std::vector<const ModelEntry*> on_strands() {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& entry : models()) {
+  for (const ModelEntry& entry : model_catalogue()) {
     if (entry.on_strand != nullptr) all.push_back(&entry);
   }
   return all;

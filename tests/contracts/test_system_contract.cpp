@@ -5,6 +5,9 @@
 
 namespace tress::test_system_contract {
 
+using namespace integrators;
+using namespace models;
+
 using namespace testing_support;
 
 constexpr Weights weight_sets[] = {

@@ -10,6 +10,8 @@
 
 namespace tress::test_advise {
 
+using namespace simulation;
+
 using testing::HasSubstr;
 
 const char* const sagging = R"(

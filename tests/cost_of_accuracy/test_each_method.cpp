@@ -10,6 +10,9 @@
 
 namespace tress::test_each_method {
 
+using namespace experiments;
+using namespace experiments::cost_of_accuracy;
+
 CommandLine asked(std::vector<std::string> models, std::vector<std::string> integrators) {
   CommandLine line;
   line.quick = true;

@@ -16,6 +16,9 @@
 
 namespace tress::test_scene_study {
 
+using namespace experiments;
+using namespace experiments::cost_of_accuracy;
+
 const char* const sagging = R"(
 title = "a hair sags"
 duration_s = 0.2

@@ -10,6 +10,9 @@
 
 namespace tress::test_search {
 
+using namespace experiments;
+using namespace experiments::cost_of_accuracy;
+
 /// A method whose error and cost are known: a (1/n)^p + b (1/k)^q at cost c n k.
 struct Known {
   double a, p, b, q, c;

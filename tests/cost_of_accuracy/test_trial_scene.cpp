@@ -10,6 +10,9 @@
 
 namespace tress::test_trial_scene {
 
+using namespace experiments;
+using namespace experiments::cost_of_accuracy;
+
 const char* const curly = R"(
 title = "curly # not a comment"
 frames_1_s = 50

@@ -102,13 +102,13 @@ std::string nonsense(const RandomScene& scene, const std::string& stem) {
 const char* word_of(const LimitedRun& run) {
   if (run.hung) return "hang";
   switch (run.code) {
-    case tress::done:
+    case tress::experiments::done:
       return "ok";
-    case tress::rows_failed:
+    case tress::experiments::rows_failed:
       return "stated failure";
-    case tress::usage_error:
+    case tress::experiments::usage_error:
       return "refused";
-    case tress::interrupted:
+    case tress::experiments::interrupted:
       return run.stopped ? "stopped" : "crash";
     default:
       return "crash";

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     }
     ::alarm(hang);
     try {
-      tress::parse_scene(text, last);
+      tress::simulation::parse_scene(text, last);
       ++read;
     } catch (const tress::InputError&) {
       ++refused;

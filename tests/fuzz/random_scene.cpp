@@ -13,6 +13,9 @@
 #include "models/strand/strand_parameters.h"
 
 namespace tress::testing_support {
+
+using namespace integrators;
+using namespace models;
 namespace {
 
 class Draw {
@@ -63,7 +66,7 @@ class Writer {
 
   RandomScene write() {
     model();
-    method_ = &draw_.of(integrators());
+    method_ = &draw_.of(integrator_catalogue());
     frames_ = draw_.whole(5, 40);
     material();
     strands();
@@ -88,7 +91,7 @@ class Writer {
 
   void model() {
     std::vector<const ModelEntry*> strands;
-    for (const ModelEntry& entry : models()) {
+    for (const ModelEntry& entry : model_catalogue()) {
       if (entry.on_strand != nullptr) strands.push_back(&entry);
     }
     const ModelEntry& entry = *draw_.of(strands);

@@ -15,6 +15,9 @@
 #include "simulation/files/files.h"
 
 namespace tress {
+
+using namespace experiments;
+using namespace experiments::hard_cases;
 namespace {
 
 const std::string file = TRESS_SOURCE_DIR "/tests/hard_cases/expected.csv";

@@ -13,10 +13,13 @@
 
 namespace tress::test_hard_cases {
 
+using namespace experiments;
+using namespace experiments::hard_cases;
+
 using testing::HasSubstr;
 
 const HardCase& named(std::string_view name) {
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     if (hard.name == name) return hard;
   }
   throw std::runtime_error("no case " + std::string(name));
@@ -46,7 +49,7 @@ Survival survived(std::string_view hard, std::string_view model,
 
 TEST(HardCases, SayWhatTheyAreAndWhenTheyArePassed) {
   std::set<std::string_view> names;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     EXPECT_TRUE(names.insert(hard.name).second) << hard.name;
     EXPECT_FALSE(hard.why.empty()) << hard.name;
     EXPECT_FALSE(hard.measure.empty()) << hard.name;
@@ -60,9 +63,9 @@ TEST(HardCases, SayWhatTheyAreAndWhenTheyArePassed) {
 
 // Every model is in every situation, or says why not.
 TEST(HardCases, AreMadeOnEveryModelOrRefused) {
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_case_catalogue()) {
     if (hard.settings.empty() || !hard.not_for_strands.empty()) continue;
-    for (const ModelEntry& model : models()) {
+    for (const ModelEntry& model : model_catalogue()) {
       if (model.on_strand == nullptr) continue;
       try {
         const Situation s = situation(hard, {&model, {}, ""}, defaults(model.id));
@@ -307,7 +310,7 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
     EXPECT_LT(cell.reference, grid.references);
     cases.insert(std::string(cell.attempt.hard->name));
   }
-  EXPECT_EQ(cases.size(), hard_cases().size());
+  EXPECT_EQ(cases.size(), hard_case_catalogue().size());
   // Three integrators at two steps on each model and system of particles.
   EXPECT_EQ(grid.cells.size(), 6 * grid.references);
   line.set = {{"case", "straihgt"}};
@@ -330,7 +333,7 @@ Verdicts::Verdict judged(const Row& row, std::string_view of) {
   check_hard_cases({row}, verdicts);
   EXPECT_EQ(
       std::ranges::count(verdicts.all(), State::not_judged, &Verdicts::Verdict::state),
-      static_cast<std::ptrdiff_t>(hard_cases().size()) - 1);
+      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1);
   for (const auto& verdict : verdicts.all()) {
     if (verdict.claim.starts_with(of)) return verdict;
   }

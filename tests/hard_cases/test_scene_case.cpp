@@ -12,6 +12,9 @@
 
 namespace tress::test_scene_case {
 
+using namespace experiments;
+using namespace experiments::hard_cases;
+
 using testing::HasSubstr;
 
 constexpr double without_end = 1e12;  // work

@@ -18,6 +18,9 @@
 
 namespace tress::test_calibrate {
 
+using namespace experiments;
+using namespace experiments::calibrate;
+
 using testing::AllOf;
 using testing::HasSubstr;
 

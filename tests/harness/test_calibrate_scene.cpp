@@ -9,6 +9,9 @@
 
 namespace tress::test_calibrate_scene {
 
+using namespace experiments;
+using namespace experiments::calibrate;
+
 using testing::HasSubstr;
 
 /// Let go straight from a horizontal clamp; `more` ends the strand's table.

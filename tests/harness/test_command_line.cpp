@@ -11,6 +11,8 @@
 
 namespace tress::test_command_line {
 
+using namespace experiments;
+
 using testing::ElementsAre;
 
 CommandLine parse(std::vector<const char*> arguments) {
@@ -160,7 +162,7 @@ TEST(IntegratorOptions, EveryKeyHasOneOwner) {
 
 TEST(IntegratorOptions, OwnOnesReachTheMethodThatDeclaresThem) {
   int own = 0;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     for (const Parameter& p : entry.parameters) {
       ++own;
       EXPECT_EQ(owner_of_option(p.name), &entry) << p.name;

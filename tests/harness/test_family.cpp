@@ -10,6 +10,9 @@
 #include "experiments/family/summary.h"
 
 namespace tress::family {
+
+using namespace experiments;
+using namespace experiments::family;
 namespace {
 
 TEST(Family, LatinHypercube_HasOneHairInEveryPartOfEveryRange) {

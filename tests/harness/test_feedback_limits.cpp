@@ -7,6 +7,9 @@
 
 namespace tress::test_feedback_limits {
 
+using namespace experiments;
+using namespace experiments::constraint_drift;
+
 std::vector<Case> limits(const CommandLine& line) {
   return feedback_limits(line, Settings(line, {}));
 }

@@ -16,6 +16,9 @@
 
 namespace tress::test_friction_fit {
 
+using namespace experiments;
+using namespace experiments::calibrate;
+
 using testing::HasSubstr;
 
 // ---- fits -------------------------------------------------------------------------

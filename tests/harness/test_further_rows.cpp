@@ -9,6 +9,8 @@
 
 namespace tress::test_further_rows {
 
+using namespace simulation;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -9,6 +9,8 @@
 
 namespace tress::test_list {
 
+using namespace experiments;
+
 using testing::HasSubstr;
 
 /// A free particle on a line: enough for an integrator to accept or refuse.

@@ -8,6 +8,9 @@
 
 namespace tress::test_nodal_limits {
 
+using namespace experiments;
+using namespace experiments::stability_limit;
+
 using Set = std::vector<std::pair<std::string, std::string>>;
 
 CommandLine line(const Set& set = {}) {

@@ -18,6 +18,9 @@
 
 namespace tress::test_scaling {
 
+using namespace experiments;
+using namespace experiments::scaling;
+
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // ---- the fit ----------------------------------------------------------------------

@@ -12,6 +12,9 @@
 
 namespace tress::test_scene_limits {
 
+using namespace experiments;
+using namespace experiments::stability_limit;
+
 using testing::HasSubstr;
 
 class SceneLimit : public testing::Test {

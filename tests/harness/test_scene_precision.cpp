@@ -18,6 +18,10 @@
 
 namespace tress::test_scene_precision {
 
+using namespace experiments;
+using namespace experiments::scaling;
+using namespace experiments::work_precision;
+
 using testing::HasSubstr;
 
 std::string file(const std::string& name, const std::string& text) {

@@ -10,6 +10,8 @@
 
 namespace tress::test_stability {
 
+using namespace experiments;
+
 using testing_support::AnglePendulum;
 
 // ---- the judge --------------------------------------------------------------------

@@ -8,6 +8,10 @@
 
 namespace tress::test_stability_claims {
 
+using namespace experiments;
+using namespace experiments::constraint_drift;
+using namespace experiments::stability_limit;
+
 Row row(std::string_view scene, std::string_view integrator, std::string_view solver,
         std::string_view tangent, double stable, double unstable) {
   Row r;

@@ -20,6 +20,10 @@
 
 namespace tress::test_strand_precision {
 
+using namespace experiments;
+using namespace experiments::peers;
+using namespace experiments::work_precision;
+
 // ---- the track of a tip -----------------------------------------------------------
 
 /// A unit mass under a constant force; its "strand" is two points, the root at 0.

@@ -10,6 +10,8 @@
 
 namespace tress::test_strand_scenes {
 
+using namespace experiments;
+
 Parameters scene_parameters(const StrandScene& scene, std::string_view model,
                             int elements) {
   Parameters p(find_model(model).parameters, "test");

@@ -13,6 +13,8 @@
 
 namespace tress::test_sweep {
 
+using namespace simulation;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;

@@ -14,6 +14,8 @@
 
 namespace tress::test_tables {
 
+using namespace experiments;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 

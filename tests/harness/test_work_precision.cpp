@@ -14,6 +14,9 @@
 
 namespace tress::test_work_precision {
 
+using namespace experiments;
+using namespace experiments::work_precision;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;

@@ -14,6 +14,8 @@
 #include "experiments/run/settings.h"
 
 namespace tress {
+
+using namespace experiments;
 namespace {
 
 constexpr Column columns[] = {{"index", "which row"},

@@ -6,6 +6,8 @@
 
 namespace tress::test_inexact_tangent {
 
+using namespace experiments;
+
 using testing_support::AngleChain;
 using testing_support::Drive;
 

@@ -14,6 +14,8 @@
 // Where numbers stop being finite is named: which term, which place, which step.
 namespace tress::test_not_finite {
 
+using namespace experiments;
+
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;

@@ -14,6 +14,8 @@
 
 namespace tress::test_order {
 
+using namespace experiments;
+
 // The circle bead is the plane pendulum: an exact solution, in one coordinate
 // (parametric) and with multipliers (every other formulation).
 constexpr double gravity = 9.81;
@@ -44,7 +46,7 @@ std::unique_ptr<System> bead(Formulation formulation) {
 /// All that take the bead: not those of compliant constraints, which a wire is not.
 std::vector<Method> methods(bool adaptive) {
   std::vector<Method> all;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.adaptive != adaptive) continue;
     for (const auto& [formulation, order] : entry.formulations) {
       if (!refusal(entry, *bead(formulation), formulation).empty()) continue;
@@ -201,7 +203,7 @@ TEST(MaxWork, EndsARunOfEveryMethodWithThatReason) {
 
 TEST(IntegratorEntry, EveryFormulationThatAMethodLacksHasAReason) {
   using enum Formulation;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     for (const Formulation formulation : {parametric, acceleration, baumgarte, projection,
                                           index2_ggl, index3, rattle, correction}) {
       if (entry.order(formulation)) continue;

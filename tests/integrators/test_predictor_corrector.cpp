@@ -12,6 +12,8 @@
 
 namespace tress::test_predictor_corrector {
 
+using namespace experiments;
+
 constexpr double length = 0.1;  // m
 
 ModelSettings shaken(std::string_view springs) {

@@ -9,6 +9,9 @@
 
 namespace tress::test_rattle {
 
+using namespace integrators;
+using namespace models;
+
 struct Motion {
   std::vector<double> q, v;
 };

@@ -9,6 +9,8 @@
 
 namespace tress::test_redundant {
 
+using namespace experiments;
+
 /// A truss of one bay: 12 bars where 9 would do, so G lacks rank by 3 at every state.
 const ModelSettings one_bay{{"structure", "truss"}, {"size", "1"}};
 
@@ -28,7 +30,7 @@ void PrintTo(const Method& method, std::ostream* out) {
 std::vector<Method> methods() {
   const auto truss = make_model("tinkertoys", one_bay);
   std::vector<Method> all;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
     for (const auto& [formulation, order] : entry.formulations) {
       const bool known_to_fail = entry.id == "ida" && formulation == Formulation::index3;
       if (!known_to_fail && refusal(entry, *truss, formulation).empty()) {

@@ -9,6 +9,9 @@
 
 namespace tress::test_stage {
 
+using namespace integrators;
+using namespace models;
+
 using namespace testing_support;
 
 CatalogueCase catalogue_case(std::string_view id, const char* key, const char* word) {

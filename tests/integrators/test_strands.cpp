@@ -11,6 +11,8 @@
 
 namespace tress::test_strands {
 
+using namespace experiments;
+
 using testing_support::Drive;
 
 // A soft thick strand (its waves take milliseconds, so that explicit methods are in their
@@ -97,7 +99,7 @@ std::vector<Method> methods(bool adaptive) {
   std::vector<Method> all;
   for (const std::string_view model : tested_models()) {
     const auto system = strand(model);
-    for (const IntegratorEntry& entry : integrators()) {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (entry.adaptive != adaptive) continue;
       if (!refusal(entry, *system, Formulation::parametric).empty()) continue;
       all.push_back({&entry, model});
@@ -111,7 +113,7 @@ TEST(Strands, OnlyRattlePredictorCorrectorAndXpbdAreRefused) {
   std::size_t expected = 0;
   for (const std::string_view model : tested_models()) {
     const bool compliant = strand(model)->compliance_form() != nullptr;
-    expected += integrators().size() - (compliant ? 2 : 3);
+    expected += integrator_catalogue().size() - (compliant ? 2 : 3);
   }
   EXPECT_EQ(methods(false).size() + methods(true).size(), expected);
 }

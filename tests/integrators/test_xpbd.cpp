@@ -12,6 +12,8 @@
 
 namespace tress::test_xpbd {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 /// Equal masses (1 kg) on a line, joined by springs (1 m long) with friction; released

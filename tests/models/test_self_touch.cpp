@@ -7,6 +7,8 @@
 // The tangent of a strand that touches itself, where loads depend on distant points.
 namespace tress::test_self_touch {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 struct Spiral {

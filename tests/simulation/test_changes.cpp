@@ -16,6 +16,8 @@
 
 namespace tress::test_changes {
 
+using namespace simulation;
+
 bool same(const Vec& a, const Vec& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 void expect_same(const Strand& a, const Strand& b) {

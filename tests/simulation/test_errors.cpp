@@ -10,6 +10,8 @@
 
 namespace tress::test_errors {
 
+using namespace simulation;
+
 using testing::HasSubstr;
 
 std::string refusal_of(const std::string& text) {

@@ -14,6 +14,8 @@
 
 namespace tress::test_export {
 
+using namespace simulation;
+
 using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180;

@@ -11,6 +11,8 @@
 
 namespace tress::test_groom {
 
+using namespace simulation;
+
 using std::numbers::pi;
 
 std::vector<Strand> groomed(const std::string& keys, int seed = 1) {

@@ -12,6 +12,8 @@
 
 namespace tress::test_guard {
 
+using namespace simulation;
+
 struct Said {
   std::string model, integrator, dt, more, root = "motion = \"fixed\"\n",
                                            effects = "[effects.gravity]\n";

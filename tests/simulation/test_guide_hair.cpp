@@ -11,6 +11,8 @@
 
 namespace tress::test_guide_hair {
 
+using namespace simulation;
+
 constexpr std::size_t points = 11;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 

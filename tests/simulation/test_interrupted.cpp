@@ -22,6 +22,8 @@
 
 namespace tress::test_interrupted {
 
+using namespace experiments;
+
 using testing::HasSubstr;
 
 std::string swinging(const std::string& elements, const std::string& times) {

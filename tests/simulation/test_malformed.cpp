@@ -14,6 +14,8 @@
 
 namespace tress::test_malformed {
 
+using namespace simulation;
+
 std::vector<std::string> shipped_texts() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(TRESS_SCENES)) {

@@ -13,6 +13,8 @@
 
 namespace tress::test_schema {
 
+using namespace simulation;
+
 TEST(SceneSchema, IsThePageInTheScenesFolder) {
   EXPECT_EQ(read_file(TRESS_SCENES "/README.md"), scene_schema())
       << "write it anew: simulate --print-schema > scenes/README.md";
@@ -78,7 +80,7 @@ TEST(SceneTables, TakeEveryKeyAtItsDefault) {
 /// Whether a strand of some model can be driven as `text`, which ends in [integrator],
 /// says: not every method takes every model.
 bool some_model_takes(const IntegratorEntry& entry, const std::string& text) {
-  for (const ModelEntry& model : models()) {
+  for (const ModelEntry& model : model_catalogue()) {
     if (model.on_strand == nullptr) continue;
     for (const auto& [formulation, order] : entry.formulations) {
       try {

@@ -11,6 +11,8 @@
 
 namespace tress::test_shapes {
 
+using namespace simulation;
+
 using std::numbers::pi;
 
 Strand through(const std::vector<double>& points, int elements, PointCurve& curve) {

@@ -11,6 +11,8 @@
 
 namespace tress::test_shipped {
 
+using namespace simulation;
+
 std::vector<std::string> shipped() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TRESS_SCENES)) {

@@ -13,6 +13,8 @@
 
 namespace tress::test_simulate {
 
+using namespace simulation;
+
 /// One hair that falls, with frames until 1 s.
 std::string falling(const std::string& model, const std::string& more = "") {
   return "title = \"falls\"\nduration_s = 1\nframes_1_s = 50\ncheckpoint_s = 0.1\n"

@@ -9,6 +9,8 @@
 
 namespace tress::test_trees {
 
+using namespace simulation;
+
 const std::filesystem::path scenes = TRESS_SCENES;
 
 class TreeSceneTest : public testing::TestWithParam<std::string> {};

@@ -15,6 +15,8 @@
 
 namespace tress::test_world {
 
+using namespace simulation;
+
 Scene pair(const std::string& model, const std::string& coupling) {
   const std::string strand = "length_m = 0.1\nelements = 10\nshape = \"helix\"\n";
   return parse_scene(

@@ -12,6 +12,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// A catalogue entry with at most one parameter away from its default: every word of
 /// every choice gets its own case, so a new model or variant is tested without being
 /// named here.
@@ -35,7 +37,7 @@ struct CatalogueCase {
 
 inline std::vector<CatalogueCase> catalogue_cases() {
   std::vector<CatalogueCase> cases;
-  for (const ModelEntry& entry : models()) {
+  for (const ModelEntry& entry : model_catalogue()) {
     cases.push_back({&entry, "", ""});
     for (const Parameter& parameter : entry.parameters) {
       const auto words = words_of(parameter.choices);

@@ -4,6 +4,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// M a - f where a is what a system's ComplianceForm says, over the largest part of M a:
 /// nothing but rounding.
 inline double compliance_error(System& system, ComplianceForm& form, const States& s) {

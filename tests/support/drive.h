@@ -10,6 +10,8 @@
 
 namespace tress::testing_support {
 
+using namespace integrators;
+
 /// A system's own start state, driven to `t_end` by one integrator.
 struct Drive {
   Drive(std::string_view id, System& system, const Options& options)

@@ -11,6 +11,8 @@
 /// A system's tangent against central differences of its residual.
 namespace tress::testing_support {
 
+using namespace models;
+
 // One time off the start, so that time-dependent terms are alive.
 inline constexpr double t0 = 0.013;
 

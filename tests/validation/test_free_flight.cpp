@@ -8,6 +8,9 @@
 
 namespace tress::test_free_flight {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 CommandLine line(const std::vector<std::string>& integrators = {}) {
   CommandLine asked;
   asked.quick = true;

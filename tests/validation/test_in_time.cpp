@@ -16,6 +16,9 @@
 
 namespace tress::test_in_time {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 ModelVariant model(std::string_view id) { return {&find_model(id), {}, ""}; }
 
 // ---- the references ---------------------------------------------------------------

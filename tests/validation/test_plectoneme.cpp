@@ -7,6 +7,9 @@
 
 namespace tress::test_plectoneme {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 // Small angles: T = (3/2) a^4 (1 - 2 a^2/3 + 4 a^2/3 + ...), so a is (2 T/3)^(1/4) but
 // for a^2/6, and more with a^4.
 TEST(PlyAngle, SolvesTheEquilibrium) {

@@ -15,6 +15,9 @@
 /// on two meshes that agree to 1e-12, and published zeros.
 namespace tress::test_references {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 TEST(MasterCurve, IsThatOfTheElastica) {
   constexpr double height_over_width[][2] = {
       {0.01, 1.249999553589576e-3}, {0.1, 1.249955365543758e-2}, {1, 0.124561766441707},

@@ -9,6 +9,9 @@
 
 namespace tress::test_signals {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 constexpr double rate = 7, step = 0.005;  // rad/s, s
 constexpr double coarse = rate * step;    // omega h = 0.035
 constexpr double duration = 1000 * step + 1e-9;

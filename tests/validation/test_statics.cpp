@@ -9,6 +9,9 @@
 
 namespace tress::test_statics {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 constexpr Vec axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};
 
 ModelVariant variant(std::string_view id, ModelSettings settings = {}) {

@@ -9,6 +9,9 @@
 
 namespace tress::test_table {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 Row row(std::string_view model, int elements, double error, bool judged) {
   Row r;
   r.set("test", "cantilever").set("model", model).set("elements", elements);

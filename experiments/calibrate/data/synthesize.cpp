@@ -7,7 +7,8 @@
 #include "experiments/calibrate/shipped_records.h"
 
 int main(int argc, char** argv) {
-  using namespace tress;
+  using namespace tress::experiments;
+  using namespace tress::experiments::calibrate;
   const auto all = shipped_records();
   const auto found =
       std::ranges::find(all, argc == 2 ? argv[1] : "", &ShippedRecords::name);

@@ -7,8 +7,13 @@ import { load_results } from '../src/load.mjs';
 import { queries } from './queries/all.mjs';
 import { fill, untraced_numbers } from './template.mjs';
 
-// Templates lie in docs/templates/ as their pages lie in docs/; these two lie elsewhere.
-const elsewhere = { 'README.md': 'README.md', 'results.md': 'results/README.md' };
+// The page of a template: that of a study lies in the study's folder.
+function page_of(name) {
+  if (name === 'README.md') return name;
+  if (name === 'results.md') return 'results/README.md';
+  const study = /^studies\/(.*)\.md$/.exec(name);
+  return study ? `experiments/${study[1]}/README.md` : `docs/${name}`;
+}
 
 const made_from = (template) =>
   `<!-- Made by ./tress report from docs/templates/${template} and results/: edit those. -->\n`;
@@ -23,7 +28,7 @@ export function page_files(root) {
   return [...list(''), ...list('studies')].map((name) => ({
     name,
     template: `docs/templates/${name}`,
-    page: elsewhere[name] ?? `docs/${name}`,
+    page: page_of(name),
   }));
 }
 

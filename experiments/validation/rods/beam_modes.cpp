@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "experiments/validation/rods/numerics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 /// The `count`-th root above 0, looked for in steps that no two roots share.
@@ -72,4 +72,4 @@ double curved_beam_mode(double opening, int mode) {
   return nth_root(tip, mode, 0.1);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// omega of the `mode`-th vibration across a hanging rod of weight Gamma = rho g S L^3/EI
 /// (Gamma < 0: standing), clamped at its upper end, over sqrt(EI/(rho S L^4)):
@@ -26,4 +28,4 @@ double heavy_rod_mode(double gamma, int mode);
 /// u = w = theta = 0 at the clamp and M = T = N = 0 at the tip. 1e-10 for modes <= 5.
 double curved_beam_mode(double opening, int mode);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

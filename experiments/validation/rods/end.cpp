@@ -7,7 +7,7 @@
 #include "math/quaternion.h"
 #include "models/strand/geometry.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using Eigen::Index;
@@ -173,4 +173,4 @@ Eigen::VectorXd EndConditions::compliance() const {
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

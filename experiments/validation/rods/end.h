@@ -6,7 +6,7 @@
 #include "contract/system.h"
 #include "math/frame.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// What a test does with the free end of a strand.
 struct End {
@@ -59,4 +59,4 @@ class EndConditions {
   std::vector<double> q_typ_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

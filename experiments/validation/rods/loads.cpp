@@ -3,7 +3,7 @@
 #include "math/gauss_legendre.h"
 #include "math/mat3.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 /// Of the polynomial through the points of Gauss's rule, at the end of its interval.
@@ -91,4 +91,4 @@ double FollowerForce::power(double, const Points& p) const noexcept {
   return sum;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -6,7 +6,7 @@
 #include "models/effects/effect.h"
 
 /// What loads a strand in a test of statics. Time is the load: 0 none, 1 all of it.
-namespace tress {
+namespace tress::experiments::validation {
 
 /// Gravity g t (m/s^2). O(points).
 class Weight final : public Effect {
@@ -84,4 +84,4 @@ class FollowerForce final : public Effect {
   double force_;
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,7 +7,7 @@
 #include "contract/input_error.h"
 #include "experiments/validation/rods/numerics.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 Cantilever cantilever(double gamma, double alpha) {
   const auto within = [](double x) { return x >= 0 && x <= 1e5; };
@@ -48,4 +48,4 @@ Cantilever cantilever(double gamma, double alpha) {
   return {y[2], y[3], right_angle - std::exp(log_tip)};
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// A planar inextensible rod clamped horizontally, under its own weight and a force P
 /// down on its tip: with theta the angle below the horizontal and s from the clamp, over
@@ -20,4 +22,4 @@ struct Cantilever {
 /// Gamma and alpha in [0, 1e5], not both 0. Throws InputError on others.
 Cantilever cantilever(double gamma, double alpha);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -12,7 +12,7 @@
 #include "models/effects/gravity.h"
 #include "simulation/run/simulation.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 /// Keeps the lowest of the points at which it is asked for its potential; does nothing.
@@ -103,4 +103,4 @@ Look kinetic(System& system) {
   };
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -10,7 +10,7 @@
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// Strands in motion, for the tests of validation that run in time. A run that fails
 /// throws std::runtime_error with the integrator's words.
@@ -46,4 +46,4 @@ Look place(System& system, int point, int axis);
 /// Kinetic energy, J.
 Look kinetic(System& system);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

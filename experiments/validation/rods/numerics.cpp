@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 int call_slope(double x, const double* y, double* dy, void* slope) {
@@ -73,4 +73,4 @@ double find_root(const std::function<double(double)>& f, double low, double high
   return gsl_root_fsolver_root(solver.get());
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -3,7 +3,9 @@
 #include <functional>
 #include <vector>
 
-namespace tress {
+#include "contract/layers.h"
+
+namespace tress::experiments::validation {
 
 /// dy/dx = f(x, y) from `from` to `to` by the Runge-Kutta method of Prince and Dormand
 /// (order 8, GSL), each step within 1e-13 of every entry of y, or of what the step adds
@@ -21,4 +23,4 @@ std::vector<double> integrate_scaled(const Slope& slope, double from, double to,
 double find_root(const std::function<double(double)>& f, double low, double high,
                  double accuracy = 1e-14);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

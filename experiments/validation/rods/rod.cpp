@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 constexpr CrossSection section{40e-6, 40e-6};
@@ -88,4 +88,4 @@ std::string no_curl(const ModelVariant& variant) {
              : std::string();
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,7 +7,7 @@
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// The hair that tests are made of, in SI units: radius 40 um, E = 3 GPa, density 1300
 /// kg/m^3, 10 cm long, so EI = 6.03e-9 N m^2, EA L^2/EI = 2.5e7. What a test measures has
@@ -53,4 +53,4 @@ std::string no_section(const ModelVariant& variant);
 /// The same of a test whose strand has a natural curvature that leads into space.
 std::string no_curl(const ModelVariant& variant);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 /// The vertex of the parabola through three samples, in steps from the middle one.
@@ -101,4 +101,4 @@ double decay_rate(const Track& track) {
   return -(n * sty - st * sy) / (n * stt - st * st);
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -5,7 +5,7 @@
 #include "experiments/validation/rods/motion.h"
 
 /// Times, rates and frequencies in what was seen of a motion.
-namespace tress {
+namespace tress::experiments::validation {
 
 /// Where the value passes 0, on the chord of the step: off by (omega h)^2/24 of a step of
 /// an oscillation of rate omega.
@@ -29,4 +29,4 @@ double strongest_rate(const Track& track, double from, double to);
 /// swings.
 double decay_rate(const Track& track);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

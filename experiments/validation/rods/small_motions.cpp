@@ -4,7 +4,7 @@
 
 #include "experiments/numerics/dense_algebra.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using Eigen::MatrixXd;
@@ -79,4 +79,4 @@ std::vector<std::complex<double>> squares_of_motions(const MatrixXd& mass,
   return all;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

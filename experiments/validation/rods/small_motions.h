@@ -6,7 +6,7 @@
 
 #include "contract/system.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// A small motion x(t) = shape exp(i omega t).
 struct SmallMotion {
@@ -33,4 +33,4 @@ std::vector<std::complex<double>> squares_of_motions(const Eigen::MatrixXd& mass
                                                      const Eigen::MatrixXd& rows,
                                                      In typical);
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -8,7 +8,7 @@
 #include "experiments/numerics/dense_form.h"
 #include "experiments/validation/rods/rod.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 namespace {
 
 using Eigen::Index;
@@ -295,4 +295,4 @@ std::vector<double> Statics::displacements(const SmallMotion& motion) {
   return u;
 }
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -10,7 +10,7 @@
 #include "experiments/validation/rods/small_motions.h"
 #include "models/strand/strand.h"
 
-namespace tress {
+namespace tress::experiments::validation {
 
 /// One model of a strand and its equilibria: r(q) = G^T lambda + C^T e under the load t,
 /// g = 0, c = 0, with the model's own constraints g, and c those that hold the end, by
@@ -77,4 +77,4 @@ class Statics {
   double work_ = 0;  // of all steps, (unknowns)^3 each
 };
 
-}  // namespace tress
+}  // namespace tress::experiments::validation

@@ -7,6 +7,8 @@
 
 namespace tress::test_accuracy {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 struct Case {

@@ -7,6 +7,8 @@
 
 namespace tress::test_constraints {
 
+using namespace integrators;
+
 using namespace testing_support;
 
 constexpr double duration = 2;  // s: about one period

@@ -9,6 +9,8 @@
 
 namespace tress::test_newton_matrix {
 
+using namespace integrators;
+
 using namespace testing_support;
 using Vector = std::vector<double>;
 

@@ -8,6 +8,8 @@
 
 namespace tress::test_outcomes {
 
+using namespace integrators;
+
 using namespace testing_support;
 using testing::HasSubstr;
 

@@ -8,6 +8,8 @@
 
 namespace tress::test_bead {
 
+using namespace models;
+
 using testing_support::Oracle;
 using testing_support::view;
 using Setting = std::pair<const char*, const char*>;

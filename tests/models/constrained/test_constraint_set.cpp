@@ -11,6 +11,8 @@
 
 namespace tress::test_constraint_set {
 
+using namespace models;
+
 using testing_support::Dual2;
 using testing_support::variable2;
 

@@ -9,6 +9,8 @@
 
 namespace tress::test_kernels {
 
+using namespace models;
+
 using testing_support::Dual2;
 using testing_support::variable2;
 

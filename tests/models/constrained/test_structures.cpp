@@ -10,6 +10,8 @@
 
 namespace tress::test_structures {
 
+using namespace models;
+
 using testing_support::Oracle;
 using testing_support::view;
 

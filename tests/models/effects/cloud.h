@@ -9,6 +9,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// Points for effects to act on, filled at random: places in [-1, 1]^3 m, velocities up
 /// to 3 m/s of which some are small and some 0, tangents of length 1. Reproducible: equal
 /// seeds, equal points.

@@ -7,6 +7,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// Moves free points under effects by the classical Runge-Kutta method of order 4, whose
 /// fixed points are those of the equations. Tangents stay as they are.
 class FreePoints {

@@ -12,6 +12,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// Distances from a sphere about the origin on n^3 points of the cube [-edge, edge]^3.
 inline DistanceGrid::Samples sphere_samples(double radius, double edge, std::size_t n) {
   DistanceGrid::Samples s;

@@ -12,6 +12,8 @@
 
 namespace tress::test_air {
 
+using namespace models;
+
 using std::numbers::pi;
 using testing_support::Cloud;
 using testing_support::FreePoints;

@@ -9,6 +9,8 @@
 
 namespace tress::test_body {
 
+using namespace models;
+
 using testing_support::Cloud;
 using testing_support::FreePoints;
 using testing_support::load;

@@ -7,6 +7,8 @@
 
 namespace tress::test_body_shapes {
 
+using namespace models;
+
 using testing_support::Cloud;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();

@@ -11,6 +11,8 @@
 
 namespace tress::test_contact_law {
 
+using namespace models;
+
 using namespace testing_support;
 
 constexpr ContactLaw::Values values{

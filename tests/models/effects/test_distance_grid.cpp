@@ -8,6 +8,8 @@
 
 namespace tress::test_distance_grid {
 
+using namespace models;
+
 using testing::HasSubstr;
 using testing_support::as_text;
 using testing_support::Cloud;

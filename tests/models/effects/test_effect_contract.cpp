@@ -11,6 +11,8 @@
 // What every effect of the catalogue keeps, with every word of every choice.
 namespace tress::test_effect_contract {
 
+using namespace models;
+
 using testing_support::as_text;
 using testing_support::Cloud;
 using testing_support::derivatives;

@@ -9,6 +9,8 @@
 
 namespace tress::test_effects {
 
+using namespace models;
+
 struct Sample {
   std::vector<double> x{0.1, -0.4, 2.0, 1.0, 0.5, -0.3};
   std::vector<double> v{1.0, 0.2, -0.7, -0.1, 0.9, 0.4};

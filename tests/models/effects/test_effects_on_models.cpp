@@ -12,6 +12,9 @@
 // energy.
 namespace tress::test_effects_on_models {
 
+using namespace integrators;
+using namespace models;
+
 using namespace testing_support;
 
 /// Sizes in proportion to a hair of 0.1 m, whose weight is 6e-6 N. All points stay in
@@ -39,7 +42,7 @@ Effects smooth_effects() {
 
 std::vector<const ModelEntry*> strand_models() {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& entry : models()) {
+  for (const ModelEntry& entry : model_catalogue()) {
     if (entry.on_strand != nullptr) all.push_back(&entry);
   }
   return all;

@@ -10,6 +10,8 @@
 
 namespace tress::test_segment_grid {
 
+using namespace models;
+
 using namespace testing_support;
 
 constexpr double reach = 6e-3;

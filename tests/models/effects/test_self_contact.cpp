@@ -11,6 +11,8 @@
 
 namespace tress::test_self_contact {
 
+using namespace models;
+
 using namespace testing_support;
 
 constexpr double inner = 3e-3, separation = 2e-2;

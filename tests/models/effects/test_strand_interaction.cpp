@@ -12,6 +12,8 @@
 
 namespace tress::test_strand_interaction {
 
+using namespace models;
+
 using namespace testing_support;
 
 constexpr ContactLaw::Values values{

@@ -6,6 +6,8 @@
 
 namespace tress::test_tether {
 
+using namespace models;
+
 using testing_support::Cloud;
 using testing_support::FreePoints;
 using testing_support::load;

@@ -11,6 +11,8 @@
 /// Short soft strands with free roots, of any model.
 namespace tress::testing_support {
 
+using namespace models;
+
 struct FreeStrand {
   Vec at{}, velocity{};
   Frame frame{};          // its e0 is the strand's direction
@@ -32,7 +34,7 @@ inline std::unique_ptr<System> make_strand_of(std::string_view model,
   set("radius_m", free.radius);
   set("youngs_modulus_pa", free.modulus);
   if (free.root == "free") parameters.set("root", free.root);
-  Strand strand = tress::strand(parameters);
+  Strand strand = models::strand(parameters);
   if (strand.free_root) {
     strand.free_root = FreeRoot{free.at, free.frame, free.velocity, {}};
   } else {

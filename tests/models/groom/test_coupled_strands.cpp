@@ -10,6 +10,8 @@
 
 namespace tress::test_coupled_strands {
 
+using namespace models;
+
 using namespace testing_support;
 
 /// As stiff as the strands' own springs, so that the tangent shows it.

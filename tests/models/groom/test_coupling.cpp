@@ -11,6 +11,9 @@
 
 namespace tress::test_coupling {
 
+using namespace integrators;
+using namespace models;
+
 using namespace testing_support;
 
 // Wang's figures per length, the strands face to face; the lower one is heavier.

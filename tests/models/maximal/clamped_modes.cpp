@@ -5,6 +5,9 @@
 
 namespace tress::testing_support {
 
+using namespace experiments;
+using namespace experiments::validation;
+
 Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
   SparseForm& form = *system.sparse_form();
   const Pattern& p = form.pattern();

@@ -8,6 +8,8 @@
 
 namespace tress::testing_support {
 
+using namespace simulation;
+
 /// Dense S(w) of a system at rest in q, out of its sparse form.
 Eigen::MatrixXd dense_tangent(System& system, In q, Weights w);
 

@@ -10,6 +10,8 @@
 
 namespace tress::testing_support {
 
+using namespace experiments;
+
 /// A bent strand of six elements thrown into space with a spin of 10 rad/s.
 inline const ModelSettings bent_throw = {{"elements", "6"},
                                          {"root", "free"},

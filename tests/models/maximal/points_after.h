@@ -7,6 +7,8 @@
 
 namespace tress::testing_support {
 
+using namespace simulation;
+
 /// Where a strand's points are at t, by the trapezoidal rule.
 inline std::vector<double> points_after(std::string_view model,
                                         const ModelSettings& settings, double t,

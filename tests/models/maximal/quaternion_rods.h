@@ -10,6 +10,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 /// Forces and blocks of a rod of three such edges, numbers of order one, far from rest,
 /// against its energy in derivative numbers.
 template <class Edge>

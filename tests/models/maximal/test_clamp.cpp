@@ -11,6 +11,8 @@
 
 namespace tress::test_clamp {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 class MovingClamp : public testing::TestWithParam<StrandCase> {};

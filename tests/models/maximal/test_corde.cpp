@@ -10,6 +10,8 @@
 
 namespace tress::test_corde {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 // Half turns about the axes have one entry of q each.

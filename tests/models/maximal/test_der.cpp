@@ -11,6 +11,8 @@
 
 namespace tress::test_der {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 TEST(Der, CantileverApproachesTheGravitoBendingCurveAtOrder2) {

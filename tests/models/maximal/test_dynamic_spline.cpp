@@ -15,6 +15,8 @@
 
 namespace tress::test_dynamic_spline {
 
+using namespace experiments;
+
 using namespace testing_support;
 using testing_support::variable;
 

@@ -17,6 +17,8 @@
 
 namespace tress::test_framed_spline {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 /// Gradients and second derivatives of a part (strained.h), numbers of order one, against

@@ -10,6 +10,8 @@
 
 namespace tress::test_joint_strain {
 
+using namespace models;
+
 std::mt19937 source(3);
 double uniform() { return std::uniform_real_distribution<double>(-1, 1)(source); }
 Vec random_vector() { return {uniform(), uniform(), uniform()}; }

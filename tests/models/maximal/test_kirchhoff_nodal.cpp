@@ -12,6 +12,8 @@
 
 namespace tress::test_kirchhoff_nodal {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 const ModelSettings unit_rod = {{"length_m", "1"},

@@ -10,6 +10,8 @@
 
 namespace tress::test_mass_spring {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 const ModelSettings curls = {{"elements", "8"},

@@ -11,6 +11,8 @@
 // What holds of every rod of models/quaternion_rods/quaternion_rod.h.
 namespace tress::test_quaternion_rods {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 struct Rod {

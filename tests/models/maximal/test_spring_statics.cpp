@@ -9,6 +9,8 @@
 
 namespace tress::test_spring_statics {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 TEST(MassSpring, CantileverApproachesTheGravitoBendingCurveAtOrder2) {

@@ -7,6 +7,8 @@
 
 namespace tress::test_spring_strain {
 
+using namespace models;
+
 using testing_support::Dual2;
 using testing_support::variable2;
 

@@ -9,6 +9,8 @@
 
 namespace tress::test_xpbd_cosserat {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 TEST(XpbdCosserat, ForcesAreTheGradientOfTheEnergy) {

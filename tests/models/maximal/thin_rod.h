@@ -4,6 +4,8 @@
 
 namespace tress::testing_support {
 
+using namespace simulation;
+
 /// The unit rod (kirchhoff.h) as extensible models take it: EA L^2/EI = 4/r^2 = 4e6, so
 /// weights of Gamma <= 100 stretch it by Gamma/4e6.
 inline const ModelSettings thin_rod = {{"length_m", "1"},

@@ -16,6 +16,8 @@
 
 namespace tress {
 
+using namespace experiments;
+
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 

@@ -7,6 +7,8 @@
 
 namespace tress::test_constraints {
 
+using namespace experiments;
+
 class PublishedConstraints : public testing::TestWithParam<const char*> {
  protected:
   std::unique_ptr<System> system_ = make_model(GetParam());

@@ -12,6 +12,8 @@
 
 namespace tress::test_end_values {
 
+using namespace experiments;
+
 // First-order form y = (q, v) of a model, v' from its explicit form or from the dense
 // index-1 system [M, -G^T; G, 0] (a, lambda) = (f, -bias).
 class FirstOrder {

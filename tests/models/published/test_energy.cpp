@@ -6,6 +6,8 @@
 
 namespace tress::test_energy {
 
+using namespace experiments;
+
 // Along any motion, dE/dt = v . r + power: the residual does the work that is missing.
 // Differences as in test_constraints.cpp; terms are of size |v| |r|.
 class PublishedEnergy : public testing::TestWithParam<const char*> {};

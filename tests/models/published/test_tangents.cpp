@@ -7,6 +7,8 @@
 
 namespace tress::test_tangents {
 
+using namespace experiments;
+
 constexpr Weights method_weights[] = {
     {1, 0, 0},           // mass alone
     {1, 1e-3, 1e-6},     // backward Euler, h = 1 ms

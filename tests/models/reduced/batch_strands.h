@@ -10,6 +10,8 @@
 /// What the tests of batches share: strands that differ, and how far results may.
 namespace tress::testing_support {
 
+using namespace simulation;
+
 inline constexpr int segments = 6;
 inline constexpr double h = 3e-4;  // s
 inline constexpr Weights backward_euler{1, h, h* h};

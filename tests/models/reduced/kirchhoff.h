@@ -11,6 +11,8 @@
 /// is the weight in N.
 namespace tress::testing_support {
 
+using namespace simulation;
+
 inline constexpr double line_density = 0.1 * std::numbers::pi;  // kg/m
 
 /// Clamped horizontally; horizontal and vertical way to the tip.

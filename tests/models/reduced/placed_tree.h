@@ -10,6 +10,8 @@
 
 namespace tress {
 
+using namespace models;
+
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Position and frame at s along a segment, from its start.

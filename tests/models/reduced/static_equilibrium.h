@@ -7,6 +7,8 @@
 
 namespace tress::testing_support {
 
+using namespace simulation;
+
 /// A number as a parameter takes it, all digits kept.
 inline std::string text(double x) {
   char digits[32];

@@ -15,6 +15,8 @@
 /// What the tests of reduced-coordinate strands share.
 namespace tress::testing_support {
 
+using namespace simulation;
+
 inline constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// `more` set after `base`: the later of two values of a key holds.

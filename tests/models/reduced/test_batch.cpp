@@ -8,6 +8,8 @@
 
 namespace tress::test_batch {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 struct BatchCase {

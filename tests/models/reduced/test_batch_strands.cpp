@@ -4,6 +4,8 @@
 
 namespace tress::test_batch_strands {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 class BatchOf : public testing::Test {

@@ -7,6 +7,8 @@
 
 namespace tress::test_branching {
 
+using namespace simulation;
+
 using namespace testing_support;
 
 constexpr std::size_t elements = 12;

@@ -5,6 +5,8 @@
 
 namespace tress::test_cantilever {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 const ModelSettings unit_rod = {{"length_m", "1"},

@@ -8,6 +8,8 @@
 
 namespace tress::test_conservation {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 constexpr double t_end = 0.1;

@@ -7,6 +7,8 @@
 
 namespace tress::test_extremes {
 
+using namespace simulation;
+
 using namespace testing_support;
 using std::numbers::pi;
 

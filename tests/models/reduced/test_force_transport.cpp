@@ -9,6 +9,8 @@
 
 namespace tress::test_force_transport {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 const ModelSettings curly = {{"natural_curvature_1_m", "60"},

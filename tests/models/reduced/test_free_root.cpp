@@ -6,6 +6,8 @@
 
 namespace tress::test_free_root {
 
+using namespace models;
+
 void expect_near(const Vec& a, const Vec& b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);

@@ -10,6 +10,8 @@
 
 namespace tress::test_frequency {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 struct Hair {

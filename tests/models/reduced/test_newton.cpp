@@ -9,6 +9,8 @@
 
 namespace tress::test_newton {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 /// The equations R(a) = 0 of one backward Euler step from (q, v) at t, and Newton's

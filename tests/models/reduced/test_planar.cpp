@@ -5,6 +5,8 @@
 
 namespace tress::test_planar {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 // A strand of fewer unknowns an element does in its plane, or without twist, what the

@@ -12,6 +12,8 @@
 
 namespace tress::test_quadrature {
 
+using namespace simulation;
+
 using namespace testing_support;
 using std::numbers::pi;
 

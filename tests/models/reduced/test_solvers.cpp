@@ -12,6 +12,8 @@
 
 namespace tress::test_solvers {
 
+using namespace experiments;
+
 using namespace testing_support;
 
 constexpr std::array solvers = {"composite", "recursive", "sparse"};

@@ -14,6 +14,8 @@
 
 namespace tress::test_trees {
 
+using namespace models;
+
 using std::numbers::pi;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();

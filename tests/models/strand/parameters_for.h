@@ -8,6 +8,8 @@
 
 namespace tress::testing_support {
 
+using namespace models;
+
 using Settings = std::vector<std::pair<std::string_view, std::string_view>>;
 
 inline Parameters strand_parameters(const Settings& settings) {

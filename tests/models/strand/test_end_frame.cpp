@@ -8,6 +8,8 @@
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {
+
+using namespace simulation;
 namespace {
 
 Frame end_frame(System& system, In q) {

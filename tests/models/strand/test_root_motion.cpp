@@ -10,6 +10,8 @@
 
 namespace tress::test_root_motion {
 
+using namespace models;
+
 using std::numbers::pi;
 using testing_support::root_choices;
 using testing_support::strand_parameters;

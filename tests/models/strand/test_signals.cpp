@@ -9,6 +9,8 @@
 
 namespace tress::test_signals {
 
+using namespace models;
+
 using std::numbers::pi;
 
 /// f'(t) by five points; error h^4/30 |f'''''| + 1.5 eps |f|/h.

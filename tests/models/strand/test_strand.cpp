@@ -9,6 +9,8 @@
 
 namespace tress::test_strand {
 
+using namespace models;
+
 using std::numbers::pi;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -10,6 +10,8 @@
 
 namespace tress::test_strand_parameters {
 
+using namespace models;
+
 using std::numbers::pi;
 using testing_support::root_choices;
 using testing_support::Settings;
