@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -148,8 +149,8 @@ class Energetics {
  public:
   virtual ~Energetics() = default;
   virtual Energy energy(double t, In q, In v) = 0;
-  /// False: the model does not keep count of its momentum.
-  virtual bool momentum(double, In, In, Momentum&) { return false; }
+  /// Empty: the model does not keep count of its momentum.
+  virtual std::optional<Momentum> momentum(double, In, In) { return {}; }
   /// Rate of work (W) of every force that `energy` does not account for: drag is
   /// negative.
   virtual double power(double t, In q, In v) = 0;
@@ -164,8 +165,8 @@ class MaterialPoints {
   virtual int before(int i) const { return i - 1; }
   virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
-  /// Largest |length/rest - 1| of a piece of the body. False: the model does not say.
-  virtual bool stretch(double, In, double&) { return false; }
+  /// Largest |length/rest - 1| of a piece of the body. Empty: the model does not say.
+  virtual std::optional<double> stretch(double /*t*/, In /*q*/) { return {}; }
 
   /// Point i as a mean of coordinates and a prescribed part,
   /// x_i = prescribed(t) + sum_k weight_k (q[c_k], q[c_k + 1], q[c_k + 2]).
@@ -174,12 +175,14 @@ class MaterialPoints {
     std::array<int, 4> coordinate{};  // c_k
     std::array<double, 4> weight{};
   };
-  /// Fixed for life. False: points are not linear in the coordinates.
-  virtual bool mean(int /*point*/, Mean&) { return false; }
+  /// Fixed for life. Empty: points are not linear in the coordinates.
+  virtual std::optional<Mean> mean(int /*point*/) { return {}; }
 
   /// Axes e0 (the tangent), e1, e2 of the section at the last point, row after row in
-  /// world components; they turn with the material. False: the model has no such frame.
-  virtual bool end_frame(double /*t*/, In /*q*/, std::array<double, 9>&) { return false; }
+  /// world components; they turn with the material. Empty: the model has no such frame.
+  virtual std::optional<std::array<double, 9>> end_frame(double /*t*/, In /*q*/) {
+    return {};
+  }
 };
 
 /// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing

@@ -19,13 +19,13 @@ void move_along(const Situation& s, State& start) {
   MaterialPoints& points = *s.system->material_points();
   std::set<int> x;  // coordinates
   for (int i = 0; i < points.count(); ++i) {
-    MaterialPoints::Mean mean;
-    if (!points.mean(i, mean)) {  // particles: coordinates are places
+    const auto mean = points.mean(i);
+    if (!mean) {  // particles: coordinates are places
       x.insert(3 * i);
       continue;
     }
     const auto own =
-        std::span(mean.coordinate).first(static_cast<std::size_t>(mean.count));
+        std::span(mean->coordinate).first(static_cast<std::size_t>(mean->count));
     x.insert(own.begin(), own.end());
   }
   for (const int c : x) start.q[static_cast<std::size_t>(c)] += displaced * s.length;

@@ -88,8 +88,7 @@ class MomentumGauge final : public Gauge {
 
   /// Segments are taken as straight.
   Motion momentum(double t, In q, In v) {
-    Momentum total;
-    energetics_.momentum(t, q, v, total);
+    const Momentum total = energetics_.momentum(t, q, v).value();
     points_.positions(t, q, x_);
     Vec moment;
     double volume = 0;

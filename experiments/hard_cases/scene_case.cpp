@@ -8,12 +8,11 @@
 
 #include "contract/input_error.h"
 #include "experiments/hard_cases/grid.h"
-#include "experiments/problems/formulations.h"
+#include "experiments/problems/scene_files.h"
 #include "experiments/problems/strand_models.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/changes.h"
-#include "simulation/scene/scene_tables.h"
 
 namespace tress::experiments::hard_cases {
 namespace {
@@ -32,27 +31,10 @@ std::vector<std::string_view> tangents(const CommandLine& line, const Scene& sce
 
 Scene with_model(const Scene& scene, const ModelEntry& model, std::string_view tangent) {
   Scene changed = scene;
-  if (&model != scene.model) {
-    changed.model = &model;
-    changed.model_options =
-        Parameters(model_table_parameters(model), fmt::format("model {}", model.id));
-  }
+  if (&model != scene.model)
+    changed = with_method(std::move(changed), {&model, {}, {}, {}});
   if (!tangent.empty()) changed.model_options.set("tangent", tangent);
   return changed;
-}
-
-/// Sets how constraints enter, where the scene's own way is none for this model and
-/// integrator; throws InputError where there is no way.
-void take_formulation(Scene& scene) {
-  const auto system =
-      scene.strands.empty()
-          ? scene.model->make(scene.model_options)
-          : scene.model->on_strand(scene.strands.front(), scene.model_options,
-                                   make_effects(scene));
-  const IntegratorEntry& entry = find_integrator(scene.integrator);
-  if (refusal(entry, *system, scene.options.formulation).empty()) return;
-  const auto usable = usable_formulations(entry, *system);
-  if (!usable.empty()) scene.options.formulation = usable.front();
 }
 
 struct Work {
@@ -63,10 +45,10 @@ struct Work {
 };
 
 void measure(const Work& work, Row& row) {
-  Scene scene = work.scene;
   SceneSurvival s;
   try {
-    take_formulation(scene);
+    const Scene scene =
+        driven(work.scene, *work.scene.model, find_integrator(work.scene.integrator));
     s = survive(scene, work.criteria, std::min(work.horizon, scene.duration), work.limit);
     row.set("measure_name", s.measured).set("limit", s.limit);
     row.set("criterion", s.criterion);

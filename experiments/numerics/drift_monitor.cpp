@@ -45,12 +45,12 @@ bool DriftMonitor::operator()(double t, In q, In v) {
     energy_error_ = std::max(energy_error_, std::abs(e.total() - energy_start_));
     kinetic_max_ = std::max(kinetic_max_, e.kinetic);
   }
-  double stretch = 0;
-  if (points_ == nullptr || !points_->stretch(t, q, stretch)) {
+  const auto stretch = points_ != nullptr ? points_->stretch(t, q) : std::nullopt;
+  if (!stretch) {
     length_error_ = std::numeric_limits<double>::quiet_NaN();
   } else {
-    length_error_ = std::max(length_error_, stretch);
-    escaped_ = !(stretch <= longest);
+    length_error_ = std::max(length_error_, *stretch);
+    escaped_ = !(*stretch <= longest);
   }
   if (constraints_ == nullptr) return !escaped_;
   if (constraints_->value(t, q, g_) != Status::ok) return false;

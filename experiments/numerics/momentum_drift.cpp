@@ -7,12 +7,11 @@ namespace tress::experiments {
 
 MomentumDrift::MomentumDrift(Energetics& energetics, In q, In v)
     : energetics_(energetics) {
-  energetics_.momentum(0, q, v, start_);
-  now_ = start_;
+  start_ = now_ = energetics_.momentum(0, q, v).value();
 }
 
 void MomentumDrift::see(double t, In q, In v) {
-  energetics_.momentum(t, q, v, now_);
+  now_ = energetics_.momentum(t, q, v).value();
   linear_ = std::max(linear_, distance(now_.linear, start_.linear));
   angular_ = std::max(angular_, distance(now_.angular, start_.angular));
 }

@@ -26,16 +26,19 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 }
 
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry) {
-  if (scene.model != &model) scene = with_method(scene, {&model, {}, {}, {}});
-  const auto system =
-      model.on_strand(scene.strands.front(), scene.model_options, make_effects(scene));
+  if (scene.model != &model) scene = with_method(std::move(scene), {&model, {}, {}, {}});
+  scene.integrator = entry.id;
+  const auto system = scene.strands.empty()
+                          ? model.make(scene.model_options)
+                          : model.on_strand(scene.strands.front(), scene.model_options,
+                                            make_effects(scene));
+  if (refusal(entry, *system, scene.options.formulation).empty()) return scene;
   const auto usable = usable_formulations(entry, *system);
   if (usable.empty()) {
     throw InputError(refusal(entry, *system, entry.formulations.front().formulation),
                      std::string(entry.id) + " on " + std::string(model.id),
                      "./tress list shows what can drive what");
   }
-  scene.integrator = entry.id;
   scene.options.formulation = usable.front();
   return scene;
 }

@@ -19,9 +19,10 @@ struct SceneFile {
 /// on a scene whose model brings its own geometry, and on two files of one name.
 std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files);
 
-/// The scene by a model, with the file's own options if it is the file's own and its
-/// defaults otherwise, driven as the integrator does it best. Throws InputError where the
-/// model cannot do the scene or the integrator cannot drive the model.
+/// The scene simulated by this model and integrator. A model other than the scene's own
+/// has its default options; a formulation that the integrator cannot take on is replaced
+/// by its best. Throws InputError where the model cannot do the scene or the integrator
+/// cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
 
 /// Of the strand that has most.

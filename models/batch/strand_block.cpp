@@ -58,17 +58,17 @@ Energy StrandBlock::energy(double t, In q, In v) {
   return total;
 }
 
-bool StrandBlock::momentum(double t, In q, In v, Momentum& total) {
-  total = {};
+std::optional<Momentum> StrandBlock::momentum(double t, In q, In v) {
+  Momentum total;
   for (std::size_t s = 0; s < strands_.size(); ++s) {
-    Momentum own;
-    if (!strands_[s]->energetics()->momentum(t, of(s, q), of(s, v), own)) return false;
+    const auto own = strands_[s]->energetics()->momentum(t, of(s, q), of(s, v));
+    if (!own) return {};
     for (std::size_t k = 0; k < 3; ++k) {
-      total.linear[k] += own.linear[k];
-      total.angular[k] += own.angular[k];
+      total.linear[k] += own->linear[k];
+      total.angular[k] += own->angular[k];
     }
   }
-  return true;
+  return total;
 }
 
 double StrandBlock::power(double t, In q, In v) {
@@ -97,14 +97,14 @@ void StrandBlock::velocities(double t, In q, In v, Out u) {
   }
 }
 
-bool StrandBlock::stretch(double t, In q, double& relative) {
-  relative = 0;
+std::optional<double> StrandBlock::stretch(double t, In q) {
+  double most = 0;
   for (std::size_t s = 0; s < strands_.size(); ++s) {
-    double own = 0;
-    if (!strands_[s]->material_points()->stretch(t, of(s, q), own)) return false;
-    relative = std::max(relative, own);
+    const auto own = strands_[s]->material_points()->stretch(t, of(s, q));
+    if (!own) return {};
+    most = std::max(most, *own);
   }
-  return true;
+  return most;
 }
 
 }  // namespace tress::models

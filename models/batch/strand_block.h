@@ -45,13 +45,13 @@ class StrandBlock : public System,
 
   Status acceleration(double t, In q, In v, Out a) noexcept override;
   Energy energy(double t, In q, In v) override;
-  bool momentum(double t, In q, In v, Momentum& total) override;
+  std::optional<Momentum> momentum(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   int count() const override { return static_cast<int>(strands_.size()) * points_; }
   int before(int i) const override;
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
-  bool stretch(double t, In q, double& relative) override;
+  std::optional<double> stretch(double t, In q) override;
 
   std::vector<std::unique_ptr<System>> strands_;
   std::size_t unknowns_;

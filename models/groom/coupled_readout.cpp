@@ -39,18 +39,17 @@ double CoupledStrands::contact_potential(double t, In q, In v) {
   return sum;
 }
 
-bool CoupledStrands::momentum(double t, In q, In v, Momentum& total) {
-  total = {};
+std::optional<Momentum> CoupledStrands::momentum(double t, In q, In v) {
+  Momentum total;
   for (std::size_t k = 0; k < strands(); ++k) {
-    Momentum own;
-    if (!strands_[k]->energetics()->momentum(t, part(q, k), part(v, k), own))
-      return false;
+    const auto own = strands_[k]->energetics()->momentum(t, part(q, k), part(v, k));
+    if (!own) return {};
     for (std::size_t i = 0; i < 3; ++i) {
-      total.linear[i] += own.linear[i];
-      total.angular[i] += own.angular[i];
+      total.linear[i] += own->linear[i];
+      total.angular[i] += own->angular[i];
     }
   }
-  return true;
+  return total;
 }
 
 /// A clamp also holds its point against the contacts.
@@ -93,19 +92,18 @@ void CoupledStrands::velocities(double t, In q, In v, Out u) {
   }
 }
 
-bool CoupledStrands::stretch(double t, In q, double& relative) {
-  relative = 0;
+std::optional<double> CoupledStrands::stretch(double t, In q) {
+  double most = 0;
   for (std::size_t k = 0; k < strands(); ++k) {
-    double own = 0;
-    if (!strands_[k]->material_points()->stretch(t, part(q, k), own)) return false;
-    relative = std::max(relative, own);
+    const auto own = strands_[k]->material_points()->stretch(t, part(q, k));
+    if (!own) return {};
+    most = std::max(most, *own);
   }
-  return true;
+  return most;
 }
 
-bool CoupledStrands::mean(int point, Mean& mean) {
-  mean = means_[static_cast<std::size_t>(point)];
-  return true;
+std::optional<MaterialPoints::Mean> CoupledStrands::mean(int point) {
+  return means_[static_cast<std::size_t>(point)];
 }
 
 }  // namespace tress::models

@@ -50,16 +50,16 @@ void CoupledStrands::check_and_join(System& strand, std::size_t k) {
   MaterialPoints* points = strand.material_points();
   if (points == nullptr || points->count() < 2) refuse(k, "has fewer than two points");
   for (int i = 0; i < points->count(); ++i) {
-    Mean mean;
-    if (!points->mean(i, mean)) {
+    std::optional<Mean> mean = points->mean(i);
+    if (!mean) {
       refuse(k,
              "has points that are not fixed means of its coordinates, so that forces "
              "between strands have no sparse tangent");
     }
-    for (int n = 0; n < mean.count; ++n) {
-      mean.coordinate[static_cast<std::size_t>(n)] += first_.back();
+    for (int n = 0; n < mean->count; ++n) {
+      mean->coordinate[static_cast<std::size_t>(n)] += first_.back();
     }
-    means_.push_back(mean);
+    means_.push_back(*mean);
   }
   first_.push_back(first_.back() + layout.coordinates);
   first_point_.push_back(static_cast<int>(means_.size()));

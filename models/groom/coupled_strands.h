@@ -59,13 +59,13 @@ class CoupledStrands final : public System, private Energetics, private Material
 
  private:
   Energy energy(double t, In q, In v) override;
-  bool momentum(double t, In q, In v, Momentum& total) override;
+  std::optional<Momentum> momentum(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   int count() const override { return static_cast<int>(means_.size()); }
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
-  bool stretch(double t, In q, double& relative) override;
-  bool mean(int point, Mean& mean) override;
+  std::optional<double> stretch(double t, In q) override;
+  std::optional<Mean> mean(int point) override;
 
   std::size_t strands() const { return strands_.size(); }
   /// The entries of strand k.

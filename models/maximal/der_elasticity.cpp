@@ -283,11 +283,10 @@ Vec DerElasticity::spin(const Placement& p, In inertia) noexcept {
   return sum;
 }
 
-bool DerElasticity::end_frame(const Placement& p, Frame& frame) noexcept {
+std::optional<Frame> DerElasticity::end_frame(const Placement& p) noexcept {
   const std::size_t last = edges_.size() - 1;
   const Vec e = load3(&p.z[3 * last + 3]) - load3(&p.z[3 * last]);
-  frame = edge_frame(edge_data_[last].reference, e, theta(p.z, last));
-  return true;
+  return edge_frame(edge_data_[last].reference, e, theta(p.z, last));
 }
 
 double DerElasticity::energy(const Placement& p) noexcept {

@@ -28,7 +28,7 @@ class DerElasticity final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
-  bool end_frame(const Placement& p, Frame& frame) noexcept override;
+  std::optional<Frame> end_frame(const Placement& p) noexcept override;
   bool rebase(InOut z, InOut rate) override;
   void reset() override;
   std::vector<double> memory() const override;

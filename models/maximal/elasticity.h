@@ -47,8 +47,8 @@ class Elasticity {
   virtual Vec spin(const Placement&, In /*inertia*/) noexcept { return {}; }
   /// Largest |length/rest - 1| where nodes are not on the curve (see MaximalStrand).
   virtual double stretch(const Placement&) noexcept { return 0; }
-  /// Frame of the last edge, or of the section at the tip. False: there is none.
-  virtual bool end_frame(const Placement&, Frame&) noexcept { return false; }
+  /// Frame of the last edge, or of the section at the tip. Empty: there is none.
+  virtual std::optional<Frame> end_frame(const Placement&) noexcept { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True: the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }

@@ -67,7 +67,7 @@ double MaximalSystem::root_power(double t, In q, In v) {
   return std::inner_product(force_.begin(), force_.end(), rate_.begin(), 0.0);
 }
 
-bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {
+std::optional<Momentum> MaximalSystem::momentum(double t, In q, In v) {
   place(t, q, v);
   points({.position = true, .velocity = true});
   Vec linear, angular = strand_.elasticity->spin(placement(), strand_.inertia);
@@ -76,8 +76,7 @@ bool MaximalSystem::momentum(double t, In q, In v, Momentum& total) {
     linear = linear + p;
     angular = angular + cross(load3(&x_[3 * i]), p);
   }
-  total = {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
-  return true;
+  return Momentum{{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
 }
 
 void MaximalSystem::positions(double t, In q, Out x) {
@@ -94,12 +93,13 @@ void MaximalSystem::velocities(double t, In q, In v, Out u) {
   }
 }
 
-bool MaximalSystem::end_frame(double t, In q, std::array<double, 9>& axes) {
+std::optional<std::array<double, 9>> MaximalSystem::end_frame(double t, In q) {
   place(t, q);
-  Frame last;
-  if (!strand_.elasticity->end_frame(placement(), last)) return false;
-  store9(last * strand_.to_tip, axes.data());
-  return true;
+  const std::optional<Frame> last = strand_.elasticity->end_frame(placement());
+  if (!last) return {};
+  std::array<double, 9> axes;
+  store9(*last * strand_.to_tip, axes.data());
+  return axes;
 }
 
 MaterialPoints::Mean MaximalSystem::mean_of(const NodeMean& at) const {
@@ -114,19 +114,18 @@ MaterialPoints::Mean MaximalSystem::mean_of(const NodeMean& at) const {
   return mean;
 }
 
-bool MaximalSystem::mean(int point, Mean& mean) {
-  mean = mean_of(strand_.shown[static_cast<std::size_t>(point)]);
-  return true;
+std::optional<MaterialPoints::Mean> MaximalSystem::mean(int point) {
+  return mean_of(strand_.shown[static_cast<std::size_t>(point)]);
 }
 
-bool MaximalSystem::stretch(double t, In q, double& relative) {
+std::optional<double> MaximalSystem::stretch(double t, In q) {
   place(t, q);
-  relative = strand_.elasticity->stretch(placement());
+  double most = strand_.elasticity->stretch(placement());
   for (std::size_t i = 0; i < strand_.edges.size(); ++i) {
     const Vec e = load3(&z_[3 * i + 3]) - load3(&z_[3 * i]);
-    relative = std::max(relative, std::abs(norm(e) / strand_.edges[i] - 1));
+    most = std::max(most, std::abs(norm(e) / strand_.edges[i] - 1));
   }
-  return true;
+  return most;
 }
 
 std::string MaximalSystem::not_finite(double t, In q, In v) {

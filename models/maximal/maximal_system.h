@@ -96,13 +96,13 @@ class MaximalSystem final : public System,
   void evaluate(double t, std::size_t k, In x, Value& value) noexcept override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
-  bool momentum(double t, In q, In v, Momentum& total) override;
+  std::optional<Momentum> momentum(double t, In q, In v) override;
   int count() const override { return static_cast<int>(strand_.shown.size()); }
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
-  bool stretch(double t, In q, double& relative) override;
-  bool mean(int point, Mean& mean) override;
-  bool end_frame(double t, In q, std::array<double, 9>& axes) override;
+  std::optional<double> stretch(double t, In q) override;
+  std::optional<Mean> mean(int point) override;
+  std::optional<std::array<double, 9>> end_frame(double t, In q) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
   Mean mean_of(const NodeMean& at) const;  // over the coordinates in q

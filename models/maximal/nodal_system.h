@@ -54,10 +54,7 @@ class NodalSystem final : public System,
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
   /// Lengths are no unknowns.
-  bool stretch(double, In, double& relative) override {
-    relative = 0;
-    return true;
-  }
+  std::optional<double> stretch(double, In) override { return 0; }
 
   void place(double t, In q, In v) noexcept;
   Points points(Needs wanted) noexcept;

@@ -177,10 +177,9 @@ double QuaternionRod<Edge>::power(const Placement& p) noexcept {
 }
 
 template <class Edge>
-bool QuaternionRod<Edge>::end_frame(const Placement& p, Frame& frame) noexcept {
+std::optional<Frame> QuaternionRod<Edge>::end_frame(const Placement& p) noexcept {
   const Quaternion q = load_quaternion(&p.z[at(edges_.size() - 1)]);
-  frame = axes((1 / std::sqrt(dot(q, q))) * q);
-  return true;
+  return axes((1 / std::sqrt(dot(q, q))) * q);
 }
 
 /// A world rotation w moves q by w q/2.

@@ -50,7 +50,7 @@ class QuaternionRod final : public Elasticity, private StrainForm {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
-  bool end_frame(const Placement& p, Frame& frame) noexcept override;
+  std::optional<Frame> end_frame(const Placement& p) noexcept override;
   StrainForm* strain_form() override { return this; }
 
  private:

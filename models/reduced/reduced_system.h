@@ -264,7 +264,7 @@ class ReducedSystem : public System,
     return dot(w.force, kinematics_.root().v) + dot(w.moment, kinematics_.root().omega);
   }
 
-  bool momentum(double t, In q, In v, Momentum& total) override {
+  std::optional<Momentum> momentum(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
     Vec linear;
     Vec angular = rotor_momentum(kinematics_.root_rotor(), kinematics_.root());
@@ -281,8 +281,7 @@ class ReducedSystem : public System,
         angular = angular + Vec{sum(l.x), sum(l.y), sum(l.z)};
       }
     }
-    total = {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
-    return true;
+    return Momentum{{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
   }
 
   // Material points: the root and the tips of all segments.
@@ -307,15 +306,13 @@ class ReducedSystem : public System,
     }
   }
   /// Lengths are no unknowns.
-  bool stretch(double, In, double& relative) override {
-    relative = 0;
-    return true;
-  }
+  std::optional<double> stretch(double, In) override { return 0; }
 
   /// With several free ends, of the last segment's.
-  bool end_frame(double t, In q, std::array<double, 9>& axes) override {
+  std::optional<std::array<double, 9>> end_frame(double t, In q) override {
+    std::array<double, 9> axes;
     store9(kinematics_.last_frame(t, q) * to_tip_, axes.data());
-    return true;
+    return axes;
   }
 
   bool exact_, regular_mass_;

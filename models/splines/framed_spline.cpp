@@ -215,10 +215,9 @@ Vec FramedSpline::spin(const Placement& p, In inertia) noexcept {
   return sum;
 }
 
-bool FramedSpline::end_frame(const Placement& p, Frame& frame) noexcept {
+std::optional<Frame> FramedSpline::end_frame(const Placement& p) noexcept {
   const std::size_t knot = spans_.size();
-  frame = edge_frame(references_[knot], direction(p.z, knot), p.z[angle(knot)]);
-  return true;
+  return edge_frame(references_[knot], direction(p.z, knot), p.z[angle(knot)]);
 }
 
 bool FramedSpline::rebase(InOut z, InOut rate) {

@@ -39,7 +39,7 @@ class FramedSpline final : public Elasticity {
   double power(const Placement& p) noexcept override;
   double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
   Vec spin(const Placement& p, In inertia) noexcept override;
-  bool end_frame(const Placement& p, Frame& frame) noexcept override;
+  std::optional<Frame> end_frame(const Placement& p) noexcept override;
   bool rebase(InOut z, InOut rate) override;
   void reset() override { references_ = references_at_start_; }
   std::vector<double> memory() const override;

@@ -186,10 +186,8 @@ void Guard::gather(double t, const Measure& now) {
 
 /// Comparisons are such that what is not a number breaks a bound.
 bool Guard::stretched(double t, In q) {
-  double most = 0;
-  if (points_ == nullptr || !points_->stretch(t, q, most) || most <= most_stretch) {
-    return false;
-  }
+  const auto most = points_ != nullptr ? points_->stretch(t, q) : std::nullopt;
+  if (!most || *most <= most_stretch) return false;
   points_->positions(t, q, x_);
   std::size_t worst = 0, first = 0;
   double ratio = 0;

@@ -271,12 +271,11 @@ Energies World::energies() {
 }
 
 double World::stretch() {
-  double most = 0, one = 0;
+  double most = 0;
   for (const Body& body : bodies_) {
     MaterialPoints* points = body.system->material_points();
-    if (points != nullptr && points->stretch(t_, body.integrator->q(), one)) {
-      most = std::max(most, one);
-    }
+    if (points == nullptr) continue;
+    most = std::max(most, points->stretch(t_, body.integrator->q()).value_or(0));
   }
   return most;
 }

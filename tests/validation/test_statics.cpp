@@ -66,8 +66,7 @@ TEST_P(Rods, HoldTheirOwnSectionByNothing) {
   const TestRod rod = curl();
   Statics free = hanging(GetParam(), {});
   free.follow(0.1, 1);
-  std::array<double, 9> axes{};
-  ASSERT_TRUE(free.system().material_points()->end_frame(1, free.q(), axes));
+  const auto axes = free.system().material_points()->end_frame(1, free.q()).value();
   Statics held =
       hanging(GetParam(), {.section = End::Section::frame, .frame = load9(axes.data())});
   held.start_at(free);

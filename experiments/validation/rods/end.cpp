@@ -49,15 +49,13 @@ EndConditions::EndConditions(System& system, const End& end)
   std::vector<double> v_typ(q_typ_.size()), q = q_typ_, v = q_typ_;
   system_.scale(q_typ_, v_typ);
   system_.initial_state(q, v);
-  std::array<double, 9> axes;
-  if (sections_ > 0 && !points_.end_frame(0, q, axes)) {
+  if (sections_ > 0 && !points_.end_frame(0, q)) {
     throw std::runtime_error("the model has no frame at its end");
   }
 }
 
 Eigen::VectorXd EndConditions::section(double t, In q) {
-  std::array<double, 9> axes;
-  points_.end_frame(t, q, axes);
+  const auto axes = points_.end_frame(t, q).value();
   const Frame now = load9(axes.data()) * helix_turn(end_.rest, -1), &held = end_.frame;
   const Vec turned =
       rotation_vector({held.back(now.e0), held.back(now.e1), held.back(now.e2)});

@@ -167,8 +167,7 @@ TEST(CoupledStrands, TellTheirPointsAsMeansOfAllCoordinates) {
   points.positions(t0, s.q, x);
   points.positions(t0, moved.q, y);
   for (int i = 0; i < 18; ++i) {
-    MaterialPoints::Mean mean;
-    ASSERT_TRUE(points.mean(i, mean));
+    const MaterialPoints::Mean mean = points.mean(i).value();
     EXPECT_EQ(mean.count, i == 0 ? 0 : 1);  // the first is clamped
     const auto at = 3 * static_cast<std::size_t>(i);
     for (std::size_t c = 0; c < 3; ++c) {

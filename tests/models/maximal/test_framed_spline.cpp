@@ -212,9 +212,8 @@ TEST(FramedSpline, MidpointLosesNoMoreThanTheSpinOfSections) {
   const auto system = make_model("dynamic_spline", bent_throw);
   const Strand rod = strand(parameters_of("dynamic_spline", bent_throw));
   const State start = initial_state(*system);
-  Momentum momentum;
   Energetics& energetics = *system->energetics();
-  ASSERT_TRUE(energetics.momentum(0, start.q, start.v, momentum));
+  const Momentum momentum = energetics.momentum(0, start.q, start.v).value();
   const Vec angular = load3(momentum.angular.data());
   constexpr double spin = 10;  // rad/s
   const double of_sections =
@@ -260,8 +259,7 @@ TEST(FramedStrands, CountTheSpinOfSectionsInTheMomentum) {
     const std::size_t angles = model == std::string("der") ? 6 : 7;
     for (std::size_t k = state.v.size() - angles; k < state.v.size(); ++k)
       state.v[k] = 10;
-    Momentum momentum;
-    ASSERT_TRUE(system->energetics()->momentum(0, state.q, state.v, momentum));
+    const Momentum momentum = system->energetics()->momentum(0, state.q, state.v).value();
     const Vec e0 = rod.free_root->frame.e0;
     const double spin =
         rod.material.density * rod.segments.front().section.polar() * rod.length() * 10;
