@@ -31,7 +31,7 @@ struct Simulation {
   Stats stats;
 };
 
-/// One run of a newly constructed system from `start` at t = 0 through all `stops`
+/// One run of the system, which is reset first, from `start` at t = 0 through all `stops`
 /// (ascending), which are reached exactly; `at_stop` receives the state at each.
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, std::span<const double> stops,
