@@ -106,7 +106,7 @@ class Integrator {
   /// constraints (recovery from violation is an experiment).
   virtual Status start(double t, In q, In v) = 0;
 
-  /// Advances to t_end exactly. Not `ok`: failure() says what happened and when.
+  /// Advances to t_end exactly. Not `ok`: failure() reports what happened and when.
   virtual Status advance(double t_end, const Observer& each_step = {}) = 0;
 
   virtual double time() const = 0;

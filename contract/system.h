@@ -25,7 +25,7 @@ using In = std::span<const double>;
 using Out = std::span<double>;
 using InOut = std::span<double>;
 
-/// Outcome of a call inside a step: `retry` asks for a smaller step, `fatal` ends the
+/// Outcome of a call inside a step: `retry` requests a smaller step, `fatal` ends the
 /// run. Values agree with SUNDIALS' 0 / +1 / -1 through `sundials_code`.
 enum class [[nodiscard]] Status{ok, retry, fatal};
 
@@ -34,7 +34,7 @@ struct Layout {
   int constraints = 0;  // m
 };
 
-/// What an integrator may assume; decides which integrators can drive the model.
+/// Properties that an integrator may assume; they decide which integrators apply.
 struct Traits {
   bool constant_mass = false;  // dM/dt = 0 and dM/dq = 0
   bool regular_mass = true;    // M is invertible at every state

@@ -11,7 +11,7 @@
 namespace tress::integrators {
 
 /// The loop shared by every method with a fixed step: equal steps no longer than
-/// Options::step that land on t_end, then projection if asked for, System::accept and the
+/// Options::step that land on t_end, then projection if selected, System::accept and the
 /// observer. A method writes step() and, when it has history, reset().
 class FixedStep : public Integrator {
  public:

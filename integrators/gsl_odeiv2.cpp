@@ -33,7 +33,7 @@ int gsl_code(Status s) {
     case Status::fatal:
       break;
   }
-  return GSL_EBADFUNC;  // GSL gives up
+  return GSL_EBADFUNC;  // GSL stops
 }
 
 /// y = (q, v), y' = (v, a(t, q, v)), stepped by GSL's evolve with its own step control:

@@ -67,7 +67,7 @@ struct Bends {
  private:
   /// Cosine of the turn of element j by least squares of a_{i-1} + a_{i+1} = 2 cos(theta)
   /// a_i at its two ends, or at the nearest points that have two neighbours; with three
-  /// elements the angle between the only two.
+  /// elements of the angle between the only two a_i.
   double cosine(std::size_t j) const {
     const std::size_t n = theta.size();
     if (n == 3) {

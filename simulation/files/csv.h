@@ -9,7 +9,7 @@
 
 namespace tress::simulation {
 
-/// Where a cell of a file begins, counted from 1.
+/// Position of a cell's start in a file, counted from 1.
 struct CellPlace {
   int line = 1, column = 1;
 };

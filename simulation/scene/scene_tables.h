@@ -22,7 +22,7 @@ std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 
 /// `id`, `dt_s` and the integrators' options.
 std::span<const Parameter> integrator_table_parameters();
-/// Which of them apply to only one integrator.
+/// The keys that apply to only one integrator.
 std::span<const Use> integrator_uses();
 
 /// The only effect that does not act on a single strand.

@@ -38,11 +38,11 @@ PointCurve through_points(std::span<const double> points, int elements, double g
 
 /// The keys of a shape that [strand] and [groom] share.
 std::span<const Parameter> shape_parameters();
-/// Which of them apply to which shape.
+/// The keys that apply to each shape.
 std::span<const Use> shape_uses();
 
-/// The natural shape that a table with shape_parameters() asks for; not "points".
-/// Strands of one scene share its seed and differ by `stream`.
+/// The natural shape requested by a table with shape_parameters(); not "points". Strands
+/// of one scene share its seed and differ by `stream`.
 Shape natural_shape(const Table& table, const StrandMaterial& material,
                     std::uint64_t seed, std::uint64_t stream);
 
