@@ -11,9 +11,9 @@ namespace tress::simulation {
 /// The middle value (mean of the two middle ones); 0 if empty.
 double median(std::vector<double> values);
 
-/// Wall time of one call (s). Not the processor time of the thread: on a virtual machine
-/// that clock may stand still for some milliseconds, and neither minimum nor median of
-/// several times corrects that.
+/// Wall time of one call (s). Not the processor time of the thread, which omits the
+/// machine's other load: on a virtual machine that clock may stand still for some
+/// milliseconds, and neither minimum nor median of several times corrects that.
 template <typename F>
 double seconds_of(F&& f) {
   using Clock = std::chrono::steady_clock;
