@@ -19,17 +19,17 @@ enum class Formulation {
   baumgarte,     // g'' = -alpha g - beta g': index 1 with feedback
   projection,    // g'' = 0, then q and v are projected after each step
   index2_ggl,  // g = 0 and g' = 0 with a second multiplier (Gear, Gupta, Leimkuhler 1985)
-  index3,      // g = 0 as it stands
+  index3,      // g = 0 without index reduction
   rattle,      // g = 0 and g' = 0 by half-step impulses (Andersen 1983)
-  correction,  // a step without constraints, then q moved onto g = 0 (Provot 1995)
+  correction,  // unconstrained step, then q is moved onto g = 0 (Provot 1995)
 };
 std::string_view name(Formulation formulation);
 
 /// When an implicit method rebuilds its Newton matrix.
 enum class Refresh { every_iteration, every_step, when_slow };
 
-/// Everything an integrator can be told; each reads what applies to it. `apply` of
-/// integrators/integrator_options.h sets any of it from text.
+/// Options of all integrators; each reads those that apply to it. `apply` in
+/// integrators/integrator_options.h sets any of them from text.
 struct Options {
   Formulation formulation = Formulation::parametric;
   double alpha = 0;  // 1/s^2, Baumgarte's position gain
@@ -47,21 +47,21 @@ struct Options {
   double newton_tolerance = 1e-10;  // largest correction over System::scale
   int newton_iterations = 20;
   Refresh refresh = Refresh::every_iteration;
-  /// IDA, CVODE, ARKODE: how far below the error test Newton's iteration goes. SUNDIALS'
-  /// own defaults (0.33, 0.1, 0.1; ask with 0) leave stale-matrix errors that break the
+  /// IDA, CVODE, ARKODE: Newton tolerance relative to the error test. SUNDIALS' own
+  /// defaults (0.33, 0.1, 0.1; selected by 0) leave stale-matrix errors that break the
   /// error test: on the pendulum 1e-2 is both more accurate and faster.
   double newton_coefficient = 1e-2;
 
   LinearKind linear = LinearKind::automatic;
 
-  /// Options that one method declares for itself, as text by name; read by own_options().
+  /// Method-specific options, as text by name; read by own_options().
   std::map<std::string, std::string, std::less<>> own;
 };
 
-/// The values of a method's own options: its defaults, then what `options` has of them.
+/// Values of a method's own options: the declared defaults, overridden by `options`.
 Parameters own_options(const Options& options, std::span<const Parameter> declared);
 
-/// Work done since start(); counts that a method does not have stay zero.
+/// Work done since start(); counts that do not apply to a method stay zero.
 struct Stats {
   long steps = 0;
   long rejected = 0;  // error-test and convergence failures that repeated a step
@@ -69,22 +69,22 @@ struct Stats {
   long linearizations = 0;
   long solves = 0;
   long newton_iterations = 0;
-  long sweeps = 0;                   // over constraints that are met one by one
+  long sweeps = 0;                   // over constraints solved one at a time
   std::string_view solver = "none";  // the linear solver in use
-  int rank_deficiency = 0;           // redundant constraints met and solved around
-  double condition = 0;              // largest condition estimate met, 0: not estimated
+  int rank_deficiency = 0;           // redundant constraints found and handled
+  double condition = 0;              // largest condition estimate; 0: not estimated
 };
 
-/// What a run has cost, in a measure that depends on no clock: every residual, matrix,
-/// solve, sweep and step of n coordinates counts n + 10. A million takes
-/// 0.01 to 0.4 s, and some 3 s where the tangent is dense.
+/// Clock-independent cost of a run: every residual, matrix, solve, sweep and step counts
+/// n + 10 for n coordinates. A million takes 0.01 to 0.4 s, about 3 s with a dense
+/// tangent.
 inline double total_work(const Stats& done, int coordinates) {
   const long calls =
       done.residuals + done.linearizations + done.solves + done.sweeps + done.steps;
   return static_cast<double>(calls) * (coordinates + 10.0);
 }
 
-/// Whether a run of n coordinates has done as much as Options::max_work lets it.
+/// Whether a run of n coordinates has reached Options::max_work.
 inline bool work_used_up(const Options& options, const Stats& done, int coordinates) {
   return options.max_work > 0 && total_work(done, coordinates) >= options.max_work;
 }
@@ -92,19 +92,21 @@ inline bool work_used_up(const Options& options, const Stats& done, int coordina
 /// The bound of Options that ended a run: max_steps or max_work.
 enum class Limit { none, steps, work };
 
-/// Sees every accepted step; returning false stops the run (Status::fatal, "stopped").
+/// Called after every accepted step; returning false stops the run (Status::fatal,
+/// "stopped").
 using Observer = std::function<bool(double t, In q, In v)>;
 
-/// One method bound to one system. The system outlives it and is not shared meanwhile.
+/// One method bound to one system. The system must outlive it and must not be shared
+/// meanwhile.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Takes the state to start from; may be called again. The state need not satisfy the
+  /// Sets the initial state; may be called again. The state need not satisfy the
   /// constraints (recovery from violation is an experiment).
   virtual Status start(double t, In q, In v) = 0;
 
-  /// Advances to t_end exactly. Not `ok`: failure() says what happened and when.
+  /// Advances to t_end exactly. Not `ok`: failure() reports what happened and when.
   virtual Status advance(double t_end, const Observer& each_step = {}) = 0;
 
   virtual double time() const = 0;
@@ -112,7 +114,7 @@ class Integrator {
   virtual In v() const = 0;
   virtual Stats stats() const = 0;
   virtual std::string failure() const = 0;
-  /// Of a failure: whether the method met a bound, or gave up by itself (none).
+  /// After a failure: the bound that was reached; none if the method itself failed.
   virtual Limit limit() const = 0;
 };
 

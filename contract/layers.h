@@ -1,7 +1,7 @@
 #pragma once
 
-/// One namespace per layer, and which layers each one sees. `tress` itself holds the
-/// contract, math and the linear solvers.
+/// Declares one namespace per layer and which layers each one sees. `tress` itself holds
+/// the contract, math and the linear solvers.
 namespace tress {
 
 namespace models {}

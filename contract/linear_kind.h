@@ -2,8 +2,8 @@
 
 namespace tress {
 
-/// `structured` is a model's own solve (System::linearize and solve), reported by name
-/// only.
+/// A model's own solve (System::linearize and solve) is reported as `structured`; it
+/// cannot be selected.
 enum class LinearKind { automatic, klu, banded, dense };
 
 }  // namespace tress

@@ -103,7 +103,7 @@ std::string_view nearest(std::string_view word,
   std::string_view best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string_view candidate : candidates) {
-    if (word.size() >= candidate.size() + least) continue;  // so many are left over
+    if (word.size() >= candidate.size() + least) continue;  // at least that distance
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < least) {
       least = distance;

@@ -13,7 +13,7 @@ namespace tress {
 /// Declares one parameter of a catalogue entry: a number in [min, max], whole when
 /// `whole`, unless
 ///
-///     choices is set     a word out of that list, separated by '|'
+///     choices is set     one value of that list, separated by '|'
 ///     components > 1     that many such numbers, "x,y,z"
 ///     rows               any number of such tuples, "x,y,z;x,y,z"; may be empty
 ///     text               any text: a file, a name
@@ -30,7 +30,7 @@ struct Parameter {
   bool text = false;
   std::string_view fallback = {};  // the default of components, rows and text
 
-  /// The default as set() would take it.
+  /// The default as text that set() accepts.
   std::string default_text() const;
 };
 
@@ -41,9 +41,9 @@ class Parameters {
   Parameters(std::span<const Parameter> declared, std::string where);
 
   /// Throws InputError on an unknown key, a malformed or non-finite number, a number out
-  /// of range or a word not among the choices; the message lists what would be accepted.
+  /// of range or a value not among the choices; the message lists the accepted values.
   void set(std::string_view key, std::string_view value);
-  /// The same, `where` (file:line:column) instead of the owner in messages.
+  /// As above, with `where` (file:line:column) instead of the owner in messages.
   void set(std::string_view key, std::string_view value, const std::string& where);
   bool knows(std::string_view key) const;
 
@@ -53,7 +53,7 @@ class Parameters {
   Vec vec(std::string_view key) const;                // of three components
   /// Components of all rows, one row after the other.
   std::span<const double> numbers(std::string_view key) const;
-  /// The value as set() takes it: setting it again gives the same to the last bit.
+  /// The value as text for set(), which restores it bit for bit.
   std::string text(std::string_view key) const;
 
  private:
@@ -69,17 +69,17 @@ class Parameters {
   std::string where_;
 };
 
-/// The shortest text that is read as x again.
+/// The shortest text that reads back as exactly x.
 std::string number_text(double x);
 
-/// The words of a Parameter's `choices`.
+/// The option values in a Parameter's `choices`.
 std::vector<std::string_view> words_of(std::string_view choices);
 
 /// The candidate nearest to `word` by edit distance, or empty when none is near.
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates);
 
-/// What to do about an unknown word: "did you mean" the nearest, or `otherwise`.
+/// Remedy for an unknown name: "did you mean" the nearest candidate, or `otherwise`.
 std::string suggestion(std::string_view word,
                        std::span<const std::string_view> candidates,
                        const std::string& otherwise);

@@ -18,7 +18,7 @@ namespace {
 
 class Descriptor {
  public:
-  /// Without waiting for somebody to write into a pipe.
+  /// Does not wait for a writer if the file is a pipe.
   explicit Descriptor(const std::string& file)
       : number_(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {
     if (number_ < 0) refuse(file, std::strerror(errno));
@@ -47,7 +47,7 @@ std::string read_file(const std::string& file, std::size_t most_bytes) {
   std::string text;
   char buffer[65536];
   for (;;) {
-    // One more than the limit shows that a file is larger.
+    // One byte beyond the limit shows that a file is larger.
     const std::size_t left = most_bytes - text.size();
     const std::size_t wanted = left < sizeof buffer ? left + 1 : sizeof buffer;
     const ssize_t got = ::read(input.number(), buffer, wanted);

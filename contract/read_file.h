@@ -6,9 +6,9 @@
 
 namespace tress {
 
-/// The whole of a regular file of at most `most_bytes`; no more than one byte beyond them
-/// is read, whatever the file claims to hold. Throws InputError when it is missing, not a
-/// regular file (a folder, a device, a pipe), unreadable or larger.
+/// Reads a whole regular file of at most `most_bytes`, and never more than one byte
+/// beyond that, whatever size the file reports. Throws InputError when it is missing, not
+/// a regular file (a folder, a device, a pipe), unreadable or larger.
 std::string read_file(const std::string& file,
                       std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 

@@ -9,7 +9,7 @@
 
 #include "contract/layers.h"
 
-/// The contract between what moves (models) and how time advances (integrators).
+/// The contract between models (what moves) and integrators (how time advances).
 ///
 /// A model is a mechanical system over coordinates q (n of them), q' = v, v' = a, with
 /// optional position constraints g(t, q) = 0 (m of them) and multipliers lambda:
@@ -26,7 +26,7 @@ using In = std::span<const double>;
 using Out = std::span<double>;
 using InOut = std::span<double>;
 
-/// Outcome of a call inside a step: `retry` asks for a smaller step, `fatal` ends the
+/// Outcome of a call inside a step: `retry` requests a smaller step, `fatal` ends the
 /// run. Values agree with SUNDIALS' 0 / +1 / -1 through `sundials_code`.
 enum class [[nodiscard]] Status{ok, retry, fatal};
 
@@ -35,7 +35,7 @@ struct Layout {
   int constraints = 0;  // m
 };
 
-/// What an integrator may assume; decides which integrators can drive the model.
+/// Properties that an integrator may assume; they decide which integrators apply.
 struct Traits {
   bool constant_mass = false;  // dM/dt = 0 and dM/dq = 0
   bool regular_mass = true;    // M is invertible at every state
@@ -47,9 +47,9 @@ struct Weights {
   double pos = 0;
 };
 
-/// Which terms dr/dq and dr/dv carry: everything (full Newton), or only mass, damping and
-/// elastic stiffness (the semi-implicit Newton of the seed papers). An option of a
-/// model's constructor, for those whose two tangents differ.
+/// Terms included in dr/dq and dr/dv: all (full Newton), or only mass, damping and
+/// elastic stiffness (semi-implicit Newton). A constructor option of models whose two
+/// tangents differ.
 enum class Tangent { exact, stiff };
 
 /// Structure of a sparse matrix in compressed columns; rows ascend inside a column.
@@ -62,7 +62,7 @@ struct Pattern {
   int nonzeros() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// S(w) as a sparse matrix, for direct solvers. Required of a system with constraints.
+/// S(w) as a sparse matrix, for direct solvers. Required for systems with constraints.
 class SparseForm {
  public:
   virtual ~SparseForm() = default;
@@ -70,8 +70,8 @@ class SparseForm {
   virtual Status values(double t, In q, In v, In a, Weights w, Out s) noexcept = 0;
 };
 
-/// a = a(t, q, v) at the cost of the model's own solve of M. Only of unconstrained
-/// systems.
+/// a = a(t, q, v) at the cost of the model's own solve of M. For unconstrained systems
+/// only.
 class ExplicitForm {
  public:
   virtual ~ExplicitForm() = default;
@@ -84,7 +84,7 @@ class ConstraintForm {
  public:
   virtual ~ConstraintForm() = default;
 
-  /// Of G^T (n x m): column k holds the gradient of constraint k. Fixed for life.
+  /// Pattern of G^T (n x m): column k holds the gradient of constraint k. Fixed for life.
   virtual const Pattern& pattern() const = 0;
   virtual void scale(Out g_typ) const = 0;                            // (m)
   virtual Status value(double t, In q, Out g) noexcept = 0;           // (m)
@@ -99,21 +99,21 @@ class ConstraintForm {
 };
 
 /// Elastic energy and friction as sums over blocks k of few constraints C_k(t, x), x the
-/// coordinates that the block touches, and everything else as an acceleration: what
-/// position-based methods take [Macklin, Mueller & Chentanez 2016, XPBD, eqs. 4 and 26].
-/// With W = M^-1 diagonal and constant, alpha the compliances and c the friction,
+/// coordinates that the block touches, and everything else as an acceleration: the form
+/// that position-based methods need [Macklin, Mueller & Chentanez 2016, XPBD, eqs. 4 and
+/// 26]. With W = M^-1 diagonal and constant, alpha the compliances and c the friction,
 ///
 ///     E = sum_k C_k^T alpha^-1 C_k/2,    a = rest - W sum_k G_k^T s_k,
 ///     s = alpha^-1 C + c C',    G = dC/dq,    C' = G v + C_t.
 ///
-/// Units of C are the model's, u: alpha in u^2/J, c in J s/u^2. Only of unconstrained
-/// systems.
+/// C has model-specific units u: alpha in u^2/J, c in J s/u^2. For unconstrained systems
+/// only.
 class ComplianceForm {
  public:
   static constexpr int most_rows = 5, most_coordinates = 12;
 
   struct Block {
-    std::vector<int> coordinates;              // of q, ascending
+    std::vector<int> coordinates;              // indices into q, ascending
     int rows = 0;                              // constraints
     std::array<double, most_rows> alpha{};     // >= 0
     std::array<double, most_rows> friction{};  // c >= 0
@@ -125,12 +125,12 @@ class ComplianceForm {
   };
 
   virtual ~ComplianceForm() = default;
-  /// In the order along the body from the root, fixed for life.
+  /// Ordered along the body from the root; fixed for life.
   virtual const std::vector<Block>& blocks() const = 0;
   virtual void inverse_mass(Out w) const = 0;  // (n) the diagonal of W, > 0
-  /// Of every force that is not in the blocks.
+  /// Acceleration from all forces outside the blocks.
   virtual Status rest(double t, In q, In v, Out a) noexcept = 0;
-  /// Of block k at x, the values of its coordinates.
+  /// Evaluates block k at x, the values of its coordinates.
   virtual void evaluate(double t, std::size_t k, In x, Value& value) noexcept = 0;
 };
 
@@ -149,10 +149,9 @@ class Energetics {
  public:
   virtual ~Energetics() = default;
   virtual Energy energy(double t, In q, In v) = 0;
-  /// Empty: the model does not keep count of its momentum.
+  /// Empty: the model does not compute its momentum.
   virtual std::optional<Momentum> momentum(double, In, In) { return {}; }
-  /// Rate of work (W) of every force that `energy` does not account for: drag is
-  /// negative.
+  /// Power (W) of all forces that `energy` does not account for; negative for drag.
   virtual double power(double t, In q, In v) = 0;
 };
 
@@ -161,11 +160,11 @@ class MaterialPoints {
  public:
   virtual ~MaterialPoints() = default;
   virtual int count() const = 0;
-  /// The point that point i hangs on, an earlier one; -1: none.
+  /// The point that point i is attached to, always an earlier one; -1: none.
   virtual int before(int i) const { return i - 1; }
   virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
-  /// Largest |length/rest - 1| of a piece of the body. Empty: the model does not say.
+  /// Largest |length/rest - 1| over the segments of the body. Empty: not available.
   virtual std::optional<double> stretch(double /*t*/, In /*q*/) { return {}; }
 
   /// Point i as a mean of coordinates and a prescribed part,
@@ -178,14 +177,14 @@ class MaterialPoints {
   /// Fixed for life. Empty: points are not linear in the coordinates.
   virtual std::optional<Mean> mean(int /*point*/) { return {}; }
 
-  /// Axes e0 (the tangent), e1, e2 of the section at the last point, row after row in
-  /// world components; they turn with the material. Empty: the model has no such frame.
+  /// Axes e0 (the tangent), e1, e2 of the section at the last point, row by row in world
+  /// components; they turn with the material. Empty: the model has no such frame.
   virtual std::optional<std::array<double, 9>> end_frame(double /*t*/, In /*q*/) {
     return {};
   }
 };
 
-/// One mechanical system. `residual` is pure; `linearize` readies `solve`; nothing
+/// One mechanical system. `residual` is pure; `linearize` prepares `solve`; nothing
 /// allocates after the first call of each; only `accept` may change memory.
 class System {
  public:
@@ -204,19 +203,20 @@ class System {
   /// the state to them. True: the equations changed, multistep methods must restart.
   virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
 
-  /// Forgets every accept(): coordinates mean again what initial_state() means by them.
+  /// Discards the effects of every accept(): coordinates regain the meaning that they
+  /// have in initial_state().
   virtual void reset() {}
 
-  /// All that accept() has changed since reset(); recall() gives it to a system made
-  /// alike, which then continues as this one would.
+  /// All that accept() has changed since reset(). recall() restores it in an identically
+  /// constructed system, which then continues as this one would.
   virtual std::vector<double> memory() const { return {}; }
   virtual void recall(In /*memory*/) {}
 
-  /// Which term of r(t, q, v, 0) is not finite and where, in words: "quadratic_drag at
-  /// point 7". Empty: all are finite, or the model does not say.
+  /// Names the term of r(t, q, v, 0) that is not finite and its location: "quadratic_drag
+  /// at point 7". Empty: all terms are finite, or the model does not report it.
   virtual std::string not_finite(double /*t*/, In /*q*/, In /*v*/) { return {}; }
 
-  // Optional forms, null when absent; asked for once.
+  // Optional forms, null when absent; queried once.
   virtual SparseForm* sparse_form() { return nullptr; }
   virtual ExplicitForm* explicit_form() { return nullptr; }
   virtual ConstraintForm* constraint_form() { return nullptr; }

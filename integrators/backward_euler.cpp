@@ -7,7 +7,8 @@ namespace tress::integrators {
 namespace {
 
 /// v_{n+1} = v_n + h a_{n+1}, q_{n+1} = q_n + h v_{n+1}. The last acceleration is the
-/// guess. Order 1, L-stable, strongly damping. [Hairer, Wanner: Solving ODEs II, IV.3]
+/// initial guess. Order 1, L-stable, strongly damping. [Hairer, Wanner: Solving ODEs II,
+/// IV.3]
 class BackwardEuler final : public FixedStep {
  public:
   BackwardEuler(System& system, const Options& options)

@@ -6,7 +6,7 @@
 #include "contract/input_error.h"
 #include "contract/parameters.h"
 
-/// Every method, in the order in which it is listed: one line each.
+/// Every method, in listing order: one line each.
 #define TRESS_METHODS(METHOD)        \
   METHOD(explicit_euler)             \
   METHOD(symplectic_euler)           \
@@ -34,7 +34,7 @@
 
 namespace tress::integrators {
 
-// Each is defined in the file of its method.
+// Each is defined in its method's file.
 #define TRESS_DECLARE(id) IntegratorEntry id##_entry();
 TRESS_METHODS(TRESS_DECLARE)
 #undef TRESS_DECLARE

@@ -18,7 +18,7 @@ const IntegratorEntry& find_integrator(std::string_view id);
 std::string refusal(const IntegratorEntry& entry, System& system,
                     Formulation formulation);
 
-/// refusal() turned into an InputError, else the integrator.
+/// Makes the integrator, or throws refusal() as an InputError.
 std::unique_ptr<Integrator> make_integrator(std::string_view id, System& system,
                                             const Options& options);
 

@@ -5,7 +5,7 @@
 namespace tress::integrators {
 namespace {
 
-/// What `formulation` asks of a method, said of one that does not do it.
+/// What `formulation` requires, phrased for a method that lacks it.
 std::string_view what_it_asks(Formulation formulation) {
   switch (formulation) {
     case Formulation::parametric:

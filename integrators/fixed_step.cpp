@@ -73,7 +73,7 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
   const double t_begin = t_;
   const double span = t_end - t_begin;
   if (span <= 0) return Status::ok;
-  // 1e-9: a span that is a whole number of steps up to rounding is not cut once more.
+  // 1e-9: a span that is a whole number of steps up to rounding gets no extra step.
   const double count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
   if (count > static_cast<double>(options_.max_steps)) {
     limit_ = Limit::steps;

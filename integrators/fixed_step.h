@@ -11,7 +11,7 @@
 namespace tress::integrators {
 
 /// The loop shared by every method with a fixed step: equal steps no longer than
-/// Options::step that land on t_end, then projection if asked for, System::accept and the
+/// Options::step that land on t_end, then projection if selected, System::accept and the
 /// observer. A method writes step() and, when it has history, reset().
 class FixedStep : public Integrator {
  public:
@@ -47,7 +47,7 @@ class FixedStep : public Integrator {
  private:
   /// Ends the run with `what` at time t as failure().
   Status end(Status status, double t, const std::string& what);
-  /// The same of a step that failed: with its number, and what was not finite in it.
+  /// As above for a failed step; adds its number and what was not finite in it.
   Status fail(Status status, double t, const std::string& what);
   Status finish_step(double t);
 

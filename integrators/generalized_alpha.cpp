@@ -22,7 +22,7 @@ Coefficients chung_hulbert(double rho) {
   return {alpha_m, alpha_f, gamma, (gamma + 0.5) * (gamma + 0.5) / 4};
 }
 
-/// With a the algorithmic and u the true acceleration (the stage's unknown):
+/// With a the algorithmic and u the true acceleration (the unknown of Stage):
 ///     (1 - alpha_m) a_{n+1} + alpha_m a_n = (1 - alpha_f) u_{n+1} + alpha_f u_n
 ///     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
 ///     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})

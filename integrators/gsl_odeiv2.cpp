@@ -21,7 +21,7 @@ struct Free {
 // eps^(1/3): balances truncation and rounding of a central difference.
 constexpr double difference = 6e-6;
 
-// More steps in a row than any start-up needs.
+// More consecutive steps than any start-up needs.
 constexpr int most_tiny_steps = 1000;
 
 int gsl_code(Status s) {
@@ -33,11 +33,11 @@ int gsl_code(Status s) {
     case Status::fatal:
       break;
   }
-  return GSL_EBADFUNC;  // GSL gives up
+  return GSL_EBADFUNC;  // GSL stops
 }
 
 /// y = (q, v), y' = (v, a(t, q, v)), stepped by GSL's evolve with its own step control:
-/// error of entry i held below rtol |y_i| + atol typ_i.
+/// the error of entry i is kept below rtol |y_i| + atol typ_i.
 class GslOdeiv2 final : public Integrator {
  public:
   GslOdeiv2(System& system, const Options& options, const gsl_odeiv2_step_type* type)
@@ -131,7 +131,7 @@ class GslOdeiv2 final : public Integrator {
     return Status::fatal;
   }
 
-  /// The same with the number of the step and what was not finite in it.
+  /// As above, with the number of the step and what was not finite in it.
   Status fail(const char* what) {
     const Status s = end(what);
     failure_ += ", step " + std::to_string(dynamics_.stats.steps + 1);
@@ -149,9 +149,9 @@ class GslOdeiv2 final : public Integrator {
         t, state.first(self.n_), state.last(self.n_), rate.last(self.n_), self.lambda_));
   }
 
-  /// Central differences of the acceleration, column by column: bsimp wants all of it,
-  /// dense. Its extrapolation in h^2 rests on an accurate Jacobian; one-sided
-  /// differences, eight digits, stall it at tolerances below 1e-6.
+  /// Central differences of the acceleration, column by column: bsimp needs the full
+  /// dense Jacobian. Its extrapolation in h^2 depends on an accurate one; one-sided
+  /// differences (eight digits) stall it at tolerances below 1e-6.
   static int jacobian(double t, const double* y, double* dfdy, double* dfdt,
                       void* pointer) {
     auto& self = *static_cast<GslOdeiv2*>(pointer);

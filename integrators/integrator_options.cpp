@@ -8,7 +8,7 @@
 namespace tress::integrators {
 namespace {
 
-/// How a field of Options is set from parameters, and what it is as their text.
+/// How a field of Options is set from parameters and converted to their text.
 struct Access {
   void (*assign)(Options&, const Parameters&, std::string_view key);
   std::string (*text)(const Options&, std::string_view key);
@@ -19,7 +19,7 @@ struct Field {
   Access access;
 };
 
-/// A field that is a number.
+/// A numeric field.
 template <auto member>
 constexpr Access number{[](Options& o, const Parameters& p, std::string_view key) {
                           using Type = std::remove_reference_t<decltype(o.*member)>;
@@ -34,7 +34,7 @@ std::vector<std::string_view> words(std::string_view key) {
   return words_of(declared->choices);
 }
 
-/// Position of the word among the declared choices, which follow the enum's order.
+/// Index of the option value among the declared choices, which follow the enum's order.
 template <auto member>
 constexpr Access choice{
     [](Options& o, const Parameters& p, std::string_view key) {
@@ -48,7 +48,7 @@ constexpr Access choice{
 
 const Options defaults;
 constexpr double smallest_step = 1e-12;       // s
-constexpr double smallest_tolerance = 1e-15;  // below it round-off decides
+constexpr double smallest_tolerance = 1e-15;  // below it round-off dominates
 constexpr double largest = 1e30;
 constexpr double most_counted = 1e15;  // whole numbers that a double holds exactly
 

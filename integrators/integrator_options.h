@@ -12,10 +12,10 @@ namespace tress::integrators {
 /// The fields of Options that `--set` reaches, with units, ranges and choices.
 std::span<const Parameter> common_options();
 
-/// The same, and behind them what single methods declare for themselves.
+/// common_options(), followed by the method-specific options.
 std::span<const Parameter> integrator_options();
 
-/// The method that alone reads this option; null for those of common_options().
+/// The only method that reads this option; null for those of common_options().
 const IntegratorEntry* owner_of_option(std::string_view key);
 
 /// Sets one option from text; throws InputError naming `where` on an unknown key, a
@@ -23,7 +23,7 @@ const IntegratorEntry* owner_of_option(std::string_view key);
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where);
 
-/// The field as text that apply() reads as the same.
+/// The field as text that apply() reads back exactly.
 std::string text_of(const Options& options, std::string_view key);
 
 }  // namespace tress::integrators

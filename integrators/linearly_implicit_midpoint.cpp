@@ -11,28 +11,28 @@ namespace tress::integrators {
 namespace {
 
 /// One residual, one factorisation and one solve per step, like semi_implicit_euler, but
-/// order 2, with any tangent (a W-method). Stable as implicit_midpoint on linear systems
-/// with the exact tangent; beyond, the step must resolve what the tangent leaves out and
-/// how it changes: it has an ErrorIndicator. [Steihaug, Wolfbrandt 1979, Math. Comp. 33,
-/// 521; Hairer, Wanner: Solving ODEs II, IV.7]
+/// order 2, with any tangent (a W-method). As stable as implicit_midpoint on linear
+/// systems with the exact tangent; otherwise the step must resolve the terms that the
+/// tangent omits and its changes, which the ErrorIndicator monitors. [Steihaug,
+/// Wolfbrandt 1979, Math. Comp. 33, 521; Hairer, Wanner: Solving ODEs II, IV.7]
 ///
 /// The midpoint rule's equations with a single Newton step from
 ///
 ///     a* = a_{-1} + (h + h_{-1})/(h_{-1} + h_{-2}) (a_{-1} - a_{-2}),
 ///
-/// the line through the accelerations at the last two midpoints. a* is O(h^2) off, and a
-/// tangent whose dr/dv is wrong or missing leaves O(h) of that: order 2 needs neither an
-/// exact tangent nor an iteration. The first two steps iterate.
+/// the line through the accelerations at the last two midpoints. The error of a* is
+/// O(h^2), and a tangent with wrong or missing dr/dv leaves O(h) times that: order 2
+/// needs neither an exact tangent nor iteration. The first two steps iterate.
 ///
 /// Error indicator: with even steps a - a* is the second difference of the accelerations
 /// at midpoints, h^2 a'' + O(h^3), and the velocity's local error is
 ///
 ///     integral of a over the step - h a(midpoint) = h^3/24 a'' + O(h^5),
 ///
-/// which moves q by h times that during a step: h^2/24 |a - a*|. So it falls as h^4 where
-/// the step resolves the motion, and what the single Newton step leaves out is in it. At
-/// the edge of stability a changes its sign from step to step, |a - a*| = 4 |a|, and it
-/// is h^2 |a|/6, a third of all that a step's acceleration does to q.
+/// which moves q by h times that during a step: h^2/24 |a - a*|. So it falls as h^4 if
+/// the step resolves the motion, and it includes the error of the single Newton step. At
+/// the stability limit a changes its sign from step to step, |a - a*| = 4 |a|, and the
+/// indicator is h^2 |a|/6, a third of the entire effect of a step's acceleration on q.
 class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
  public:
   LinearlyImplicitMidpoint(System& system, const Options& options)
@@ -48,7 +48,7 @@ class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
  private:
   Status reset(double /*t*/) override {
     h_last_ = h_before_ = 0;
-    if (dynamics_.stats.steps == 0) indicator_ = 0;  // a start, no event
+    if (dynamics_.stats.steps == 0) indicator_ = 0;  // a start, not an event
     return Status::ok;
   }
 

@@ -7,8 +7,8 @@ namespace tress::integrators {
 namespace {
 
 constexpr Parameter own[] = {
-    // The impulse that would have moved them there [Bridson et al. 2002], or no change
-    // of the velocity [Provot 1995].
+    // The impulse that would have caused the correction [Bridson et al. 2002], or no
+    // change of the velocity [Provot 1995].
     {.name = "correction",
      .help = "positions are moved with an impulse, or alone",
      .choices = "impulse|position"},
@@ -22,15 +22,15 @@ constexpr Parameter own[] = {
      .max = 1},
 };
 
-/// Two semi-implicit half steps that know nothing of the constraints, and between them a
-/// correction of the positions, constraint after constraint, until all hold: how hair was
-/// kept from stretching in film production. Order 1; without constraints its
+/// Two semi-implicit half steps without constraints, and between them a correction of the
+/// positions, one constraint after the other, until all hold: the method used in film
+/// production to keep hair from stretching. Order 1; without constraints its
 /// amplification has determinant (1 + z^2/4)^-2: it damps half as much as
 /// semi_implicit_euler. [Kim 2010, in: Realistic Hair Simulation, SIGGRAPH course, five
 /// steps; Provot 1995; Bridson et al. 2002]
 ///
-/// The five steps, with a(q, v) the acceleration of a semi-implicit half step from (q, v)
-/// that leaves the constraints out:
+/// The five steps, with a(q, v) the acceleration of an unconstrained semi-implicit half
+/// step from (q, v):
 ///
 ///     1  v_m = v_n + h/2 a(q_n, v_n)          the first implicit filter
 ///     2  q*  = q_n + h v_m
@@ -86,7 +86,7 @@ class PredictorCorrector final : public FixedStep {
   std::vector<double> predicted_;
 };
 
-/// Constraints met one by one weigh coordinates, not directions.
+/// Constraints solved one at a time weight coordinates, not directions.
 std::string weighs_coordinates(System& system, Formulation formulation) {
   if (!diagonal_mass(system)) return "needs a diagonal mass matrix";
   return constant_mass(system, formulation);

@@ -5,9 +5,9 @@
 namespace tress::integrators {
 namespace {
 
-/// Backward Euler's first Newton step from constant velocity: one linear solve per step,
-/// the scheme of the seed papers. Order 1, strongly damping. The model's Tangent option
-/// decides what S carries. [Baraff, Witkin 1998; Bertails et al. 2006]
+/// Backward Euler's first Newton step from constant velocity: one linear solve per step.
+/// Order 1, strongly damping. The model's Tangent option decides which terms S includes.
+/// [Baraff, Witkin 1998; Bertails et al. 2006]
 class SemiImplicitEuler final : public FixedStep {
  public:
   SemiImplicitEuler(System& system, const Options& options)

@@ -9,9 +9,9 @@
 namespace tress::integrators {
 
 /// S(1, h, h^2) a = -r(a = 0) at (q + h v, v), then v + h a and q + h (v + h a). S is
-/// taken at the last acceleration, none at the start: at a = 0 an exact tangent has the
-/// geometric stiffness of a strand that does not accelerate, and a shaken one is then
-/// less stable than without any.
+/// evaluated at the last acceleration, zero at the start: at a = 0 an exact tangent has
+/// the geometric stiffness of a strand that does not accelerate, which makes a shaken
+/// strand less stable than no geometric stiffness would.
 class SemiImplicitStep {
  public:
   SemiImplicitStep(Dynamics& dynamics, const Options& options)

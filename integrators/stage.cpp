@@ -12,7 +12,7 @@ namespace {
 // A kept matrix is rebuilt when corrections shrink by less than this per iteration.
 constexpr double slow_rate = 0.3;
 
-// Corrections that grew this often do not shrink by themselves.
+// After this many growing corrections the iteration counts as not converging.
 constexpr int most_grown = 2;
 
 }  // namespace
@@ -91,7 +91,7 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, a, lambda);
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
-  // From the guess, from no acceleration, from standstill.
+  // From the guess, from zero acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       a[i] = start == 0 ? a_guess_[i] : start == 1 ? 0 : -v_bar[i] / w.vel;
@@ -121,8 +121,8 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
-    // The error left is the sum of the corrections to come: rate / (1 - rate) of this
-    // one. The first correction has no rate yet.
+    // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
+    // this one. The first correction has no rate yet.
     const double error_left =
         i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
     if (correction <= tolerance_ || error_left <= 0.1 * tolerance_) return Status::ok;

@@ -6,26 +6,26 @@
 
 namespace tress::integrators {
 
-/// Corrections that stop shrinking are rounding when they are this close to the
-/// tolerance.
+/// Corrections that stop shrinking within this factor of the tolerance are rounding
+/// errors.
 inline constexpr double stage_stagnation = 1e4;
 
 /// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
 /// method: find a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
-/// by Newton's method; where that does not converge, with steps damped by the natural
-/// monotonicity test [Deuflhard 2011, Newton Methods for Nonlinear Problems, section 3.3]
-/// from the guess, from no acceleration and from standstill: long steps of shaken strands
-/// need it. Where that fails too the step is solved short and made longer bit by bit
-/// [section 5.1], first with the drift of the whole step: soft strands that fall far in
-/// one step need that; then with its own, as a shorter step has it: strands that turn
-/// fast need that, since the drift of the whole step carries them where no guess helps.
+/// by Newton's method. If that does not converge (long steps of shaken strands), steps
+/// are damped by the natural monotonicity test [Deuflhard 2011, Newton Methods for
+/// Nonlinear Problems, section 3.3], from the guess, from zero acceleration and from
+/// standstill. If that fails too, a shortened step is solved and lengthened gradually
+/// [section 5.1]: first with the drift of the whole step, for soft strands that fall far
+/// in one step; then with the drift of the shortened step, for strands that turn fast,
+/// which the drift of the whole step carries out of reach of any guess.
 ///
-/// A force that jumps, as that of a contact which goes over to another place, may leave
-/// no solution: on either side of the jump the step leads to the other, and Newton's
-/// iteration goes back and forth. Then the solution is taken in the sense of [Filippov
-/// 1988]: the state on the jump at which a mean of the forces of both sides solves the
-/// equations. There a mean of Newton's corrections from both sides vanishes.
+/// With a discontinuous force, such as that of a contact whose location switches, there
+/// may be no solution: the step from either side of the jump leads to the other, and
+/// Newton's iteration alternates between them. The solution is then taken in the sense of
+/// [Filippov 1988]: the state on the jump at which a mean of the forces of both sides
+/// solves the equations. There a mean of Newton's corrections from both sides vanishes.
 ///
 /// Options: newton_tolerance bounds the last correction of q and v over System::scale,
 /// newton_iterations, refresh.
@@ -45,9 +45,9 @@ class Stage {
   In v() const { return v_; }
 
  private:
-  /// Of a step solved short: how far it goes without any force.
+  /// The force-free motion assumed for a shortened step.
   enum class Drift { whole, own };
-  /// A point near a jump, and what Newton's method takes off there.
+  /// A point near a jump, and Newton's correction there.
   struct Side {
     Side(std::size_t n, std::size_t m) : a(n), lambda(m), a_step(n), lambda_step(m) {}
     std::vector<double> a, lambda, a_step, lambda_step;
@@ -57,13 +57,13 @@ class Stage {
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
-  /// Newton's step from q_, v_, the places of `a`, and its size.
+  /// Newton's step from q_, v_, the state that belongs to `a`, and its size.
   Status newton_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
                      double& size) noexcept;
   Status damped(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
   Status lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, InOut a,
                     InOut lambda) noexcept;
-  /// From where newton() ended; `retry` unless it went back and forth there.
+  /// Starts where newton() ended; `retry` unless its iterates alternated there.
   Status on_jump(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
   Status close_in(double t, In q_bar, In v_bar, Weights w) noexcept;
   Status correction(double t, In q_bar, In v_bar, Weights w, Side& side) noexcept;
@@ -78,9 +78,9 @@ class Stage {
   double tolerance_;
   int iterations_;
   Refresh refresh_;
-  Weights factored_;  // of the matrix that newton() took last
+  Weights factored_;  // of the matrix that newton() used last
   double rate_ = 0;   // of newton(): its last correction over the one before
-  long matrix_ = -1;  // which of dynamics_'s it was; others may have taken one since
+  long matrix_ = -1;  // its Dynamics::matrix(); other callers may have factored since
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps

@@ -7,12 +7,12 @@
 namespace tress::integrators {
 namespace {
 
-// Damped steps are shorter, so there may be more of them; a step this much shorter than
-// Newton's gets nowhere.
+// Damped steps are shorter, so more of them are allowed; a step this much shorter than
+// Newton's makes no progress.
 constexpr int damped_patience = 3;
 constexpr double shortest = 1e-4;
 
-// Of a step lengthened bit by bit: where it begins, and when it gets nowhere.
+// A gradually lengthened step: its initial part, and the limits below which it fails.
 constexpr double first_part = 0.1, shortest_part = 1e-3, least_growth = 1.05;
 
 }  // namespace
@@ -32,8 +32,8 @@ Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
   return Status::retry;
 }
 
-/// Takes the step a_step_, lambda_step_ or as much of it as makes the correction of the
-/// kept matrix smaller than `size`, that of the step itself.
+/// Takes the step a_step_, lambda_step_, or the largest halving of it for which the next
+/// correction with the kept matrix is smaller than `size`, that of the step itself.
 Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, double size,
                                   InOut a, InOut lambda) noexcept {
   std::ranges::copy(a, a_kept_.begin());
@@ -53,8 +53,8 @@ Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, doubl
 
 /// The equations of a part of the step, s of its length, have v = v_bar + s w.vel a and
 ///     q = q_bar - left v_bar + s^2 w.pos a,
-/// where `left` is 0 with the drift of the whole step, and (1 - s) w.pos/w.vel with its
-/// own, so that it starts where the whole one does.
+/// where `left` is 0 with the drift of the whole step, and (1 - s) w.pos/w.vel with the
+/// part's own drift, so that the part starts where the whole step does.
 Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, InOut a,
                          InOut lambda) noexcept {
   std::ranges::fill(a, 0.0);
@@ -65,7 +65,7 @@ Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, I
     std::ranges::copy(lambda, lambda_part_.begin());
     double left = 0;
     if (drift == Drift::whole) {
-      for (double& entry : a) entry *= (part / next) * (part / next);  // the same place
+      for (double& entry : a) entry *= (part / next) * (part / next);  // same position
     } else {
       left = (1 - next) * w.pos / w.vel;
       const double further = before > 0 ? (next - part) / (part - before) : 0;

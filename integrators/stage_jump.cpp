@@ -9,15 +9,15 @@
 namespace tress::integrators {
 namespace {
 
-// Newton's iteration goes back and forth when two steps in turn end this near to where
-// they began, of the length of one.
+// Newton's iteration alternates when two successive steps end this near to their start,
+// relative to the length of one.
 constexpr double back_again = 0.1;
 
-// Corrections that grow by more towards the point between the two sides come from a
-// singular matrix, not from a jump.
+// If corrections grow by more towards the point between the two sides, the cause is a
+// singular matrix, not a jump.
 constexpr double most_growth = 2;
 
-// Means of the corrections of the two sides shrink by this or better.
+// Means of the corrections of the two sides must shrink at least by this factor.
 constexpr double slowest = 0.5;
 
 }  // namespace
@@ -34,7 +34,7 @@ Status Stage::correction(double t, In q_bar, In v_bar, Weights w, Side& side) no
   return newton_step(t, w, side.a, side.lambda, side.a_step, side.lambda_step, side.size);
 }
 
-/// Square of the distance of the places that the two steps lead to.
+/// Squared distance between the end points of the two steps.
 double Stage::apart(const Side& x, const Side& y) const noexcept {
   const In typ = dynamics_.q_typ();
   double sum = 0;
@@ -45,8 +45,8 @@ double Stage::apart(const Side& x, const Side& y) const noexcept {
   return sum;
 }
 
-/// Halves the way between here_ and there_ until they are next to each other. A point
-/// between them is on the side whose step leads to about the same place.
+/// Bisects between here_ and there_ until they are adjacent. A point between them is on
+/// the side whose step leads to about the same point.
 Status Stage::close_in(double t, In q_bar, In v_bar, Weights w) noexcept {
   shifted(a_step_, here_.a, -1, there_.a);
   const double largest = most_growth * std::max(here_.size, there_.size);

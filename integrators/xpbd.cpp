@@ -21,16 +21,16 @@ constexpr Parameter own[] = {
 };
 using Block = ComplianceForm::Block;
 
-/// Places of `count` blocks in the order of a sweep: from the root to the tip, or from
-/// both ends in turn, even places upwards and odd ones downwards, after the bilateral
-/// interleaving of [Kugelstadt & Schoemer 2016].
+/// Indices of `count` blocks in the order of a sweep: from the root to the tip, or from
+/// both ends alternately, even indices upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
 std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t count) {
   std::vector<std::size_t> all;
   if (sweep_order == "root_to_tip") {
     for (std::size_t k = 0; k < count; ++k) all.push_back(k);
     return all;
   }
-  std::size_t odd = count - count % 2;  // one behind the last odd place
+  std::size_t odd = count - count % 2;  // one past the last odd index
   for (std::size_t even = 0; even < count; even += 2) {
     all.push_back(even);
     if (odd > 0) all.push_back(odd - 1);
@@ -47,10 +47,10 @@ std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t coun
 ///     ((1 + gamma) G W G^T + alpha/h^2) dlambda
 ///         = -C - alpha lambda/h^2 - gamma (G (x - q) + h C_t),   gamma = alpha c/h,
 ///
-/// then v = (x - q)/h. Order 1. Few sweeps leave it softer than the model, the more so
-/// the longer the step and the finer the strand. Converged sweeps are backward Euler's
-/// step but for the change of G on the way, O(h^2) of the force (none for linear C, much
-/// where light coordinates turn far). [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
+/// then v = (x - q)/h. Order 1. With few sweeps it is softer than the model, increasingly
+/// so for longer steps and finer strands. Converged sweeps give backward Euler's step
+/// except for the change of G during the step, O(h^2) of the force (none for linear C,
+/// large if light coordinates turn far). [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
 class Xpbd final : public FixedStep {
  public:
   Xpbd(System& system, const Options& options)
@@ -87,7 +87,8 @@ class Xpbd final : public FixedStep {
     return Status::ok;
   }
 
-  /// Rows of the equation above divided by 1 + gamma: symmetric, positive definite.
+  /// Solves the equation above with rows divided by 1 + gamma: symmetric positive
+  /// definite.
   void correct(double t, double h, std::size_t k) {
     const Block& block = blocks_[k];
     const std::size_t size = block.coordinates.size();

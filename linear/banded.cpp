@@ -133,7 +133,7 @@ double BandedSolver::factor_scaled(In values) noexcept {
   for (std::size_t p = 0; p < slot_.size(); ++p) band_[slot_[p]] = values[p];
 
   double smallest = std::numeric_limits<double>::infinity();
-  int reach = 0;  // last column touched by the rows swapped up so far
+  int reach = 0;  // last column touched by the row swaps so far
   for (int j = 0; j < n_; ++j) {
     double* const column = diagonal(j);
     const int below = std::min(ordering_.lower, n_ - 1 - j);

@@ -9,8 +9,8 @@ namespace tress {
 
 /// A symmetric reordering and the band it leaves.
 struct BandOrdering {
-  std::vector<int> position;  // (n) unknown -> place in the band
-  int lower = 0;              // kl: most places an entry lies below the diagonal
+  std::vector<int> position;  // (n) unknown -> position in the band
+  int lower = 0;              // kl: largest distance of an entry below the diagonal
   int upper = 0;              // ku
 };
 
@@ -39,8 +39,8 @@ class BandedSolver final : public DirectSolver {
   BandOrdering ordering_;
   int n_;
   int stride_;                     // between columns: 2 kl + ku + 1
-  std::vector<std::size_t> slot_;  // (nonzeros) entry -> place in band_
-  std::vector<double> band_;       // columns; kl places on top for the fill of pivoting
+  std::vector<std::size_t> slot_;  // (nonzeros) entry -> index in band_
+  std::vector<double> band_;       // columns; the top kl rows hold fill from pivoting
   std::vector<int> pivot_;         // (n) row swapped with row j, as an offset from j
   mutable std::vector<double> work_;
 };

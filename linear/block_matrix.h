@@ -8,15 +8,16 @@ namespace tress {
 
 Pattern identity_pattern(int n);
 
-/// A sparse matrix assembled from blocks of fixed pattern, placed anywhere, overlapping
-/// or not: A = sum_b factor_b place_b(block_b or its transpose). Places are found once in
-/// finish(); afterwards clear() and add() only write numbers, O(nonzeros of the block).
+/// A sparse matrix assembled from blocks of fixed pattern, at any position, overlapping
+/// or not: A = sum_b factor_b place_b(block_b or its transpose). Positions are computed
+/// once in finish(); afterwards clear() and add() only write numbers, O(nonzeros of the
+/// block).
 class BlockMatrix {
  public:
   BlockMatrix(int rows, int cols);
 
-  /// Upper left corner of the block at (row0, col0); returns the block's id.
-  /// `transposed`: values arrive in the order of `block` and land in its transpose.
+  /// Adds a block with its upper left corner at (row0, col0); returns its id.
+  /// `transposed`: values are given in the order of `block` and stored in its transpose.
   int add_block(const Pattern& block, int row0, int col0, bool transposed = false);
   void finish();
 
@@ -30,7 +31,7 @@ class BlockMatrix {
     int row, col;
   };
   std::vector<std::vector<Entry>> entries_;     // per block, until finish()
-  std::vector<std::vector<std::size_t>> slot_;  // per block: entry -> place in values_
+  std::vector<std::vector<std::size_t>> slot_;  // per block: entry -> index in values_
   Pattern pattern_;
   std::vector<double> values_;
 };

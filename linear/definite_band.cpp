@@ -11,7 +11,7 @@
 namespace tress {
 namespace {
 
-/// Place of entry (row, column) among the values, -1: not in the pattern.
+/// Index of entry (row, column) among the values, -1: not in the pattern.
 int find(const Pattern& pattern, int row, int column) {
   const int at = place_of(pattern, row, column);
   const bool present = at < pattern.start[static_cast<std::size_t>(column) + 1] &&
@@ -22,8 +22,8 @@ int find(const Pattern& pattern, int row, int column) {
 // Sums of the same terms in another order differ by a few roundoffs of the diagonal.
 constexpr double symmetry = 1e-12;
 
-// Stride of joints of rods with a twist angle an edge: a size that the compiler knows is
-// unrolled and vectorised.
+// Stride for rods with nodal positions and one twist angle per edge: loops of a known
+// size are unrolled and vectorised.
 constexpr std::size_t of_rods = 11;
 
 }  // namespace

@@ -6,12 +6,12 @@
 
 namespace tress {
 
-/// Band matrices that are symmetric and positive definite as a rule: L D L^T without
+/// Solver for band matrices that are usually symmetric positive definite: L D L^T without
 /// pivoting or scaling, which such matrices do not need (the errors of every entry stay
 /// small beside the roots of its diagonal entries, whatever the units) [Higham 2002,
 /// Accuracy and Stability of Numerical Algorithms, section 10.1]. n k^2/2 multiply-adds
 /// for half-bandwidth k, a sixth of BandedSolver's time. A matrix that turns out
-/// unsymmetric, or whose pivot is not positive, goes to BandedSolver.
+/// unsymmetric, or has a pivot that is not positive, is solved by BandedSolver.
 class DefiniteBand final : public LinearSolver {
  public:
   explicit DefiniteBand(const Pattern& pattern);
@@ -20,8 +20,8 @@ class DefiniteBand final : public LinearSolver {
   std::string_view name() const override { return "banded"; }
   Status factor(In values) noexcept override;
   Status solve(InOut b) noexcept override;
-  /// Of L D L^T: the largest ratio of a diagonal entry to its pivot, a lower bound of the
-  /// condition of the matrix with unit diagonal.
+  /// The largest ratio of a diagonal entry to its pivot in L D L^T, a lower bound of the
+  /// condition number of the matrix scaled to unit diagonal.
   double condition() const noexcept override;
 
  private:
@@ -40,9 +40,9 @@ class DefiniteBand final : public LinearSolver {
   void substitute() noexcept;  // work_ <- (L D L^T)^-1 work_
 
   BandedSolver general_;
-  std::vector<int> position_;          // (n) unknown -> place in the band
+  std::vector<int> position_;          // (n) unknown -> position in the band
   std::size_t n_, stride_;             // between columns: half-bandwidth + 1
-  std::vector<std::size_t> diagonal_;  // (n) place in the band -> in values
+  std::vector<std::size_t> diagonal_;  // (n) position in the band -> in values
   std::vector<Pair> pairs_;
   bool mirrored_ = true;         // the pattern is symmetric
   std::vector<double> band_;     // columns from the diagonal down; k more at the end

@@ -7,7 +7,7 @@
 
 namespace tress {
 
-/// DenseLu: for a few unknowns, and the reference of the others.
+/// DenseLu, for few unknowns and as the reference for the other solvers.
 class DenseSolver final : public DirectSolver {
  public:
   explicit DenseSolver(const Pattern& pattern);

@@ -11,9 +11,9 @@
 namespace tress {
 namespace {
 
-/// Three sweeps undo units over 24 decades between neighbours in D P D, P Poisson's
-/// matrix, to within a factor 20 of P's condition; four to within 2. Dividing rows, then
-/// columns, leaves a factor 1e15.
+/// For D P D, with P Poisson's matrix and units that differ by 24 decades between
+/// neighbours, three sweeps restore P's condition to within a factor 20; four to within
+/// 2. Dividing rows, then columns, leaves a factor 1e15.
 constexpr int symmetric_sweeps = 3;
 
 double length(In x) {
@@ -25,7 +25,7 @@ double length(In x) {
   return largest * std::sqrt(sum);
 }
 
-/// Signs without pattern (splitmix64 of the index), the same on every call.
+/// Pseudo-random signs (splitmix64 of the index), the same on every call.
 double scattered_sign(std::uint64_t i) {
   i += 0x9e3779b97f4a7c15ULL;
   i = (i ^ (i >> 30)) * 0xbf58476d1ce4e5b9ULL;

@@ -7,24 +7,25 @@
 
 namespace tress {
 
-/// What every direct solver shares: scaling, the test for singularity, the condition.
+/// Base of all direct solvers: scaling, singularity test, condition estimate.
 ///
-/// The factored matrix is R A C: rows and columns are divided by the roots of their
-/// largest magnitudes, three times, then columns by their largest [Ruiz 2001,
-/// RAL-TR-2001-034]. It keeps symmetry, so mixed units and masses (D A D) drop out. Every
-/// column of R A C has size one and a pivot can be read as it stands: at or
+/// The factored matrix is R A C: rows and columns are divided by the square roots of
+/// their largest magnitudes, three times, then columns by their largest [Ruiz 2001,
+/// RAL-TR-2001-034]. The first part keeps symmetry, so mixed units and masses (D A D)
+/// cancel. Every column of R A C has size one, so pivots need no further scaling: at or
 /// below `singular_pivot` the matrix counts as singular. O(nonzeros) on top of the
 /// factorisation.
 ///
 /// condition() estimates |R A C| |(R A C)^-1|, computed on request by two solves (the
 /// power method on the inverse from a scattered start). It is a lower bound of the
 /// product of the 1-norm and the inverse's 2-norm; the first solve alone reaches
-/// |inverse| / sqrt(n) in the mean, so the right order of magnitude is promised and no
-/// more. klu_condest was not used: it takes up to ten solves and measures A unscaled.
+/// |inverse| / sqrt(n) in the mean, so only the order of magnitude is guaranteed.
+/// klu_condest is not used: it takes up to ten solves and measures A unscaled.
 class DirectSolver : public LinearSolver {
  public:
   /// Rounding leaves the last pivot of a singular matrix at a small multiple of the
-  /// roundoff that grows with n but not beyond what elimination mixes: 128 roundoffs.
+  /// roundoff, which grows with n only as far as elimination mixes entries: 128
+  /// roundoffs.
   static constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
   explicit DirectSolver(const Pattern& pattern, double singular_pivot = rounding);
@@ -37,7 +38,7 @@ class DirectSolver : public LinearSolver {
   const Pattern& pattern() const { return pattern_; }
 
  private:
-  /// Factors R A C; returns the smallest magnitude of a pivot, 0 where it broke down.
+  /// Factors R A C; returns the smallest magnitude of a pivot, 0 on breakdown.
   virtual double factor_scaled(In values) noexcept = 0;
   virtual void solve_scaled(InOut b) const noexcept = 0;
 

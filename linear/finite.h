@@ -6,8 +6,8 @@
 
 namespace tress {
 
-/// Neither nan nor infinite; 0 * inf and 0 * nan are nan. Sums side by side, so that none
-/// waits for the one before.
+/// Whether all values are finite; 0 * inf and 0 * nan are nan. The sums are independent,
+/// so that no addition waits for the one before.
 inline bool all_finite(In values) noexcept {
   constexpr std::size_t lanes = 8;
   double zero[lanes] = {};

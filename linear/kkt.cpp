@@ -9,17 +9,17 @@
 namespace tress {
 namespace {
 
-/// A constraint that adds `dependence` to the others makes a condition of its inverse
+/// A constraint whose independent part is `dependence` gives a condition of its inverse
 /// square, 1e16; the estimate may be low by some powers of ten.
 constexpr double suspicious_condition = 1e11;
-/// Independent constraints found at a high condition: look again when it is this much
+/// Independent constraints found at a high condition: check again when it is this much
 /// higher.
 constexpr double suspicion_growth = 100;
-/// delta leaves eight digits to each pass over eigenvalues of A near one (all are at most
-/// the number of constraints that meet in a coordinate).
+/// With delta each pass gains eight digits for eigenvalues of A near one (all are at most
+/// the number of constraints that share a coordinate).
 constexpr double regularisation = 1e-8;
 constexpr int most_refinements = 12;
-/// A refined residual larger than this says that the matrix is singular after all.
+/// A refined residual larger than this indicates a singular matrix.
 constexpr double refined_residual = 1e-9;
 
 double largest_magnitude(In x) {
@@ -30,7 +30,7 @@ double largest_magnitude(In x) {
 
 std::size_t place(int i) { return static_cast<std::size_t>(i); }
 
-/// Calls visit(row, column, entry) on every entry.
+/// Calls visit(row, column, entry) for every entry.
 template <class Visit>
 void for_each_entry(const Pattern& pattern, Visit visit) {
   for (std::size_t j = 0; j < place(pattern.cols); ++j) {
@@ -188,7 +188,7 @@ void Kkt::subtract_product() noexcept {
   for (std::size_t k = n; k < residual_.size(); ++k) residual_[k] += shift_ * unknown_[k];
 }
 
-/// Until the residual stops halving.
+/// Iterates until the residual stops halving.
 Status Kkt::refine() noexcept {
   double before = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < most_refinements; ++pass) {
@@ -212,7 +212,7 @@ Status Kkt::solve(InOut b, InOut c) noexcept {
   unknown_ = right_;
   Status status = solver_->solve(unknown_);
   // Without redundancy one solve is enough: a refinement step gained a factor 1 to 5 in x
-  // and y on chains with conditions from 10 to 1e10, far below what integrators ask for.
+  // and y on chains with conditions from 10 to 1e10, far below what integrators require.
   if (redundant && status == Status::ok) status = refine();
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < n; ++i) b[i] = column_scale_[i] * unknown_[i];

@@ -12,8 +12,8 @@ namespace tress {
 
 struct KktReport {
   std::string_view solver;
-  int rank_deficiency = 0;  // constraints that follow from the others
-  double condition = 0;     // of the equilibrated matrix, an order of magnitude
+  int rank_deficiency = 0;  // number of redundant constraints
+  double condition = 0;     // of the equilibrated matrix, order of magnitude only
 };
 
 /// Solves the saddle-point system of a constrained step,
@@ -22,15 +22,15 @@ struct KktReport {
 ///     [H   0  ] [y] = [c]        S (n x n) any; G, H (m x n) on one pattern.
 ///
 /// Unknowns and rows are scaled with D from the diagonal of S (x = D x~) and constraints
-/// to unit length in that metric, so neither the units nor a mass of 1e-8 kg look like
-/// missing rank. Cost: one sparse factorisation, two solves for the condition.
+/// to unit length in that metric, so neither units nor a mass of 1e-8 kg are mistaken for
+/// rank deficiency. Cost: one sparse factorisation, two solves for the condition.
 ///
 /// Redundant constraints (G of deficient rank) are solved in the least-squares sense:
 /// with A = H S^-1 G^T, the y of least norm among those that minimise |A y - (c - H S^-1
-/// b)|. c loses its part in null(H^T), y its part in null(G^T), and what remains is
-/// solved with delta added to the (2,2) block and refined against the unmodified matrix.
-/// Each such factorisation allocates and repeats the QR of rank.h, since null spaces move
-/// with G.
+/// b)|. The parts of c in null(H^T) and of y in null(G^T) are removed; the rest is solved
+/// with delta added to the (2,2) block and refined against the unmodified matrix. Each
+/// such factorisation allocates and repeats the QR of rank.h, since null spaces move with
+/// G.
 class Kkt {
  public:
   /// `gt` (n x m): column k holds the gradient of constraint k; m = 0 is allowed.
@@ -63,7 +63,7 @@ class Kkt {
   std::vector<double> right_, residual_, unknown_;  // (n + m), equilibrated
   std::unique_ptr<NullSpace> null_g_, null_h_;      // while constraints are redundant
   double shift_ = 0;                                // delta in the factored matrix
-  double suspicious_;                               // condition that calls for a QR
+  double suspicious_;                               // condition above which a QR is done
   KktReport report_;
 };
 

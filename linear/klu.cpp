@@ -9,7 +9,7 @@
 namespace tress {
 namespace {
 
-/// Reused pivots are given up when an entry of U outgrows its column by this much ...
+/// Reused pivots are abandoned when an entry of U outgrows its column by this much ...
 constexpr double least_reciprocal_growth = 1e-3;
 /// ... or by this factor more than it did with freshly chosen pivots.
 constexpr double growth_margin = 0.1;

@@ -25,8 +25,8 @@ class LinearSolver {
 /// leaves a narrow band, KLU otherwise.
 std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind, const Pattern& pattern);
 
-/// The same for matrices that are symmetric and positive definite as a rule: a band is
-/// eliminated without pivoting where it can be (DefiniteBand).
+/// As above, for matrices that are usually symmetric positive definite: a band is
+/// eliminated without pivoting where possible (DefiniteBand).
 std::unique_ptr<LinearSolver> make_definite_solver(LinearKind kind,
                                                    const Pattern& pattern);
 

@@ -63,7 +63,7 @@ int NullSpace::dimension() const { return static_cast<int>(basis_->n.cols()); }
 void NullSpace::project_out(InOut y) const {
   if (dimension() == 0) return;
   Eigen::Map<Vector> target(y.data(), static_cast<Eigen::Index>(y.size()));
-  // The second pass removes what rounding in an ill-conditioned N^T N left behind.
+  // The second pass removes the rounding error left by an ill-conditioned N^T N.
   for (int pass = 0; pass < 2; ++pass) {
     const Vector part = basis_->n.transpose() * target;
     target -= basis_->n * basis_->gram.solve(part);

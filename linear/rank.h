@@ -6,13 +6,13 @@
 
 namespace tress {
 
-/// Which combinations of constraint gradients vanish: the null space of G^T (n x m), from
+/// Combinations of constraint gradients that vanish: the null space of G^T (n x m), from
 /// a rank-revealing QR of the scaled matrix R G^T E whose columns have about unit length,
 ///
 ///     R G^T E P = Q [R11 R12; 0 0],      N = E P [-R11^-1 R12; I].
 ///
-/// Linear dependence is declared where what a column adds to the others is shorter than
-/// `dependence`. N stays sparse; projections solve with N^T N. Allocates.
+/// A column counts as dependent when its component outside the span of the others is
+/// shorter than `dependence`. N stays sparse; projections solve with N^T N. Allocates.
 class NullSpace {
  public:
   /// `gt`: values on `pattern`; `rows` (n) and `columns` (m): the scales R and E.

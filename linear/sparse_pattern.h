@@ -9,7 +9,7 @@ namespace tress {
 /// The pattern whose column j has the entries columns[j], in any order, repeated or not.
 Pattern pattern_of(int rows, std::vector<std::vector<int>> columns);
 
-/// Where entry (row, column), which must be in the pattern, stands among its values.
+/// Index among the values of entry (row, column), which must be in the pattern.
 int place_of(const Pattern& pattern, int row, int column);
 
 }  // namespace tress

@@ -5,10 +5,10 @@
 
 namespace tress {
 
-/// LU with partial pivoting of a square band matrix, a(i, j) = 0 unless
-/// -lower <= j - i <= upper. Memory is taken once, in the constructor; `clear`, fill,
-/// `factor`, `solve`. Cost O(n lower (lower + upper)).
-/// Source: G. Golub, C. Van Loan, Matrix Computations (4th ed.), section 4.3.5.
+/// LU with partial pivoting of a square band matrix, a(i, j) = 0 unless -lower <= j - i
+/// <= upper. Allocates only in the constructor. Use: `clear`, fill, `factor`, `solve`.
+/// Cost O(n lower (lower + upper)). Source: G. Golub, C. Van Loan, Matrix Computations
+/// (4th ed.), section 4.3.5.
 class BandedLu {
  public:
   BandedLu(int n, int lower, int upper);

@@ -6,10 +6,10 @@
 
 namespace tress {
 
-/// A straight piece from `start` to start + edge.
+/// A straight segment from `start` to start + edge.
 struct StraightPiece {
   Vec start, edge;
-  double inverse = 0;  // 1/|edge|^2; 0 of a piece without length, which is its start
+  double inverse = 0;  // 1/|edge|^2; 0 for zero length: the segment is its start
 
   StraightPiece() = default;
   StraightPiece(const Vec& from, const Vec& to) : start(from), edge(to - from) {
@@ -18,7 +18,7 @@ struct StraightPiece {
   }
 
   Vec at(double s) const { return start + s * edge; }
-  /// Where the point nearest to x lies, in [0, 1].
+  /// Parameter in [0, 1] of the point nearest to x.
   double nearest(const Vec& x) const {
     // Two instructions without a branch, where std::clamp has two branches.
     return std::max(0.0, std::min(1.0, inverse * dot(x - start, edge)));

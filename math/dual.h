@@ -6,9 +6,9 @@
 
 namespace tress {
 
-/// Forward-mode derivative number: a value with its derivatives along n directions. A
-/// kernel written once for any scalar and called with Dual returns the exact directional
-/// derivatives of what it computes. Over Pack: four at once. Over another Dual: second
+/// Forward-mode dual number: a value with its derivatives along n directions. A kernel
+/// that is generic in the scalar, called with Dual, returns the exact directional
+/// derivatives of its result. Over Pack: four at once. Over another Dual: second
 /// derivatives, x.part[i].part[j]. Cost: 2 n + 1 multiplications for one.
 template <int n, class T = double>
 struct Dual {
@@ -16,7 +16,7 @@ struct Dual {
   std::array<T, n> part{};  // derivative along direction k
 
   Dual() = default;
-  // Implicit, so that kernels mix constants and derivative numbers.
+  // Implicit, so that kernels can mix constants and dual numbers.
   template <std::convertible_to<T> C>
   Dual(const C& constant) : value(constant) {}  // NOLINT(google-explicit-constructor)
 

@@ -6,8 +6,8 @@
 
 namespace tress {
 
-/// A rotation as the three axes of a frame, in the components of the frame it is seen
-/// from: `frame * x` takes components in the frame to components outside.
+/// A rotation, stored as the three axes of a frame in components of the outer frame:
+/// `frame * x` maps components in the frame to outer components.
 template <class T>
 struct FrameOf {
   Vec3<T> e0{T(1), T(0), T(0)};
@@ -21,7 +21,7 @@ struct FrameOf {
   friend constexpr FrameOf operator*(const FrameOf& f, const FrameOf& g) {
     return {f * g.e0, f * g.e1, f * g.e2};
   }
-  /// The transpose applied: components outside to components in the frame.
+  /// Applies the transpose: outer components to components in the frame.
   [[gnu::always_inline]] constexpr Vec3<T> back(const Vec3<T>& x) const {
     return {dot(e0, x), dot(e1, x), dot(e2, x)};
   }
@@ -38,7 +38,7 @@ inline Frame rotation(const Vec& axis, double angle) {
   return {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})};
 }
 
-/// As nine numbers, axis by axis.
+/// Stores the nine numbers axis by axis.
 inline void store9(const Frame& f, double* p) {
   store3(f.e0, p);
   store3(f.e1, p + 3);

@@ -4,8 +4,8 @@
 
 namespace tress::helix {
 
-/// S and A by the half angle, free of cancellation; then up the derivatives of
-/// w^2 A = 1 - cos ws and w^2 B = s - S, with S'(w)/w = B - s A:
+/// S and A from the half angle, free of cancellation; then successive derivatives of w^2
+/// A = 1 - cos ws and w^2 B = s - S, with S'(w)/w = B - s A:
 ///     w^2 A1 = s S - 2 A,  w^2 A2 = s S1 - 4 A1,  w^2 A3 = s S2 - 6 A2
 ///     w^2 B1 = -S1 - 2 B,  w^2 B2 = -S2 - 4 B1,   w^2 B3 = -S3 - 6 B2
 /// S1 = B - s A, S2 = B1 - s A1, S3 = B2 - s A2

@@ -6,7 +6,7 @@
 
 namespace tress {
 
-/// The scalar functions of s and X = |kappa|^2 behind a helix (w = |kappa|):
+/// The scalar functions of s and X = |kappa|^2 that describe a helix (w = |kappa|):
 ///
 ///     S = sin(ws)/w,  A = (1 - cos ws)/w^2,  B = (ws - sin ws)/w^3
 ///     A1 = A'(w)/w,  A2 = A1'(w)/w,  A3 = A2'(w)/w,  and the same for B
@@ -14,8 +14,8 @@ namespace tress {
 /// All are even in w, so the derivatives with respect to kappa are dA = A1 (kappa .
 /// dkappa) and so on.
 ///
-/// Powers s^1, s^2, s^3, s^4, s^5, s^6, s^7, s^8, s^9 times functions of ws; at w = 0
-/// they are 1, 1/2, 1/6, -1/12, -1/60, 1/90, 1/630, -1/840, -1/7560 of these.
+/// They are the powers s^1, s^2, ..., s^9 times functions of ws, which at w = 0 are 1,
+/// 1/2, 1/6, -1/12, -1/60, 1/90, 1/630, -1/840, -1/7560.
 template <class T>
 struct HelixFunctions {
   T S, A, B, A1, B1, A2, B2, A3, B3;
@@ -23,9 +23,8 @@ struct HelixFunctions {
 
 namespace helix {
 
-/// Taylor coefficients in X = (ws)^2 of the m-th derivative (1/w d/dw)^m of
-/// sum (-X)^k / (2k + p)!, over the power of s that it carries. Each derivative takes
-/// c_k to 2 (k + 1) c_{k+1}.
+/// Taylor coefficients in X = (ws)^2 of the m-th derivative (1/w d/dw)^m of sum (-X)^k /
+/// (2k + p)!, divided by its power of s. Each derivative maps c_k to 2 (k + 1) c_{k+1}.
 template <int p, int m, int terms>
 constexpr std::array<double, terms> taylor() {
   std::array<double, terms> c{};
@@ -46,8 +45,8 @@ T taylor_sum(const T& x) {
   return y;
 }
 
-/// b = B/s^3 and its derivatives, and A3/s^8, by Taylor series; the rest from them
-/// without cancellation by the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
+/// Taylor series give b = B/s^3, its derivatives and A3/s^8; the others follow without
+/// cancellation from the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
 ///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
 template <int terms, class T, class X>
 HelixFunctions<T> series(const T& s, const X& x2) {
@@ -71,14 +70,14 @@ HelixFunctions<T> series(const T& s, const X& x2) {
           .B3 = s9 * b3};
 }
 
-/// By the closed forms for one s; accurate for ws >= 3 or so.
+/// Closed forms for one s; accurate for ws >= 3, approximately.
 HelixFunctions<double> closed_forms(double s, double x2) noexcept;
 
-// Five terms leave out less than eps / 8 of the value up to ws = 0.17 (of B, where it is
-// most, 3!/13! X^5), nine less than eps up to 1.5, sixteen up to 4.5, where the
-// alternating sums lose 4 bits; from there on the closed forms are the better.
+// Five terms truncate less than eps / 8 of the value up to ws = 0.17 (3!/13! X^5 for B,
+// the worst case), nine less than eps up to 1.5, sixteen up to 4.5, where the alternating
+// sums lose 4 bits; beyond, the closed forms are more accurate.
 inline constexpr double nearly_straight = 0.17 * 0.17;
-inline constexpr double short_end = 1.5 * 1.5;  // of X = (ws)^2
+inline constexpr double short_end = 1.5 * 1.5;  // as X = (ws)^2
 inline constexpr double long_end = 4.5 * 4.5;
 
 inline HelixFunctions<double> one_by_one(double s, double x2) noexcept {
@@ -105,16 +104,16 @@ HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
 
 }  // namespace helix
 
-/// T = double or Pack. x2 = |kappa|^2 is one number, as an element has one kappa, or one
-/// a lane; longest is the largest |s| of the element, so that all its points take the
-/// same way, and so do the elements of a pack.
+/// T = double or Pack. x2 = |kappa|^2 is one number per element, or one per lane; longest
+/// is the largest |s| of the element, so that all its points, and all elements of a pack,
+/// take the same branch.
 ///
-/// Errors for the x2 given, eps = 2^-52: at most 8 eps relative while ws <= 2. Beyond,
-/// where the functions have zeros, relative to the size of their oscillation s^p/(ws)^m,
-/// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to
-/// ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50.
-/// Cost: one of four ways, chosen by w longest: below 0.17, 1.5 and 4.5 (a turn is 6.3)
-/// power series without branches, beyond every lane by itself.
+/// Error bounds for given x2, eps = 2^-52: 8 eps relative for ws <= 2. Beyond, where the
+/// functions have zeros, relative to the size of their oscillation s^p/(ws)^m, m = 1, 2,
+/// 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to ws = 4.5,
+/// then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50. Cost: one of
+/// four paths, chosen by w longest: branch-free power series up to 0.17, 1.5 and 4.5 (a
+/// full turn is 6.3), lane by lane beyond.
 template <class T, class X>
 HelixFunctions<T> helix_functions(const T& s, const X& x2, const X& longest) noexcept {
   const double x = largest(x2 * (longest * longest));

@@ -7,8 +7,8 @@
 #include "math/frame.h"
 #include "math/pack.h"
 
-/// What kernels over either scalar do with a number: `double`, or a Pack with one of four
-/// strands in each lane.
+/// Operations of kernels that are generic in the scalar: `double`, or a Pack with one of
+/// four strands per lane.
 namespace tress {
 
 template <class Real>
@@ -28,8 +28,8 @@ inline double largest(const Pack& x) {
 inline bool is_finite(double x) { return std::isfinite(x); }
 inline bool is_finite(const Pack& x) { return std::isfinite(sum(x - x)); }
 
-/// What four points add up to: of one strand their sum; when lanes are strands, each lane
-/// has a point of its own.
+/// Sum over four points of one strand; unchanged when lanes are strands, since each lane
+/// then holds its own point.
 template <class Real>
 Real sum_over(const Pack& points) {
   if constexpr (std::same_as<Real, Pack>) {
@@ -57,7 +57,7 @@ void set_lane(FrameOf<T>& to, int lane, const Frame& f) {
   set_lane(to.e2, lane, f.e2);
 }
 
-/// Vectors of four points, `step` numbers from each to the next; and back.
+/// Loads (stores) the vectors of four points that lie `step` numbers apart.
 inline Vec3<Pack> gather3(const double* p, std::size_t step) {
   const auto entry = [=](std::size_t k) {
     return Pack(p[k], p[k + step], p[k + 2 * step], p[k + 3 * step]);

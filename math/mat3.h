@@ -5,7 +5,7 @@
 
 namespace tress {
 
-/// A 3x3 matrix as its rows.
+/// A 3x3 matrix, stored by rows.
 struct Mat3 {
   Vec r0, r1, r2;
 
@@ -40,7 +40,7 @@ constexpr Mat3 outer(const Vec& a, const Vec& b) { return {a.x * b, a.y * b, a.z
 constexpr Mat3 cross_matrix(const Vec& w) {
   return {{0, -w.z, w.y}, {w.z, 0, -w.x}, {-w.y, w.x, 0}};
 }
-/// R a R^T: a matrix of the components in the frame R seen from outside.
+/// R a R^T: transforms a matrix from components in the frame R to outer components.
 constexpr Mat3 turned(const Frame& r, const Mat3& a) {
   const auto outside = [&](const Vec& left, const Vec& inside) {
     return outer(left, inside.x * r.e0 + inside.y * r.e1 + inside.z * r.e2);

@@ -4,15 +4,15 @@
 
 namespace tress {
 
-/// Four numbers that are computed on together: the points of an element, or four strands.
-/// Arithmetic is entry by entry, one AVX instruction where the machine has them.
+/// Four numbers processed together: the points of an element, or four strands. Arithmetic
+/// is entry by entry, one AVX instruction on machines that have AVX.
 struct Pack {
   static constexpr int lanes = 4;
   using Vector __attribute__((vector_size(lanes * sizeof(double)))) = double;
   Vector v;
 
-  Pack() = default;  // Pack x; holds anything, Pack x{}; zeros, as with double
-  // Implicit, so that kernels mix numbers and packs.
+  Pack() = default;  // Pack x; is uninitialised, Pack x{}; zero, as for double
+  // Implicit, so that kernels can mix numbers and packs.
   Pack(double x) : v(Vector{x, x, x, x}) {}  // NOLINT(google-explicit-constructor)
   explicit Pack(const Vector& x) : v(x) {}
   Pack(double x0, double x1, double x2, double x3) : v(Vector{x0, x1, x2, x3}) {}

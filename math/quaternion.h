@@ -4,8 +4,7 @@
 
 namespace tress {
 
-/// Four numbers w + v that stand for a rotation when their norm is 1, and then q and -q
-/// for the same one.
+/// A quaternion w + v; with norm 1 it represents a rotation, the same for q and -q.
 template <class T>
 struct QuaternionOf {
   T w{1};
@@ -24,13 +23,13 @@ struct QuaternionOf {
 
 using Quaternion = QuaternionOf<double>;
 
-/// One of the two of a frame, of norm 1 to rounding.
+/// One of the two quaternions of a frame, of norm 1 to rounding.
 Quaternion quaternion_of(const Frame& frame);
 /// q or -q, whichever is nearer to p.
 inline Quaternion nearer(const Quaternion& p, const Quaternion& q) {
   return dot(p, q) < 0 ? -1.0 * q : q;
 }
-/// q' of a frame that turns with omega (rad/s, world components): omega q/2.
+/// q' for a frame rotating with omega (rad/s, world components): omega q/2.
 inline Quaternion rate_of(const Quaternion& q, const Vec& omega) {
   return 0.5 * (Quaternion{0, omega} * q);
 }
@@ -54,8 +53,9 @@ FrameOf<T> axes(const QuaternionOf<T>& q) {
           {two * (v.x * v.z + w * v.y), two * (v.y * v.z - w * v.x), ww - xx - yy + zz}};
 }
 
-/// 2 vec(conj(p) q): of norm 2 |p| |q| sin(angle/2) along the axis of the rotation from p
-/// to q, in components of either. Bilinear, changes sign with p or q.
+/// 2 vec(conj(p) q): has norm 2 |p| |q| sin(angle/2) and lies along the axis of the
+/// rotation from p to q, in components of either frame. Bilinear, changes sign with p or
+/// q.
 template <class T>
 Vec3<T> turn_between(const QuaternionOf<T>& p, const QuaternionOf<T>& q) {
   return T(2) * (p.w * q.v - q.w * p.v - cross(p.v, q.v));
@@ -72,7 +72,7 @@ void store_quaternion(const QuaternionOf<T>& q, T* p) {
   store3(q.v, p + 1);
 }
 
-/// One of the four of the basis.
+/// The k-th of the four basis quaternions.
 inline Quaternion unit_quaternion(int k) {
   double q[4] = {};
   q[k] = 1;
@@ -81,7 +81,7 @@ inline Quaternion unit_quaternion(int k) {
 
 /// d first_axis/dq.
 void axis_gradient(const Quaternion& q, double (&g)[3][4]);
-/// d turn_between(p, q)/dq; that by p is turn_slope(-q).
+/// d turn_between(p, q)/dq; the derivative by p is turn_slope(-q).
 void turn_slope(const Quaternion& p, double (&g)[3][4]);
 
 }  // namespace tress

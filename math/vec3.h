@@ -5,7 +5,7 @@
 
 namespace tress {
 
-/// Three numbers over any scalar (double, or a derivative number).
+/// Three numbers over any scalar (double, or a dual number).
 template <class T>
 struct Vec3 {
   T x{};

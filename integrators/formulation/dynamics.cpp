@@ -117,9 +117,9 @@ Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noe
   return s;
 }
 
-/// ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T. With R(v) = d(G v + g_t)/dq:
-/// dc/da = G, dc/dv = 2 R(v) + beta G, dc/dq = R(a) + beta R(v) + alpha G + d(bias)/dq,
-/// whose last term (third derivatives of g) is left out. Index 3: G, scaled in solve().
+/// ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T. With R(v) = d(G v + g_t)/dq: dc/da
+/// = G, dc/dv = 2 R(v) + beta G, dc/dq = R(a) + beta R(v) + alpha G + d(bias)/dq, whose
+/// last term (third derivatives of g) is omitted. Index 3: G, scaled in solve().
 Status Dynamics::constraint_tangent(double t, In q, In v, In a, Weights w) noexcept {
   std::copy(gt_.begin(), gt_.end(), ht_.begin());
   if (position_level_ || (w.vel == 0 && w.pos == 0)) return Status::ok;
@@ -187,8 +187,8 @@ Status Dynamics::accelerate(double t, In q, In v, Out a, Out lambda) noexcept {
   return solve(a, lambda);
 }
 
-/// A state that is itself not finite comes of steps gone wrong: it explains nothing where
-/// there is another.
+/// A state that is itself not finite results from earlier failures: it explains nothing
+/// if there is a finite one.
 void Dynamics::keep_lost(double t, In q, In v) noexcept {
   if (lost_ == Lost::at_finite_state) return;
   const bool finite = all_finite(q) && all_finite(v);

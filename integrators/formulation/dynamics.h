@@ -14,8 +14,9 @@ namespace tress::integrators {
 ///
 ///     r = M a - f - G^T lambda = 0
 ///     c = 0, where c is, by formulation,
-///         g'' + beta g' + alpha g   (acceleration: alpha = beta = 0; Baumgarte;
-///         projection) g                         (index 3)
+///         g'' + beta g' + alpha g   (Baumgarte; acceleration and projection with
+///                                    alpha = beta = 0)
+///         g                         (index 3)
 ///
 /// Unconstrained systems, and every system under `correction`, pass through to
 /// System::linearize and solve. Constrained ones are solved by the KKT matrix of
@@ -32,17 +33,17 @@ class Dynamics {
   /// Counts residuals, linearizations and solves; integrators add the rest.
   Stats stats;
 
-  /// r (n) and c (m) at any state; nothing has to vanish there.
+  /// r (n) and c (m) at any state; neither has to vanish.
   Status residual(double t, In q, In v, In a, In lambda, Out r, Out c) noexcept;
 
-  /// Readies solve() for x = dr/d(...) under w, with w.acc = 1: q moves by w.pos x, v by
+  /// Prepares solve() for x = dr/d(...) under w, with w.acc = 1: q moves by w.pos x, v by
   /// w.vel x, a by x. Omits the derivative of the bias with respect to q only.
   Status linearize(double t, In q, In v, In a, In lambda, Weights w) noexcept;
 
   /// (r, c) -> (x, y): S x - G^T y = r and (dc) x = c, as linearize() left the matrix.
   Status solve(InOut r, InOut c) noexcept;
 
-  /// Whether directional() comes to a new state, or to that of its last call.
+  /// Whether directional() is called at a new state, or at that of its last call.
   enum class Base { fresh, kept };
 
   /// Derivative of (r, c) along (dq, dv) at fixed a and lambda, by a forward difference:
@@ -53,24 +54,25 @@ class Dynamics {
 
   /// a and lambda that satisfy r = 0 and g'' = -alpha g - beta g' at (t, q, v); leaves
   /// the mass matrix with the constraints of this state factored for solve(). A singular
-  /// mass matrix determines no acceleration; then a is that of a short semi-implicit
-  /// step, after which what has no mass is nearly in equilibrium.
+  /// mass matrix determines no acceleration; a is then that of a short semi-implicit
+  /// step, after which massless coordinates are nearly in equilibrium.
   Status accelerate(double t, In q, In v, Out a, Out lambda) noexcept;
 
-  /// Where numbers stopped being finite, in the model's words (System::not_finite): at
-  /// the state at which the system gave no answer since forget(), the first finite one of
-  /// several, else at the given one. Empty when the model finds nothing there.
+  /// Source of non-finite numbers as reported by System::not_finite: at the state at
+  /// which the system failed since forget() (the first finite one of several), else at
+  /// the given state. Empty when the model finds nothing there.
   std::string culprit(double t, In q, In v);
-  /// After a step that went well. Nothing else is done while all is finite.
+  /// To be called after a successful step; the only cost while all is finite.
   void forget() { lost_ = Lost::nowhere; }
 
-  /// Before a run: counts nothing, knows nothing of the run before.
+  /// To be called before a run: resets the counts and all memory of the previous run.
   void begin() {
     stats = Stats{.solver = stats.solver};
     ++matrices_;
     forget();
   }
-  /// Which matrix solve() takes: changes with every linearize(), accelerate(), begin().
+  /// Identifies the matrix that solve() uses: changes with every linearize(),
+  /// accelerate(), begin().
   long matrix() const { return matrices_; }
 
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
@@ -97,7 +99,7 @@ class Dynamics {
   bool position_level_;
   bool base_ready_ = false;
   double alpha_ = 0, beta_ = 0;
-  double start_step_ = 0;  // s, of accelerate() where the mass is singular
+  double start_step_ = 0;  // s, step of accelerate() for singular mass
   Weights weights_;
   long matrices_ = 0;
   std::optional<Kkt> kkt_;

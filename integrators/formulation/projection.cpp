@@ -10,12 +10,12 @@ namespace {
 // needs more than this is outside the basin.
 constexpr int most_iterations = 30;
 
-// g of size g_typ cannot be evaluated more closely than a few units in the last place of
-// the coordinates it is made of.
+// g of size g_typ cannot be evaluated more accurately than to a few units in the last
+// place of the coordinates it depends on.
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
-/// Repeats `correct` (which returns the violation it met) until the violation is down to
-/// rounding or stops falling; the latter counts as success when it is small.
+/// Repeats `correct` (which returns the violation it met) until the violation reaches
+/// rounding level or stops falling; the latter counts as success when it is small.
 template <class Correct>
 Status iterate(Correct correct) {
   double previous = std::numeric_limits<double>::infinity();

@@ -14,7 +14,7 @@ class Projection {
   /// `retry` when the iteration does not reach the rounding level of g.
   Status project(double t, InOut q, InOut v) noexcept;
 
-  /// The last two steps separately, with the factorisation that dynamics holds.
+  /// The two parts of project() separately, with the factorisation held by `dynamics`.
   Status positions(double t, InOut q) noexcept;
   Status velocities(double t, In q, InOut v) noexcept;
 

@@ -9,10 +9,11 @@
 namespace tress::integrators {
 namespace {
 
-// Of g before g and G are taken anew: their change is of second order in the step.
+// Reduction of g before g and G are re-evaluated: their change is of second order in the
+// step.
 constexpr double reduction = 0.1;
 
-// Digits cost m sweeps each from a state near g = 0; one that needs more is not near.
+// Near g = 0 each digit costs m sweeps; a state that needs more is not near.
 constexpr long sweeps_per_constraint = 100;
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
@@ -50,7 +51,7 @@ Relaxation::Relaxation(System& system, double tolerance)
   const double m = static_cast<double>(g_.size());
   factor_ = 2 / (1 + std::sin(std::numbers::pi / (2 * m + 1)));
   constraints_.scale(g_typ_);
-  // Without a mass a coordinate is held.
+  // A coordinate without mass is held fixed.
   const std::vector<double> mass = diagonal_mass(system).value_or(inverse_mass_);
   for (std::size_t j = 0; j < mass.size(); ++j) {
     if (mass[j] > 0) inverse_mass_[j] = 1 / mass[j];

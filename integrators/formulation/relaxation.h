@@ -7,33 +7,34 @@
 
 namespace tress::integrators {
 
-/// Of M at the start; nothing where M is not diagonal or cannot be had.
+/// Diagonal of M at the start; empty if M is not diagonal or not available.
 std::optional<std::vector<double>> diagonal_mass(System& system);
 
-/// Moves positions onto g = 0 constraint after constraint, each by its share of the
-/// masses, again and again until all hold: successive relaxation. A sweep applies, in the
-/// order of the constraints,
+/// Moves positions onto g = 0 by successive relaxation: one constraint after the other,
+/// weighted by inverse masses, in sweeps until all hold. A sweep applies, in the order of
+/// the constraints,
 ///
 ///     q -= omega g_k W G_k^T / (G_k W G_k^T),   W = M^-1 diagonal
 ///
-/// with g_k as the sweep left it so far, to first order; g and G are taken anew when the
-/// violation has fallen tenfold. Internal constraints keep the centre of mass. The factor
-/// omega = 2/(1 + sin(pi/(2 m + 1))) is the best for a chain of m equal links held at one
-/// end, whose Jacobi iteration has the spectral radius cos(pi/(2 m + 1)) [Young 1971,
-/// Iterative Solution of Large Linear Systems, section 6.2]; any in (0, 2) converges.
-/// Then a digit costs about m sweeps. [Provot 1995, Graphics Interface, section 5]
+/// with g_k updated to first order during the sweep; g and G are re-evaluated when the
+/// violation has fallen tenfold. Internal constraints preserve the centre of mass. The
+/// factor omega = 2/(1 + sin(pi/(2 m + 1))) is optimal for a chain of m equal links held
+/// at one end, whose Jacobi iteration has the spectral radius cos(pi/(2 m + 1)) [Young
+/// 1971, Iterative Solution of Large Linear Systems, section 6.2]; any in (0, 2)
+/// converges. One digit then costs about m sweeps. [Provot 1995, Graphics Interface,
+/// section 5]
 class Relaxation {
  public:
   Relaxation(System& system, double tolerance);
 
-  /// `retry` when |g| over its scale does not come down to the tolerance.
+  /// `retry` when |g| over its scale does not reach the tolerance.
   Status positions(double t, InOut q) noexcept;
 
   long sweeps() const { return sweeps_; }  // so far
 
  private:
   Status linearize(double t, In q) noexcept;
-  /// Of step_; returns the largest violation met.
+  /// One sweep over step_; returns the largest violation met.
   double sweep() noexcept;
 
   ConstraintForm& constraints_;

@@ -17,7 +17,7 @@ constexpr Parameter own[] = {{.name = "table",
 constexpr const char* standard_table = "ARKODE_ESDIRK436L2SA_6_3_4";
 constexpr const char* no_explicit_table = "ARKODE_ERK_NONE";
 
-// SUNDIALS offers no list of its names, and prints when asked for an unknown one.
+// SUNDIALS provides no list of its names, and prints a message for an unknown one.
 constexpr std::array<std::string_view, 23> tables{"ARKODE_SDIRK_2_1_2",
                                                   "ARKODE_BILLINGTON_3_3_2",
                                                   "ARKODE_TRBDF2_3_3_2",

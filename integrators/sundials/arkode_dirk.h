@@ -7,9 +7,9 @@ namespace tress::integrators {
 
 /// ARKODE's diagonally implicit Runge-Kutta methods on the ODE form with the eliminated
 /// Newton matrix of FirstOrder. By default ESDIRK4(3)6L[2]SA, stiffly accurate and
-/// L-stable (Kennedy and Carpenter, NASA/TM-2016-219173). `table` takes any SUNDIALS DIRK
-/// table by name; else max_order 2 to 5 takes SUNDIALS' own choice of that order.
-/// Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+/// L-stable (Kennedy and Carpenter, NASA/TM-2016-219173). `table` selects any SUNDIALS
+/// DIRK table by name; otherwise max_order 2 to 5 selects SUNDIALS' default of that
+/// order. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
 class ArkodeDirk final : public Driver {
  public:
   ArkodeDirk(System& system, const Options& options);

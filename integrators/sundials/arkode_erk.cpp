@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view id = "arkode_erk";
 constexpr int standard_order = 5;
-constexpr double shrink = 0.25;          // of a step that the model has refused
-constexpr double shortest_step = 1e-15;  // relative to t: below it, refusal is final
+constexpr double shrink = 0.25;          // of a step that the model has rejected
+constexpr double shortest_step = 1e-15;  // relative to t: below it, rejection is final
 
 }  // namespace
 

@@ -6,10 +6,11 @@
 namespace tress::integrators {
 
 /// ARKODE's explicit embedded Runge-Kutta pairs on the ODE form, one of SUNDIALS'
-/// defaults by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is bound
-/// by the fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+/// defaults by order: max_order 2 to 8, 5 by default (Cash-Karp 5(4)). The step is
+/// limited by the fastest mode. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
 ///
-/// ERKStep ends the run when the model asks for a smaller step; we begin anew with one.
+/// ERKStep ends the run when the model requests a smaller step; recover() restarts it
+/// with one.
 class ArkodeErk final : public Driver {
  public:
   ArkodeErk(System& system, const Options& options);

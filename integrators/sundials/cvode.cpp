@@ -30,8 +30,7 @@ int Cvode::step(double t_end, double& t) {
   int code = CVodeSetStopTime(memory_.get(), t_end);
   if (code < 0) return code;
   code = CVode(memory_.get(), t_end, y_.handle(), &t, CV_ONE_STEP);
-  // The fixed-point iteration of 6.4 takes any failure of the model for a recoverable
-  // one.
+  // The fixed-point iteration of 6.4 treats any failure of the model as recoverable.
   return code >= 0 && equations_.gave_up() ? CV_RHSFUNC_FAIL : code;
 }
 

@@ -5,7 +5,7 @@
 
 namespace tress::integrators {
 
-/// What CVODE's two families share: the ODE form and the calls into the library.
+/// Common base of CVODE's two families: the ODE form and the calls into the library.
 class Cvode : public Driver {
  protected:
   /// `method`: CV_ADAMS or CV_BDF.

@@ -5,7 +5,7 @@
 namespace tress::integrators {
 
 /// CVODE's Adams-Moulton formulas of order 1 to 12 (variable step and order), solved by
-/// fixed-point iteration: no Newton matrix, so the step is bound by the fastest mode.
+/// fixed-point iteration: no Newton matrix, so the step is limited by the fastest mode.
 /// Hindmarsh et al., SUNDIALS, ACM TOMS 31(3), 2005. O(n) per step and order.
 class CvodeAdams final : public Cvode {
  public:

@@ -6,11 +6,11 @@ namespace tress::integrators {
 
 /// CVODE's backward differentiation formulas (variable step and order) with the
 /// eliminated Newton matrix of FirstOrder. Order 2 at most by default: BDF 3 to 5 are
-/// unstable near the imaginary axis, where the eigenvalues of elastic rods lie, and lose
-/// by factors of ten to a hundred there; max_order 1 to 5 overrides.
+/// unstable near the imaginary axis, where the eigenvalues of elastic rods lie, and
+/// perform ten to a hundred times worse there; max_order 1 to 5 overrides.
 ///
-/// `projection`: after each step q and v go onto g = 0 and g' = 0, and the error estimate
-/// loses its part across them (Eich 1993; CVodeSetProjFn).
+/// `projection`: after each step q and v are projected onto g = 0 and g' = 0, and the
+/// error estimate loses its part that violates them (Eich 1993; CVodeSetProjFn).
 /// Hindmarsh et al., SUNDIALS, ACM TOMS 31(3), 2005.
 class CvodeBdf final : public Cvode {
  public:

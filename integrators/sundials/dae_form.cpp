@@ -6,7 +6,7 @@
 namespace tress::integrators {
 namespace {
 
-/// To Dynamics GGL is index 3: its own constraint row is g, the row of g' is added here.
+/// For Dynamics, GGL is index 3: its constraint row is g; the row of g' is added here.
 Options for_dynamics(Options options) {
   if (options.formulation == Formulation::index2_ggl) {
     options.formulation = Formulation::index3;
@@ -71,7 +71,7 @@ Status DaeForm::multiplier_scale(double t, In y, Out typ) noexcept {
   const auto [q, v, lambda, mu] = parts(y);
   ConstraintForm& form = *dynamics.constraints();
   if (const Status s = form.gradient(t, q, gt_); s != Status::ok) return s;
-  const Status s = sparse->values(t, q, v, v, {1, 0, 0}, mass_);  // M, whatever a is
+  const Status s = sparse->values(t, q, v, v, {1, 0, 0}, mass_);  // M, independent of a
   if (s != Status::ok) return s;
 
   const auto mass = [&](int i) {  // the diagonal of M

@@ -13,12 +13,12 @@ namespace tress::integrators {
 ///     rows of mu                        (m)  g, GGL only
 ///
 /// GGL: Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985) 77, stabilised index 2.
-/// Without constraints F is the first two rows and nothing else.
+/// Without constraints F consists of the first two rows only.
 class DaeForm {
  public:
   DaeForm(System& system, const Options& options);
 
-  /// How many unknowns follow q and v.
+  /// Number of unknowns that follow q and v.
   static int multipliers(System& system, Formulation formulation);
 
   Status residual(double t, In y, In y_dot, Out f) noexcept;
@@ -27,9 +27,9 @@ class DaeForm {
   /// and g' = 0, without a corrector of the initial values.
   Status consistent(double t, InOut y, Out y_dot) noexcept;
 
-  /// Typical sizes of the multipliers at a consistent y: of lambda the larger of its
-  /// value there and of the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|);
-  /// of mu v_typ / |G|.
+  /// Typical sizes of the multipliers at a consistent y: for lambda the larger of its
+  /// value there and the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|);
+  /// for mu v_typ / |G|.
   Status multiplier_scale(double t, In y, Out typ) noexcept;
 
   /// 1 for differential unknowns (q and v), 0 for multipliers.

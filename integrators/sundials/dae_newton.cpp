@@ -6,9 +6,9 @@
 namespace tress::integrators {
 namespace {
 
-/// Put on the multipliers' diagonal (whose Schur complement G G^T is of order one in the
-/// scaled matrix) when constraints are redundant: the corrections of q and v keep eight
-/// digits, those of the multipliers are the shortest that will do.
+/// Added to the multipliers' diagonal (whose Schur complement G G^T is of order one in
+/// the scaled matrix) when constraints are redundant: the corrections of q and v keep
+/// eight digits, those of the multipliers have minimum norm.
 constexpr double regularisation = 1e-8;
 
 }  // namespace
@@ -97,7 +97,7 @@ Status AssembledNewton::factor(double t, In y, In y_dot, double cj) noexcept {
   if (s != Status::ok) return s;
   const double condition = solver_->condition();
   condition_ = std::max(condition_, condition);
-  // Independent constraints at a high condition: look again when it is much higher.
+  // Independent constraints at a high condition: check again when it is much higher.
   if (suspicious) suspicious_ = std::max(suspicious_, 100 * condition);
   return s;
 }
@@ -111,8 +111,8 @@ bool AssembledNewton::has_redundant_constraints() {
   return null_space_->dimension() > 0;
 }
 
-/// Takes what redundant constraints cannot tell apart out of the rows or entries of the
-/// multipliers: rounding there would come back divided by `regularisation`.
+/// Removes the null-space component due to redundant constraints from the rows or entries
+/// of the multipliers: rounding there would be amplified by 1/`regularisation`.
 void AssembledNewton::project_multipliers(InOut b) const {
   if (rank_deficiency_ == 0) return;
   for (std::size_t at = 2 * form_.n; at < b.size(); at += form_.m) {

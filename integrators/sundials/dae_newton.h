@@ -10,7 +10,7 @@ namespace tress::integrators {
 /// IDA's matrix of a DaeForm, dF/dy + cj dF/dy'.
 class DaeNewton : public NewtonMatrix {
  public:
-  /// Adds what solving has cost to the counts of DaeForm's Dynamics.
+  /// Counts of DaeForm's Dynamics plus the cost of solving.
   virtual Stats work() const = 0;
 };
 
@@ -43,7 +43,7 @@ class EliminatedNewton final : public DaeNewton {
 /// Index 1: H_q = R(v') + beta R(v) + alpha G (without third derivatives of g),
 /// H_v = (cj + beta) G + 2 R(v). Index 3: H_q = G, H_v = 0. GGL: H_q = R(v), H_v = G.
 ///
-/// cj and the mass unit s are taken out, so that the condition number does not grow as
+/// cj and the mass unit s are factored out, so that the condition number does not grow as
 /// the step shrinks: unknowns (cj x_q, x_v, x_lambda / (cj s), x_mu), second row / (cj
 /// s), rows of g'' / cj, rows of g times cj. [Bottasso, Bauchau, Cardona, SIAM J. Sci.
 /// Comput. 29 (2007) 397] scales index 3 in the same way.
@@ -69,7 +69,7 @@ class AssembledNewton final : public DaeNewton {
   int multiplier_diagonal_ = 0;
   int rank_deficiency_ = 0;  // redundant constraints met
   std::unique_ptr<NullSpace> null_space_;
-  double suspicious_ = 1e11;  // condition above which they are looked for
+  double suspicious_ = 1e11;  // condition above which to look for them
   double cj_ = 0, mass_unit_ = 0;
   std::vector<double> s_, gt_, rate_gt_, ones_, shift_;
   long factors_ = 0, solves_ = 0;

@@ -10,12 +10,12 @@
 namespace tress::integrators {
 namespace {
 
-// A stretch this short (relative to the time itself) is below the resolution of time;
-// SUNDIALS refuses to take it.
+// An interval this short (relative to the time itself) is below the resolution of time;
+// SUNDIALS rejects it.
 constexpr double shortest_stretch = 100 * std::numeric_limits<double>::epsilon();
 
-// An integrator that keeps failing creeps on with ever smaller steps instead of stopping:
-// this many steps in a row below the resolution of time, and it is stuck.
+// A failing integrator continues with ever smaller steps instead of stopping: after this
+// many consecutive steps below the resolution of time it counts as stuck.
 constexpr double time_resolution = 4 * std::numeric_limits<double>::epsilon();
 constexpr int most_lost_steps = 100;
 

@@ -8,9 +8,9 @@
 
 namespace tress::integrators {
 
-/// What all SUNDIALS integrators share: the state y = (q, v, ...) in our memory, absolute
-/// tolerances atol * System::scale, one internal step at a time with the end of the
-/// interval as stop time, System::accept and the observer after each, and failures as
+/// Common base of all SUNDIALS integrators: the state y = (q, v, ...) in our memory,
+/// absolute tolerances atol * System::scale, one internal step at a time with the end of
+/// the interval as stop time, System::accept and the observer after each, and failures as
 /// text.
 ///
 /// Options.refresh: SUNDIALS never rebuilds inside a step. `every_step` forces a rebuild
@@ -32,19 +32,19 @@ class Driver : public Integrator {
   Driver(std::string_view id, System& system, const Options& options,
          std::span<const Formulation> formulations, int unknowns);
 
-  /// Begins anew at (time_, y_); returns SUNDIALS' code.
+  /// Restarts at (time_, y_); returns SUNDIALS' code.
   virtual int restart() = 0;
   /// One internal step into y_ that does not pass t_end.
   virtual int step(double t_end, double& t) = 0;
   /// After a failed step, with y_ back at the last good state: true when the method has
-  /// begun anew there with a smaller step.
+  /// restarted there with a smaller step.
   virtual bool recover(int /*code*/) { return false; }
   /// Rejected steps and Newton iterations since the last restart().
   virtual Stats counters() const = 0;
   /// Residuals, linearizations and solves since construction, and the solver.
   virtual Stats work() const = 0;
   virtual std::string reason(int code) const = 0;
-  /// Of the equations of motion, which knows what was not finite.
+  /// The equations of motion, which report what was not finite.
   virtual Dynamics& dynamics() = 0;
 
   const Options options_;
@@ -54,7 +54,7 @@ class Driver : public Integrator {
 
  private:
   Status fail(const std::string& why);
-  /// The same with the number of the step and what was not finite in it.
+  /// As fail(), with the number of the step and what was not finite in it.
   Status fail_in_step(std::string why);
   Status fail_with(int code);
   Status begin();
@@ -66,7 +66,7 @@ class Driver : public Integrator {
   std::vector<double> last_;  // y after the last good step
   long steps_ = 0;
   bool restarted_ = true;  // no step since: ARKODE has not reset its counters yet
-  Stats carried_;          // counters of the stretches before the last restart
+  Stats carried_;          // counters accumulated before the last restart
   Stats work_before_;      // work() at start()
   std::string failure_ = "not started";
   Limit limit_ = Limit::none;

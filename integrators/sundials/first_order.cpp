@@ -58,7 +58,7 @@ Status FirstOrder::newton_matrix() noexcept {
   return s == Status::ok ? own_->factor(own_values_) : s;
 }
 
-/// (r_, c_) becomes (z, nu).
+/// Overwrites (r_, c_) with (z, nu).
 Status FirstOrder::newton_solve() noexcept {
   if (own_ == nullptr) return newton_.solve(r_, c_);
   ++newton_.stats.solves;
@@ -90,8 +90,8 @@ Status FirstOrder::project(double t, In y, Out correction, InOut error) noexcept
   return s;
 }
 
-/// e_q and e_v each lose their M-orthogonal part across the constraints, e.g.
-/// e_q -= M^-1 G^T (G M^-1 G^T)^-1 G e_q, by the factorisation that project() left.
+/// Removes from e_q and e_v their M-orthogonal part across the constraints, e.g. e_q -=
+/// M^-1 G^T (G M^-1 G^T)^-1 G e_q, using the factorisation of project().
 Status FirstOrder::project_error(double t, In y, InOut error) noexcept {
   ConstraintForm& form = *rates_.constraints();
   std::ranges::fill(dq_, 0.0);

@@ -27,9 +27,9 @@ namespace tress::integrators {
 ///
 /// accelerate() factors the mass matrix in its own Dynamics. A system without constraints
 /// and without an explicit form keeps one factorisation for both (System::linearize), and
-/// rates come between every two Newton corrections. So its Newton matrix is factored from
-/// its sparse form by a solver of ours; a system without that form either has the Newton
-/// matrix rebuilt at its old state whenever a rate has overwritten it.
+/// rates are evaluated between any two Newton corrections. Its Newton matrix is therefore
+/// factored from its sparse form by a separate solver; without that form, the Newton
+/// matrix is rebuilt at its old state whenever a rate has overwritten it.
 class FirstOrder final : public NewtonMatrix {
  public:
   FirstOrder(System& system, const Options& options);
@@ -42,7 +42,7 @@ class FirstOrder final : public NewtonMatrix {
   /// leave the constraints are removed, as the projected state cannot have them.
   Status project(double t, In y, Out correction, InOut error) noexcept;
 
-  /// Whether the model has answered `fatal` since begin().
+  /// Whether the model has returned `fatal` since begin().
   bool gave_up() const { return gave_up_; }
   void begin() { gave_up_ = false; }
 
@@ -61,7 +61,7 @@ class FirstOrder final : public NewtonMatrix {
   Dynamics rates_, newton_;
   std::optional<Projection> projection_;
   const std::size_t n_;
-  const bool shared_;  // both Dynamics would use System::linearize
+  const bool shared_;  // both Dynamics use System::linearize
   SparseForm* const sparse_;
   std::unique_ptr<LinearSolver> own_;  // of the Newton matrix, when shared_ and sparse_
   std::vector<double> own_values_;

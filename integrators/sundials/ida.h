@@ -10,10 +10,9 @@ namespace tress::integrators {
 /// have absolute tolerances multiplier_atol * atol times their typical size: without
 /// both, GGL stalls. Initial y' and lambda come from the equations of motion.
 ///
-/// Index 3 marks v as differential, i.e. keeps it under error control: honest, and by
-/// that only good for loose tolerances, where about half of the steps are repeated.
-/// Marking v algebraic would run at any tolerance and give velocities that nothing
-/// controls.
+/// Index 3 marks v as differential, i.e. keeps it under error control; this works only
+/// for loose tolerances, where about half of the steps are repeated. Marking v algebraic
+/// would run at any tolerance but leave the velocities uncontrolled.
 ///
 /// refresh = every_step rebuilds whenever cj has changed; IDA offers no more than that.
 /// Hindmarsh et al., SUNDIALS, ACM TOMS 31(3), 2005; Brenan, Campbell, Petzold, Numerical

@@ -50,11 +50,11 @@ LinearAdapter::LinearAdapter(const SundialsContext& context, NewtonMatrix& newto
   matrix_->ops->getid = [](SUNMatrix) noexcept { return SUNMATRIX_CUSTOM; };
   matrix_->ops->zero = [](SUNMatrix) noexcept {
     return 0;
-  };  // IDA asks before every factor
+  };  // called by IDA before every factor
   solver_->ops->gettype = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_DIRECT; };
   solver_->ops->getid = [](SUNLinearSolver) noexcept { return SUNLINEARSOLVER_CUSTOM; };
   solver_->ops->initialize = [](SUNLinearSolver) noexcept { return 0; };
-  // The factorisation happens where the time and coefficient are known: in the callbacks.
+  // The callbacks factor, because only they know the time and coefficient.
   solver_->ops->setup = [](SUNLinearSolver, SUNMatrix) noexcept { return 0; };
   solver_->ops->solve = &solve;
 }

@@ -4,8 +4,8 @@
 
 namespace tress::integrators {
 
-/// The Newton matrix of one integrator, as SUNDIALS sees it: something to rebuild at a
-/// state when its own rules ask for it, and to solve with until then.
+/// The Newton matrix of one integrator, as SUNDIALS uses it: rebuilt at a state when
+/// SUNDIALS' rules require it, and used for solves until then.
 class NewtonMatrix {
  public:
   virtual ~NewtonMatrix() = default;
@@ -14,7 +14,7 @@ class NewtonMatrix {
   /// IDA: dF/dy + coefficient dF/dy'.
   virtual Status factor(double t, In y, In y_dot, double coefficient) noexcept = 0;
 
-  /// b becomes the solution.
+  /// Overwrites b with the solution.
   virtual Status solve(InOut b) noexcept = 0;
 };
 

@@ -22,16 +22,16 @@
 
 #include "contract/system.h"
 
-/// Ownership and return codes of SUNDIALS in one place. Everything that differs between
-/// 6.4 and 7.x stands below; the rest of this folder is written for both.
+/// Ownership and return codes of SUNDIALS in one place. All differences between 6.4 and
+/// 7.x are handled here; the rest of this folder works with both.
 namespace tress::integrators {
 
-/// What a callback answers: 0, try a smaller step (+1), give up (-1).
+/// Return code of a callback: 0, try a smaller step (+1), give up (-1).
 constexpr int sundials_code(Status status) noexcept {
   return status == Status::ok ? 0 : status == Status::retry ? 1 : -1;
 }
 
-/// What a linear solver's solve() answers.
+/// Return code of a linear solver's solve().
 constexpr int linear_solver_code(Status status) noexcept {
 #if SUNDIALS_VERSION_MAJOR >= 7
   constexpr int unrecoverable = SUN_ERR_EXT_FAIL;
@@ -43,8 +43,8 @@ constexpr int linear_solver_code(Status status) noexcept {
                                    : unrecoverable;
 }
 
-/// For calls that set up an integrator: they fail only by a mistake of ours or for lack
-/// of memory, so they throw. Never used inside a callback.
+/// For calls that set up an integrator: they fail only through a programming error or
+/// lack of memory, so they throw. Never used inside a callback.
 inline void require(int code, const char* call) {
   if (code >= 0) return;
   throw std::runtime_error(std::string("SUNDIALS refused ") + call + " with code " +
@@ -58,7 +58,7 @@ Pointer require(Pointer made, const char* call) {
 }
 
 /// The last error SUNDIALS reported, kept here instead of printed. Warnings are dropped:
-/// what they say shows in the counters.
+/// the counters show the same.
 class SundialsMessages {
  public:
   const char* last() const { return text_.data(); }
@@ -84,7 +84,7 @@ class SundialsMessages {
   std::array<char, 256> text_{};
 };
 
-/// One per integrator: contexts are not shared between threads. Outlives what uses it.
+/// One per integrator: contexts are not shared between threads. Must outlive its users.
 class SundialsContext {
  public:
   SundialsContext() {
@@ -107,7 +107,7 @@ class SundialsContext {
   SUNContext context_ = nullptr;
 };
 
-/// Our memory, with an N_Vector looking at it.
+/// Memory owned here, with an N_Vector as a view of it.
 class SundialsVector {
  public:
   SundialsVector(const SundialsContext& context, int length)
@@ -166,7 +166,7 @@ inline int send_messages(const ErkstepMemory& memory, SundialsMessages& messages
 }
 #endif
 
-/// SUNDIALS' name of a return code ("CV_CONV_FAILURE"), by the package's own function.
+/// SUNDIALS' name of a return code ("CV_CONV_FAILURE"), from the package's own function.
 inline std::string code_name(char* (*name_of)(long int), int code) {
   const std::unique_ptr<char, decltype(&std::free)> text(name_of(code), &std::free);
   return text == nullptr ? "code " + std::to_string(code) : std::string(text.get());

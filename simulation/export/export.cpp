@@ -39,7 +39,7 @@ struct Range {
     low = std::min(low, x);
     high = std::max(high, x);
   }
-  /// 0 .. most, whatever is not finite at 0.
+  /// Maps x to 0 .. most; 0 if it is not finite.
   double part(double x, double most) const {
     if (!(high > low) || !std::isfinite(x)) return 0;
     return std::round(most * std::clamp((x - low) / (high - low), 0.0, 1.0));
@@ -104,14 +104,14 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   using nlohmann::ordered_json;
   const SmoothLines& curves = animation.curves;
   const std::size_t points = curves.points();
-  // Base64 of 6 bytes of place and one of each channel.
+  // Base64 of 6 bytes of position and one of each channel.
   const std::size_t frame_bytes = points * (6 + animation.channels.size()) * 4 / 3 + 1;
   const std::size_t most = std::max<std::size_t>(most_bytes / frame_bytes, 24);
   const auto chosen = chosen_frames(animation.frames.size(), most);
   const Scene& scene = animation.scene;
 
   Range box[3];
-  // Channels are sizes of something: from nothing on.
+  // Channels are magnitudes: their ranges start at 0.
   std::vector<Range> ranges(animation.channels.size(), Range{0, 0});
   std::vector<std::vector<float>> positions, values;  // of the chosen frames
   for (const std::size_t f : chosen) {

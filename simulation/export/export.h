@@ -8,18 +8,18 @@
 
 namespace tress::simulation {
 
-/// Whose line it is, and how thick.
+/// The strand that a line belongs to, and its thickness.
 struct DrawnLine {
-  int strand;     // from 0; hairs that are drawn between strands follow them
+  int strand;     // from 0; hairs drawn between strands follow them
   double radius;  // m, of a circle of the root's area
 };
 
-/// Of lines as Readout has them; none where the scene has no strands.
+/// For lines as in Readout; empty if the scene has no strands.
 std::vector<DrawnLine> drawn_lines(const Scene& scene, const World& world,
                                    std::span<const int> lines);
 
-/// What an animation of strands is, for other programs: frames of the lines' own points,
-/// written with the points between them that make them curves.
+/// An animation of strands for other programs: frames of the lines' own points, written
+/// with intermediate points that make them curves.
 struct Animation {
   const Scene& scene;
   const std::vector<Reading>& series;
@@ -30,12 +30,12 @@ struct Animation {
   std::size_t guides = 0;     // lines that were simulated; 0: all
 };
 
-/// For the report page: <scene>.json, places in 16 bits of their box, colours in 8 bits
-/// (experiments/report/README.md has the format). Frames are thinned evenly to about
-/// `most_bytes`, though not below 24.
+/// For the report page: <scene>.json, positions in 16 bits of their box, colours in 8
+/// bits (experiments/report/README.md has the format). Frames are thinned evenly to about
+/// `most_bytes`, but not below 24 frames.
 std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
 
-/// For ParaView: one .vtp a frame (PolyData, appended raw, float32) with every channel,
+/// For ParaView: one .vtp per frame (PolyData, appended raw, float32) with every channel,
 /// radius and strand as point data, and the .pvd that lists them with their times [VTK
 /// file formats, XML].
 std::string vtp(const Animation& animation, const Frame3d& frame);

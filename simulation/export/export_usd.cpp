@@ -6,7 +6,7 @@ namespace tress::simulation {
 
 std::string usda(const Animation& animation) {
   const Scene& scene = animation.scene;
-  // Frames need not be those of the scene one by one.
+  // Frames need not be all frames of the scene.
   const auto time_code = [&](const Frame3d& frame) {
     return frame.series[0] * scene.frame_rate;
   };

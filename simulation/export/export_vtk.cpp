@@ -14,7 +14,7 @@ std::string_view raw(const std::vector<T>& x) {
 }
 
 /// As the value of an attribute [XML 1.0, sections 2.3 and 3.3.3]; other control
-/// characters have no place in XML.
+/// characters are not allowed in XML.
 std::string escaped(std::string_view text) {
   std::string safe;
   for (const char c : text) {

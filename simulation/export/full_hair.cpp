@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_frames = 60;
 
-/// What has turned the head since its rest.
+/// Rotation of the head from its rest orientation.
 Frame turned(const RootMotion& head, double t) {
   const Frame now = head.at(t).frame;
   const auto column = [&](const Vec& axis) { return now * head.frame.back(axis); };

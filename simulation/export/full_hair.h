@@ -9,9 +9,9 @@
 
 namespace tress::simulation {
 
-/// Hairs drawn between simulated strands (GuideHair), after them in every frame; of about
-/// 60 frames of a recording, evenly chosen. What a channel says of a hair is what it says
-/// of its own guide.
+/// Hairs drawn between simulated strands (GuideHair), after them in every frame; in about
+/// 60 evenly chosen frames of a recording. A hair takes the channel values of its own
+/// guide.
 class FullHair {
  public:
   /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the

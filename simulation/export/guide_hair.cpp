@@ -13,21 +13,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// From 0 to 1 with flat ends, for y from 0 to 1.
+/// Smooth step from 0 to 1 with flat ends, for y from 0 to 1.
 double smooth(double y) {
   y = std::clamp(y, 0.0, 1.0);
   return y * y * (3 - 2 * y);
 }
 
-/// (1/d_k - 1/R)^2 over their sum; R: how far the first guide is that does not count. A
-/// guide at the hair's own root takes all, and guides all as far as R share alike.
+/// (1/d_k - 1/R)^2 over their sum; R: distance of the first guide without weight. A guide
+/// at the hair's own root has all the weight; guides all at distance R have equal
+/// weights.
 void set_weights(GuideHair::Neighbours& neighbours, const std::array<double, 3>& distance,
                  double limit) {
   if (distance[0] == 0) {
     neighbours.weight = {1, 0, 0};
     return;
   }
-  // In units of the nearest, so that no square overflows.
+  // In units of the nearest distance, so that no square overflows.
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double near = distance[0] / distance[k] - distance[0] / limit;
@@ -42,8 +43,8 @@ void set_weights(GuideHair::Neighbours& neighbours, const std::array<double, 3>&
   }
 }
 
-/// The n guides with the nearest roots, the nearest first; of equally far ones the
-/// earlier. Where there are fewer, the first again, infinitely far.
+/// The n guides with the nearest roots, the nearest first; ties go to the earlier one.
+/// Missing ones are the first again, infinitely far.
 template <std::size_t n>
 struct Nearest {
   std::array<std::size_t, n> guide{};
@@ -75,8 +76,8 @@ GuideHair::Neighbours neighbours_of(std::span<const Vec> guide_roots, const Vec&
   return neighbours;
 }
 
-/// The smallest rotation that takes the unit vector a to b, after `frame`. Where a strand
-/// folds straight back there is none smallest: its cross-section stays as it is.
+/// The smallest rotation that maps the unit vector a to b, applied to `frame`. Where a
+/// strand folds straight back it is not unique: the cross-section is kept.
 Frame turned(const Frame& frame, const Vec& a, const Vec& b) {
   const double cosine = dot(a, b);
   if (cosine < -1 + 1e-12) return frame;
@@ -88,8 +89,8 @@ Frame turned(const Frame& frame, const Vec& a, const Vec& b) {
   return {turn(frame.e0), turn(frame.e1), turn(frame.e2)};
 }
 
-/// T(s) H at every point of one guide. Tangents: central differences, at the ends the
-/// segment's own; where points coincide the tangent before.
+/// T(s) H at every point of one guide. Tangents: central differences, one-sided at the
+/// ends; for coincident points the previous tangent.
 void carry(std::span<const Vec> guide, const Frame& head, std::span<Frame> carried) {
   const std::size_t n = guide.size();
   Vec before;
@@ -133,7 +134,7 @@ void check(const std::vector<Vec>& guide_roots, const std::vector<Vec>& hair_roo
 std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
                                std::uint64_t seed) {
   if (guide_roots.empty()) return {};
-  // Two different ones of the nearest four, as far as there are so many.
+  // Two different guides of the nearest four, or of all others if there are fewer.
   const std::size_t others = std::min<std::size_t>(guide_roots.size() - 1, 4);
   Random random(seed, 1);
   const auto below = [&](std::size_t n) {
@@ -151,7 +152,8 @@ std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t cou
       return guide_roots[near.guide[others == 0 ? 0 : 1 + k]] - corner;
     };
     const Vec a = edge(first), b = edge(second);
-    // Two numbers folded into half their square: every place is as probable (Turk 1990).
+    // Two numbers folded into half of the unit square: uniform over the triangle (Turk
+    // 1990).
     double u = random.uniform(), v = random.uniform();
     if (u + v > 1) {
       u = 1 - u;

@@ -11,21 +11,21 @@
 
 namespace tress::simulation {
 
-/// `count` roots between those of the guides: root h lies in the triangle of guide
-/// h mod guides and two of its four nearest, drawn at random, each place of it as
-/// probable. In a round scalp of radius R it lies up to e^2/(6R) deep, e the longest
-/// edge. A root does not depend on how many come after it. O(count guides).
+/// `count` roots between those of the guides: root h lies in the triangle of guide h mod
+/// guides and two of its four nearest, drawn at random, uniformly over its area. In a
+/// round scalp of radius R it lies up to e^2/(6R) deep, e the longest edge. A root does
+/// not depend on how many come after it. O(count guides).
 std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
                                std::uint64_t seed);
 
 struct GuideHairOptions {
-  /// 0: every hair is interpolated up to its tip; 1: disjoint locks from the root on.
+  /// 0: every hair is interpolated to its tip; 1: disjoint locks from the root on.
   double clumpiness = 0.5;
   /// Guides whose tips are this far apart (m, > 0) or farther share no hair.
   double tip_limit = 0.04;
   /// Width of a lock at its tip over that at its root, at clumpiness 1; in [0, 1].
   double tip_width = 0.1;
-  std::uint64_t seed = 1;  // of where each hair leaves its neighbours
+  std::uint64_t seed = 1;  // for the point where each hair leaves its neighbours
 };
 
 /// The hair between simulated guides, for pictures and export: the semi-interpolating
@@ -46,23 +46,23 @@ struct GuideHairOptions {
 ///
 /// The weights are those of the three guides with the nearest roots, at distances d_k,
 /// with R the distance of the fourth: (1/d_k - 1/R)^2 (Franke & Nielson 1980), which
-/// vanish where a guide comes in or goes out, so that they are continuous over the scalp.
-/// Across a parting a guide has no weight: each is multiplied by 1 - S(2 D_k/tip_limit -
-/// 1) with D_k the distance of its tip from the own guide's now, so that hair leaves a
-/// guide gradually, and all are divided by their sum.
+/// vanish where a guide enters or leaves the set, so that they are continuous over the
+/// scalp. A guide across a parting has no weight: each weight is multiplied by 1 - S(2
+/// D_k/tip_limit - 1) with D_k the present distance of its tip from the own guide's, so
+/// that hair leaves a guide gradually, and all are divided by their sum.
 ///
 /// A hair rooted at a guide's root is that guide. Where the guides' directions differ
 /// their mean, and so the hair, is shorter than they are.
 class GuideHair {
  public:
   /// Roots in m in the head's own frame; all guides have `points` points. Throws
-  /// InputError where there is no guide, fewer than two points, a number that is not
-  /// finite or an option out of its range. O(hairs guides).
+  /// InputError if there is no guide, fewer than two points, a number that is not finite
+  /// or an option out of range. O(hairs guides).
   GuideHair(std::vector<Vec> guide_roots, std::vector<Vec> hair_roots, std::size_t points,
             const GuideHairOptions& options);
 
-  /// Weights at rest: before tips are looked at. Where there are fewer than three guides
-  /// the last weights are 0.
+  /// Weights at rest, before the distance of tips is considered. With fewer than three
+  /// guides the last weights are 0.
   struct Neighbours {
     std::array<std::size_t, 3> guide{};  // the own guide first
     std::array<double, 3> weight{};      // sum 1
@@ -70,10 +70,10 @@ class GuideHair {
   const Neighbours& neighbours(std::size_t hair) const { return neighbours_[hair]; }
   std::size_t hairs() const { return hair_roots_.size(); }
 
-  /// One frame, in the world. guides: guide after guide, root to tip; head: takes the
-  /// head's components to the world's; hairs (out): in the same order as their roots.
-  /// Throws InputError where a length is not guides x points or hairs x points.
-  /// O((guides + 3 hairs) points).
+  /// One frame, in the world. guides: guide after guide, root to tip; head: maps
+  /// components in the head's frame to world components; hairs (out): in the same order
+  /// as their roots. Throws InputError if a length is not guides x points or hairs x
+  /// points. O((guides + 3 hairs) points).
   void grow(std::span<const Vec> guides, const Frame& head, std::span<Vec> hairs) const;
 
  private:

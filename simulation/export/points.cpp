@@ -130,7 +130,7 @@ PointCurve through_points(std::span<const double> points, int elements, double g
   }
   made.frame = frame_of(start, e1);
 
-  // Where a straight strand, cut alike, has its joints.
+  // Joints of a straight strand with the same discretisation.
   const Strand cut =
       make_strand({}, {}, {elements, made.length, grading}, [](double) { return Vec{}; });
   std::vector<double> ends;

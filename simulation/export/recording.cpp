@@ -12,7 +12,7 @@
 namespace tress::simulation {
 namespace {
 
-/// Numbers one after the other, as the machine holds them.
+/// Numbers in sequence, in the machine's representation.
 class Bytes {
  public:
   explicit Bytes(std::string text = {}) : text_(std::move(text)) {}
@@ -26,12 +26,12 @@ class Bytes {
     put(x);
   }
 
-  /// False: there are not so many left.
+  /// False: fewer are left.
   template <class T>
   bool take(std::vector<T>& x, std::size_t count) {
     if (count > (text_.size() - at_) / sizeof(T)) return false;
     x.resize(count);
-    // None of no numbers: memcpy would not take the null pointer of an empty vector.
+    // Works for none: memcpy must not get the null pointer of an empty vector.
     std::copy_n(text_.data() + at_, sizeof(T) * count, reinterpret_cast<char*>(x.data()));
     at_ += sizeof(T) * count;
     return true;
@@ -70,8 +70,8 @@ std::string state_text(const std::string& key, const Saved& saved) {
   return sealed(bytes.text());
 }
 
-/// Throws std::runtime_error when it is not as it was written, InputError when it is of
-/// another run.
+/// Throws std::runtime_error when it is damaged, InputError when it belongs to another
+/// run.
 Saved parse_state(std::string_view text, const RunKey& key, const std::string& file) {
   const std::string_view content = unsealed(text);
   const std::string_view first = content.substr(0, content.find('\n'));
@@ -96,7 +96,7 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
   return saved;
 }
 
-/// Before anything is made there.
+/// Checks the outputs before creating any.
 std::string checked(std::string stem) {
   check_output(stem + ".csv");
   return stem;
@@ -118,7 +118,7 @@ Recording::Recording(std::string stem, const RunKey& key, const Readout& readout
     try {
       this->resume(key);
     } catch (...) {
-      if (binary_.read().empty()) binary_.remove();  // made here, for the lock
+      if (binary_.read().empty()) binary_.remove();  // created here, for the lock
       throw;
     }
   } else if (std::filesystem::remove(state, error); error) {
@@ -203,7 +203,7 @@ void Recording::save(const Snapshot& snapshot) {
 }
 
 void Recording::close() {
-  std::error_code ignored;  // what is left over harms nobody
+  std::error_code ignored;  // leftover files are harmless
   for (const char* ending : {".state", ".frames"}) {
     std::filesystem::remove(stem_ + ending, ignored);
   }

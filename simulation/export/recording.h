@@ -12,23 +12,23 @@
 
 namespace tress::simulation {
 
-/// A run on disk while it goes on: every frame (<stem>.frames), the time series
-/// (<stem>.csv) and the last saved state (<stem>.state), which holds the checksum of the
-/// frames up to it and its own. A run that was killed has all frames but the one that it
-/// was at; the next one continues at the saved state.
+/// Records a run to disk as it proceeds: every frame (<stem>.frames), the time series
+/// (<stem>.csv) and the last saved state (<stem>.state), which holds its own checksum and
+/// that of the frames up to it. A killed run has all frames but the current one; the next
+/// run continues at the saved state.
 class Recording {
  public:
-  /// Starts afresh, or with `resume` continues what is there. Throws InputError when a
-  /// file cannot be written, another process records here, or what is there is damaged or
-  /// of a run with another key.
+  /// Starts a new recording, or with `resume` continues an existing one. Throws
+  /// InputError when a file cannot be written, another process records here, or the
+  /// existing files are damaged or have another key.
   Recording(std::string stem, const RunKey& key, const Readout& readout, bool resume);
-  /// What to continue from; frames() then ends with the frame of that state.
+  /// The state to continue from; frames() then ends with the frame of that state.
   const std::optional<Snapshot>& saved() const { return saved_; }
   const std::vector<Frame3d>& frames() const { return frames_; }
 
   void add(Frame3d frame);
   void save(const Snapshot& snapshot);
-  /// The run is complete: removes what only a resumed one needs.
+  /// The run is complete: removes the files that only a resumed run needs.
   void close();
 
  private:

@@ -9,10 +9,10 @@ namespace {
 
 constexpr double error_over_length = 1e-3;
 constexpr int most_pieces = 32;
-/// Near half a turn an element the points no longer say which way it goes round.
+/// Near half a turn per element the points no longer determine the sense of rotation.
 constexpr double most_turn = 150 * std::numbers::pi / 180;
 
-/// One element of a line: its ends and what bends it.
+/// One element of a line: its ends and its bending.
 struct Element {
   Vec from, to;
   Vec at_from, at_to;  // h^2 a
@@ -38,7 +38,7 @@ double turn_of(double cosine) {
   return std::clamp(std::acos(std::clamp(cosine, -1.0, 1.0)), 0.0, most_turn);
 }
 
-/// Second divided differences at all points; at the ends as a helix goes on.
+/// Second divided differences at all points; at the ends by continuing the helix.
 struct Bends {
   std::vector<Vec> a;
   std::vector<double> theta;  // of each element
@@ -65,9 +65,9 @@ struct Bends {
   }
 
  private:
-  /// Of the turn of element j by least squares of a_{i-1} + a_{i+1} = 2 cos(theta) a_i at
-  /// its two ends, or at the nearest points that have two neighbours; with three elements
-  /// the angle between the two that there are.
+  /// Cosine of the turn of element j by least squares of a_{i-1} + a_{i+1} = 2 cos(theta)
+  /// a_i at its two ends, or at the nearest points that have two neighbours; with three
+  /// elements of the angle between the only two a_i.
   double cosine(std::size_t j) const {
     const std::size_t n = theta.size();
     if (n == 3) {
@@ -136,7 +136,7 @@ void SmoothLines::cut(const Frame3d& frame, std::span<const double> longest_erro
     for (const Element& e : elements(&frame.positions[3 * first], sized(lines_[k]))) {
       const double wanted = std::ceil(std::sqrt(e.bend() / (8 * longest_error[k])));
       int& pieces = pieces_[element++];
-      // Not so where nothing is finite: a frame of a run that diverged.
+      // False if values are not finite, as in a frame of a diverged run.
       if (wanted > pieces) pieces = static_cast<int>(std::min(wanted, 1.0 * most_pieces));
     }
     first += sized(lines_[k]);

@@ -6,7 +6,7 @@
 
 namespace tress::simulation {
 
-/// What this build was made from: written into manifests and keys of runs.
+/// Provenance of this build, written into manifests and run keys.
 struct BuildFacts {
   std::string_view version, commit;
   std::string_view source_tree;  // absolute path

@@ -8,9 +8,10 @@
 
 namespace tress::simulation {
 
-/// FNV-1a, 64 bits [Fowler, Noll, Vo]: tells texts and files apart, and that a file is no
-/// longer what was written. Every step is a bijection of the hash, so that one changed
-/// byte is always seen; of other damage 2^-64 is not. No protection against intent.
+/// FNV-1a, 64 bits [Fowler, Noll, Vo]: distinguishes texts and files and detects damaged
+/// files. Every step is a bijection of the hash, so that one changed byte is always
+/// detected; other damage is missed with probability 2^-64. No protection against
+/// deliberate changes.
 class Checksum {
  public:
   Checksum& add(std::string_view bytes);
@@ -23,9 +24,9 @@ class Checksum {
 
 std::string checksum(std::string_view bytes);
 
-/// Bytes behind their checksum and a blank.
+/// The bytes, preceded by their checksum and a blank.
 std::string sealed(std::string_view bytes);
-/// The bytes of a sealed text; throws std::runtime_error when they are not as written.
+/// The bytes of a sealed text; throws std::runtime_error when they have changed.
 std::string_view unsealed(std::string_view text);
 
 }  // namespace tress::simulation

@@ -18,7 +18,7 @@ class Reader {
 
   bool done() const { return at_ >= text_.size(); }
 
-  /// The cells of the next line; `places` becomes where each of them begins.
+  /// The cells of the next line; `places` receives where each of them begins.
   std::vector<std::string> line(std::vector<CellPlace>& places) {
     places = {{line_, column_}};
     std::vector<std::string> cells{cell()};

@@ -9,7 +9,7 @@
 
 namespace tress::simulation {
 
-/// Where a cell of a file begins, counted from 1.
+/// Position of a cell's start in a file, counted from 1.
 struct CellPlace {
   int line = 1, column = 1;
 };
@@ -18,7 +18,7 @@ struct CellPlace {
 struct CsvTable {
   std::vector<std::string> header;
   std::vector<Row> rows;
-  /// Of every cell, the header's first: those of rows[i] are places[i + 1].
+  /// Positions of all cells, header first: those of rows[i] are places[i + 1].
   std::vector<std::vector<CellPlace>> places;
 };
 
@@ -26,15 +26,15 @@ struct CsvTable {
 /// doubled. Lines end with '\n' alone, which every reader accepts and which diffs well.
 std::string csv_line(std::span<const std::string> cells);
 
-/// Header and rows; status "ok" is written out where a row does not say otherwise.
+/// Header and rows; status "ok" is written where a row has no other status.
 std::string to_csv(std::span<const std::string> header, std::span<const Row> rows);
 
-/// Of a table that is read; in memory it is a hundred times as large.
+/// Limits of a table that is read; in memory it is a hundred times as large.
 constexpr std::size_t most_table_bytes = 16 << 20, most_columns = 128;
 
 /// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
-/// unclosed quote, a line of the wrong length, a repeated column name and more columns
-/// than most_columns.
+/// unclosed quote, a line of the wrong length, a repeated column name or more than
+/// most_columns columns.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
 CsvTable read_csv(const std::string& file);

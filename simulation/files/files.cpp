@@ -41,11 +41,12 @@ void write_all(int descriptor, std::string_view text, const std::string& file) {
 }
 
 void replace_file(const std::string& file, std::string_view text) {
-  // A name of this process alone; what a killed one of the same number has left goes.
+  // A name unique to this process; a leftover of a killed process with the same id is
+  // removed.
   const std::string temporary = file + ".tmp" + std::to_string(::getpid());
   ::unlink(temporary.c_str());
   try {
-    // Never what somebody else has put there, be it a link to another file.
+    // Never opens an existing file or a link placed there by others.
     const File output(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
     write_all(output.descriptor(), text, file);
     if (::fsync(output.descriptor()) != 0) cannot_write(file, errno);

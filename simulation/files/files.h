@@ -11,7 +11,7 @@ namespace tress::simulation {
 /// An open file; closed on every path.
 class File {
  public:
-  /// As open(2) with mode 0644; throws InputError naming `file` when it cannot.
+  /// As open(2) with mode 0644; throws InputError naming `file` on failure.
   File(const std::string& file, int flags);
   ~File();
   File(const File&) = delete;
@@ -27,7 +27,7 @@ class File {
 void write_all(int descriptor, std::string_view text, const std::string& file);
 
 /// Writes to a temporary neighbour, syncs it, then renames it over `file`: readers see
-/// the old content or the new, never half of it.
+/// the old content or the new, never a partial one.
 void replace_file(const std::string& file, std::string_view text);
 
 /// Refuses, before any work, an output that could not be written at the end: a directory,

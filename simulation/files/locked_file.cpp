@@ -39,8 +39,8 @@ void LockedFile::open() {
   if (descriptor_ < 0) cannot_write(file_, std::strerror(errno));
 }
 
-/// Record locks belong to the process: unlike flock's, the forked cases do not keep them.
-/// False: whoever had the lock has removed the file meanwhile.
+/// Record locks belong to the process: unlike flock's, they are not inherited by the
+/// forked cases. False: the previous owner of the lock has removed the file meanwhile.
 bool LockedFile::lock(std::string_view what) const {
   struct flock whole_file {};
   whole_file.l_type = F_WRLCK;

@@ -7,10 +7,10 @@
 
 namespace tress::simulation {
 
-/// A file that one process at a time writes; a second one is refused while it is open.
+/// A file that only one process at a time can write; a second one is refused meanwhile.
 class LockedFile {
  public:
-  /// Created where there is none. Throws InputError when it cannot be written, is no
+  /// Created if it does not exist. Throws InputError when it cannot be written, is not a
   /// regular file, or another process holds it: "another run is writing `what`".
   LockedFile(std::string file, std::string_view what);
   ~LockedFile();
@@ -18,9 +18,10 @@ class LockedFile {
   LockedFile& operator=(const LockedFile&) = delete;
 
   int descriptor() const { return descriptor_; }
-  /// The whole content. Not by another descriptor: closing one would end the lock.
+  /// The whole content. Reads through the same descriptor: closing another one would
+  /// release the lock.
   std::string read() const;
-  /// Keeps the first `bytes` bytes; what is written next follows them.
+  /// Keeps the first `bytes` bytes; later writes follow them.
   void truncate(std::size_t bytes) const;
   void remove() const;
 

@@ -16,7 +16,7 @@ namespace tress::simulation {
 std::vector<int> parse_counts(std::string_view text, const std::string& where);
 
 /// "10m", "30s", "1.5h", "200ms"; a bare number is in seconds. Result in s, from a
-/// millisecond to 30 years, which the clocks of timeouts can count.
+/// millisecond to 30 years, the range of the timeout clocks.
 double parse_duration(std::string_view text, const std::string& where);
 
 /// "2/5" -> {2, 5}, 1 <= first <= second.
@@ -27,7 +27,7 @@ std::uint64_t parse_whole(std::string_view text, const std::string& where,
                           std::uint64_t min = 0,
                           std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
-/// Splits at `separator`, trims spaces, refuses empty parts.
+/// Splits at `separator`, trims spaces, rejects empty parts.
 std::vector<std::string> split(std::string_view text, char separator,
                                const std::string& where);
 

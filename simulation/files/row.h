@@ -17,12 +17,12 @@ namespace tress::simulation {
 struct Column {
   std::string_view name;
   std::string_view help;
-  bool timing = false;  // differs from run to run: left out when two rows are compared
+  bool timing = false;  // differs from run to run: ignored when two rows are compared
 };
 
-/// One row of a result table: text by column name. Unset columns stay empty cells, and so
-/// do numbers that are not finite. Numbers are written by std::to_chars, the shortest
-/// text that reads back to the same bits (at most 17 significant digits).
+/// One row of a result table: text by column name. Unset columns and numbers that are not
+/// finite are empty cells. Numbers are written by std::to_chars, the shortest text that
+/// reads back to the same bits (at most 17 significant digits).
 class Row {
  public:
   using Cell = std::pair<std::string, std::string>;
@@ -43,8 +43,8 @@ class Row {
     return set(column, std::string_view(std::to_string(x)));
   }
 
-  /// What went wrong: unstable, diverged, timeout, solver_error, refused,
-  /// below_reference ... and the time or place it happened.
+  /// Records a failure: unstable, diverged, timeout, solver_error, refused,
+  /// below_reference ... and the time or location.
   Row& failed(std::string_view status, std::string_view reason);
 
   bool has(std::string_view column) const;
@@ -58,12 +58,12 @@ class Row {
   std::vector<Cell> cells_;
 };
 
-/// Layout of the rows that one experiment writes; a change of meaning raises it, so that
-/// older tables are not resumed.
+/// Layout of the rows that one experiment writes; increased when the meaning changes, so
+/// that older tables are not resumed.
 constexpr int schema_version = 1;
 
-/// Names a row across runs: 16 hexadecimal digits hashed from the experiment's name, the
-/// identity cells sorted by column, and the schema version.
+/// Identifies a row across runs: 16 hexadecimal digits hashed from the experiment's name,
+/// the identity cells sorted by column, and the schema version.
 std::string run_id(std::string_view experiment, const Row& identity);
 
 /// The texts of some columns, "a/b/", to group rows by.

@@ -25,11 +25,11 @@ bool is_file(const std::string& file) {
 }
 
 void add_file(const std::string& file, Checksum& sum) {
-  // The separator keeps the ends of two files apart.
+  // The separator marks the boundary between files.
   sum.add(is_file(file) ? read_file(file) : "").add("\x1f");
 }
 
-/// What stands between two quotes of one kind on a line.
+/// Texts between two quotes of the same kind on one line.
 std::vector<std::string> quoted_texts(const std::string& text) {
   std::vector<std::string> found;
   for (std::size_t at = text.find_first_of("\"'"); at != std::string::npos;

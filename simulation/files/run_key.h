@@ -9,26 +9,26 @@
 
 namespace tress::simulation {
 
-/// What must agree between a run that was interrupted and the one that continues it: what
-/// it is called and its value. One line of a file, as JSON.
+/// Names and values that must agree between an interrupted run and the one that continues
+/// it. One line of a file, as JSON.
 class RunKey {
  public:
-  /// With version and commit of this program.
+  /// Contains version and commit of this program.
   RunKey();
   RunKey& add(std::string name, std::string value);
-  std::string line() const;  // without its end
+  std::string line() const;  // without newline
 
-  /// Throws InputError saying what differs when `found`, the first line of `file`, is the
-  /// line of another key, or of none.
+  /// Throws InputError naming the difference when `found`, the first line of `file`, is
+  /// the line of another key, or not a key.
   void check(std::string_view found, const std::string& file) const;
 
  private:
   std::vector<std::pair<std::string, std::string>> parts_;
 };
 
-/// Checksum of these files and of those that a scene among them names: every quoted text
-/// of a .toml file that is the name of a file, seen from its folder. What does not exist
-/// counts as empty: whoever reads it complains.
+/// Checksum of these files and of those named by a scene among them: every quoted text of
+/// a .toml file that is a file name relative to its folder. Missing files count as empty;
+/// reading them reports the error.
 std::string contents_checksum(const std::vector<std::string>& files);
 
 }  // namespace tress::simulation

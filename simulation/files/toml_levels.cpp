@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_levels = 100;
 
-/// Tells keys, values, strings and comments of TOML apart, and counts levels.
+/// Distinguishes keys, values, strings and comments of TOML, and counts levels.
 class Levels {
  public:
   Levels(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -47,7 +47,7 @@ class Levels {
       ++dots_;
       ++levels_;
     } else if (c == '[' || c == '{') {
-      // Brackets before a key are those of a header, and the dots there its own.
+      // Brackets before a key belong to a header, which counts its dots itself.
       if (!in_key_) open(c);
     } else if ((c == ']' || c == '}') && !open_.empty()) {
       close();
@@ -90,7 +90,7 @@ class Levels {
       at_ += escaped ? 2 : 1;
     }
     at_ = std::min(at_ + end.size(), text_.size());
-    // A long one may end in quotes of its own, up to two.
+    // A long string may end with up to two quotes of its own.
     for (int i = 0; long_one && i < 2 && text_.substr(at_).starts_with(quote); ++i) ++at_;
   }
 
@@ -107,8 +107,8 @@ class Levels {
   const std::string& file_;
   std::size_t at_ = 0;
   bool in_key_ = true;  // else in a value
-  int dots_ = 0;        // of the key at hand
-  int levels_ = 0;      // of all that is open, and of the key at hand
+  int dots_ = 0;        // of the current key
+  int levels_ = 0;      // of all that is open, and of the current key
   std::vector<Bracket> open_;
 };
 

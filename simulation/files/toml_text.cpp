@@ -10,7 +10,7 @@
 namespace tress::simulation {
 namespace {
 
-/// toml++ has aborted on NUL bytes in some builds, so they are looked for first.
+/// toml++ has aborted on NUL bytes in some builds, so they are rejected first.
 void refuse_nul_bytes(std::string_view text, const std::string& file) {
   const std::size_t at = text.find('\0');
   if (at == std::string_view::npos) return;

@@ -11,15 +11,15 @@ namespace tress::simulation {
 /// file:line:column of the start of `source`.
 std::string place_of(const toml::source_region& source, const std::string& file);
 
-/// Of a TOML file for any of our programs; the rest of a larger one is not read.
+/// Size limit of a TOML file; the rest of a larger one is not read.
 constexpr std::size_t most_toml_bytes = 4 << 20;
 
-/// Throws InputError with file:line:column on NUL bytes, malformed TOML and more than 100
-/// levels; `file` is the name of the text in messages.
+/// Throws InputError with file:line:column on NUL bytes, malformed TOML or more than 100
+/// levels; `file` names the text in messages.
 toml::table parse_toml(const std::string& text, const std::string& file);
 
-/// Text of a scalar as `--set` would give it, numbers so that reading them gives the same
-/// ones; empty when it is not a scalar (a date, a list, a table).
+/// Text of a scalar in the form of `--set`, with numbers that read back exactly; empty
+/// when it is not a scalar (a date, a list, a table).
 std::string scalar_text(const toml::node& node);
 
 }  // namespace tress::simulation

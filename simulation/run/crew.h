@@ -9,8 +9,8 @@
 
 namespace tress::simulation {
 
-/// Threads that share loops: run() calls work(i) for every i < count once, worker w the
-/// indices w, w + workers, ... so who computes what does not depend on timing.
+/// Thread pool for loops: run() calls work(i) once for every i < count, worker w with the
+/// indices w, w + workers, ... so the assignment does not depend on timing.
 class Crew {
  public:
   explicit Crew(int workers);
@@ -26,9 +26,9 @@ class Crew {
 
   std::size_t workers_;
   std::size_t count_ = 0;
-  const std::function<void(std::size_t)>* work_ = nullptr;  // null: go home
+  const std::function<void(std::size_t)>* work_ = nullptr;  // null: threads exit
   std::barrier<> gate_;
-  std::vector<std::jthread> threads_;  // all workers but the caller
+  std::vector<std::jthread> threads_;  // all workers except the caller
 };
 
 }  // namespace tress::simulation

@@ -10,13 +10,13 @@
 namespace tress::simulation {
 namespace {
 
-constexpr double most_stretch = 0.5;  // of a piece, over its length
-constexpr double start_share = 0.1;   // of the start's energy: an error, no gain
+constexpr double most_stretch = 0.5;  // of a segment, over its length
+constexpr double start_share = 0.1;   // of the start's energy: counts as error, not gain
 constexpr double whip = 30;           // square of tip speed over mean square speed
 constexpr int every = 4;              // steps
 constexpr double long_step = 2e-3;    // s
-// Of EI/L: solved to 1e-10 of the typical coordinates, a strand at rest without any load
-// has less than this.
+// Share of EI/L: a strand at rest without load, solved to 1e-10 of the typical
+// coordinates, has less energy.
 constexpr double rounding = 1e-9;
 
 bool finite(In x) {
@@ -157,7 +157,8 @@ Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
           part(tangent_),  strand.lumps.mass, strand.lumps.length};
 }
 
-/// From the world's frame into the clamp's; leaves the relative velocities in u_.
+/// Transforms from the world's frame to the clamp's; leaves the relative velocities in
+/// u_.
 void Guard::move_with(double t, const GuardedStrand& strand, const Points& p,
                       std::size_t first, Measure& now) {
   const RootPose root = strand.root->at(t);
@@ -184,7 +185,7 @@ void Guard::gather(double t, const Measure& now) {
   record_.lowest = std::min(record_.lowest, now.potential);
 }
 
-/// Comparisons are such that what is not a number breaks a bound.
+/// Comparisons are written so that NaN violates a bound.
 bool Guard::stretched(double t, In q) {
   const auto most = points_ != nullptr ? points_->stretch(t, q) : std::nullopt;
   if (!most || *most <= most_stretch) return false;

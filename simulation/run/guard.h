@@ -11,7 +11,7 @@
 
 namespace tress::simulation {
 
-/// What no motion of the system does, as a guard found it.
+/// A physically impossible state found by a guard.
 struct Breach {
   enum class Kind { not_finite, stretch, speed, energy };
   Kind kind;
@@ -22,56 +22,57 @@ struct Breach {
   std::string message() const;
 };
 
-/// What to try instead of this method at this step (s), in words; `limit`: the bound that
-/// ended the run, if one did.
+/// Suggests what to try instead of this method at this step (s); `limit`: the bound that
+/// ended the run, if any.
 std::string remedy(std::string_view integrator, const Options& options,
                    Limit limit = Limit::none);
 
-/// Watches one system for what physics rules out, so that no run ends "ok" with nonsense
-/// in it: numbers that are not finite; a piece stretched or compressed by more than half
-/// of its length; more energy than there was and has been put in; a point faster than all
-/// of that energy can make it.
+/// Checks one system for physically impossible states, so that no run ends "ok" with
+/// invalid results: numbers that are not finite; a segment stretched or compressed by
+/// more than half of its length; more energy than the initial energy plus the work done;
+/// a point faster than that energy permits.
 ///
-/// Energy: seen from a frame that moves as the clamp does the clamp does no work. There,
-/// with x the place, v the velocity of a point of mass m, w = V + omega x r that of the
-/// frame there, u = v - w, f the loads of all effects, P the power (in the world's frame)
-/// of the part of them that has no potential, V_p the potential of all that has one, and
-/// a_w = A + alpha x r + omega x (omega x r), whose Coriolis companion does no work,
+/// Energy: in a frame that moves with the clamp, the clamp does no work. With x the
+/// position and v the velocity of a point of mass m, w = V + omega x r that of the frame
+/// there, u = v - w, f the loads of all effects, P the power (in the world's frame) of
+/// their non-potential part, V_p the potential of the rest, and a_w = A + alpha x r +
+/// omega x (omega x r) (the Coriolis term does no work),
 ///
 ///     E = sum m u^2/2 + V_p,   dE/dt <= P - sum (f.w + m a_w.u),
 ///
-/// internal friction making it less. Positive parts of the right-hand side, the larger of
-/// those at both ends of an interval, add up to the work W. A motion keeps
+/// where internal friction only decreases E. The work W is the sum of the positive parts
+/// of the right-hand side, taking the larger of the two ends of each interval. A motion
+/// satisfies
 ///
 ///     E <= E(0) + m g L + E_0/10 + W + largest sum m w^2/2:
 ///
-/// m g L is what hanging down gives, a tenth of E_0, the kinetic and elastic energy of
-/// the start, is what a coarse but sound step makes of it, and the last makes up for sums
-/// over lumped masses. A root at rest has w = 0. Mechanisms have no m g L: their typical
-/// kinetic energy (System::scale) stands for it, P is Energetics::power.
+/// m g L is the energy gained by hanging down; a tenth of E_0, the initial kinetic and
+/// elastic energy, allows for the error of coarse but sound steps; the last term allows
+/// for sums over lumped masses. A root at rest has w = 0. Mechanisms have no m g L: their
+/// typical kinetic energy (System::scale) replaces it, and P is Energetics::power.
 ///
-/// Speed: E less the lowest potential met is all that can move. A tenth of the strand
-/// that has all of it and turns about its own start moves its tip at sqrt(30) times the
-/// root mean square speed.
+/// Speed: E minus the lowest potential so far bounds the kinetic energy. If a tenth of
+/// the strand has all of it and turns about its own start, its tip moves at sqrt(30)
+/// times the root mean square speed.
 ///
-/// Every fourth step is judged, all that are longer than 2 ms, and the last; each costs
-/// about an evaluation of the loads.
+/// Checks every fourth step, all steps longer than 2 ms, and the last; each check costs
+/// about one evaluation of the loads.
 class Guard {
  public:
-  /// `strands`: those of the system in their order, none for a mechanism; `first`: the
+  /// `strands`: the strands of the system in order, empty for a mechanism; `first`: the
   /// number of the first in messages.
   Guard(System& system, std::vector<GuardedStrand> strands, std::size_t first = 0);
 
-  /// What comes is compared with this state.
+  /// Sets the state with which later states are compared.
   void start(double t, In q, In v);
-  /// Of an accepted step. False: breach() says what is wrong.
+  /// Call after every accepted step. False: breach() describes the violation.
   bool operator()(double t, In q, In v);
-  /// The same, whatever was judged before.
+  /// Checks this state unconditionally.
   bool judge(double t, In q, In v);
   const std::optional<Breach>& breach() const { return breach_; }
 
-  /// All that start() and judging have gathered; recall() lets another guard of a system
-  /// made alike go on from there.
+  /// All data gathered since start(); recall() lets another guard of an identically
+  /// constructed system continue from there.
   static constexpr std::size_t remembered = 8;  // numbers
   using Memory = std::array<double, remembered>;
   Memory memory() const;
@@ -79,11 +80,11 @@ class Guard {
 
  private:
   struct Measure {
-    double kinetic = 0, potential = 0;  // J, seen from the frame
+    double kinetic = 0, potential = 0;  // J, in the moving frame
     double power = 0;                   // W, into it
     double frame = 0;                   // J, of the frame's own motion
   };
-  /// What has been gathered so far.
+  /// Data gathered so far.
   struct Record {
     double t = 0, energy = 0, slack = 0;  // at the start
     double seen = 0, power = 0;           // when last judged
@@ -114,11 +115,11 @@ class Guard {
   std::optional<Breach> breach_;
 };
 
-/// After a run that `guard` has watched: judges its end; a breach is its failure.
+/// Checks the end of a run watched by `guard`; a breach makes the run fail.
 void conclude(Guard& guard, std::string_view integrator, const Options& options,
               Simulation& run);
 
-/// simulate(), watched; a breach is its failure.
+/// simulate() with `guard`; a breach makes the run fail.
 Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
                             const Options& options, const State& start, double t_end,
                             const Observer& each_step = {});

@@ -9,7 +9,7 @@
 namespace tress::simulation {
 namespace {
 
-/// Loads of uniform effects at any place, added up by size.
+/// Sum of the magnitudes of all uniform loads.
 double uniform_load(const GuardedStrand& strand) {
   const std::vector<double> zeros(3 * strand.rest.size());
   const Points p{strand.points(),    zeros, zeros, zeros, strand.lumps.mass,

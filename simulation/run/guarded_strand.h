@@ -15,16 +15,16 @@ struct Lumps {
 };
 Lumps lumps(const Strand& strand);
 
-/// What a guard must know of a strand that its System does not say.
+/// Data of a strand that a guard needs and its System does not provide.
 struct GuardedStrand {
   std::optional<RootMotion> root;  // the clamp, where it moves
   Effects effects;
   Lumps lumps;
   std::vector<double> rest;  // (points) m, of the segment that ends there; root: 0
   double mass = 0;           // kg
-  /// J: m g L, with all loads that are the same everywhere in place of m g.
+  /// J: m g L, with all uniform loads in place of m g.
   double weight_work = 0;
-  double bending_energy = 0;  // J, EI/L: of a bend by about one radian
+  double bending_energy = 0;  // J, EI/L: a bend of about one radian
 
   int points() const { return static_cast<int>(rest.size()); }
   bool uniform(const Effect& effect) const {
@@ -34,8 +34,8 @@ struct GuardedStrand {
 
 GuardedStrand guarded_strand(const Strand& strand, Effects effects);
 
-/// The strand that a model of the catalogue makes of these parameters; none: it makes a
-/// mechanism of its own.
+/// The strand that a catalogue model makes from these parameters; empty: the model is a
+/// mechanism.
 std::vector<GuardedStrand> guarded_strands(const ModelEntry& model,
                                            const Parameters& parameters);
 

@@ -17,15 +17,15 @@ namespace tress::simulation {
 namespace {
 
 constexpr std::size_t measured = 8;   // strands
-constexpr std::size_t small = 1'000;  // strands that need no question
+constexpr std::size_t small = 1'000;  // strands; smaller scenes are not measured
 
-/// Bytes on the heap.
+/// Bytes in use on the heap.
 double held() {
   const struct mallinfo2 info = ::mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-/// Bytes: of the machine, and of the address space where that is limited (ulimit -v).
+/// Bytes available: of the machine, and of the address space if limited (ulimit -v).
 double left() {
   double bytes = std::numeric_limits<double>::infinity();
   std::ifstream file("/proc/meminfo");

@@ -4,9 +4,9 @@
 
 namespace tress::simulation {
 
-/// Throws InputError, with both figures, where the strands of a scene need more memory
-/// than the machine has left: what a few of them take, for each element, times all
-/// elements. Small scenes are not measured.
+/// Throws InputError, with both figures, if the strands of a scene need more memory than
+/// the machine has left, extrapolated from a few of them by number of elements. Small
+/// scenes are not measured.
 void refuse_too_large(const Scene& scene);
 
 }  // namespace tress::simulation

@@ -6,8 +6,8 @@
 
 namespace tress::simulation {
 
-/// An effect that keeps the potential energy it was last asked for: whoever asks a model
-/// for its energy then knows the part of each effect. One for every strand.
+/// An effect that stores the last potential energy it returned: after a query of a
+/// model's energy, the part of each effect is known. One per strand.
 class Metered final : public Effect {
  public:
   explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}

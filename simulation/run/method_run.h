@@ -4,8 +4,8 @@
 
 namespace tress::simulation {
 
-/// As simulate(), by a method that the caller has made of the system, and may ask for its
-/// stats meanwhile.
+/// As simulate(), with a method constructed by the caller, who can query its stats during
+/// the run.
 Simulation run_method(Integrator& method, System& system, const State& start,
                       std::span<const double> stops,
                       const std::function<void(const State&)>& at_stop,

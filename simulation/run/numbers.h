@@ -6,7 +6,7 @@
 
 namespace tress::simulation {
 
-/// What decides which effects matter, without dimension, of the first strand.
+/// Dimensionless numbers of the first strand that decide which effects matter.
 struct ScaleNumbers {
   double gravito_bending;  // rho g S L^3/(EI), g of the scene's uniform accelerations
   double inertia_bending;  // rho a S L^3/(EI), a the rms acceleration of the root

@@ -8,7 +8,7 @@
 namespace tress::simulation {
 namespace {
 
-/// Of the circle that turns from one chord into the next over half of each.
+/// Curvature of the circle that turns from one chord into the next over half of each.
 double curvature(const Vec& a, const Vec& b) {
   const double la = norm(a), lb = norm(b);
   const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
@@ -75,7 +75,7 @@ Frame3d Readout::read(World& world) {
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
       static_cast<double>(now.newton_iterations - before_.newton_iterations);
-  // Of a system: all advance through the same time, which the last frame may cut short.
+  // Per system: all advance through the same time, which the last frame may shorten.
   const std::size_t last = scene_.last_frame();
   const double interval = world.time() < scene_.duration || last == 0
                               ? 1 / scene_.frame_rate
@@ -134,7 +134,7 @@ void Readout::read_points(World& world, Frame3d& frame) {
   for (std::size_t k = 0; k < world.strands(); ++k) {
     const auto points = static_cast<std::size_t>(world.points()[k]);
     if (points == 0) continue;
-    // The places of strands are lines of their own.
+    // Strands are separate lines.
     if (!scene_.strands.empty()) read_loads(world, k, end, frame);
     end += points;
     tip = tip + (1.0 / static_cast<double>(world.strands())) * load3(&x[3 * (end - 1)]);
@@ -142,7 +142,7 @@ void Readout::read_points(World& world, Frame3d& frame) {
   for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
 }
 
-/// Loads of the effects on the material points, over the length that each stands for.
+/// Loads of the effects on the material points, over the length that each represents.
 void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame) {
   const std::size_t count = drawn_.size();
   const auto points = static_cast<std::size_t>(world.points()[k]);

@@ -13,21 +13,21 @@ struct Reading {
   std::string help;
 };
 
-/// One instant of a scene, as it is written and shown.
+/// One instant of a scene for output and display.
 struct Frame3d {
   std::vector<double> series;    // as Readout::series()
   std::vector<float> positions;  // (3 points) m, points as Readout::lines()
   std::vector<float> channels;   // (points) of the first channel, of the second ...
 };
 
-/// What is told of a scene: places and energies of its strands, what its effects do.
+/// Output of a scene: positions and energies of its strands, loads of its effects.
 class Readout {
  public:
   /// `world`: any of this scene.
   Readout(const Scene& scene, const World& world);
 
   /// Points of each line that is drawn, in the order of Frame3d's: a strand, or a chain
-  /// of segments of a tree, which begins at the point that it hangs on.
+  /// of segments of a tree, which begins at the point that it is attached to.
   const std::vector<int>& lines() const { return lines_; }
   std::size_t points() const { return drawn_.size(); }
 

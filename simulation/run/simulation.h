@@ -12,7 +12,7 @@
 
 namespace tress::simulation {
 
-/// A model of the catalogue with the given parameters set.
+/// A catalogue model with the given parameters.
 std::unique_ptr<System> make_model(std::string_view id,
                                    const ModelSettings& settings = {});
 
@@ -22,7 +22,7 @@ struct State {
 
 State initial_state(const System& system);
 
-/// How a run ended; the state is the one at `t`, wherever that was.
+/// How a run ended; the state is the one at `t`.
 struct Simulation {
   Status status;
   std::string failure;
@@ -31,8 +31,8 @@ struct Simulation {
   Stats stats;
 };
 
-/// One run of the system as it was made, from `start` at t = 0 through all `stops`
-/// (ascending), which are landed on exactly; `at_stop` sees the state at each.
+/// One run of the system, which is reset first, from `start` at t = 0 through all `stops`
+/// (ascending), which are reached exactly; `at_stop` receives the state at each.
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, std::span<const double> stops,
                     const std::function<void(const State&)>& at_stop,

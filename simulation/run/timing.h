@@ -8,12 +8,12 @@
 
 namespace tress::simulation {
 
-/// The middle value (mean of the two middle ones); 0 of none.
+/// The middle value (mean of the two middle ones); 0 if empty.
 double median(std::vector<double> values);
 
-/// Wall time of one call (s). Not the processor time of the thread, which would not see
-/// what else the machine does: on a virtual machine that clock may stand still for some
-/// milliseconds, and no choice of the least or the middle of several times mends that.
+/// Wall time of one call (s). Not the processor time of the thread, which omits the
+/// machine's other load: on a virtual machine that clock may stand still for some
+/// milliseconds, and neither minimum nor median of several times corrects that.
 template <typename F>
 double seconds_of(F&& f) {
   using Clock = std::chrono::steady_clock;
@@ -22,15 +22,15 @@ double seconds_of(F&& f) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Times of repeated calls, in s. The median is what tables show: the smallest is an
-/// unusually lucky run, the mean is spoilt by one interruption.
+/// Times of repeated calls, in s. Tables show the median: the minimum is an unusually
+/// fast run, and one interruption distorts the mean.
 struct Timing {
   double median_s = 0, min_s = 0;
   int repeats = 0;
 };
 Timing summarize(const std::vector<double>& seconds);
 
-/// Calls f `repeats` times, once at least.
+/// Calls f `repeats` times, at least once.
 template <typename F>
 Timing time_calls(int repeats, F&& f) {
   std::vector<double> seconds;
@@ -38,18 +38,18 @@ Timing time_calls(int repeats, F&& f) {
   return summarize(seconds);
 }
 
-/// The same after a first call unmeasured (caches, lazy allocation).
+/// As above, after one unmeasured call (caches, lazy allocation).
 template <typename F>
 Timing time_it(int repeats, F&& f) {
   f();
   return time_calls(repeats, f);
 }
 
-/// A run that takes longer is timed once: one interruption is a small part of it.
+/// A longer run is timed once: one interruption is a small part of it.
 inline constexpr double long_run_s = 0.05;
 
-/// Median wall time (s) of whole runs: one if it takes long, `repeats` if it does not,
-/// after a first one that warms the caches and does not count.
+/// Median wall time (s) of whole runs: one if it is long, `repeats` otherwise, after an
+/// uncounted one that warms the caches.
 template <typename F>
 double time_run(int repeats, F&& f) {
   const double first = seconds_of(f);

@@ -14,8 +14,8 @@ void advance(World& world, double t) {
   if (world.advance(t) != Status::ok) throw std::runtime_error(world.failure());
 }
 
-/// From frame to frame as tip_paths goes: the same steps to the last bit, so that what
-/// ran once runs again.
+/// Advances frame by frame as tip_paths does: the steps are identical to the last bit, so
+/// a run that succeeded once succeeds again.
 void advance_by_frames(World& world, const Scene& scene) {
   for (std::size_t f = 1; f <= scene.last_frame(); ++f) advance(world, scene.time_of(f));
 }

@@ -11,23 +11,23 @@ namespace tress::simulation {
 struct TipPaths {
   std::vector<double> x;  // (3 strands) of frame 0, of frame 1 ...
   double once_s = 0;      // wall time of stepping in the run that was read
-  double wall_s = 0;      // the same where that is long, else the median of repeats
+  double wall_s = 0;      // once_s if that is long, else the median of repeats
   double indicator = 0;   // World::error_indicator at the end
   Stats stats;            // World::stats at the end
 };
 
-/// Where a run is given up, looked at after every frame.
+/// Limits at which a run is abandoned, checked after every frame.
 struct RunLimit {
   double iterations_per_step = std::numeric_limits<double>::infinity();  // Newton's, mean
   double wall_s = std::numeric_limits<double>::infinity();
 };
 
-/// Throws InputError where the scene cannot be built and std::runtime_error, with what
-/// happened and when, where it does not run to its end or goes beyond `limit`.
+/// Throws InputError if the scene cannot be built, and std::runtime_error, with cause and
+/// time, if it does not run to its end or exceeds `limit`.
 TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit = {});
 
-/// Wall times of some runs to the end (s): of `runs`, or more until they have taken
-/// `at_least_s` altogether. Without the guard, which is no part of what a method costs.
+/// Wall times of some runs to the end (s): of `runs`, or more until they total
+/// `at_least_s`. Without the guard, which is not part of a method's cost.
 std::vector<double> wall_times(const Scene& scene, int runs, double at_least_s = 0);
 
 /// Root mean square distance over frames and strands, over the strands' mean length.

@@ -46,7 +46,7 @@ void append_strands(In q, In v, In memory, const std::vector<std::size_t>& coord
   }
 }
 
-/// Each with a meter of its own, which `meters` keeps.
+/// Wraps each effect in a Metered, stored in `meters`.
 Effects metered(const Effects& effects,
                 std::vector<std::shared_ptr<const Metered>>& meters) {
   Effects all;
@@ -83,7 +83,7 @@ void World::add(std::unique_ptr<System> system, std::size_t strands) {
     body.first = last.first + last.coordinates.size();
     body.first_point = last.first_point + last.points;
   }
-  // Strands of one system are alike, unless the caller says otherwise.
+  // Strands of one system have equal sizes unless the caller changes them.
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
   body.coordinates.assign(strands, n / strands);
   body.memory.assign(strands, system->memory().size() / strands);
@@ -97,13 +97,13 @@ void World::add(std::unique_ptr<System> system, std::size_t strands) {
   body.system = std::move(system);
 }
 
-/// Of the last body.
+/// Adds a guard to the last body.
 void World::guard(std::vector<GuardedStrand> strands) {
   Body& body = bodies_.back();
   body.guard.emplace(*body.system, std::move(strands), body.first);
 }
 
-/// None where the scene wants no guard.
+/// Empty if the scene has no guard.
 std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
                                           std::size_t count,
                                           const Effects& shared) const {
@@ -116,7 +116,7 @@ std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
   return all;
 }
 
-/// Each strand on its own, or up to four that are cut alike together.
+/// Each strand separately, or up to four of equal discretisation together.
 void World::build_strands(const Scene& scene) {
   const std::vector<Strand>& strands = scene.strands;
   if (scene.interaction) {
@@ -175,7 +175,7 @@ void World::build_coupled(const Scene& scene) {
   body.coupled = whole;
   body.meters = std::move(meters);
   body.coordinates = std::move(coordinates);
-  // It remembers more than its strands do: all of it goes with the first.
+  // Its memory is more than that of its strands: all of it is stored with the first.
   body.memory.assign(scene.strands.size(), 0);
   body.memory.front() = body.system->memory().size();
   points_ = material_points(scene);
@@ -208,7 +208,7 @@ void World::restore(const Snapshot& snapshot) {
       all.memory.insert(all.memory.end(), one.memory.begin(), one.memory.end());
     }
     body.system->recall(all.memory);
-    // Contact sets follow the state; where it was accepted before, nothing changes.
+    // Contact sets follow the state; if it was accepted before, nothing changes.
     body.system->accept(t_, all.q, all.v);
     body.status = body.integrator->start(t_, all.q, all.v);
     body.before = {};

@@ -14,62 +14,63 @@
 
 namespace tress::simulation {
 
-/// State of a scene between two steps. Worlds of the same scene that were built and given
-/// the same snapshot continue alike, bit by bit.
+/// State of a scene between two steps. New worlds of the same scene that are given the
+/// same snapshot continue identically, bit by bit.
 struct Snapshot {
   struct OfStrand {
     std::vector<double> q, v, memory;  // memory: of System::accept
   };
   double t = 0;  // s
   std::vector<OfStrand> strands;
-  std::vector<double> guards;  // what they have gathered; none: they start here
+  std::vector<double> guards;  // their Guard::memory(); empty: they start here
 };
 
-/// J, of all strands; `elastic` is what no effect has, of a mechanism all potential.
+/// J, of all strands; `elastic` is the potential not due to effects, for a mechanism all.
 struct Energies {
   double kinetic = 0, elastic = 0;
   std::vector<double> effects;  // in the scene's order
 };
 
-/// A scene built: systems and integrators of its strands, its effects, and what couples
-/// strands. Effects that the scene does not name are not built.
+/// A constructed scene: systems and integrators of its strands, its effects, and the
+/// coupling of strands. Effects that the scene does not name are not built.
 ///
-/// Strands that touch exchange their places between steps (coupling = lagged): during a
-/// step each sees the others where they were at its start, so strands run on several
+/// Strands that touch exchange their positions between steps (coupling = lagged): during
+/// a step each sees the others at their positions at its start, so strands run on several
 /// threads with the same result. With coupling = monolithic they are one system. Strands
-/// that are cut alike run four at a time where the model can (ModelEntry::on_strands).
+/// of equal discretisation run four at a time if the model supports it
+/// (ModelEntry::on_strands).
 class World {
  public:
-  /// Throws InputError where model, strand and effects do not fit together.
+  /// Throws InputError if model, strand and effects are incompatible.
   explicit World(const Scene& scene, int threads = 1);
 
   void restore(const Snapshot& snapshot);
   Snapshot snapshot() const;
 
-  /// Advances all strands to t_end. A step of a strand that has no solution is taken in
-  /// 2, 4 ... 64 shorter ones, then the scene's step goes on: a hundred times for each
-  /// strand, beyond which the step is too long for the scene. stats().rejected counts
-  /// every try that failed. Not ok: failure() says what happened where and when.
+  /// Advances all strands to t_end. A strand's step without a solution is divided into 2,
+  /// 4 ... 64 shorter ones, after which the scene's step resumes. This may happen a
+  /// hundred times for each strand; beyond that, the step is too long for the scene.
+  /// stats().rejected counts every failed attempt. Not ok: failure() reports what
+  /// happened, where and when.
   Status advance(double t_end);
   double time() const { return t_; }
   const std::string& failure() const { return failure_; }
-  /// What a guard found, null while all is well.
+  /// What a guard found, or null.
   const Breach* breach() const;
-  /// Largest of all strands so far; 0 where the method has none (ErrorIndicator).
+  /// Largest of all strands so far; 0 if the method has none (ErrorIndicator).
   double error_indicator() const;
-  /// What all strands have done since restore(), and what that cost as total_work()
-  /// counts it.
+  /// Work of all strands since restore(), and its cost as defined by total_work().
   Stats stats() const;
   double work() const;
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
-  /// As the systems count it.
+  /// From the systems' Energetics.
   Energies energies();
-  double stretch();  // largest |length/rest - 1|, 0 where models do not say
-  /// Null where strands do not touch.
+  double stretch();  // largest |length/rest - 1|, 0 if not available
+  /// Null if strands do not touch.
   const StrandInteraction* interaction() const { return interaction_.get(); }
-  /// The point that point i hangs on, -1: none.
+  /// The point that point i is attached to, -1: none.
   const std::vector<int>& before() const { return before_; }
 
   /// Material points of all strands, strand after strand; read once after each advance.
@@ -91,14 +92,14 @@ class World {
     CoupledStrands* coupled = nullptr;  // the system, where it is one
     std::optional<Guard> guard;
     Status status = Status::ok;
-    // The last state that a step led to.
+    // The state after the last successful step.
     double t = 0;
     std::vector<double> q, v;
-    // Of what ran until the integrator's last start.
+    // Work done before the integrator's last start.
     Stats before;
-    Stats stats() const;  // with that
+    Stats stats() const;  // including `before`
     double indicator = 0;
-    int shortened = 0;     // steps that were taken in shorter ones, since restore()
+    int shortened = 0;     // steps divided into shorter ones since restore()
     bool gave_up = false;  // shorter steps did not help
 
     bool breached() const { return guard && guard->breach(); }

@@ -1,5 +1,5 @@
-// How a World goes forward: strands side by side, every step watched by their guards, and
-// one that has no solution again in shorter ones.
+// Advances a World: strands in parallel, every step checked by their guards, and steps
+// without a solution repeated as shorter ones.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 namespace tress::simulation {
 namespace {
 
-/// A step without a solution is tried in 2, 4 ... 2^halvings.
+/// A step without a solution is divided into 2, 4 ... 2^halvings shorter ones.
 constexpr int halvings = 6;
-/// Of a strand: where a run needs more, its step is wrong and its time without bound.
+/// Per strand: a run that needs more has too long a step, and its time is unbounded.
 constexpr int most_shortened = 100;
 
 void add_work(const Stats& from, Stats& to) {
@@ -33,7 +33,7 @@ void add_work(const Stats& from, Stats& to) {
 }  // namespace
 
 Status World::advance(double t_end) {
-  // Without an exchange nobody needs to wait for the others.
+  // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
   const double count =
       interaction_ ? std::max(1.0, std::ceil(span / options_.step - 1e-9)) : 1.0;
@@ -56,7 +56,7 @@ Status World::advance(double t_end) {
   return Status::ok;
 }
 
-/// Its guard sees the last state of all, also where the method gave up there.
+/// The guard always checks the last state, even if the method failed there.
 void World::advance(Body& body, double t, bool last) {
   if (body.status != Status::ok) return;
   const double span = t - t_,
@@ -64,7 +64,7 @@ void World::advance(Body& body, double t, bool last) {
   const bool again =
       !integrator_.adaptive && count <= static_cast<double>(options_.max_steps);
   Integrator& method = *body.integrator;
-  // Shorter steps would only take more of it.
+  // Shorter steps would only use more work.
   const auto used_up = [&] {
     return work_used_up(options_, method.stats(), static_cast<int>(method.q().size()));
   };
@@ -80,8 +80,8 @@ void World::advance(Body& body, double t, bool last) {
   if (!body.guard->judge(body.t, body.q, body.v)) body.status = Status::fatal;
 }
 
-/// From the last state that a step led to until `end`, one step further, by as few
-/// shorter steps as it takes; there the method goes on with its own.
+/// From the last successful state to `end`, one step further, with as few shorter steps
+/// as needed; from there the method continues with its own step.
 Status World::shorter_steps(Body& body, double end) {
   const double begin = body.t;
   const std::vector<double> q = body.q, v = body.v, memory = body.system->memory();
@@ -109,7 +109,7 @@ Status World::shorter_steps(Body& body, double end) {
   return Status::fatal;
 }
 
-/// Keeps every state, and shows it to the guard.
+/// Stores every state and passes it to the guard.
 Observer World::Body::observer() {
   return [this](double at, In new_q, In new_v) {
     keep(at, new_q, new_v);

@@ -10,7 +10,7 @@
 namespace tress::simulation {
 namespace {
 
-/// Where a share of the last of ascending sums is reached, in cells.
+/// Position, in cells, where ascending sums reach a share of the last one.
 double found(std::span<const double> sums, double share) {
   const double wanted = share * sums.back();
   const auto after = std::ranges::upper_bound(sums, wanted) - sums.begin();
@@ -61,7 +61,7 @@ Cap::Place Cap::place(double along, double around) const {
   const auto row = std::min<std::size_t>(static_cast<std::size_t>(ring), cells - 1);
   const std::span sums(before_.data() + row * (cells + 1), cells + 1);
   const double turned = found(sums, around) / cells;
-  // Within a ring area goes with the cosine of the polar angle.
+  // Within a ring, area is proportional to the change of the cosine of the polar angle.
   const double inner = std::cos(angle_ / cells * static_cast<double>(row));
   const double outer = std::cos(angle_ / cells * static_cast<double>(row + 1));
   const double cosine = std::lerp(inner, outer, ring - static_cast<double>(row));

@@ -18,15 +18,15 @@ class Cap {
   struct Place {
     Vec x, normal;
   };
-  /// Shares of area: `along` of it lies nearer to the axis, `around` of what is as near
-  /// lies before it. Both in [0, 1).
+  /// By shares of area: the share `along` lies nearer to the axis, and the share `around`
+  /// of the area equally near lies before the place. Both in [0, 1).
   Place place(double along, double around) const;
 
  private:
   static constexpr int cells = 256;
-  /// Of u at polar angle and azimuth about the axis.
+  /// u at polar angle and azimuth about the axis.
   Vec unit(double polar, double azimuth) const;
-  /// Area of the ellipsoid over that of the unit sphere.
+  /// Local ratio of the ellipsoid's area to that of the unit sphere.
   double stretch(const Vec& u) const;
 
   Vec centre_, half_, axis_, first_, second_;

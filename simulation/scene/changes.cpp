@@ -10,7 +10,8 @@
 namespace tress::simulation {
 namespace {
 
-/// Each half hangs on the other half of the same segment, or of the one it hung on.
+/// Each half is attached to the other half of its segment, or to the second half of the
+/// segment's parent.
 Strand halved(const Strand& strand) {
   Strand fine = strand;
   fine.segments.clear();
@@ -27,7 +28,7 @@ Strand halved(const Strand& strand) {
   return fine;
 }
 
-/// A word of the model's option `modes` instead of the present one.
+/// Replaces the value of the model's option `modes`.
 Ingredient mode(const std::string& name, const std::string& word) {
   return {name,
           [word](const Scene& scene) {

@@ -9,50 +9,49 @@
 
 namespace tress::simulation {
 
-// A scene is a value: what is to be another scene is made from it by a function of here.
-// Nothing is read or checked again; what cannot be built is refused by whoever builds it
-// (World).
+// A scene is a value; these functions derive other scenes from it. Nothing is read or
+// checked again; World refuses what cannot be built.
 
-/// How a scene is simulated, but for the cut in space and time.
+/// How a scene is simulated, except for its discretisation in space and time.
 struct Method {
   const ModelEntry* model = nullptr;
-  ModelSettings options;  // of the model, where not the default
+  ModelSettings options;  // of the model, if not the default
   std::string integrator;
   Formulation formulation = Formulation::parametric;
 
-  /// The word of a choice of the model; empty where it has no such choice.
+  /// The option value of a choice of the model; empty if it has no such choice.
   std::string_view word(std::string_view choice) const;
 };
 
-/// By this method; of the integrator's options only the step stays. Throws InputError on
-/// options that the model does not have.
+/// The scene with this method; of the integrator's options only the step is kept. Throws
+/// InputError on options that the model does not have.
 Scene with_method(Scene scene, const Method& method);
 
-/// The same strands in so many elements each. Throws InputError as read_scene does, and
-/// std::logic_error where the tables of the scene no longer say its strands.
+/// The same strands with `elements` elements each. Throws InputError as read_scene does,
+/// and std::logic_error if the scene's tables no longer describe its strands.
 Scene with_elements(Scene scene, int elements);
 
-/// Other strands, which no table says.
+/// The scene with other strands, which no table describes.
 Scene with_strands(Scene scene, std::vector<Strand> strands);
 
 /// The scene without any effect and interaction.
 Scene bare(Scene scene);
 
-/// At most `most` of its strands, typical ones; where they touch each other, all.
+/// At most `most` typical strands; all if strands touch each other.
 Scene thinned(Scene scene, std::size_t most);
-/// These of its strands.
+/// The scene with only these strands.
 Scene only(Scene scene, const std::vector<std::size_t>& strands);
 
-/// Segments cut in halves of the same shape, steps halved: what the difference from the
-/// scene itself says about its discretisation.
+/// Segments divided into halves of the same shape, steps halved: the difference from the
+/// scene itself measures its discretisation error.
 Scene refined(Scene scene);
 
-/// One thing that a scene could do without: an effect it names, its strand-strand
-/// interaction, or a mode of its model.
+/// A removable part of a scene: an effect it names, its strand-strand interaction, or a
+/// mode of its model.
 struct Ingredient {
   std::string name;
   std::function<Scene(const Scene&)> without;
-  /// The scene with none of its effects but this one. Empty for modes.
+  /// The scene with only this effect. Empty for modes.
   std::function<Scene(const Scene&)> alone;
 };
 

@@ -8,7 +8,7 @@
 namespace tress::simulation {
 namespace {
 
-// Of any numbers that a user may write, 1e200 among them.
+// For any user input, including 1e200.
 double size(const Vec& x) { return std::hypot(x.x, x.y, x.z); }
 
 }  // namespace
@@ -22,7 +22,7 @@ Vec direction(const Table& table, std::string_view key) {
 }
 
 Vec across(const Vec& axis, const Vec& x) {
-  // Twice: what the first leaves along the axis by rounding goes.
+  // Twice, to remove the rounding error that the first pass leaves along the axis.
   Vec rest = x - dot(axis, x) * axis;
   rest = rest - dot(axis, rest) * axis;
   const double left = size(rest);

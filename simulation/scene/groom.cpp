@@ -103,7 +103,7 @@ std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
                             : "the scene has no room for more: give fewer elements");
 }
 
-/// The way a root is combed, along the surface; 0 where none is told from others.
+/// The combing direction of a root, along the surface; 0 if it is undefined.
 Vec combed(const Parameters& p, const Cap::Place& place) {
   const double side = place.x.y - p.vec("centre_m").y - p.number("parting_m");
   const double sideways = side == 0 ? 0 : std::copysign(p.number("parting"), side);
@@ -147,7 +147,7 @@ std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
   std::vector<Strand> strands;
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint64_t stream = first_stream + i;
-    Random random(common.seed, 2 * stream + 1);  // shapes take the even ones
+    Random random(common.seed, 2 * stream + 1);  // shapes use the even ones
     const double length =
         p.number("length_m") * varied(random, p.number("length_variation"));
     const double curl = varied(random, p.number("curl_variation"));

@@ -24,11 +24,11 @@ constexpr double must = std::numeric_limits<double>::quiet_NaN();  // be given
 /// African American hair [TRI Princeton, Hair Ethnicity, table 3].
 ///
 /// Young's modulus: 3.89 GPa, one value for all [Robbins, Chemical and Physical Behavior
-/// of Human Hair, appendix]. The shear modulus there, 0.89 GPa, is out of reach of an
-/// isotropic material; Poisson's ratio is what simulations of hair take, 0.48.
+/// of Human Hair, appendix]. The shear modulus there, 0.89 GPa, is not attainable by an
+/// isotropic material; Poisson's ratio is the usual value of hair simulations, 0.48.
 ///
-/// From memory, not looked up: the density, 1300 kg/m^3 of dry hair, and the curls, of
-/// the size that [Bertails et al. 2006] give for African and wavy Caucasian hair.
+/// From memory, unverified: the density of dry hair, 1300 kg/m^3, and the curls, of the
+/// size that [Bertails et al. 2006] give for African and wavy Caucasian hair.
 ///
 /// Internal friction: 1e-10 kg m^3/s, fitted to an oscillating curly clump [Bertails et
 /// al. 2006, in the course notes of 2008, figure 1.8]; a single hair may differ.

@@ -8,7 +8,7 @@
 
 namespace tress::simulation {
 
-/// What [material] says.
+/// The contents of [material].
 struct StrandMaterial {
   Material material;
   CrossSection section;
@@ -17,8 +17,8 @@ struct StrandMaterial {
 
 std::span<const Parameter> material_table_parameters();
 
-/// The values of `scene`, over them those of `own` ([strand.material]), if any: a name
-/// brings all of its values, keys beside it change single ones. Throws InputError naming
+/// The values of `scene`, overridden by those of `own` ([strand.material]), if any: a
+/// name sets all of its values, other keys change single ones. Throws InputError naming
 /// the key that a custom material lacks.
 StrandMaterial strand_material(const Table& scene, const Table* own);
 

@@ -7,11 +7,11 @@
 
 namespace tress::simulation {
 
-/// Random numbers that are the same wherever they are drawn: the generator is that of the
-/// C++ standard, whose distributions are left to each library.
+/// Random numbers that are identical on all platforms: the generator is that of the C++
+/// standard; the standard's distributions depend on the library and are not used.
 class Random {
  public:
-  /// One stream for each pair.
+  /// One stream per pair.
   Random(std::uint64_t seed, std::uint64_t stream);
 
   double uniform();  // in [0, 1), 53 bits

@@ -9,16 +9,16 @@
 
 namespace tress::simulation {
 
-/// The table of a scene as one with `declared` parameters. A number is a TOML number, a
-/// word or a text a string (or true, false), components a list of numbers, rows a list of
-/// such lists; the text of a parameter whose name ends in file is a path seen from the
-/// folder of the scene. Keys in `nested` are left to the caller. Throws InputError with
-/// file:line:column, naming the nearest key where there is one.
+/// Reads a scene's table with `declared` parameters. A number is a TOML number, an option
+/// value or a text a string (or true, false), components a list of numbers, rows a list
+/// of such lists; the text of a parameter whose name ends in file is a path relative to
+/// the scene's folder. Keys in `nested` are left to the caller. Throws InputError with
+/// file:line:column, naming the nearest key if there is one.
 Table read_table(const toml::table& table, std::span<const Parameter> declared,
                  const std::string& name, const std::string& file,
                  std::span<const std::string_view> nested = {});
 
-/// Sets this one key of what is read, where the table has it.
+/// Sets this key in `read` if the table has it.
 void read_key(const toml::table& table, std::string_view key, const std::string& file,
               Table& read);
 

@@ -137,7 +137,7 @@ Oscillator oscillator(const Parameters& p) {
           .frequency = p.number("frequency_hz")};
 }
 
-/// The torque, and after its last period the opposite one with it.
+/// The angle due to the torque, with the opposite torque added after its last period.
 Signal head_angle(const Parameters& p) {
   Oscillator body = oscillator(p);
   Signal angle = driven_oscillator(body, 0);
@@ -193,7 +193,7 @@ RootMotion head_motion(const Table& root) {
   try {
     add_parts(motion, root.values(), along, axis);
   } catch (const InputError& error) {
-    // A signal knows its numbers, not where they stand.
+    // A signal knows its numbers but not their location in the file.
     if (word != "keyframes" && word != "head") throw;
     throw InputError(error.what(), root.place(word == "head" ? "frequency_hz" : word),
                      "change the keys of [root]");

@@ -8,18 +8,18 @@
 
 namespace tress::simulation {
 
-/// [root]: what all roots do together.
+/// [root]: the common motion of all roots.
 std::span<const Parameter> root_table_parameters();
 std::span<const Use> root_uses();
 
-/// A rigid motion that takes what is at rest at x to `position + frame x`: its rest place
-/// is the origin. Throws InputError at the place of the key that makes no sense.
+/// A rigid motion that maps the rest position x to `position + frame x`; its own rest
+/// position is the origin. Throws InputError with the location of an invalid key.
 RootMotion head_motion(const Table& root);
 
-/// For motion = "free": the velocity and spin, without a place.
+/// For motion = "free": the velocity and spin, without a position.
 std::optional<FreeRoot> free_motion(const Table& root);
 
-/// The root of a strand at this place, moving as `head`, or free.
+/// Puts the root of a strand at this position, moving with `head`, or free.
 void set_root(Strand& strand, const RootMotion& head,
               const std::optional<FreeRoot>& free_root, Vec position, const Frame& frame);
 

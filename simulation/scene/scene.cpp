@@ -29,7 +29,7 @@ constexpr std::string_view tables[] = {"model", "integrator", "material", "stran
                                        "groom", "root",       "effects"};
 constexpr std::string_view material_table[] = {"material"};
 
-/// A scene being read: the parsed text and what of it is understood so far.
+/// A scene being read: the parsed text and the part interpreted so far.
 class Reader {
  public:
   Reader(const std::string& text, const std::string& file)
@@ -55,7 +55,7 @@ class Reader {
     return node == nullptr ? nullptr : &as_table(*node, std::string(name), file_);
   }
 
-  /// The table, or its defaults where the scene has none.
+  /// The table, or its defaults if the scene has none.
   Table read_or_default(const std::string& name, std::span<const Parameter> declared) {
     const toml::table* given = table(name);
     if (given == nullptr) return Table(declared, "[" + name + "]", file_ + ":1:1");
@@ -100,7 +100,7 @@ class Reader {
   }
 
   void read_model() {
-    // Which keys belong here depends on the id, which alone is read first.
+    // The valid keys depend on the id, which is therefore read first.
     Table id(model_table_parameters(model_catalogue().front()).first(1), "[model]", "");
     if (const toml::table* given = table("model")) read_key(*given, "id", file_, id);
     const ModelEntry* model = &find_model(id.values().word("id"));
@@ -245,7 +245,7 @@ std::vector<std::string> effect_names(const Scene& scene) {
 }
 
 std::size_t Scene::last_frame() const {
-  // 1e-9: a whole number of frames up to rounding is not one more.
+  // 1e-9: a whole number of frames up to rounding gets no extra frame.
   return static_cast<std::size_t>(std::ceil(duration * frame_rate - 1e-9));
 }
 

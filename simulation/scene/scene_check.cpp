@@ -11,7 +11,7 @@
 namespace tress::simulation {
 namespace {
 
-/// What `make` gives; its InputErrors know no file, so the place is added.
+/// The result of `make`; the location is added to its InputErrors, which name no file.
 template <class F>
 auto at_place(const std::string& place, const F& make) {
   try {

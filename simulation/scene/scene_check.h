@@ -7,7 +7,7 @@
 
 namespace tress::simulation {
 
-/// Where a scene says what can be wrong with it only as a whole.
+/// Locations of the settings that can be checked only together.
 struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
   std::vector<std::string> strands;  // of each strand's table
@@ -15,8 +15,8 @@ struct ScenePlaces {
   std::string interaction;
 };
 
-/// Builds once what a run will build: effects, the model on one strand of each table, the
-/// integrator. Throws InputError with the place of what refuses.
+/// Constructs once what a run will construct: effects, the model on one strand of each
+/// table, the integrator. Throws InputError with the location of what fails.
 void check(const Scene& scene, const ScenePlaces& places);
 
 }  // namespace tress::simulation

@@ -98,7 +98,7 @@ std::span<const Parameter> integrator_table_parameters() {
 }
 
 std::span<const Use> integrator_uses() {
-  static const auto keys_of = [] {  // a Use only names them
+  static const auto keys_of = [] {  // storage: a Use only refers to them
     std::map<std::string_view, std::string> all;
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       for (const Parameter& p : entry.parameters) {

@@ -10,32 +10,32 @@
 
 namespace tress::simulation {
 
-// What every table of a scene may hold: the reader, the schema page and the scene of
-// defaults take it from here.
+// Contents of all tables of a scene, as used by the reader, the schema page and the scene
+// of defaults.
 
 /// The keys before the first table.
 std::span<const Parameter> top_parameters();
 
-/// `id`, and what of the model's parameters no other table of a scene says: its own
-/// options, or all of them when it brings its own geometry.
+/// `id`, and the model's parameters that no other table sets: its own options, or all of
+/// them when it has its own geometry.
 std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 
 /// `id`, `dt_s` and the integrators' options.
 std::span<const Parameter> integrator_table_parameters();
-/// Which of them go with which integrator only.
+/// The keys that apply to only one integrator.
 std::span<const Use> integrator_uses();
 
-/// The effect that is not one of a single strand.
+/// The only effect that does not act on a single strand.
 inline constexpr std::string_view interaction_id = "strand_interaction";
 
-/// A table of a scene, described.
+/// Description of one table of a scene.
 struct TableEntry {
   std::string name;     // "strand"
   std::string summary;  // one line
   std::span<const Parameter> parameters;
-  std::string_view choice = {};    // the key whose word decides what others do,
+  std::string_view choice = {};    // the key whose value decides which others apply,
   std::span<const Use> uses = {};  // and which these are
-  bool needed = false;             // of a scene of one strand
+  bool needed = false;             // in a scene of one strand
   bool many = false;               // [[name]]
 };
 

@@ -72,7 +72,7 @@ void add_uses(std::string& page, const TableEntry& entry) {
   }
 }
 
-/// What each name stands for.
+/// The values that each name stands for.
 void add_materials(std::string& page) {
   page +=
       "\n| name | radius | ellipticity | E | nu | density | curl radius, pitch |\n"
@@ -119,7 +119,7 @@ constexpr std::string_view defaults_head =
     "title = \"a hair that swings\"\n"
     "source = \"simulate --print-defaults\"\n";
 
-/// The keys that it shows, in the order of the page.
+/// The keys shown, in the order of the page.
 struct Shown {
   std::string_view table, keys;
 };

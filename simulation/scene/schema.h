@@ -12,11 +12,11 @@ namespace tress::simulation {
 /// of scenes/README.md.
 std::string scene_schema();
 
-/// A short scene to start from: one strand that swings under gravity, the keys that are
-/// changed first with their ranges, all at their defaults.
+/// A short scene to start from: one strand that swings under gravity, the most commonly
+/// changed keys with their ranges, all at their defaults.
 std::string scene_defaults();
 
-/// The default as a value of TOML.
+/// The default as a TOML value.
 std::string default_value(const Parameter& parameter);
 
 }  // namespace tress::simulation

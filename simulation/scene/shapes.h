@@ -11,10 +11,10 @@
 namespace tress::simulation {
 
 /// Curvatures about e1 and e2 that vary smoothly and at random along the strand: 32 waves
-/// of random phase and wave number, so that over all seeds either has mean 0, the root
-/// mean square `amplitude` (1/m) and the covariance exp(-d^2/(2 correlation^2))
-/// amplitude^2 at the distance d (m); one draw is off by some 1/sqrt(32) of these. Throws
-/// InputError unless correlation > 0 and both are finite.
+/// of random phase and wave number, so that over all seeds each has mean 0, root mean
+/// square `amplitude` (1/m) and covariance exp(-d^2/(2 correlation^2)) amplitude^2 at
+/// distance d (m); one draw deviates by about 1/sqrt(32) of these. Throws InputError
+/// unless correlation > 0 and both are finite.
 Shape fuzzy_shape(double amplitude, double correlation, std::uint64_t seed,
                   std::uint64_t stream);
 
@@ -23,26 +23,26 @@ struct PointCurve {
   double length = 0;  // m
   Vec position;       // of the root
   Frame frame;        // there, e1 nearest to `normal`
-  Shape shape;        // constant over each segment of the cut
+  Shape shape;        // constant over each segment
 };
 
 /// The curve is a natural cubic spline over the length of the polyline, straight at its
-/// two ends (felt over about two points); frames are
-/// carried along it without twist (double reflection: Wang, Juttler, Zheng & Liu 2008).
-/// Each segment takes the Darboux vector that turns the frame at its start into that at
-/// its end: tangents at the joints are those of the spline, positions are off by an error
-/// of second order in the length of the segments. Throws InputError naming `where` on
-/// fewer than three points, or two equal ones in a row.
+/// two ends (noticeable over about two points); frames are carried along it without twist
+/// (double reflection: Wang, Juttler, Zheng & Liu 2008). Each segment has the Darboux
+/// vector that turns the frame at its start into that at its end: tangents at the joints
+/// are those of the spline, positions are off by an error of second order in the length
+/// of the segments. Throws InputError naming `where` on fewer than three points, or two
+/// equal ones in a row.
 PointCurve through_points(std::span<const double> points, int elements, double grading,
                           Vec normal, const std::string& where);
 
 /// The keys of a shape that [strand] and [groom] share.
 std::span<const Parameter> shape_parameters();
-/// Which of them go with which shape.
+/// The keys that apply to each shape.
 std::span<const Use> shape_uses();
 
-/// The natural shape that a table with shape_parameters() asks for; not "points".
-/// Strands of one scene share its seed and differ by `stream`.
+/// The natural shape requested by a table with shape_parameters(); not "points". Strands
+/// of one scene share its seed and differ by `stream`.
 Shape natural_shape(const Table& table, const StrandMaterial& material,
                     std::uint64_t seed, std::uint64_t stream);
 

@@ -13,7 +13,7 @@ namespace tress::simulation {
 namespace {
 
 constexpr double most = 1e6;
-// Models integrate an element by points that grow with the angle it winds.
+// Models integrate an element with a number of points that grows with its total angle.
 constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {

@@ -11,7 +11,7 @@
 
 namespace tress::simulation {
 
-/// What holds for every strand of a scene.
+/// Data common to all strands of a scene.
 struct Common {
   const Table& material;
   const RootMotion& head;
@@ -19,19 +19,19 @@ struct Common {
   std::uint64_t seed;
 };
 
-/// The keys of how a strand is cut, shaped and starts that [strand] and [groom] share.
+/// The keys for discretisation, shape and initial state that [strand] and [groom] share.
 std::vector<Parameter> cut_parameters();
 
-/// [strand]: one strand, its root at a place.
+/// [strand]: one strand with the position of its root.
 std::span<const Parameter> strand_table_parameters();
 std::span<const Use> strand_uses();
 
-/// Throws InputError with the place of the key that makes no sense. `stream` tells random
-/// shapes of one scene apart.
+/// Throws InputError with the location of an invalid key. `stream` distinguishes the
+/// random shapes of one scene.
 Strand scene_strand(const Table& table, const Table* own_material, const Common& common,
                     std::uint64_t stream);
 
-/// A strand by cut_parameters() and this natural shape.
+/// A strand from cut_parameters() and this natural shape.
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
                   const Shape& natural);
 

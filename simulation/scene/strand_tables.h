@@ -16,7 +16,7 @@ struct StrandSource {
   bool groom = false;
 };
 
-/// What the strands of a scene are cut from: its tables as they were read.
+/// The tables, as read, from which the strands of a scene are made.
 struct StrandTables {
   Table material, root;
   std::vector<StrandSource> sources;  // each [strand], then each [groom]
@@ -27,12 +27,12 @@ struct CutStrands {
   std::vector<std::size_t> source;  // of every strand, its index in StrandTables
 };
 
-/// Throws InputError with the place of the key that makes no sense, and on more strands
-/// and elements than a scene may have. `head` is head_motion(tables.root).
+/// Throws InputError with the location of an invalid key, and on more strands or elements
+/// than a scene may have. `head` is head_motion(tables.root).
 CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
                        std::uint64_t seed);
 
-/// The same tables with so many elements in every strand.
+/// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
 
 }  // namespace tress::simulation

@@ -10,13 +10,13 @@
 
 namespace tress::simulation {
 
-/// Which keys go with one word of a table's choice, separated by '|'.
+/// The keys that apply to one value of a table's choice, separated by '|'.
 struct Use {
   std::string_view word, keys;
 };
 
-/// One table of a scene, as far as it is read: the defaults and what the scene gives,
-/// each with its place.
+/// One table of a scene: the defaults and the values given by the scene, each with its
+/// location.
 class Table {
  public:
   /// `place`: file:line:column.
@@ -26,17 +26,17 @@ class Table {
   const Parameters& values() const { return values_; }
   const std::string& name() const { return name_; }
   const std::string& place() const { return place_; }
-  /// Of the value of `key`; of the table where the scene does not give it.
+  /// Location of the value of `key`; of the table if the scene does not give it.
   const std::string& place(std::string_view key) const;
   bool given(std::string_view key) const { return given_.contains(key); }
-  /// Of a given key, as the scene has it.
+  /// Text of a given key, as in the scene.
   const std::string& text(std::string_view key) const;
 
-  /// Throws InputError on what Parameters::set refuses.
+  /// Throws InputError as Parameters::set does.
   void set(std::string_view key, std::string_view text, const std::string& where);
 
-  /// Throws InputError on a given key that `uses` names, but not for the word that
-  /// `choice` has: it would do nothing.
+  /// Throws InputError on a given key that `uses` names, but not for the present value of
+  /// `choice`: it would have no effect.
   void refuse_unused(std::string_view choice, std::span<const Use> uses) const;
 
  private:
@@ -49,7 +49,7 @@ class Table {
   std::map<std::string, Given, std::less<>> given_;
 };
 
-/// Whether `uses` leaves `key` to `word`: it names it there, or nowhere.
+/// Whether `key` applies to `word`: `uses` names it for `word`, or nowhere.
 bool used(std::span<const Use> uses, std::string_view word, std::string_view key);
 
 }  // namespace tress::simulation

@@ -41,7 +41,7 @@ Features less(Features a, const Features& b) {
   return a;
 }
 
-/// Mean 0 and deviation 1; what is the same of all but for rounding stays 0.
+/// Mean 0 and deviation 1; a feature that is equal for all up to rounding is 0.
 void standardize(std::vector<Features>& all, const std::vector<std::size_t>& every) {
   constexpr double rounding = 1e-9;
   const Features centre = mean(all, every);
@@ -57,11 +57,11 @@ void standardize(std::vector<Features>& all, const std::vector<std::size_t>& eve
   }
 }
 
-/// The eigenvector of the largest eigenvalue of the covariance, by power iteration; of
-/// strands that are all the same any.
+/// The eigenvector of the largest eigenvalue of the covariance, by power iteration; for
+/// identical strands it is arbitrary.
 Features principal_axis(const std::vector<Features>& all) {
   constexpr int iterations = 100;
-  Features axis{1, 0.9, 0.8, 0.7};  // across no axis of symmetry
+  Features axis{1, 0.9, 0.8, 0.7};  // not orthogonal to any axis of symmetry
   for (int i = 0; i < iterations; ++i) {
     Features next{};
     for (const Features& one : all) {

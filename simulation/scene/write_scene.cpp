@@ -65,7 +65,7 @@ void add_parameters(std::string& text, std::span<const Parameter> declared,
   add_changed(text, declared, [&](const Parameter& p) { return values.text(p.name); });
 }
 
-/// The keys that were given, for where a default and the same value given may differ.
+/// The keys that were given, for tables where giving a default value makes a difference.
 void add_given(std::string& text, const Table& table) {
   for (const Parameter& p : table.declared()) {
     if (table.given(p.name)) add_key(text, p, table.text(p.name));

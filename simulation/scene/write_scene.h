@@ -8,13 +8,12 @@
 
 namespace tress::simulation {
 
-/// The scene as a file: reading it gives the same scene to the last bit. What has its
-/// default is left out, and files that it names are named by their full paths, so that it
-/// may lie in any folder. Throws std::logic_error where no table says the strands (see
-/// Scene::tables).
+/// The scene as a file; reading it restores the scene bit for bit. Defaults are omitted,
+/// and files are named by their full paths, so that the scene can be put in any folder.
+/// Throws std::logic_error if no table describes the strands (see Scene::tables).
 std::string scene_text(const Scene& scene);
 
-/// A value as a scene has it, from the text that Parameters::set takes.
+/// A TOML value from the text that Parameters::set accepts.
 std::string toml_value(const Parameter& parameter, std::string_view text);
 
 }  // namespace tress::simulation
