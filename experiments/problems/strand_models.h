@@ -14,7 +14,7 @@ namespace tress::experiments {
 /// describes it: every strand scene runs on each of them.
 std::vector<const ModelEntry*> strand_models();
 
-/// The default of a choice, empty where the model has no such parameter.
+/// The default of an option, empty if the model has no such parameter.
 std::string_view first_word(const ModelEntry& model, std::string_view key);
 
 bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
