@@ -5,8 +5,8 @@
 namespace tress::experiments {
 
 /// Wall time (s) per step dt of the whole scene from its start, averaged over `steps`
-/// steps or as many as fit a row's time limit. Excludes the guard, which is not part of
-/// the method's cost. Throws std::runtime_error where a step has no solution.
+/// steps, at most 200. Excludes the guard, which is not part of the method's cost. Throws
+/// std::runtime_error where a step has no solution.
 double step_cost(Scene scene, double dt, double steps, int repeat);
 
 }  // namespace tress::experiments

@@ -13,8 +13,8 @@ namespace tress::experiments {
 using MakeStrand =
     std::function<std::unique_ptr<System>(std::string_view model, int elements)>;
 
-/// What a tip does, known from two sides, (3 samples) each as run_tip samples it, and how
-/// far the two are apart (tip_error).
+/// Tip motion from two independent computations, (3 samples) each as run_tip samples it,
+/// and their distance (tip_error).
 struct TipReference {
   std::vector<double> tip, other;
   double gap = 0;
