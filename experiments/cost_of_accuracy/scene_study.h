@@ -19,8 +19,9 @@ struct StudyPlan {
   double rate = 60;         // frames per second
   double horizon = 0.5;     // s
   std::size_t strands = 1;  // of a groom
-  /// Of one scene's search: elements x steps of all runs. A clock would make the answer
-  /// depend on what else the machine does; the deadline of a row is for emergencies.
+  /// Work limit of one scene's search: elements x steps of all runs. A clock would make
+  /// the answer depend on the load of the machine; the deadline of a row is for
+  /// emergencies.
   double search_work = 3e6;
   long longest_run = 4096;  // elements x steps of a frame, per run
   double budget_s = 0;      // wall time per frame; 0: not requested

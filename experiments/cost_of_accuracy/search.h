@@ -78,7 +78,7 @@ class Search {
   /// there is none. If the search is cut, among those examined.
   const Trial* robust(double target,
                       const std::function<bool(const Trial&)>& accept = {});
-  /// More time, after a stage was cut.
+  /// Continues after a stage was cut.
   void go_on(std::function<bool()> stop);
 
   const std::vector<Trial>& runs() const { return runs_; }

@@ -8,7 +8,8 @@
 
 namespace tress::experiments::force_transport {
 
-/// The models that the experiment force_transport compares, and the second seed's E.
+/// The models that the experiment force_transport compares, and Young's modulus of the
+/// soft hair.
 namespace transport {
 inline constexpr std::string_view ours = "force_transport", theirs = "corde",
                                   chain = "articulated_chain", rod = "super_helix";

@@ -45,8 +45,7 @@ std::vector<std::string_view> tried_tangents(const CommandLine& line,
 /// --quick: semi_implicit_euler, backward_euler and implicit_midpoint, models with
 /// default options, at 1/300 and 1/30 s. Otherwise more integrators, models with every
 /// way of keeping lengths, and 1 ms; --full: every fixed-step integrator, and both
-/// tangents. semi_implicit_euler has the stiff tangent of [Bertails 2006] where
-/// available.
+/// tangents. semi_implicit_euler has the stiff tangent where available.
 Grid hard_grid(const CommandLine& line, const Settings& settings);
 
 }  // namespace tress::experiments::hard_cases

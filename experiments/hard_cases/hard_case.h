@@ -32,7 +32,7 @@ struct Situation {
   State start;
 };
 
-/// What a case looks at beyond the bounds of every run; sees every step.
+/// The measure of a case beyond the bounds of every run; sees every step.
 class Gauge {
  public:
   virtual ~Gauge() = default;

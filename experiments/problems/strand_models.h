@@ -19,7 +19,7 @@ std::string_view first_word(const ModelEntry& model, std::string_view key);
 
 bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
 
-/// Of the seeds' semi-implicit step: the stiff tangent, the default of models without.
+/// Tangent of the semi-implicit step: the stiff one, or the default of models without it.
 std::string_view usual_tangent(const ModelEntry& model);
 
 /// Sets those parameters that the model has.
