@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t contenders = 5;
 
 /// If no more methods than this are considered they are tried near the winner, with up to
-/// this multiple of its substeps.
+/// `dearest` times its substeps.
 constexpr std::ptrdiff_t few_methods = 6;
 constexpr int dearest = 16;
 
