@@ -57,7 +57,7 @@ using namespace transport;
 
 constexpr int rod_elements = 80;
 constexpr double stiff_hair = 3e9;       // Pa
-constexpr double seed_step = 3e-3;       // s, of the published comparison
+constexpr double seed_step = 3e-3;       // s, published
 constexpr double fine_step = 1e-3;       // s, where models are compared, not steps
 constexpr double transient_step = 1e-4;  // s, below the periods of most bending modes
 

@@ -51,8 +51,7 @@ void thick_end(Strand& strand) {
   }
 }
 
-/// The middle one is a ten-thousandth of the others; the previous one is longer by the
-/// difference.
+/// The middle one is a ten-thousandth of the others; the previous one takes up the rest.
 void vanishing_segment(Strand& strand) {
   constexpr double ratio = 1e-4;
   const std::size_t middle = strand.segments.size() / 2;

@@ -9,9 +9,8 @@
 
 namespace tress::experiments {
 
-/// Progress of a sweep on standard error: on a terminal a bar with the remaining time,
-/// otherwise occasional plain lines, one JSON object per row with `json`, nothing with
-/// `none`.
+/// Progress of a sweep on standard error: a bar with the remaining time on a terminal,
+/// else occasional plain lines; one JSON object per row with `json`, nothing with `none`.
 class Progress {
  public:
   Progress(ProgressMode mode, std::string_view name, std::size_t rows);
