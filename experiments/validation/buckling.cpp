@@ -132,8 +132,8 @@ double measure_ring(const ModelTrial& trial) {
     return motions[motions[0].square > 0 ? 1 : 0].square;
   };
   // At the threshold both buckling motions of the ring are soft and the iteration,
-  // although started at the ring, may leave it: the threshold is fitted to the last points
-  // found.
+  // although started at the ring, may leave it: the threshold is fitted to the last
+  // points found.
   constexpr double start = 0.7, step = 0.04, last = 1.5;
   const double expected = ring_twist(trial.parameter);
   std::vector<std::array<double, 2>> known;  // twist, square
