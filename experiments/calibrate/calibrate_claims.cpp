@@ -17,7 +17,7 @@ bool holds(const Row& row, const std::string& name, const std::string& unit) {
                                             truth <= row.number(name + "_high" + unit));
 }
 
-/// Of a scene of the user's own nothing is claimed.
+/// No claims about a scene of the user's own.
 bool is_shipped(std::string_view data) {
   const auto all = shipped_records();
   return std::ranges::find(all, data, &ShippedRecords::name) != all.end();

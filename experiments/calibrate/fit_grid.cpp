@@ -55,13 +55,13 @@ constexpr Parameter settings_of_rows[] = {
      .whole = true},
 };
 
-/// What a file of experiments/calibrate/data is to show.
+/// Options of one file of experiments/calibrate/data.
 struct Shown {
   std::string_view data, fit, integrator;
   bool slow = false;  // not with --quick
 };
 constexpr double usual_step = 2e-3;  // s
-constexpr double most_work = 2e7;    // of a run of a scene
+constexpr double most_work = 2e7;    // per run of a scene
 constexpr Shown shown[] = {
     {"two_lengths", "both", fitting},          {"two_lengths", "both", damping},
     {"two_lengths_envelope", "both", fitting}, {"one_length", "both", fitting},
@@ -129,7 +129,7 @@ class Cases {
     return chosen;
   }
 
-  /// One row for each number of elements; none given: those of the model as it is set.
+  /// One row per number of elements; none given: the model's setting.
   void add(const FitRow& work, const Parameters& parameters) {
     std::vector<int> counts = line_.elements;
     if (counts.empty()) counts = {parameters.whole("elements")};
@@ -144,7 +144,7 @@ class Cases {
   }
 
   void add(const FitRow& work) {
-    for (const Specimen& strand : work.strands) {  // refuses what cannot be made
+    for (const Specimen& strand : work.strands) {  // refuses what cannot be built
       Friction friction = strand.friction;
       if (work.how.fitted != Fitted::nu) friction.gamma = 1e-12;
       static_cast<void>(strand.build(friction, 1));
@@ -163,7 +163,7 @@ class Cases {
                        "give one scene");
     }
     for (const Scene& scene : read_scenes(files)) {
-      static_cast<void>(specimen(scene));  // refuses what has none
+      static_cast<void>(specimen(scene));  // refuses a scene without a strand
       for (const std::string_view method :
            methods(find_integrator(scene.integrator).id)) {
         FitRow work{scene.name, nullptr, {}, scene.model, {}, options(method, "both"), 0};
@@ -191,7 +191,7 @@ class Cases {
     }
   }
 
-  /// Of what the scene itself would show: fits of what it has.
+  /// Fits of records simulated from the scene itself.
   void add_simulated(const Scene& scene, FitRow work) {
     if (observed() == Observed::envelope) {
       throw InputError("a scene's own record is a displacement",
@@ -243,7 +243,7 @@ class Cases {
     for (const Shown& row : shown) {
       if (settings_.chosen("fit") && own_.word("fit") != row.fit) continue;
       if (line_.quick && row.slow) continue;
-      // The methods chosen stand in for the one that fits.
+      // The chosen methods replace the fitting one.
       if (!line_.integrators.empty() && row.integrator != fitting) continue;
       const ShippedRecords& shipped =
           *std::ranges::find(shipped_records(), row.data, &ShippedRecords::name);

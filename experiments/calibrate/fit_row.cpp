@@ -11,8 +11,8 @@ void set(Row& row, const Estimate& estimate, const std::string& name,
   row.set(name + "_low" + unit, estimate.low).set(name + "_high" + unit, estimate.high);
 }
 
-/// The record that the strand would leave: by half the step and twice the elements, so
-/// that the truth is better than the fit. Empty: its run fails.
+/// The record that the strand would leave, simulated with half the step and twice the
+/// elements, so that it is more accurate than the fit. Empty: its run fails.
 Records record_of(const FitRow& work) {
   constexpr int points = 150, finer = 2;
   Records records;

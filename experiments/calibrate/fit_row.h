@@ -11,22 +11,23 @@
 
 namespace tress::experiments::calibrate {
 
-/// How a scene without data is watched.
+/// Sampling of a simulated record, for a scene without data.
 struct SceneRecord {
   double t_end;  // s
   Noise noise;
 };
 
-/// One row: records, the strand that they are of, and how they are fitted.
+/// One row: records, their strands, and the fit options.
 struct FitRow {
   std::string data;
   std::shared_ptr<const Records> records;
-  std::optional<Friction> truth;  // none: the records were measured
+  std::optional<Friction> truth;  // empty: the records were measured
   const ModelEntry* model;
   std::vector<Specimen> strands;
   FitOptions how;
   int elements;
-  std::optional<SceneRecord> simulate = {};  // the records, when the row is measured
+  std::optional<SceneRecord> simulate = {};  // simulates the records when the row is
+                                             // measured
 
   Row identity() const;
   /// Fits, and fills the other columns.

@@ -12,20 +12,20 @@
 namespace tress::experiments::calibrate {
 namespace {
 
-// Central differences in ln gamma and ln nu: 1e-3 is off by 2e-7 of the third derivative,
-// and Newton's tolerance of 1e-10 by 1e-7.
+// Central differences in ln gamma and ln nu: at 1e-3 the error is 2e-7 of the third
+// derivative, and Newton's tolerance of 1e-10 contributes 1e-7.
 constexpr double difference = 1e-3;
 constexpr double tolerance = 1e-7;  // of ln gamma and ln nu
 
 constexpr double too_correlated = 0.99;
 constexpr double widest = 2.302585092994046;  // ln 10
-constexpr double deviations = 4;  // of an autocorrelation, whose one is 1/sqrt(n)
+constexpr double deviations = 4;  // standard deviations 1/sqrt(n) of an autocorrelation
 constexpr int refinement = 2;     // of the step; tolerances by its 4th power
-// Half the step shows half the error of a method of order 1, three quarters of order 2:
-// the whole error is then below half a half-interval.
+// Halving the step removes half the error of a method of order 1, three quarters for
+// order 2: the whole error is then below half a half-interval.
 constexpr double largest_shift = 0.25;  // half-intervals
 
-/// The fitted values as unknowns of least squares.
+/// The fitted values as least-squares unknowns.
 class Unknowns {
  public:
   Unknowns(const std::vector<Specimen>& strands, Fitted fitted)
@@ -41,9 +41,9 @@ class Unknowns {
     if (nu_) x.push_back(std::log(friction.nu));
     return x;
   }
-  /// Of the first strand; a known value may differ from strand to strand.
+  /// For the first strand; a known value may differ between strands.
   Friction friction(In x) const { return friction(x, strands_.front()); }
-  /// Of `finer` times as many elements. Empty: out of range.
+  /// With `finer` times as many elements. Empty: out of range.
   std::vector<BuiltStrand> strands(In x, int finer) const {
     constexpr double most = 1e6;
     const auto [gamma, nu] = friction(x);
@@ -64,7 +64,7 @@ class Unknowns {
   bool gamma_, nu_;
 };
 
-/// The records as the fit sees them, and their common scale (m, or 1 of standard errors).
+/// The records as used by the fit, and their common scale (m, or 1 with standard errors).
 struct Measured {
   std::vector<std::vector<double>> values;
   double scale = 1;
@@ -184,12 +184,12 @@ void Fit::describe(const LeastSquares& least, FrictionFit& fit) const {
   judge(half, fit);
 }
 
-/// The largest move of a fitted value, over half its interval, when the runs are these.
+/// The largest change of a fitted value, over half its interval, for these runs.
 double Fit::shift(const LeastSquares& least, const std::vector<double>& half,
                   const FitOptions& how, int finer) const {
   std::vector<double> r(least.residual.size());
   if (!residuals(least.x, how, finer, r)) return Estimate::none;
-  // The step left at the optimum is not zero to rounding.
+  // The remaining step at the optimum is not zero to rounding.
   const std::vector<double> now = least.step(least.residual), then = least.step(r);
   double most = 0;
   for (std::size_t j = 0; j < half.size(); ++j) {

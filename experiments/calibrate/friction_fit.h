@@ -10,7 +10,7 @@
 
 namespace tress::experiments::calibrate {
 
-/// Which of the two a fit looks for; the other one is known.
+/// The fitted values; the other one is known.
 enum class Fitted { both, gamma, nu };
 
 struct FitOptions : Watch {
@@ -18,7 +18,7 @@ struct FitOptions : Watch {
   double confidence = 0.95;  // of the intervals
 };
 
-/// A fitted value and its interval; without one when it is known, not fitted.
+/// A fitted value and its interval; no interval for a known value.
 struct Estimate {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double value = none, low = none, high = none;
@@ -32,19 +32,20 @@ struct FrictionFit {
   double rms = Estimate::none;              // m, of measured less fitted
   double reduced_chi2 = Estimate::none;     // where standard errors are known
   double autocorrelation = Estimate::none;  // of successive residuals
-  double step_shift = Estimate::none;  // largest move with half the step, half-intervals
+  double step_shift = Estimate::none;  // largest change at half the step, half-intervals
   double elements_shift = Estimate::none;  // the same with twice as many elements
   int degrees = 0;      // of freedom: points - fitted values - constants of the records
   int evaluations = 0;  // simulations of all records
   std::string status = "ok", reason;
 };
 
-/// The strands of the records: `parameters` with what each record says. Throws InputError
-/// at the record's cell on what the model does not know or the fit looks for.
+/// The strands of the records: `parameters` overridden by each record's settings. Throws
+/// InputError at the record's cell on keys that the model does not have or the fit
+/// determines.
 std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model,
                                  const Parameters& parameters, Fitted fitted);
-/// That of the scene, for each record; throws InputError at a cell that says what the
-/// scene says.
+/// The scene's strand, for each record; throws InputError at a cell that sets what the
+/// scene defines.
 std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 
 /// Internal friction gamma and air drag nu from damped oscillations, as [Bertails et al.
@@ -53,28 +54,27 @@ std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 ///
 ///     min_x sum_k ((y_k - c_record - s_k(x))/sigma_k)^2,
 ///
-/// s the simulated signal and c the constant of a displacement, which is the weighted
-/// mean of y - s: taken out of residuals and of their derivatives, so that statistics
-/// are those of a fit with c unknown. Standard errors count relative to each other; their
-/// common size is what the residuals say. Intervals are exp(x_j +- t sqrt(C_jj s^2)),
-/// with C = (J^T J)^-1, s^2 the sum of squares over the degrees of freedom and t
+/// with s the simulated signal and c the constant of a displacement, the weighted mean of
+/// y - s: it is removed from residuals and their derivatives, so that statistics are
+/// those of a fit with c unknown. Standard errors count relative to each other; their
+/// common scale is estimated from the residuals. Intervals are exp(x_j +- t sqrt(C_jj
+/// s^2)), with C = (J^T J)^-1, s^2 the sum of squares over the degrees of freedom and t
 /// Student's quantile.
 ///
 /// A mode k of a strand of mass per length m decays at (nu/m + gamma c_k)/2, with c_k =
-/// omega_k^2/(EI) for a straight weightless strand: one mode tells only the sum, two
-/// modes or strands of two lengths (omega ~ 1/L^2) tell both. Status:
+/// omega_k^2/(EI) for a straight weightless strand: one mode determines only the sum, two
+/// modes or strands of two lengths (omega ~ 1/L^2) determine both. Status:
 ///
 ///     ok
 ///     not_identified  |correlation| above 0.99 (the interval is 7 times that of one
-///     value
-///                     alone), or an interval wider than tenfold each way
-///     time_error      half the step moves a value by more than a quarter of half its
-///                     interval
-///     space_error     twice as many elements do
-///     misfit          residuals follow each other as errors of measurement do not: model
-///                     or strand are not those of the record, the interval is too narrow
-///     solver_error    the fit did not converge, or a run failed, one of half the step
-///     too
+///                     value alone), or an interval wider than tenfold each way
+///     time_error      halving the step changes a value by more than a quarter of half
+///                     its interval
+///     space_error     doubling the elements does
+///     misfit          successive residuals are correlated, unlike measurement errors:
+///                     model or strand are not those of the record, the interval is too
+///                     narrow
+///     solver_error    the fit did not converge, or a run failed, also at half the step
 FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& strands,
                          const FitOptions& how);
 

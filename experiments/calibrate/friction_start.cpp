@@ -9,8 +9,8 @@
 namespace tress::experiments::calibrate {
 namespace {
 
-constexpr double negligible = 1e-30;  // in either unit: beside what is fitted alone
-constexpr int tenths = 6;             // of gamma tried
+constexpr double negligible = 1e-30;  // in either unit: relative to a value fitted alone
+constexpr int tenths = 6;             // number of tenths of gamma tried
 
 double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) /
@@ -39,8 +39,8 @@ double decay_rate(const Record& record, Observed observed) {
 Friction friction_start(const Records& records, const std::vector<Specimen>& strands,
                         Observed observed, Fitted fitted,
                         const std::function<double(const Friction&)>& misfit) {
-  // Geometric means over the records; one that does not decay counts as decaying by a
-  // tenth.
+  // Geometric means over the records; one that does not decay counts with a tenth of the
+  // decay.
   double log_nu = 0, log_gamma = 0;
   for (std::size_t i = 0; i < strands.size(); ++i) {
     const Record& record = records.all[i];

@@ -1,6 +1,6 @@
-// Which internal friction and which air drag does a measured oscillation of a strand
-// tell, and how well? Without data of one's own: does a fit find the truth of simulated
-// records?
+// Which internal friction and which air drag follow from a measured oscillation of a
+// strand, and how accurately? Without measured data: does a fit recover the true values
+// of simulated records?
 #include "experiments/calibrate/calibrate_claims.h"
 #include "experiments/calibrate/fit_grid.h"
 #include "experiments/run/experiment.h"
@@ -41,7 +41,7 @@ constexpr Column columns[] = {
     {"evaluations", "simulations of all records"},
 };
 
-/// Of simulated records: what they are there to show.
+/// For simulated records, non-ok rows are expected results.
 bool finding(const Row& row) {
   return row.has("gamma_true_kg_m3_s") &&
          (row.status() == "not_identified" || row.status() == "time_error" ||

@@ -126,7 +126,7 @@ class Reader {
   Observed observed_;
   std::size_t time_ = 0, amplitude_ = 0;
   std::optional<std::size_t> sigma_;
-  std::vector<std::size_t> labels_;  // columns that tell records apart
+  std::vector<std::size_t> labels_;  // columns that distinguish records
 };
 
 }  // namespace

@@ -98,7 +98,7 @@ Records planned(const ShippedRecords& shipped) {
   return records;
 }
 
-/// The times of the first swings instead.
+/// Replaces the times by those of the first swings.
 void take_swing_times(Record& record, const Parameters& strand, const Watch& watch) {
   const auto system = find_model(model).make(strand);
   const TipSignal signal = run_tip_signal(watch.integrator, *system, watch.options,

@@ -12,8 +12,8 @@
 namespace tress::experiments::calibrate {
 
 /// Records under experiments/calibrate/data, none of them measured: simulated with known
-/// friction and drag, to which errors were added. The strands are hairs of default
-/// material and section in a default scene but for `strand` and their lengths.
+/// friction and drag, with added errors. The strands are hairs of default material and
+/// section in a default scene except for `strand` and their lengths.
 struct ShippedRecords {
   std::string_view name;  // experiments/calibrate/data/<name>.csv
   std::string_view what;
@@ -22,7 +22,7 @@ struct ShippedRecords {
   ModelSettings strand;
   bool planar;   // the motion stays in a plane
   double t_end;  // s
-  int points;    // of each record; of an envelope the first so many swings
+  int points;    // per record; for an envelope its first swings
   double sigma;  // m, Gaussian errors of zero mean, independent
   std::uint64_t seed;
   double gamma, nu;  // the truth, kg m^3/s and kg/(m s)
@@ -32,19 +32,19 @@ struct ShippedRecords {
 
 std::span<const ShippedRecords> shipped_records();
 
-/// The place of its file in the source tree.
+/// Path of its file in the source tree.
 std::string file_of(const ShippedRecords& shipped);
 
-/// Parameters of super_helix that see the strands of `shipped`, but for what the records
-/// themselves say.
+/// Parameters of super_helix for the strands of `shipped`, except those given by the
+/// records.
 ModelSettings settings_of(const ShippedRecords& shipped, int elements);
 
-/// How the records came to be: super_helix of more elements than a fit takes by the
-/// implicit midpoint at 0.5 ms, and errors of GSL's mt19937.
-/// Another seed: another sample of the same errors.
+/// Generates the records: super_helix with more elements than a fit uses, implicit
+/// midpoint at 0.5 ms, and errors from GSL's mt19937. Another seed gives another sample
+/// of the same errors.
 Records synthetic(const ShippedRecords& shipped, std::uint64_t seed);
 
-/// As a file: to 0.1 ms and 1 um.
+/// As CSV text: to 0.1 ms and 1 um.
 std::string csv_of(const ShippedRecords& shipped, const Records& records);
 
 }  // namespace tress::experiments::calibrate

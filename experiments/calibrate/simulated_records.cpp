@@ -21,7 +21,7 @@ double weight(const Record& record, std::size_t k) {
   return record.sigma.empty() ? 1 : 1 / (record.sigma[k] * record.sigma[k]);
 }
 
-/// Takes the weighted mean out of values of a record.
+/// Subtracts the weighted mean from values of a record.
 void centre(const Record& record, std::vector<double>& values) {
   double sum = 0, weights = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -34,7 +34,7 @@ void centre(const Record& record, std::vector<double>& values) {
 std::vector<std::vector<double>> simulated(const Records& records,
                                            const std::vector<BuiltStrand>& strands,
                                            const Watch& watch) {
-  // A swing that lasts beyond the last envelope is still seen whole.
+  // Long enough to complete a swing that extends beyond the last envelope.
   const double longer = watch.observed == Observed::envelope ? 1.25 : 1;
   std::vector<std::vector<double>> all;
   for (std::size_t i = 0; i < records.all.size(); ++i) {

@@ -10,7 +10,7 @@
 
 namespace tress::experiments::calibrate {
 
-// What parameters of strand models call them.
+// Parameter names in strand models.
 inline constexpr const char* gamma_key = "internal_friction_kg_m3_s";
 inline constexpr const char* nu_key = "drag_kg_m_s";
 
@@ -24,20 +24,20 @@ struct BuiltStrand {
   std::vector<GuardedStrand> guarded;
 };
 
-/// A strand of which records are made: all but its friction is known.
+/// A strand of which records are made; all but its friction is known.
 struct Specimen {
   Friction friction;    // its own
   double length, mass;  // m, kg
-  /// With this friction, of `finer` (a power of two) times as many elements.
+  /// With this friction and `finer` (a power of two) times as many elements.
   std::function<BuiltStrand(const Friction&, int finer)> build;
 };
 
-/// Of a model's parameters (models/strand/strand_parameters.h).
+/// From a model's parameters (models/strand/strand_parameters.h).
 Specimen specimen(const ModelEntry& model, const Parameters& parameters);
 
-/// The strand of a scene, with all that acts on it; nu is that of [effects.linear_drag].
-/// Throws InputError on a scene without or of several strands, and on a strand that flies
-/// freely.
+/// The strand of a scene with everything that acts on it; nu is that of
+/// [effects.linear_drag]. Throws InputError unless the scene has exactly one strand, and
+/// on a strand that flies freely.
 Specimen specimen(const Scene& scene);
 
 }  // namespace tress::experiments::calibrate

@@ -23,7 +23,7 @@ const Row* find(const std::vector<Row>& rows, std::string_view study,
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of all pairs of gains that were run, and whether any was.
+/// Over all pairs of gains that were run, and whether any was.
 struct Feedback {
   double best = infinity;
   bool run = false;
@@ -58,7 +58,8 @@ void check_feedback(const std::vector<Row>& rows, Verdicts& verdicts) {
 /// Slightly less than critical damping may cross the threshold sooner, at the price of an
 /// overshoot; without overshoot nothing is faster than critical damping.
 void check_recovery(const std::vector<Row>& rows, Verdicts& verdicts) {
-  constexpr double overshoots = 1e-6;  // of the violation, the threshold of recovery
+  constexpr double overshoots = 1e-6;  // relative to the violation, the threshold of
+                                       // recovery
   const std::string claim =
       "critical damping recovers fastest of all that do not overshoot";
   bool any = false;
@@ -96,8 +97,8 @@ void check_limits(const std::vector<Row>& rows, Verdicts& verdicts) {
   if (!any) verdicts.not_judged("explicit methods: limit within 5 % of theory");
 }
 
-/// Strands that predictor_corrector does not bring to the end at 1/120 s, and after how
-/// many of the 60 steps they stop.
+/// Strands that predictor_corrector does not complete at 1/120 s, and after how many of
+/// the 60 steps they stop.
 constexpr std::string_view stops =
     "a step of 1/120 s has no solution; at 1 ms, or with linear springs, lengths hold";
 constexpr KnownLimit stopped[] = {{"der stretch=inextensible", 0, 59, stops},
@@ -118,8 +119,8 @@ void check_corrected(const Row& row, Verdicts& verdicts) {
   }
 }
 
-/// The first seed's claim: corrected lengths where springs, solved once a step, give way.
-/// A run that failed keeps no length.
+/// The claim that length correction holds where springs, solved once a step, yield. A
+/// failed run does not count as keeping lengths.
 void check_strands(const std::vector<Row>& rows, Verdicts& verdicts) {
   bool corrected = false, stretched = false;
   for (const Row& row : rows) {
@@ -144,10 +145,10 @@ void check_strands(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-/// What the study of formulations shows of a system: largest violation allowed of each
-/// row that `speaks_of` picks.
+/// Claim of the study of formulations about a system: largest violation allowed in each
+/// row that `speaks_of` selects.
 struct DriftClaim {
-  std::string_view words;  // behind system and method
+  std::string_view words;  // follows the names of system and method
   bool (*speaks_of)(const Row&);
   double (*most)(const Row&);
 };

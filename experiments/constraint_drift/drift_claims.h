@@ -7,10 +7,10 @@
 
 namespace tress::experiments::constraint_drift {
 
-/// What the table of constraint_drift must show: feedback that helps symplectic Euler,
-/// projection and RATTLE at rounding, index 2 near its tolerance, parametric forms
-/// without drift, critical damping fastest of all that do not overshoot, limits of the
-/// gains as predicted, lengths of shaken strands corrected.
+/// The claims about the table of constraint_drift: feedback helps symplectic Euler,
+/// projection and RATTLE are at rounding level, index 2 is near its tolerance, parametric
+/// forms do not drift, critical damping is fastest without overshoot, limits of the gains
+/// are as predicted, lengths of shaken strands are corrected.
 void check_drift_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::constraint_drift

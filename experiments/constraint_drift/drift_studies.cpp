@@ -17,7 +17,7 @@ struct Scene {
   Parameters parameters;
 };
 
-/// The user's --set under what makes the scene what it is.
+/// The user's --set, overridden by the settings that define the scene.
 Scene scene(std::string_view name, std::string_view model, const Settings& user,
             const ModelSettings& fixed) {
   const ModelEntry& entry = find_model(model);
@@ -39,7 +39,7 @@ std::vector<Scene> scenes(const Settings& user) {
           scene("truss", "tinkertoys", user, {{"structure", "truss"}, {"size", "1"}})};
 }
 
-constexpr double quick_work = 1e7;  // of a run
+constexpr double quick_work = 1e7;  // per run
 
 // Baumgarte's gains for the table: a slow and a fast critically damped pair.
 constexpr double feedback_rates[] = {10, 100};  // omega, 1/s
@@ -56,8 +56,8 @@ void add_formulations(const CommandLine& line, const Settings& user,
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       for (const auto& [formulation, order] : entry.formulations) {
         if (!refusal(entry, *system, formulation).empty()) continue;
-        // Redundant constraints are analysed anew at every factorisation: a tenth will
-        // do. Of all methods on the chain 10 s take a minute.
+        // Redundant constraints are analysed anew at every factorisation: a tenth of the
+        // time suffices. For all methods on the chain 10 s take a minute.
         const auto shorter = [&line](double whole, double quick) {
           return line.quick ? quick : whole;
         };
@@ -67,8 +67,8 @@ void add_formulations(const CommandLine& line, const Settings& user,
         DriftStudy study{"formulation", scene.name, scene.model, scene.parameters,
                          entry.id,      base,       t_end};
         study.options.formulation = formulation;
-        // IDA drags itself along when its multipliers are in the error test; enough steps
-        // to see by how much, then the row says so.
+        // IDA becomes very slow when its multipliers are in the error test; enough steps
+        // to measure by how much, then the row reports it.
         study.options.max_steps =
             std::min(base.max_steps, line.quick ? 20'000L : 200'000L);
         if (line.quick && base.max_work == 0) study.options.max_work = quick_work;
@@ -89,7 +89,7 @@ void add_formulations(const CommandLine& line, const Settings& user,
           add_steps();
         }
         if (entry.id == "ida" && formulation == Formulation::index2_ggl) {
-          // Multipliers held to the tolerance of the coordinates: harmless out of the
+          // Multipliers held to the tolerance of the coordinates: harmless outside the
           // error test, ruinous in it.
           apply(study.options, "multiplier_atol", "1", "ida");
           add_steps();
@@ -133,7 +133,7 @@ void add_recovery(const Settings& user, std::vector<DriftStudy>& studies) {
   const Scene scene = circle_bead(user);
   const Options base = user.options();
   // RK4 at a tenth of the table's step: its own drift stays below a millionth of the
-  // violation, so that what is seen is the feedback.
+  // violation, so that only the feedback is observed.
   for (const double omega : {20.0, 100.0}) {
     for (const double ratio : {0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 10.0}) {
       DriftStudy study{"recovery", scene.name, scene.model, scene.parameters, "rk4",
@@ -156,13 +156,13 @@ void add_recovery(const Settings& user, std::vector<DriftStudy>& studies) {
   }
 }
 
-/// The methods that a strand of stiff springs or rigid links is commonly stepped with.
+/// The common methods for a strand of stiff springs or rigid links.
 constexpr std::string_view usual[] = {"semi_implicit_euler", "backward_euler",
                                       "generalized_alpha",   "rattle",
                                       "predictor_corrector", "xpbd"};
 
-/// Lengths of a shaken strand by every model that knows its lengths, at the step of one
-/// frame in two and at a short one.
+/// Lengths of a shaken strand by every model that provides them, at half a frame per step
+/// and at a short step.
 void add_strands(const CommandLine& line, const Settings& user,
                  std::vector<DriftStudy>& studies) {
   const StrandScene& scene = find_strand_scene("shake");

@@ -18,15 +18,16 @@ struct DriftStudy {
   std::string_view integrator;
   Options options;
   double t_end;              // s
-  double violation = 0;      // m, put into the start state
+  double violation = 0;      // m, of the initial state
   std::string variant = {};  // of a strand model
 };
 
 /// The table of constraint_drift:
 ///
-/// formulation: four constrained systems by every integrator in every form it knows.
+/// formulation: four constrained systems by every integrator in every form it supports.
 /// grid: a bead on a circle by explicit methods over Baumgarte's gains.
-/// recovery: the same bead, put off its circle, back by feedback of various damping.
+/// recovery: the same bead, displaced off its circle, pulled back by feedback of various
+///   damping.
 /// strands: lengths of a shaken hair by every strand model and the usual methods.
 std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& user);
 

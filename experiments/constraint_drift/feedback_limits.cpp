@@ -16,13 +16,13 @@ constexpr double start_violation = 1e-6;  // m, far inside the linear range
 constexpr double growth = 1e3;
 
 // A swing of 0.1 rad about the bottom (-pi/2): the method's own drift, which grows as the
-// speed squared and as 1/alpha, stays below the growth that is looked for.
+// speed squared and as 1/alpha, stays below the growth to be detected.
 constexpr const char* gentle_start = "-1.4708";
 
-/// Above this (sqrt(alpha) dt) the method is called unlimited.
+/// Above this (sqrt(alpha) dt) the method counts as unlimited.
 constexpr double beyond = 50;
 
-// Weakly damped growth has to be fast enough to be seen.
+// Weakly damped growth has to be fast enough to be measurable.
 constexpr double least_measured = 0.099, most_measured = 10.01;  // zeta
 
 struct FeedbackLimit {

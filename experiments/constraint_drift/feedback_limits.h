@@ -7,9 +7,9 @@
 
 namespace tress::experiments::constraint_drift {
 
-/// The study `limit`: how large may Baumgarte's gains be before the feedback itself
-/// diverges, beside what the method's step matrix says (amplification.h). The prediction
-/// is for the whole map of gains; it is measured where the feedback is of use, on a bead
+/// The study `limit`: the largest Baumgarte gains before the feedback itself diverges,
+/// beside the prediction from the method's step matrix (amplification.h). The prediction
+/// covers the whole map of gains; it is measured where the feedback is useful, on a bead
 /// that swings gently at the bottom of a circle.
 std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user);
 

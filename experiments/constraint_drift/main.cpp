@@ -53,7 +53,7 @@ constexpr Column columns[] = {
     {"rel_gap", "limit: measured over predicted, minus one"},
 };
 
-// A bead that is this far (m) off its wire, or links this much too long, have failed.
+// Failure threshold (m): a bead off its wire, or links too long, by this much.
 constexpr double escape = 10;
 
 bool adaptive(std::string_view integrator) {
@@ -135,7 +135,7 @@ void measure(const DriftStudy& s, int repeat, Row& row) {
     row.set("recovery_time_s", monitor.recovery_time());
     row.set("overshoot", monitor.overshoot());
   }
-  // The other studies ask how far rather than at what cost.
+  // The other studies measure drift, not cost.
   const bool cost_matters = s.study == "formulation" || s.study == "strands";
   const auto again = [&] {
     (void)simulate(s.integrator, *system, s.options, start, s.t_end);
@@ -159,10 +159,10 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// Divergence beyond a limit is what the gains are for; the chain and the redundant truss
-/// are there to break methods; IDA on index 3, or with multipliers in its error test, is
-/// shown with its known failures; a shaken strand is too much for some steps. Anything
-/// else that fails on the bead is a mistake.
+/// Divergence beyond a limit is expected in the studies of gains; the chain and the
+/// redundant truss are chosen to break methods; IDA on index 3, or with multipliers in
+/// its error test, is shown with its known failures; a shaken strand is too demanding for
+/// some steps. Any other failure on the bead is an error.
 bool finding(const Row& row) {
   return row.status() == "diverged" || row.text("system") == "chain of 10" ||
          row.text("study") == "strands" || row.text("system") == "truss" ||

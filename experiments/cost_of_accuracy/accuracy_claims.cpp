@@ -10,13 +10,14 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// A comparison with what is not a number must not pass.
+/// Comparisons with NaN must not pass.
 double shown(double value) { return std::isfinite(value) ? value : never; }
 
 struct Worst {
   double refined = 0;      // error against the finer reference over target
   double margin = 0;       // of the neighbours
-  double cheaper = never;  // wall time of what meets a winner's target, over its own
+  double cheaper = never;  // wall time of a run that meets a winner's target, over the
+                           // winner's
 };
 
 bool meets(const Row& row, const Row& winner) {
@@ -40,7 +41,7 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     worst.margin = std::max(worst.margin, shown(winner.number("margin")));
     for (const Row& row : rows) {
       if (row.text("kind") == "as_given" || !meets(row, winner)) continue;
-      // As Finalists::tied: a time that repeats badly says no more than that.
+      // As Finalists::tied: poorly repeatable times widen the tie.
       const double tie = std::max(
           toss_up, 1 + (row.has("time_scatter") ? row.number("time_scatter") : 0));
       worst.cheaper = std::min(worst.cheaper, tie * row.number("wall_s_per_sim_s") /
@@ -48,7 +49,7 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     }
   }
   for (const auto& [scene, worst] : scenes) {
-    // The advice comes without a refined reference: it answers sooner.
+    // Advice runs without a refined reference to answer sooner.
     if (worst.refined > 0) {
       verdicts.check(scene +
                          ": winners keep their error with the reference refined once "
@@ -59,7 +60,7 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
                        ": neighbours of winners are within 1.5 times the target (largest "
                        "margin)",
                    worst.margin <= neighbour_allowance, worst.margin);
-    // Two times of a busy machine may differ by more than both scattered: no verdict.
+    // Two times on a loaded machine may differ by more than both scatters: no verdict.
     verdicts.figure(
         scene +
             ": least time of what meets a winner's target, with its tie, over "

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// What the table must show, of every scene: its winners keep their error with the
-/// reference refined once more; neither are they luck, by their neighbours; and no run
-/// that stands beside a winner, for the same target or in the front, beats it.
+/// The claims about every scene of the table: its winners keep their error against a once
+/// more refined reference; their neighbours confirm that they are not accidental; and no
+/// run listed beside a winner, for the same target or in the front, beats it.
 void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::cost_of_accuracy

@@ -45,12 +45,12 @@ const Row* find(const std::vector<Row>& rows, std::string_view kind) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Whether the search ended before it had tried all.
+/// Whether the search ended early.
 bool cut(const Row& row) {
   return row.text("search").find("cut") != row.text("search").npos;
 }
 
-/// What to do about a search that did not come to its end.
+/// Advice for a search that ended early.
 std::string more(const Row& row) {
   const bool by_the_clock = row.text("search").find("clock") != row.text("search").npos;
   return fmt::format(
@@ -58,7 +58,7 @@ std::string more(const Row& row) {
       by_the_clock ? "--timeout with more time" : "--set search_work with more work");
 }
 
-/// Where no run meets the target.
+/// If no run meets the target.
 std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& best) {
   const double target = 1e2 * best.number("target_error_rel");
   std::vector<std::string> lines{
@@ -72,8 +72,7 @@ std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& be
   return lines;
 }
 
-/// The file's own configuration where it is worse, else the dearest of the replaced
-/// choices.
+/// The file's own configuration if it is worse, else the dearest of the replaced choices.
 std::string what_not(const std::vector<Row>& rows, const Row& best) {
   const double target = best.number("target_error_rel");
   if (const Row* given = find(rows, "as_given")) {

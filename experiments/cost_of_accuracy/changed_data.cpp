@@ -21,7 +21,8 @@ Scene changed(Scene scene, Change change) {
 
 namespace {
 
-/// Tips up and down less those of the data as they are, as the two sides of a reference.
+/// Tips with data up and down minus those with the given data, as the two sides of a
+/// reference.
 SceneReference differences(const Scene& given, const Comparison& comparison,
                            const ReferenceCut& cut) {
   const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};

@@ -25,7 +25,7 @@ namespace {
 constexpr double target = 0.01;
 constexpr int ladder[] = {3, 5, 7, 10, 14, 20, 28, 40, 56};
 constexpr double coarsest = 1 / 60.0, finest = 1e-4;  // s
-constexpr double quick_work = 1e7, usual_work = 1e9;  // of a row's search
+constexpr double quick_work = 1e7, usual_work = 1e9;  // per search of a row
 constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "implicit_midpoint",
                                       "generalized_alpha",
@@ -34,11 +34,11 @@ constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "rattle",
                                       "backward_euler"};
 constexpr std::size_t usual_quick = 5;  // the first of them
-// m/s that gravity gives a hair in 0.1 s: what a change of linear momentum is compared
-// with where there may be none at the start.
+// m/s that gravity gives a hair in 0.1 s: the scale for changes of linear momentum, which
+// may be zero at the start.
 constexpr double fall = 0.981;
 
-/// What is compared of a scene, with the rod's own answer.
+/// The compared scene with its reference.
 struct Compared {
   Scene scene;
   TipSampling sampling;
@@ -51,7 +51,7 @@ std::unique_ptr<System> system_of(const Scene& scene) {
                                 make_effects(scene));
 }
 
-/// One method on it; the scene is as cut in its file.
+/// One method on it; the scene has its file's discretisation.
 struct MethodWork {
   std::shared_ptr<const Compared> compared;
   Method method;
@@ -70,8 +70,8 @@ struct MethodWork {
   }
 };
 
-/// A run whose energy sits in stretching that no hair has meets no target, wherever its
-/// tip may be.
+/// A run whose energy sits in unphysical stretching meets no target, wherever its tip may
+/// be.
 CheapRun attempt(const MethodWork& work, int elements, double dt) {
   const Scene scene = work.with(elements);
   const auto [t_end, samples, length] = work.compared->sampling;
@@ -85,7 +85,7 @@ CheapRun attempt(const MethodWork& work, int elements, double dt) {
   return {elements, dt, error, total_work(run.stats, run.unknowns)};
 }
 
-/// What the run does to lengths, momentum and energy.
+/// Measures the run's errors in lengths, momentum and energy.
 void observe(const MethodWork& work, const CheapRun& best, Row& row) {
   const Scene scene = work.with(best.elements);
   const auto system = system_of(scene);
@@ -110,7 +110,7 @@ void observe(const MethodWork& work, const CheapRun& best, Row& row) {
   row.set("angular_error_rel", momentum->angular() / momentum->angular_start());
 }
 
-/// Unknowns and nonzeros of the matrix of a step.
+/// Unknowns and nonzeros of a step's matrix.
 void set_size(System& system, Row& row) {
   const Layout layout = system.layout();
   const int unknowns = layout.coordinates + layout.constraints;
@@ -145,7 +145,7 @@ void measure(const MethodWork& work, Row& row) {
   observe(work, *best, row);
 }
 
-/// What the scene's model has that is not its default, for every model that has it.
+/// The non-default options of the scene's model, for every model that has them.
 ModelSettings own_options(const Scene& scene) {
   ModelSettings all;
   for (const Parameter& p : model_table_parameters(*scene.model)) {
@@ -187,7 +187,7 @@ std::vector<std::string_view> integrators_of(const CommandLine& line) {
   return all;
 }
 
-/// Null where the model cannot do the scene: one without curls, or a free root.
+/// Null where the model cannot represent the scene: one without curls, or a free root.
 std::unique_ptr<System> system_or_none(const Scene& scene, const Method& method) {
   try {
     return system_of(with_method(scene, method));

@@ -7,11 +7,11 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// So many of the cheapest are timed again before one of them wins.
+/// Number of the cheapest runs that are timed again before one of them wins.
 constexpr std::size_t contenders = 5;
 
-/// Where so few methods are asked for they are tried near the winner, with up to so many
-/// times its substeps.
+/// If no more methods than this are considered they are tried near the winner, with up to
+/// `dearest` times its substeps.
 constexpr std::ptrdiff_t few_methods = 6;
 constexpr int dearest = 16;
 
@@ -45,7 +45,8 @@ bool Finalists::tied(const Trial& run, const Trial& best) const {
   return run.wall_s <= std::max(toss_up, 1 + scatter(best)) * best.wall_s;
 }
 
-/// The same cut by methods with some of the options only: one of them may do as well.
+/// The same elements and substeps by methods with a subset of the options: one may do as
+/// well.
 void Finalists::time_simpler(const Trial& run) {
   const Method& method = methods_[run.method];
   for (std::size_t i = 0; i < methods_.size(); ++i) {
@@ -64,7 +65,7 @@ void Finalists::time_simpler(const Trial& run) {
   }
 }
 
-/// As it is after its neighbours were examined.
+/// The run after its neighbours were examined.
 Trial Finalists::known(const Trial& run) {
   Trial now = *search_.run(run.method, run.elements, run.substeps);
   now.wall_s = run.wall_s;
@@ -113,8 +114,9 @@ std::optional<Trial> Finalists::settled(double target, const Accept& accept) {
   return {};
 }
 
-/// The search may have given up the methods that are asked for now: of few, one run that
-/// meets the target is looked for near the winner. The cheapest is tuned as well as that.
+/// The search may have dropped the methods considered here: if they are few, one run that
+/// meets the target is sought near the winner. The cheapest is then tuned like the
+/// winner.
 std::optional<Trial> Finalists::replaced(
     const Trial& winner, double target, const std::function<bool(const Method&)>& other) {
   const Accept accept = [&](const Trial& run) { return other(methods_[run.method]); };
@@ -135,7 +137,7 @@ std::optional<Trial> Finalists::replaced(
   return settled(target, accept);
 }
 
-/// Makes sure that the methods with another word are there; false where there are none.
+/// Ensures that the methods with another option value exist; false if there are none.
 bool Finalists::varied(const Method& method, std::string_view choice) {
   const std::vector<Method> others = with_other_words(given_, method, choice);
   for (const Method& other : others) {
@@ -163,7 +165,7 @@ std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target
     return found != nullptr && search_.holds(*found, target);
   };
   int elements = winner.elements;
-  // Errors of space and time may have cancelled each other: more elements then.
+  // Spatial and temporal errors may have cancelled each other: more elements then.
   while (!meets(elements) && elements < 2 * winner.elements) {
     elements += std::max(1, elements / 10);
   }

@@ -15,24 +15,25 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// Runs whose times are this near, over the shorter, are tied: the search tells no less
-/// apart. Wider where the shorter does not repeat as well. One stands for all that are
-/// tied, by what no machine changes: fewest options off their defaults, then least
-/// elements x substeps, then fewest elements, then the order of the catalogue.
+/// Runs whose times differ by less than this, relative to the shorter, are tied: the
+/// search resolves no less. The margin widens where the shorter does not repeat as well.
+/// Machine-independent criteria select among tied runs: fewest options off their
+/// defaults, then least elements x substeps, then fewest elements, then the order of the
+/// catalogue.
 inline constexpr double toss_up = resolution;
 
-/// The answer for one wanted error.
+/// The answer for one target error.
 struct BestRuns {
   Trial winner;
   std::optional<Trial> runner_up;  // another model or integrator
-  /// What each choice of the winner contributes: the cheapest run with another; none
-  /// where nothing that was tried meets the target.
+  /// Contribution of each choice of the winner: the cheapest run with another choice;
+  /// empty where no tried run meets the target.
   std::vector<std::pair<std::string, std::optional<Trial>>> without;
 };
 
-/// What comes of a search: the few runs that are shown, timed once more, each by the
-/// least of all its times. What the search did not try but for a winner's other options
-/// is added to its methods.
+/// The result of a search: the few runs that are shown, timed again, each by its least
+/// time. Variants of a winner's options that the search did not try are added to its
+/// methods.
 ///
 /// All of them count: their neighbours were examined (Trial::judged).
 class Finalists {
@@ -41,28 +42,28 @@ class Finalists {
 
   Finalists(Search& search, const Scene& given, std::vector<Method>& methods, Time time);
 
-  /// Nothing where no run meets the target.
+  /// Empty where no run meets the target.
   std::optional<BestRuns> of(double target);
   std::optional<Trial> within(double wall_s, double floor);
-  /// The run that is judged best, examined or not; of those the cheapest.
+  /// The run judged best, examined or not; the cheapest of equals.
   std::optional<Trial> nearest();
   bool cut() const { return search_.cut(); }
-  /// Grows as long as the answers may still change: looking for what replaces a choice
-  /// now and then finds something better.
+  /// Grows while the answers may still change: the search for replaced choices
+  /// occasionally finds something better.
   std::size_t known() const { return search_.runs().size() + times_.size(); }
   /// The Pareto front of all runs with errors up to `loosest`.
   std::vector<Trial> front(double floor, double loosest);
   /// Of a run that is shown, see WallTime.
   double scatter(const Trial& run) const { return times_.at(place(run)).scatter; }
-  /// Whether the time of `run` cannot be told from that of `best`, which is shown.
+  /// Whether the time of `run` is indistinguishable from that of `best`, which is shown.
   bool tied(const Trial& run, const Trial& best) const;
 
  private:
   using Accept = std::function<bool(const Trial&)>;
 
-  /// Of the search, with the times of here; once it is cut those that were examined.
+  /// Of the search, with the times measured here; once it is cut only those examined.
   std::vector<Trial> runs() const;
-  bool time(const Trial& run);  // false: it was before
+  bool time(const Trial& run);  // false: it was timed before
   void time_simpler(const Trial& run);
   Trial known(const Trial& run);
   std::optional<Trial> counting(double target, const Accept& accept);

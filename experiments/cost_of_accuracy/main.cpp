@@ -1,5 +1,5 @@
-// For this scene and this wanted error: what is the cheapest configuration? And what is
-// the best accuracy for the time per frame that there is? With the price of every choice.
+// For a given scene and target error: what is the cheapest configuration? And what is the
+// best accuracy within a given time per frame? With the cost of every choice.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -130,7 +130,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
       plan.methods.integrators = {"semi_implicit_euler", "implicit_midpoint",
                                   "linearly_implicit_midpoint"};
     }
-    // Without torsion mass_spring does not hold the direction of curls.
+    // Without torsion mass_spring does not preserve the direction of curls.
     plan.methods.options = {"modes=bend", "tangent=stiff", "torsion"};
   }
   if (!line.elements.empty()) plan.elements = line.elements;
@@ -144,7 +144,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.longest_run = line.quick ? 2048 : 8192;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;
-  // Whoever waits for an answer does not wait for a check of the reference.
+  // Advice does not wait for a check of the reference.
   plan.refine = own.word("advise").empty();
   plan.report = !plan.refine && line.progress != ProgressMode::none;
   return plan;
@@ -190,7 +190,7 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_method_claims(rows, verdicts);
 }
 
-/// That the rod is not known well enough, or that nothing else does, is an answer.
+/// An insufficiently known rod, or the absence of an alternative, is a valid result.
 bool finding(const Row& row) {
   return row.text("kind") == "method" || row.status() == "below_reference" ||
          row.status() == "not_met" || row.status() == "diverged";

@@ -12,10 +12,10 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// The combinations of options that are tried of one model.
+/// The combinations of options tried for one model.
 std::vector<ModelSettings> option_sets(const ModelEntry& model,
                                        const std::vector<std::string>& varied) {
-  // What may be set instead of the default, which is no setting.
+  // The non-default values.
   const auto others = [&](const Parameter& p) {
     std::vector<ModelSettings> all;
     const auto words = words_of(p.choices);
@@ -47,8 +47,8 @@ std::vector<ModelSettings> option_sets(const ModelEntry& model,
   return pairs;
 }
 
-/// The model on the scene's first strand; null where it cannot do it: a model without
-/// curls, say.
+/// The model on the scene's first strand; null if the model cannot represent it: one
+/// without curls, say.
 std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& options,
                                  const Scene& scene) {
   Parameters parameters(model_table_parameters(model), std::string(model.id));
@@ -60,7 +60,7 @@ std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& o
   }
 }
 
-/// The integrator's best way to drive the system, if it has one.
+/// The integrator's preferred formulation for the system, if it has one.
 void add(const ModelEntry& model, const ModelSettings& options,
          const IntegratorEntry& entry, System& system, std::vector<Method>& all) {
   const auto usable = usable_formulations(entry, system);

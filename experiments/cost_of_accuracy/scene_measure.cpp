@@ -11,15 +11,16 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Shorter runs are repeated: reading the clock at every frame is a part of them.
+/// Shorter runs are repeated: reading the clock at every frame contributes to them.
 constexpr double short_run = 0.01;  // s
 constexpr int short_repeats = 3;
 
-/// What is timed once more runs for so long altogether: caches and clock rates settle.
+/// Runs that are timed again take at least this long in total: caches and clock rates
+/// settle.
 constexpr double long_enough = 0.01;  // s
 
 /// Mean iterations of a step beyond which no run is the cheapest: an undisturbed one
-/// takes three or four, and half as long a step takes fewer.
+/// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
 
 }  // namespace
@@ -65,7 +66,7 @@ double SceneMeasure::changed_error(const Method& method, int elements, int subst
     const Scene run = changed(scene(method, elements, substeps), change);
     return tip_error(tip_paths(run, 0, {most_iterations, most_s}).x, reference,
                      comparison_.length);
-  } catch (const std::runtime_error&) {  // and what is refused: InputError is one
+  } catch (const std::runtime_error&) {  // including refusals: InputError is one
     return std::numeric_limits<double>::infinity();
   }
 }

@@ -9,9 +9,9 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// Repeated times of one run: the least (s), since what else the machine does only adds
-/// to it, and how well it repeats, the least of every second one against that of the
-/// others, less 1.
+/// Repeated times of one run: the least (s), since other load on the machine only adds to
+/// it, and its repeatability: the least of the even-numbered times against that of the
+/// odd ones, less 1.
 struct WallTime {
   double least_s = 0, scatter = 0;
 };
@@ -20,8 +20,8 @@ WallTime wall_time(const std::vector<double>& seconds);
 /// Runs a scene by any method and compares its tips with the reference. Times are wall
 /// times of stepping on one thread, the least of several runs.
 ///
-/// A run is given up by the count of its Newton iterations, so that what comes of it does
-/// not depend on the machine, and only in an emergency after `most_s`.
+/// A run is abandoned by its count of Newton iterations, so that the result does not
+/// depend on the machine, and only in an emergency after `most_s`.
 class SceneMeasure {
  public:
   SceneMeasure(const Scene& given, const Comparison& comparison,
@@ -31,15 +31,15 @@ class SceneMeasure {
         reference_(std::move(reference)),
         changed_(std::move(changed)) {}
 
-  /// Once, and a few times more when it is short. No value where the method cannot do
-  /// the scene, fails, or is given up.
+  /// One run, repeated a few times if it is short. Empty where the method cannot
+  /// represent the scene, fails, or is abandoned.
   std::optional<Trial> quick(const Method& method, int elements, int substeps,
                              double most_s) const;
-  /// The error with changed data, against their reference; infinite where `quick` has no
-  /// value.
+  /// The error with changed data, against their reference; infinite where `quick` is
+  /// empty.
   double changed_error(const Method& method, int elements, int substeps, Change change,
                        double most_s) const;
-  /// The same as `quick` of any scene, `count` times.
+  /// As `quick` for any scene, `count` times.
   std::optional<Trial> best_of(const Scene& scene, int count) const;
   /// The time alone.
   WallTime time(const Method& method, int elements, int substeps, int count) const;

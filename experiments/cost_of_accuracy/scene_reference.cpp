@@ -20,8 +20,7 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Of the way references are made; raised when it changes, so that none of the old are
-/// taken.
+/// Version of the reference computation; increment it to invalidate stored references.
 constexpr int reference_version = 1;
 
 constexpr std::string_view columns[] = {"t_s", "strand",    "x_m",       "y_m",
@@ -98,7 +97,7 @@ SceneReference scene_reference(const Scene& given, const Comparison& comparison,
     Scene scene =
         compared(trial_scene(given, method, elements, 1, comparison.rate), comparison);
     scene.options = options;
-    // Fast swings stretch der so quickly that an old Newton matrix fails.
+    // Fast swings stretch der so quickly that an outdated Newton matrix fails.
     scene.options.refresh = Refresh::every_iteration;
     return tip_paths(scene, 0).x;
   };
@@ -146,7 +145,7 @@ std::optional<SceneReference> load_reference(const std::string& folder,
       }
     }
     return reference;
-  } catch (const std::exception&) {  // none, or damaged: it is made anew
+  } catch (const std::exception&) {  // missing or damaged: recomputed
     return {};
   }
 }

@@ -11,14 +11,14 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// What of a scene is compared: tips of so many strands at all frames up to a horizon.
+/// What is compared: the tips of `strands` strands at all frames up to a horizon.
 struct Comparison {
   double rate = 60;         // frames per second
   std::size_t frames = 30;  // the horizon
   std::size_t strands = 1;  // of a groom
   double length = 0;        // of the strands, mean (m)
-  /// Which of the strands; none: all. Typical ones of the scene as its file has it: they
-  /// are the same however strands are cut.
+  /// Indices of the strands; empty: all. They are typical ones of the scene in its file,
+  /// and so the same for every discretisation.
   std::vector<std::size_t> chosen = {};
 
   double horizon() const { return static_cast<double>(frames) / rate; }
@@ -26,11 +26,11 @@ struct Comparison {
 Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands);
 
-/// The scene as a run of the comparison: its strands, its frames.
+/// The scene restricted to the comparison's strands and frames.
 Scene compared(Scene scene, const Comparison& comparison);
 
-/// The tips of the rod itself, frame after frame from t = 0 on, as super_helix and der
-/// agree on them: models of different families, reduced and maximal coordinates.
+/// The tips of the continuous rod, frame by frame from t = 0, on which super_helix and
+/// der agree: models of different families, reduced and maximal coordinates.
 struct SceneReference {
   TipReference tips;
   std::size_t frames = 0;
@@ -42,28 +42,28 @@ struct ReferenceCut {
   ReferenceCut halved() const { return {elements / 2, substeps / 2}; }
 };
 
-/// Computed anew. Throws std::runtime_error where one of the runs fails.
+/// Always recomputed. Throws std::runtime_error where one of the runs fails.
 SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut);
 
 /// The reference up to the last frame at which the two sides are at most `gap` apart, rms
-/// from the start: undamped strands are chaotic, and beyond there nobody knows the
-/// answer. At least one frame.
+/// from the start: undamped strands are chaotic, and no answer is known beyond it. At
+/// least one frame.
 SceneReference agreed(const SceneReference& reference, const Comparison& comparison,
                       double gap);
 
-/// As far as the comparison goes.
+/// Up to the horizon of the comparison.
 SceneReference first_frames(const SceneReference& reference,
                             const Comparison& comparison);
 
-/// What the two sides of a kept reference are, in words for its manifest.
+/// Descriptions of the two sides of a stored reference, for its manifest.
 struct ReferenceSides {
   std::string what, one, other;
 };
 
-/// References kept as <folder>/<name>.csv, the places of both sides, with a manifest
-/// <name>.meta.json that says what they belong to. Nothing where there is no such file,
-/// it is damaged or belongs to another key.
+/// References stored as <folder>/<name>.csv, the positions of both sides, with a manifest
+/// <name>.meta.json that identifies them. Empty if the file does not exist, is damaged or
+/// belongs to another key.
 std::optional<SceneReference> load_reference(const std::string& folder,
                                              const std::string& name,
                                              const std::string& key);
@@ -75,18 +75,18 @@ void save_reference(const std::string& folder, const std::string& name,
                     const Comparison& comparison, const ReferenceCut& cut,
                     const ReferenceSides& sides);
 
-/// 16 hexadecimal digits of all that the reference depends on but the code.
+/// 16 hexadecimal digits of everything except the code that the reference depends on.
 std::string reference_key(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut);
 
-/// Loaded where it is there, else computed by `make` and saved.
+/// Loaded if stored, else computed by `make` and saved.
 using MakeReference = std::function<SceneReference(
     const Scene& given, const Comparison& comparison, const ReferenceCut& cut)>;
 SceneReference kept_sides(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut, const std::string& folder,
                           const std::string& name, const ReferenceSides& sides,
                           const MakeReference& make);
-/// The same of the rod's tips, by scene_reference.
+/// The same for the rod's tips, by scene_reference.
 SceneReference kept_reference(const Scene& given, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name);

@@ -20,12 +20,12 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// How much longer than usual a run may take on a machine that does other things too.
+/// Factor by which load on the machine may lengthen a run.
 constexpr double slow_run = 1.5;
 
-/// Of the work of a search; what is left is for the best of what was found.
+/// Fraction of a search's work; the rest refines the best runs found.
 constexpr double coarse_share = 0.6;
-/// As much again may go into what replaces each choice of the winners.
+/// As much again may be spent on replacing each choice of the winners.
 constexpr double last_share = 2;
 
 Study ready(const std::string& file, const StudyPlan& plan, const Row& identity) {
@@ -48,8 +48,8 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity)
   return study;
 }
 
-/// Counts the work of a search. Of the time until the deadline, which comes first only in
-/// an emergency, each stage leaves some for those behind it.
+/// Counts the work of a search. The time until the deadline matters only in an emergency;
+/// each stage leaves some of it to later ones.
 class Work {
  public:
   Work(const Study& study, const Deadline& deadline)
@@ -60,7 +60,7 @@ class Work {
 
   double done() const { return done_; }
   void add(int elements, int substeps) { done_ += steps_ * elements * substeps; }
-  /// Tells when so much of the work was done, or time is over.
+  /// True when this fraction of the work is done, or the time is over.
   std::function<bool()> until(double share) const {
     return [this, share] { return done_ >= share * most_ || late(share); };
   }
@@ -74,7 +74,7 @@ class Work {
   double time_s_;
 };
 
-/// Says now and then how far a search is and what is best so far.
+/// Reports occasionally the progress of a search and the best run so far.
 class SearchProgress {
  public:
   SearchProgress(const Study& study, double target) : study_(study), target_(target) {}
@@ -99,9 +99,9 @@ class SearchProgress {
   Clock::time_point last_ = Clock::now();
 };
 
-/// Answers everything until nothing changes an answer before it: what replaces a choice
-/// of a winner must not turn out cheaper than the winner. Every round but the last tries
-/// or times a run that none did before, so there are few.
+/// Repeats all answers until none changes: a replaced choice of a winner must not turn
+/// out cheaper than the winner. Every round but the last tries or times a new run, so
+/// there are few.
 void settle(const Study& study, Finalists& finalists, const std::vector<double>& targets,
             const Deadline& deadline) {
   std::size_t before = 0;

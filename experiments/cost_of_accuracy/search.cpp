@@ -6,14 +6,14 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Steps half as long that gain less than a fifth: what is left is not of time.
+/// Ratio of errors on halving the step above which the remaining error is not temporal.
 constexpr double little_gain = 0.8;
 
-/// What looks so much dearer may not be: of one run beside others.
+/// Apparent cost ratio that may be due to noise in a single run.
 constexpr double noise = 1.2;
 
-/// Numbers of elements from two thirds of this to half as many more, a tenth apart, the
-/// nearest first.
+/// Numbers of elements from two thirds to three halves of this, a tenth apart, nearest
+/// first.
 std::vector<int> around(int elements) {
   std::vector<int> all{elements};
   int low = elements, high = elements;
@@ -99,7 +99,7 @@ bool Search::holds(const Trial& given, double target) {
   Trial& own = runs_[*index];
   while (own.judged() <= target && own.examined < neighbour_count) {
     const double error = neighbour_error(own, static_cast<Neighbour>(own.examined));
-    if (cut_) return false;  // not known
+    if (cut_) return false;  // unknown
     own.neighbours = std::max(own.neighbours, error);
     ++own.examined;
   }
@@ -118,7 +118,8 @@ const Trial* Search::robust(double target,
   });
 }
 
-/// From the method's run that is nearest in elements, then in substeps; 0 without one.
+/// Extrapolated from the method's run nearest in elements, then in substeps; 0 without
+/// one.
 double Search::expected_s(std::size_t method, int elements, int substeps) const {
   const auto away = [&](const Trial& run) {
     return 4 * std::abs(std::log(static_cast<double>(run.elements) / elements)) +
@@ -138,7 +139,7 @@ void Search::climb(std::size_t method) {
   const auto& ladder = plan_.substeps;
   const double tightest = plan_.targets.back(), loosest = plan_.targets.front();
   std::size_t begin = 0;
-  int met = 0;  // the next rung after the first that does may do with longer steps
+  int met = 0;  // the next rung after the first success may allow longer steps
   for (const int elements : plan_.elements) {
     if (met > 1) return;
     double last = never;
@@ -146,7 +147,7 @@ void Search::climb(std::size_t method) {
     std::size_t at = begin;
     for (; at < ladder.size(); ++at) {
       if (static_cast<long>(elements) * ladder[at] > plan_.longest_run) break;
-      // Longer than any run that could still keep the method in.
+      // Longer than any run that could still keep the method.
       const Trial* best = robust(tightest);
       const double most_s = best == nullptr ? never : plan_.slack * best->wall_s;
       if (cut_ || expected_s(method, elements, ladder[at]) > most_s) break;
@@ -158,7 +159,7 @@ void Search::climb(std::size_t method) {
         break;
       }
       if (cut_) return;
-      // A motion that is all damped away gains little as well, for a while.
+      // A motion that is fully damped also gains little, for a while.
       idle = found->judged() > little_gain * last ? idle + 1 : 0;
       if (idle > 0 && (found->judged() < loosest || idle > 2)) break;
       last = found->judged();
@@ -167,8 +168,8 @@ void Search::climb(std::size_t method) {
   }
 }
 
-/// Prices to a factor of 2, then in the order of the catalogue: the same order whatever
-/// else the machine does.
+/// By cost to a factor of 2, then in the order of the catalogue: the same order under any
+/// load of the machine.
 std::vector<std::size_t> Search::promising_first() {
   const int elements = plan_.elements[plan_.elements.size() / 2];
   const int substeps = plan_.substeps[plan_.substeps.size() / 3];
@@ -198,7 +199,7 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
   const auto meets = [target](const Trial* run) {
     return run != nullptr && run->judged() <= target;
   };
-  // An interval: too few fail, enough do.
+  // Bracket: `few` fails, `enough` succeeds.
   int few = 0, enough = std::clamp(guess, 1, most);
   const Trial* best = run(method, elements, enough);
   while (!meets(best)) {
@@ -243,7 +244,7 @@ void Search::refine(std::size_t method, double target) {
     before = start;
     for (const int elements : around(start->elements)) {
       if (stopped()) return;
-      // More substeps than make it dearer than the best so far do not pay.
+      // More substeps than make it dearer than the best so far are useless.
       const Trial* best = robust(target, own);
       if (best == nullptr) return;
       const double one_s =

@@ -17,43 +17,42 @@ struct SearchPlan {
   std::vector<int> elements;    // coarse ladders, ascending
   std::vector<int> substeps;
   long longest_run;  // elements x substeps; longer runs are not tried
-  /// How much the ladders may miss: a method whose cheapest run on them costs more than
-  /// `slack` times the cheapest of all is given up (see ladder_slack).
+  /// Tolerance for the coarseness of the ladders: a method whose cheapest run on them
+  /// costs more than `slack` times the cheapest of all is dropped (see ladder_slack).
   double slack;
 };
 
 /// Where cost grows as elements x substeps and error falls in both, the cheapest run on
 /// the ladders costs at most r = (ratio of elements) x (ratio of substeps) times the
-/// method's best between them. The method of the best run of all is then within r of the
-/// cheapest run on the ladders: with this slack it is never given up. `noise`: how much
-/// longer than usual one run may take.
+/// method's best between them. The method of the overall best run is then within r of the
+/// cheapest run on the ladders: with this slack it is never dropped. `noise`: factor by
+/// which one run may take longer than usual.
 double ladder_slack(const SearchPlan& plan, double noise);
 
-/// The cheapest run for each wanted error, in stages:
+/// The cheapest run for each target error, in stages:
 ///
 ///   probe    every method once in the middle of the ladders; those with the smallest
-///            error x time go first, so that what follows can be measured against them
+///            error x time go first, so that later ones can be compared with them
 ///   coarse   every method climbs from few elements and long steps: more substeps until
-///            they gain little (what is left of the error is of space), then more
-///            elements, from a step or two longer than where the last climb ended
-///   prune    for each target the methods within `slack` of the cheapest go on
-///   refine   from a method's cheapest run so far numbers of elements around it, each
-///            with the fewest substeps that meet the target, by bisection; again from the
-///            cheapest of those until it stays
+///            they gain little (the remaining error is spatial), then more elements,
+///            from a step or two longer than where the last climb ended
+///   prune    for each target the methods within `slack` of the cheapest continue
+///   refine   from a method's cheapest run so far, numbers of elements around it, each
+///            with the fewest substeps that meet the target, by bisection; repeated from
+///            the cheapest of those until it no longer changes
 ///
-/// Wherever a best run decides what is tried next it is one whose neighbours hold: lucky
-/// ones are passed over. How far the search goes is for `stop` to say; nothing in here
-/// looks at a clock but to compare times of runs.
+/// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
+/// accurate runs are passed over. `stop` decides how far the search goes; the search
+/// itself uses no clock except to compare times of runs.
 class Search {
  public:
-  /// A run and its time; no value where it fails.
+  /// A run and its time; empty if it fails.
   using Measure =
       std::function<std::optional<Trial>(std::size_t method, int elements, int substeps)>;
-  /// The error of a run with the scene's data changed up or down, infinite where it
-  /// fails.
+  /// The error of a run with the scene's data changed up or down, infinite if it fails.
   using Changed = std::function<double(const Trial& run, Neighbour change)>;
 
-  /// `stop`: true once the work is done; what was measured until then stands.
+  /// `stop`: true once the work is done; measurements so far are kept.
   Search(SearchPlan plan, std::size_t methods, Measure measure, Changed changed,
          std::function<bool()> stop);
 
@@ -61,30 +60,30 @@ class Search {
   void refine();
   /// One method for one target, from its cheapest run so far.
   void refine(std::size_t method, double target);
-  /// The fewest substeps with which the method meets `target` on so many elements: at
-  /// first about `guess`. Null where `most` do not.
+  /// The fewest substeps with which the method meets `target` on this many elements,
+  /// starting near `guess`. Null where `most` do not.
   const Trial* fewest_substeps(std::size_t method, int elements, double target, int guess,
                                int most);
 
-  /// The same with neighbours that hold.
+  /// The same, with neighbours that hold.
   const Trial* fewest_that_hold(std::size_t method, int elements, double target,
                                 int guess, int most);
 
-  /// One run, measured unless it was before; null where it fails.
+  /// One run, measured unless already known; null if it fails.
   const Trial* run(std::size_t method, int elements, int substeps);
-  /// Whether the run, one of runs(), counts for `target`: its neighbours are examined one
-  /// after the other until one does not hold. False also where the search is cut.
+  /// Whether the run, one of runs(), counts for `target`: examines its neighbours one by
+  /// one until one does not hold. False also if the search is cut.
   bool holds(const Trial& run, double target);
-  /// The cheapest run that counts for `target`, those before it being passed over; null
-  /// where there is none. Where the search is cut, of those that were examined.
+  /// The cheapest run that counts for `target`, passing over those that do not; null if
+  /// there is none. If the search is cut, among those examined.
   const Trial* robust(double target,
                       const std::function<bool(const Trial&)>& accept = {});
-  /// More time, after a stage was cut.
+  /// Continues after a stage was cut.
   void go_on(std::function<bool()> stop);
 
   const std::vector<Trial>& runs() const { return runs_; }
-  std::size_t tried() const { return tried_; }  // methods that the coarse stage came to
-  std::size_t passed_over() const { return passed_over_; }  // runs that were lucky
+  std::size_t tried() const { return tried_; }  // methods that the coarse stage reached
+  std::size_t passed_over() const { return passed_over_; }  // accidentally accurate runs
   bool cut() const { return cut_; }                         // `stop` ended a stage
 
  private:

@@ -13,7 +13,7 @@ void set_wall(const Study& study, double wall_s, Row& row) {
   row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
 }
 
-/// Why there is no winner.
+/// Reason for the missing winner.
 std::string not_met(bool cut) {
   return cut ? "no run within the target with neighbours that hold, so far: the search "
                "ended with its work"

@@ -10,12 +10,12 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// What all rows of a scene are written from.
+/// Data from which all rows of a scene are written.
 struct Study {
   const StudyPlan& plan;
   const Scene given;
   const Row& identity;
-  Comparison comparison = {};  // cut where the references part
+  Comparison comparison = {};  // truncated where the references diverge
   bool cut = false;
   SceneReference reference = {};
   std::optional<SceneReference> refined = {};
@@ -26,7 +26,7 @@ struct Study {
   double floor() const { return believed * gap(); }
 };
 
-/// A row of the study with what all of them say; the same with a run.
+/// A row with the columns common to the study; the second with those of a run.
 Row begin(const Study& study, std::string_view kind);
 Row row_of(const Study& study, std::string_view kind, const Trial& run);
 
@@ -35,7 +35,7 @@ SceneMeasure measure_of(const Study& study);
 /// Winner, runner-up and replaced choices of one target.
 void add_target(const Study& study, Finalists& finalists, double target,
                 std::vector<Row>& rows);
-/// What the time per frame buys, where that was asked.
+/// The best run within the time per frame, if requested.
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
 /// The scene with the file's own model, integrator, elements and step; steps end at the
 /// frames of the comparison.

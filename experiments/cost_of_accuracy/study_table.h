@@ -7,13 +7,12 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// The columns of the table.
 std::span<const Column> study_columns();
 
 /// Writes a method into its columns.
 void set_method(const Method& method, Row& row);
 
-/// What a row says of how the scene is simulated, `rate` frames per second.
+/// The configuration that a row describes, at `rate` frames per second.
 struct Configuration {
   Method method;
   int elements = 0, substeps = 0;

@@ -5,7 +5,8 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Of two runs on the front the cheaper stands for both when the other gains less.
+/// Of two runs on the front the cheaper represents both if the other reduces the error
+/// less.
 constexpr double front_gain = 0.9;
 
 }  // namespace

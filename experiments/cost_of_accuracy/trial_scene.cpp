@@ -38,7 +38,7 @@ std::string physics(Scene scene) {
   scene.frame_rate = scene.checkpoint = 0;
   scene = with_method(std::move(scene), {&model_catalogue().front(), {}, {}});
   scene.options = {};
-  // Not cut anew: one element may be too few.
+  // The strands are not rediscretised: one element may be too few.
   scene.tables = std::make_shared<const StrandTables>(with_elements(*scene.tables, 1));
   std::vector<std::string> files;
   for (EffectChoice& effect : scene.effects) {

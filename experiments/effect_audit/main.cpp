@@ -66,8 +66,8 @@ constexpr Parameter own_settings[] = {
      .fallback = shipped_scenes},
 };
 
-/// An effect is worth its cost when it changes more than is wanted and more than the
-/// discretisation does; the change itself is known as well as a finer run confirms it.
+/// An effect is worth its cost when it changes more than the target and more than the
+/// discretisation error; a finer run bounds the error of the change itself.
 std::string verdict(double change, double change_error, double discretisation,
                     double accuracy) {
   const double threshold = std::max(accuracy, discretisation);
@@ -87,8 +87,8 @@ void set_numbers(const Scene& scene, Row& row) {
   row.set("twist_bending", numbers.twist_bending);
 }
 
-/// The refined scene as it is, which all rows of a scene are compared with; empty where
-/// it does not run: each row then says why.
+/// The refined complete scene, the reference of all rows of a scene; empty if it does not
+/// run: each row then reports why.
 std::shared_ptr<const TipPaths> refined_whole(const Scene& scene) {
   try {
     return std::make_shared<const TipPaths>(tip_paths(refined(scene), 0));
@@ -100,7 +100,7 @@ std::shared_ptr<const TipPaths> refined_whole(const Scene& scene) {
 struct Work {
   Scene scene;
   std::shared_ptr<const TipPaths> fine;
-  Ingredient ingredient;  // no name: the scene as it is
+  Ingredient ingredient;  // no name: the complete scene
   double accuracy;
   int repeat;
 };
@@ -116,7 +116,7 @@ void add_change(const Work& work, const TipPaths& whole, const TipPaths& whole_f
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
-    row.set("verdict", "keep");  // at this step the scene does not even run without it
+    row.set("verdict", "keep");  // at this step the scene fails without it
     throw;
   }
   const double change = distance_rel(whole, without, scene);
@@ -128,8 +128,8 @@ void add_change(const Work& work, const TipPaths& whole, const TipPaths& whole_f
   row.set("verdict", verdict(change, change_error, discretisation, work.accuracy));
 }
 
-/// Left empty where the scene without the others does not run: one effect alone is no
-/// scene that anybody asked for.
+/// Left empty where the scene without the others does not run: one effect alone is not a
+/// requested scene.
 void add_alone(const Work& work, Row& row) {
   if (!work.ingredient.alone) return;
   try {
@@ -212,7 +212,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
         std::max(row.number("accuracy_rel"), row.number("discretisation_rel"));
     wrong = std::max(wrong, row.number("error_without_rel") / threshold);
   }
-  // Of other scenes these need not be true.
+  // These need not hold for other scenes.
   const bool shipped = shows_all_shipped(rows);
   verdicts.check_found("some effect has to be kept", kept > 0, shipped, kept);
   verdicts.check_found("some effect may be dropped", dropped > 0, shipped, dropped);
@@ -226,7 +226,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-/// A scene that does not run without one of its effects is an answer too.
+/// A scene that fails without one of its effects is a valid result.
 bool finding(const Row& row) { return row.text("effect") != "none"; }
 
 constexpr Unused unused[] = {{"models", "the scenes say theirs"},

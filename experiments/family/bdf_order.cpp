@@ -1,4 +1,4 @@
-// Which order of BDF a hair of 20 elements wants, beside ESDIRK, at equal errors.
+// Which BDF order suits a hair of 20 elements, compared with ESDIRK, at equal errors.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ constexpr int samples = 12, elements = 20;
 constexpr std::array targets{1e-2, 1e-3, 1e-4};  // of the tip, over the length
 constexpr std::array tolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 constexpr double reference_tolerance = 1e-8;
-constexpr long most_steps = 4000;  // of a run; of the reference ten times as many
+constexpr long most_steps = 4000;  // per run; ten times as many for the reference
 
 struct Method {
   std::string_view integrator;
@@ -47,12 +47,12 @@ TipRun run_at(const Hair& hair, const Method& method, double rtol, long most) {
   return run_tip(method.integrator, *system, options, t_end, samples);
 }
 
-/// Calls of the model: each costs about as much as the others.
+/// Calls of the model: all cost about the same.
 double work_of(const Stats& stats) {
   return static_cast<double>(stats.residuals + stats.linearizations + stats.solves);
 }
 
-/// What the cheapest run takes that meets an error; infinite where none does.
+/// Work of the cheapest run that meets an error; infinite if none does.
 struct Cost {
   double steps = never, work = never;
 };
@@ -77,7 +77,7 @@ Row compared(Row row, const Claim& claim, double work, double other) {
   if (!std::isfinite(work) && !std::isfinite(other)) {
     return no_answer(row, claim, "not_met", "neither met the error in 4000 steps");
   }
-  // A method that never meets the target is dearer by the bound on steps.
+  // A method that never meets the target is dearer by the step limit.
   constexpr double most = 100;
   const double ratio = std::clamp(other / work, 1 / most, most);
   return answer(row.set("elements", elements), claim, ratio, other >= work);

@@ -1,5 +1,5 @@
-// What reduced and maximal coordinates cost at a tip error of 1 %, hair by hair, each
-// against what its own equations tend to: how far the two limits are apart is the gap.
+// Cost of reduced and maximal coordinates at a tip error of 1 %, hair by hair, each
+// against the limit of its own equations: the gap is the distance of the two limits.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +24,8 @@ constexpr int samples = 12;
 constexpr double target = 0.01;
 constexpr std::array ladder{5, 10, 20, 40, 80};
 constexpr double coarsest = 1 / 60.0, finest = 1 / 480.0;  // s
-constexpr std::string_view integrator = "bdf2";  // solves the most of these hairs
-constexpr int pairs = 5;  // of timed runs, one of each model in turn
+constexpr std::string_view integrator = "bdf2";  // solves most of these hairs
+constexpr int pairs = 5;  // timed runs, one of each model in turn
 constexpr int least_finest_elements = 60;
 constexpr double finest_step = 1 / 960.0;  // s
 
@@ -61,7 +61,7 @@ std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In li
       .run;
 }
 
-/// Both models in turn, so that what else the machine does meets both; the median ratio.
+/// Both models in turn, so that load on the machine affects both; the median ratio.
 double time_ratio(const Hair& hair, const CheapRun& reduced, const CheapRun& maximal) {
   std::vector<double> ratios;
   for (int i = 0; i < pairs; ++i) {
@@ -74,8 +74,8 @@ double time_ratio(const Hair& hair, const CheapRun& reduced, const CheapRun& max
   return median(ratios);
 }
 
-/// What the model tends to: two numbers of elements at two steps each, extrapolated at
-/// order 2 in both. Empty where one of the runs fails.
+/// The model's limit: two numbers of elements at two steps each, extrapolated at order 2
+/// in both. Empty if one of the runs fails.
 std::optional<std::vector<double>> limit_of(const Hair& hair, std::string_view model) {
   const int finest_elements =
       std::max(least_finest_elements, 2 * static_cast<int>(std::ceil(hair.winding())));
@@ -90,7 +90,7 @@ std::optional<std::vector<double>> limit_of(const Hair& hair, std::string_view m
   return extrapolated(of_steps[0], of_steps[1], 2);
 }
 
-/// The cheapest way to the model's own limit; empty where there is none.
+/// The cheapest run to the model's own limit; empty if there is none.
 std::optional<CheapRun> way_of(const Hair& hair, std::string_view model,
                                const std::optional<std::vector<double>>& limit) {
   return limit ? cheapest(hair, model, *limit) : std::nullopt;
@@ -111,7 +111,7 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
   if (!reduced && !maximal) {
     return {no_answer(with, claim, "not_met", "neither comes within 1 % on this ladder")};
   }
-  // One that never meets the target is dearer than any that does.
+  // A model that never meets the target is dearer than any that does.
   constexpr double most = 100;
   if (!maximal) return {answer(with, claim, most, true)};
   if (!reduced) return {answer(with, claim, 1 / most, false)};

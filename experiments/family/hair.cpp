@@ -32,7 +32,7 @@ constexpr Range lengths{0.03, 0.4}, radii{20e-6, 60e-6}, moduli{1e6, 4e9},
     ellipticities{1, 1.6}, curvatures{0, 300}, frictions{1e-13, 1e-10}, frequencies{1, 4},
     amplitudes{0.01, 0.05}, angles{0.2, 0.8}, winds{0.5, 5};
 
-/// One coordinate of all hairs: a random place within each of `count` equal parts of
+/// One coordinate of all hairs: a random position within each of `count` equal parts of
 /// [0, 1), in random order.
 std::vector<double> coordinate(int count, std::uint64_t seed, std::uint64_t dimension) {
   Random random(seed, dimension);

@@ -12,9 +12,9 @@
 
 namespace tress::experiments::family {
 
-/// What moves a hair. By `level` in [0, 1]: shake by 1 to 5 cm; a head that turns by 0.2
-/// to 0.8 rad, 10 cm behind the root; nothing (let go horizontally); a sideways wind of
-/// 0.5 to 5 m/s at its peak, a sine in time, with linear drag of 2e-5 kg/(m s).
+/// The excitation of a hair. By `level` in [0, 1]: shake by 1 to 5 cm; a head that turns
+/// by 0.2 to 0.8 rad, 10 cm behind the root; none (released horizontally); a sideways
+/// wind of 0.5 to 5 m/s at its peak, a sine in time, with linear drag of 2e-5 kg/(m s).
 enum class Drive { shake, turning_head, release, wind };
 inline constexpr int drives = 4;
 std::string_view name(Drive drive);
@@ -58,11 +58,11 @@ Hair straightened(Hair hair);
 /// Parameters of `model` for this hair.
 Parameters parameters_of(const Hair& hair, std::string_view model, int elements);
 
-/// The model of the hair, under gravity and what drives it. `modes`: of the models that
-/// know the word (super_helix, articulated_chain): "bend_twist" or "bend".
+/// The model of the hair, under gravity and its drive. `modes`: "bend_twist" or "bend",
+/// for the models with that option (super_helix, articulated_chain).
 std::unique_ptr<System> make_system(const Hair& hair, std::string_view model,
                                     int elements, std::string_view modes = "bend_twist");
-/// What watches that system; its hair is whole, with bending and twist.
+/// Guard of that system; its hair is complete, with bending and twist.
 Guard make_guard(const Hair& hair, std::string_view model, int elements, System& system);
 
 /// Peak of the wind (m/s) at this level.

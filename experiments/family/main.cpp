@@ -1,5 +1,6 @@
-// Do the statements of the README hold for one hair or for hair? Each is tested on a
-// family of hairs over length, thickness, stiffness, section, curl, friction and drive.
+// Do the statements of the README hold for one hair or for hair in general? Each is
+// tested on a family of hairs over length, thickness, stiffness, section, curl, friction
+// and drive.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -77,7 +78,7 @@ void write_summary(const CommandLine& line, const std::vector<Row>& rows) {
   replace_file(beside(line.out, "_summary.csv"), csv);
 }
 
-/// Studies whose hairs gave no answer count them.
+/// Studies count the hairs without an answer.
 bool finding(const Row& row) {
   constexpr std::array without_answer{"unresolved", "no_reference", "not_met",
                                       "solver_error"};
@@ -101,7 +102,7 @@ int main(int argc, char** argv) {
       .question = "for which hairs do the statements about one hair hold?",
       .example = "--set hairs=96 --set study=twist",
       .timed = false,
-      .quick_timeout_s = 600,  // for hangs only: steps bound the work
+      .quick_timeout_s = 600,  // against hangs only: steps bound the work
       .columns = columns,
       .settings = family::settings,
       .unused = family::unused,

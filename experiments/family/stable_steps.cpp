@@ -1,4 +1,4 @@
-// How long a step of backward_euler with the whole tangent is stable, hair by hair.
+// Largest stable step of backward_euler with the exact tangent, hair by hair.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,23 +23,24 @@ constexpr Claim claims[] = {
      "largest stable step of super_helix over that of der"}};
 
 constexpr double t_end = 0.5;  // s
-// Half a decade apart. Stability is not monotone: a step counts when all the first ones
-// up to it are stable. One more is for hairs that the first of those breaks; even shorter
-// ones would take most of the study's time and decide no claim.
+// Half a decade apart. Stability is not monotone: a step counts when all shorter ones of
+// the ladder are stable. One extra step is for hairs unstable at the first of those; even
+// shorter ones would take most of the study's time and decide no claim.
 constexpr std::array ladder{1e-3, 0.01 / 3, 0.01, 0.1 / 3, 0.1};
 constexpr double shorter = 1e-3 / 3;
-constexpr double nothing_stable = 1e-4;  // s, the place in ratios of "none of these"
+constexpr double nothing_stable = 1e-4;  // s, value of "none of these" in ratios
 constexpr int least_elements = 20;
-constexpr double most_winding = 1.5;  // rad an element: der must stay below half a circle
+constexpr double most_winding = 1.5;  // rad per element: der must stay below half a
+                                      // circle
 
 int elements_of(const Hair& hair) {
   return std::max(least_elements,
                   static_cast<int>(std::ceil(hair.winding() / most_winding)));
 }
 
-/// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass,
-/// u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2, the square of the root
-/// mean square speed. The tip's is at most sqrt(30) of that.
+/// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass, u u' <=
+/// c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2, the square of the root mean
+/// square speed. The tip's speed is at most sqrt(30) of that.
 double wind_speed_bound(const Hair& hair, const Parameters& p) {
   const double area = std::numbers::pi * hair.radius * hair.radius;
   const double c = wind_drag / (p.number("density_kg_m3") * area);
@@ -56,8 +57,8 @@ StabilityBounds bounds_of(const Hair& hair, const Parameters& p, System& system)
   return bounds;
 }
 
-/// The longest step of the ladder such that it and all shorter ones of it are stable; 0
-/// where there is none.
+/// The longest step of the ladder such that it and all shorter ones are stable; 0 if
+/// there is none.
 double longest_stable(const Hair& hair, std::string_view model, std::string_view modes) {
   const int elements = elements_of(hair);
   const auto system = make_system(hair, model, elements, modes);

@@ -11,7 +11,7 @@ std::span<const Study> studies() {
 }
 
 double enough_work(System& system, double t_end, double dt) {
-  constexpr double calls = 10 * (5 * 3 + 1);  // residual, matrix and solve; and the step
+  constexpr double calls = 10 * (5 * 3 + 1);  // residual, matrix and solve; plus the step
   return calls * std::ceil(t_end / dt) * (system.layout().coordinates + 10);
 }
 

@@ -9,15 +9,15 @@
 
 namespace tress::experiments::family {
 
-/// A statement that the README makes about one hair, to be tested on all.
+/// A statement of the README about one hair, to be tested on all.
 struct Claim {
   std::string_view id;
   std::string_view statement;  // a sentence, true of a hair where the claim holds
-  std::string_view value;      // what the column `value` holds, with unit
+  std::string_view value;      // meaning of the column `value`, with unit
 };
 
-/// One piece of work on one hair, which answers one or more claims. Its work is bounded
-/// by numbers of steps, never by time.
+/// One computation on one hair that answers one or more claims. Bounded by numbers of
+/// steps, never by time.
 struct Study {
   std::string_view id;
   std::span<const Claim> claims;
@@ -27,14 +27,14 @@ struct Study {
 
 std::span<const Study> studies();
 
-/// Options::max_work of a run: ten times what Newton's method takes that needs five
-/// iterations in every step. What goes beyond counts as a run without an answer.
+/// Options::max_work of a run: ten times the work of Newton's method with five iterations
+/// in every step. A run beyond it counts as without an answer.
 double enough_work(System& system, double t_end, double dt);
 
 /// A row that answers `claim`: its value, and whether the claim holds for this hair.
 Row answer(Row row, const Claim& claim, double value, bool holds);
 
-/// A row that could not answer it, with the reason.
+/// A row without an answer, with the reason.
 Row no_answer(Row row, const Claim& claim, std::string_view status,
               std::string_view reason);
 

@@ -31,7 +31,7 @@ constexpr Column columns[] = {
     {"told_right_share", "share of the hairs that this threshold tells rightly"},
 };
 
-// On either side of a threshold: fewer hairs are told apart by chance.
+// Minimum on either side of a threshold: fewer hairs are separated by chance.
 constexpr std::size_t least_hairs = 4;
 
 constexpr std::string_view numbers_of_a_hair[] = {
@@ -40,7 +40,7 @@ constexpr std::string_view numbers_of_a_hair[] = {
     "youngs_modulus_pa",    "drive_level", "frequency_hz",
     "natural_curvature_1_m"};
 
-/// Places of the values in ascending order; ties share their mean.
+/// Ranks of the values in ascending order; ties share their mean.
 std::vector<double> ranks_of(std::span<const double> x) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -55,7 +55,7 @@ std::vector<double> ranks_of(std::span<const double> x) {
   return ranks;
 }
 
-/// A parameter of all hairs, or one word of the drive as 0 or 1.
+/// A parameter of all hairs, or one value of the drive as 0 or 1.
 struct Predictor {
   std::string name;
   std::vector<double> x;
@@ -155,7 +155,7 @@ Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
   std::ranges::stable_sort(order, {}, [x](std::size_t i) { return x[i]; });
   const auto count = static_cast<double>(x.size());
   const auto all = static_cast<double>(std::ranges::count(holds, true));
-  // A rule must tell more hairs rightly than saying the same of all.
+  // A rule must classify more hairs correctly than a constant.
   Stump best{.right = std::max(all, count - all) / count};
   double below = 0;  // hairs below the threshold for which the claim holds
   for (std::size_t n = 1; n < order.size(); ++n) {

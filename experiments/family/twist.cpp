@@ -1,4 +1,4 @@
-// What leaving twist out changes, for the hair straightened and as it is.
+// Effect of omitting twist, for the straightened and the original hair.
 #include <cmath>
 #include <optional>
 
@@ -19,7 +19,7 @@ constexpr double t_end = 0.4;  // s
 constexpr int samples = 24, elements = 20;
 constexpr double bar = 0.01;
 constexpr double coarsest = 2e-3;  // s
-constexpr int halvings = 4;        // of a step that finds no solution
+constexpr int halvings = 4;        // of a step without a solution
 
 std::optional<std::vector<double>> tip(const Hair& hair, std::string_view modes,
                                        double dt) {
@@ -33,7 +33,7 @@ std::optional<std::vector<double>> tip(const Hair& hair, std::string_view modes,
   return std::move(run.tip);
 }
 
-/// The change by leaving twist out, and how much half the step changes the hair without.
+/// The change by omitting twist, and the change at half the step without twist.
 struct Change {
   double value, gap;
 };
@@ -56,7 +56,7 @@ Row judged(const Hair& hair, Row row, const Claim& claim, bool over) {
   if (!change)
     return no_answer(row, claim, "solver_error", "no solution down to 0.125 ms");
   row.set("elements", elements).set("gap", change->gap);
-  // Half the step must not carry the value across the bar.
+  // Halving the step must not carry the value across the bar.
   if (std::abs(change->value - bar) <= change->gap) {
     return no_answer(row.set("value", change->value), claim, "unresolved",
                      "half the step changes the run by more than the distance to 1 %");

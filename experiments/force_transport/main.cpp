@@ -1,5 +1,5 @@
-// What does it cost to let the rest of the strand move rigidly? The second seed's
-// comparisons of its "force transport" with CORDE, on hairs of its stiffness and of ours.
+// What is the cost of letting the rest of the strand move rigidly? The published
+// comparisons of "force transport" with CORDE, on hairs of that stiffness and of ours.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -57,7 +57,7 @@ using namespace transport;
 
 constexpr int rod_elements = 80;
 constexpr double stiff_hair = 3e9;       // Pa
-constexpr double seed_step = 3e-3;       // s, the second seed's
+constexpr double seed_step = 3e-3;       // s, published
 constexpr double fine_step = 1e-3;       // s, where models are compared, not steps
 constexpr double transient_step = 1e-4;  // s, below the periods of most bending modes
 
@@ -85,7 +85,8 @@ struct Work {
 constexpr double master_gamma = 10;
 constexpr double master_ratio = 0.7001997155143134 / 0.6563537612385990;
 
-/// E that makes rho g S L^3/(E I) = 4 rho g L^3/(E r^2) that of the master curve.
+/// Young's modulus for which rho g S L^3/(E I) = 4 rho g L^3/(E r^2) is the master
+/// curve's.
 double master_modulus(const Parameters& p) {
   const double r = p.number("radius_m"), l = p.number("length_m");
   return 4 * p.number("density_kg_m3") * p.number("gravity_m_s2") * l * l * l /
@@ -97,7 +98,7 @@ Three tip_of(const std::vector<double>& x) {
   return {x[x.size() - 3], x[x.size() - 2], x[x.size() - 1]};
 }
 
-/// A run that stops when its energy says that it has come apart.
+/// A run that stops when its energy indicates divergence.
 struct Watched {
   Simulation run;
   double energy_gain = 0;  // over m g L
@@ -123,7 +124,7 @@ Watched watched(const Work& work, System& system, const Observer& each_step = {}
   return seen;
 }
 
-/// False: the row says what went wrong.
+/// False: the row has the reason.
 bool usable(const Watched& seen, Row& row) {
   row.set("energy_gain_rel", seen.energy_gain);
   if (seen.apart) {
@@ -152,7 +153,7 @@ void statics(const Work& work, Row& row) {
   row.set("deflection_error_rel", std::abs(-tip[2] / tip[0] / master_ratio - 1));
 }
 
-/// The first lowest point of the tip, of the parabola through three steps.
+/// The first lowest point of the tip, by the parabola through three steps.
 void stiffness(const Work& work, Row& row) {
   const auto system = work.make();
   MaterialPoints& at = *system->material_points();
@@ -187,7 +188,7 @@ void modes(const Work& work, Row& row) {
   row.set("complex_modes", found.complex_modes);
 }
 
-/// From small random rates: what the equations make of motions that no mode is alone in.
+/// From small random rates: motions in which all modes take part.
 void transient(const Work& work, Row& row) {
   constexpr double enough = 1e6;
   const auto system = work.make();
@@ -221,7 +222,7 @@ void cost(const Work& work, Row& row) {
                                          work.parameters.number("elements"));
 }
 
-/// What rows of several models and numbers of elements share.
+/// Common settings of the rows of several models and numbers of elements.
 struct Setup {
   std::string_view comparison, scene;
   void (*measure)(const Work&, Row&);
@@ -277,7 +278,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const auto add_models = [&](const Setup& setup) {
     for (const int elements : counts) {
       for (const std::string_view model : {ours, theirs, chain}) {
-        // corde is not at rest in its initial state, and stretches.
+        // corde is not in equilibrium in its initial state, and stretches.
         if (model == theirs && planar(setup)) continue;
         add(setup, model, elements);
       }
@@ -309,7 +310,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// A strand that comes apart, by its model or by the seed's step, is a result.
+/// A strand that diverges, by its model or by the published step, is a result.
 bool finding(const Row& row) { return row.status() == "unstable"; }
 
 constexpr Unused unused[] = {{"repeat", "its costs are medians of five runs"},

@@ -16,11 +16,10 @@ double apart(const Row& a, const Row& b) {
                     a.number("tip_z_m") - b.number("tip_z_m"));
 }
 
-/// What a claim is about: NaN where a row that was run has no such value, nothing where a
-/// row is missing.
+/// Value of a claim: NaN if a row that was run lacks it, empty if a row is missing.
 using Value = std::optional<double>;
 
-/// Of one model at one number of elements.
+/// For one model at one number of elements.
 Value value(const std::vector<Row>& rows, std::string_view column, const Row& like) {
   Value found;
   for (const Row& row : rows) {
@@ -87,7 +86,7 @@ void compare_with_corde(std::vector<Row>& rows) {
 }
 
 void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
-  // No comparison with what is not a number holds.
+  // Comparisons with NaN never hold.
   const auto verdict = [&verdicts](const char* claim, Value number, auto holds) {
     if (number) {
       verdicts.check(claim, holds(*number), *number);

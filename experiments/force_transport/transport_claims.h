@@ -8,18 +8,19 @@
 
 namespace tress::experiments::force_transport {
 
-/// The models that the experiment force_transport compares, and the second seed's E.
+/// The models that the experiment force_transport compares, and Young's modulus of the
+/// soft hair.
 namespace transport {
 inline constexpr std::string_view ours = "force_transport", theirs = "corde",
                                   chain = "articulated_chain", rod = "super_helix";
 inline constexpr double seed_hair = 1e6;  // Pa
 }  // namespace transport
 
-/// Fills the columns that compare a row with the same of another model: corde's, the
-/// rod's, articulated_chain's.
+/// Fills the columns that compare a row with the corresponding row of corde, of the rod
+/// and of articulated_chain.
 void compare_with_corde(std::vector<Row>& rows);
 
-/// What the table shows of force_transport, claim by claim.
+/// The claims about force_transport in the table.
 void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::force_transport

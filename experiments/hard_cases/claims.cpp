@@ -8,7 +8,7 @@
 namespace tress::experiments::hard_cases {
 namespace {
 
-/// Time at which it breaks, or the measure, in the column named.
+/// Time of failure, or the measure, in the named column.
 struct Known {
   std::string_view column;
   KnownLimit known;

@@ -13,8 +13,8 @@ std::string has_constraints(System& system) {
   return system.layout().constraints > 0 ? "" : "it has no constraint to violate";
 }
 
-/// All that moves, along x by a tenth of the length: the first constraint is violated by
-/// as much.
+/// Moves all free parts along x by a tenth of the length: the first constraint is
+/// violated by as much.
 void move_along(const Situation& s, State& start) {
   MaterialPoints& points = *s.system->material_points();
   std::set<int> x;  // coordinates
@@ -31,7 +31,7 @@ void move_along(const Situation& s, State& start) {
   for (const int c : x) start.q[static_cast<std::size_t>(c)] += displaced * s.length;
 }
 
-/// A chain that is the limit of springs: the hair's mass, length and links.
+/// A chain as the limit of springs: the hair's mass, length and links.
 const ModelSettings hair_of_links{
     {"links", "20"}, {"length_m", "0.1"}, {"mass_kg", "6.5e-7"}};
 const ModelSettings hair_of_bars{

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double touch = 1.2e-3, separation = 0.02;  // m, of the coil's turns
 
-/// Turns 1.6 mm apart are pressed together until they touch, at 1.2 mm, by 2.5 times what
-/// closes the coil, k = GJ/(L R^2) [Love] over the 1.2 mm that its 3.2 turns can close.
-/// That drives it to 0.3 m/s at most, which the contact stops within v sqrt(rho A/K) =
-/// 0.2 mm, a third of what would be through.
+/// Turns 1.6 mm apart are pressed together until they touch, at 1.2 mm, by 2.5 times the
+/// force that closes the coil, k = GJ/(L R^2) [Love] over the 1.2 mm that its 3.2 turns
+/// can close. That drives it to 0.3 m/s at most, which the contact stops within v
+/// sqrt(rho A/K) = 0.2 mm, a third of full penetration.
 void close_coil(const Strand&, Effects& effects) {
   effects.push_back(std::make_shared<SelfContact>(
       ContactLaw(
@@ -38,13 +38,13 @@ constexpr BodyContact floor_contact{
 constexpr BodyContact cone_contact{
     .stiffness = 1e5, .damping = 1, .friction = 0.5, .offset = radius};
 
-/// Tilted by 5 degrees across the way of the root, which carries the strand along it.
+/// Tilted by 5 degrees across the path of the root, which drags the strand along it.
 void slope(const Strand&, Effects& effects) {
   effects.push_back(std::make_shared<Body>(
       plane({0, 0, -5e-3}, {1, 0, 0}, 5 * std::numbers::pi / 180, floor_contact)));
 }
 
-/// Three planes of 45 degrees that meet below the middle of the strand.
+/// Three planes at 45 degrees that meet below the middle of the strand.
 void cone(const Strand& strand, Effects& effects) {
   const Vec apex{strand.length() / 2, 0, -0.06};
   for (int side = 0; side < 3; ++side) {

@@ -10,7 +10,7 @@ constexpr std::string_view no_energy =
     "energy over the start's stays below 1 % of what "
     "falling can turn into motion: nothing feeds it";
 
-/// Falls from the horizontal, as most of them do.
+/// Falls from the horizontal, as most cases do.
 HardCase falling(std::string_view name, std::string_view why, ModelSettings settings) {
   HardCase hard{.name = name,
                 .why = why,
@@ -22,8 +22,8 @@ HardCase falling(std::string_view name, std::string_view why, ModelSettings sett
   return hard;
 }
 
-/// Twice the static sag of a clamped beam under its weight, w L^4/(8 EI): a release from
-/// straight swings to it and back.
+/// Twice the static sag of a clamped beam under its weight, w L^4/(8 EI): released
+/// straight, it swings to it and back.
 double swing_of_beam(const Situation& s) {
   const Segment& segment = s.strand.segments.front();
   const double bending = s.strand.material.youngs_modulus * segment.section.inertia1();
@@ -31,8 +31,8 @@ double swing_of_beam(const Situation& s) {
   return 2 * weight * std::pow(s.length, 4) / (8 * bending);
 }
 
-/// The last segment weighs a thousand times what the others do together: a bead of the
-/// same density, as thick as it must be.
+/// The last segment weighs a thousand times the others together: a bead of the same
+/// density, with the required thickness.
 void heavy_end(Strand& strand) {
   constexpr double ratio = 1000;
   Segment& bead = strand.segments.back();
@@ -51,7 +51,7 @@ void thick_end(Strand& strand) {
   }
 }
 
-/// The middle one is a ten-thousandth of the others; the one before takes what it loses.
+/// The middle one is a ten-thousandth of the others; the previous one takes up the rest.
 void vanishing_segment(Strand& strand) {
   constexpr double ratio = 1e-4;
   const std::size_t middle = strand.segments.size() / 2;
@@ -60,7 +60,7 @@ void vanishing_segment(Strand& strand) {
   strand.segments[middle - 1].length += (1 - ratio) * length;
 }
 
-/// Height of the coil, which the motion is compared with.
+/// Height of the coil, the scale of its motion.
 double coil_height(const Situation& s) {
   const Vec& n = s.strand.segments.front().natural;
   return s.length * std::abs(n.x) / norm(n);

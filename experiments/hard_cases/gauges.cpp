@@ -12,7 +12,7 @@ namespace tress::experiments::hard_cases {
 namespace {
 
 constexpr double never = StabilityBounds::none;
-// The first of four points of Gauss is at (1 - 0.8611)/2 of the interval.
+// The first of four Gauss points is at (1 - 0.8611)/2 of the interval.
 constexpr double last_point = 0.0694;
 
 /// The larger of two, or NaN.
@@ -46,7 +46,7 @@ class StretchGauge final : public Gauge {
   explicit StretchGauge(const Situation& s)
       : drift_(*s.system, s.start.q, s.start.v, never) {}
   void see(double t, In q, In v) override { static_cast<void>(drift_(t, q, v)); }
-  /// Particles say nothing of lengths; their violation is what stretches.
+  /// Particles provide no lengths; their constraint violation measures stretch.
   double measure() const override {
     const double stretched = drift_.length_error();
     return std::isnan(stretched) ? drift_.g_max() : stretched;
@@ -86,7 +86,7 @@ class MomentumGauge final : public Gauge {
     Vec linear, angular;  // the latter about the centre of mass
   };
 
-  /// Segments are taken as straight.
+  /// Treats segments as straight.
   Motion momentum(double t, In q, In v) {
     const Momentum total = energetics_.momentum(t, q, v).value();
     points_.positions(t, q, x_);

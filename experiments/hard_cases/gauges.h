@@ -2,21 +2,21 @@
 
 #include "experiments/hard_cases/hard_case.h"
 
-/// What the cases measure. Each reads the system of the situation, which outlives it.
+/// The measures of the cases. Each reads the situation's system, which must outlive it.
 namespace tress::experiments::hard_cases {
 
-/// Depth (m) of a strand's surface in a Body that a right simulator may have: the radius,
-/// by which its axis stays outside, and 0.07 of the last element's length, by which the
-/// tip is beyond the last point where bodies can hold a strand that hits them head-on
-/// (the last of four points of Gauss).
+/// Depth (m) of a strand's surface in a Body that a correct simulator may have: the
+/// radius, since contact keeps the axis outside, and 0.07 of the last element's length,
+/// by which the tip is beyond the last point where bodies can hold a strand that hits
+/// them head-on (the last of four Gauss points).
 double allowed_depth(const Strand& strand);
 
-/// Largest depth of a material point in a Body among the effects, over that.
+/// Largest depth of a material point in a Body among the effects, over allowed_depth().
 std::unique_ptr<Gauge> penetration_gauge(const Situation& situation);
 
 /// Largest overlap of parts of the strand farther apart along it than `separation`, over
-/// half of the distance at which they begin to touch: at 1 the parts, as thick as half
-/// that distance each, have the axis of one on the surface of the other.
+/// half of the distance at which they begin to touch: at 1 the axis of one part lies on
+/// the surface of the other, each as thick as half that distance.
 class OverlapGauge final : public Gauge {
  public:
   OverlapGauge(const Situation& situation, double touch, double separation);
@@ -34,8 +34,8 @@ class OverlapGauge final : public Gauge {
 std::unique_ptr<Gauge> stretch_gauge(const Situation& situation);
 
 /// Growth of the energy and of the angular momentum of a free strand about its centre of
-/// mass, over what they were at the start, the larger one; error: the largest change of
-/// that angular momentum, and of the linear one times the length, over the former.
+/// mass, relative to the start, the larger one; error: the largest change of that angular
+/// momentum, and of the linear one times the length, over the initial angular momentum.
 std::unique_ptr<Gauge> momentum_gauge(const Situation& situation);
 
 /// Largest depth of the tip below its root, over `allowed` (m).
@@ -44,8 +44,8 @@ std::unique_ptr<Gauge> sag_gauge(const Situation& situation, double allowed);
 /// Largest |g| over its scale.
 std::unique_ptr<Gauge> violation_gauge(const Situation& situation);
 
-/// How far from done a recovery is at the end: the larger of |g| over a thousandth of its
-/// scale and of the energy gained since the start over `energy` (J).
+/// How far a recovery is from complete at the end: the larger of |g| over a thousandth of
+/// its scale and of the energy gained since the start over `energy` (J).
 std::unique_ptr<Gauge> recovery_gauge(const Situation& situation, double energy);
 
 }  // namespace tress::experiments::hard_cases

@@ -19,7 +19,7 @@ std::vector<HardCase> all_cases() {
   return all;
 }
 
-/// Of the strand hanging straight down from its root, J.
+/// Energy (J) of the strand hanging straight down from its root.
 double hanging(const Situation& s) {
   const double gravity = s.parameters.number("gravity_m_s2");
   double energy = 0, below = 0;
@@ -45,7 +45,7 @@ Situation situation(const HardCase& hard, const Subject& subject,
   set_known(s.parameters, subject.settings);
   if (subject.model->on_strand != nullptr) {
     for (const auto& [key, value] : hard.settings) {
-      // What only some models have is for those.
+      // Keys that only some models have apply to those only.
       if (shared_by_strands(key) || s.parameters.knows(key)) s.parameters.set(key, value);
     }
 

@@ -1,5 +1,5 @@
 // Which model by which integrator survives which hard case, and at which step? Each case
-// has a reason why it is hard, and a criterion from physics that a right answer meets.
+// has a reason why it is hard, and a physical criterion that a correct answer meets.
 #include <memory>
 #include <vector>
 
@@ -36,11 +36,11 @@ constexpr Column columns[] = {
      true},
 };
 
-/// What a row may do, and within it the reference that it makes for all rows of its case
-/// and model.
+/// Work limit of a row, including that of the reference that it computes for all rows of
+/// its case and model.
 struct Budget {
   WorkLimit row, reference;
-  double patience;  // s, for a reference that another row makes
+  double patience;  // s, for a reference computed by another row
 };
 
 Budget budget_of(const CommandLine& line) {
@@ -80,7 +80,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// A row that was killed or that crashed says so.
+/// Marks rows that were killed or crashed.
 void fill(std::vector<Row>& rows) {
   for (Row& row : rows) {
     if (!row.text("outcome").empty()) continue;
@@ -99,7 +99,7 @@ std::vector<Gloss> glossary() {
   return all;
 }
 
-/// What does not survive is what is looked for.
+/// Failures to survive are the expected results.
 bool finding(const Row& row) { return row.status() != "crashed"; }
 
 constexpr OwnOption command_options[] = {
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
           "step?",
       .example = "--models super_helix,der --set case=violent_shake",
       .timed = false,
-      .quick_timeout_s = 120,  // an emergency: its work bounds a row
+      .quick_timeout_s = 120,  // an emergency limit: work bounds a row
       .columns = columns,
       .settings = hard_case_settings(),
       .options = command_options,

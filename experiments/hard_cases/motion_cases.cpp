@@ -19,9 +19,9 @@ double euler_load(const Strand& strand) {
   return std::pow(std::numbers::pi / (2 * strand.length()), 2) * bending;
 }
 
-constexpr double overload = 10;  // of buckling, times Euler's
+constexpr double overload = 10;  // multiple of Euler's buckling load
 
-/// Pulled down at the tip, by a target so far away that its direction does not change.
+/// Pulled down at the tip, by a target so distant that its direction is constant.
 void press_down(const Strand& strand, Effects& effects) {
   effects.push_back(
       std::make_shared<Tether>(Tether::Settings{.pull = overload * euler_load(strand),
@@ -30,27 +30,27 @@ void press_down(const Strand& strand, Effects& effects) {
                                                 .ramp = 0.1}));
 }
 
-/// The pull P gives at most P 2 L: u = sqrt(4 P L/m) is the strand's root mean square
-/// speed, and sqrt(30) u that of its tip (strand_speed_bound).
+/// The pull P does work of at most P 2 L: u = sqrt(4 P L/m) is the strand's root mean
+/// square speed, and sqrt(30) u that of its tip (strand_speed_bound).
 StabilityBounds pressed_bounds(const Situation& s, double) {
   const double pull = overload * euler_load(s.strand);
   return {.reach = 1.001 * s.length,
           .speed = std::sqrt(30 * 4 * pull * s.length / s.mass)};
 }
 
-/// One of the middle segments is bent to a half circle: the halves lie side by side.
+/// One of the middle segments is bent to a half circle, with the halves side by side.
 void fold(Strand& strand) {
   Segment& middle = strand.segments[strand.segments.size() / 2];
   middle.initial = {0, std::numbers::pi / middle.length, 0};
 }
 
-/// A straight strand turns about its middle, which stays.
+/// A straight strand turns about its fixed middle.
 void centre(Strand& strand) {
   FreeRoot& root = *strand.free_root;
   root.velocity = (strand.length() / 2) * cross(root.frame.e0, root.spin);
 }
 
-/// Steps of dt and of dt/100 in turn.
+/// Alternating steps of dt and dt/100.
 std::vector<double> jumping(double dt, double t_end) {
   constexpr double ratio = 100;
   std::vector<double> stops;

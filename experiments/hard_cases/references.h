@@ -8,18 +8,18 @@
 
 namespace tress::experiments::hard_cases {
 
-/// Where the tip goes by the same equations at a much finer step, and how far that is
-/// from the same at twice that step, over the length; `why`, where there is none.
+/// The tip's trajectory by the same equations at a much finer step, and its distance over
+/// the length from that at twice the finer step; `why` if there is none.
 struct Reference {
   std::vector<double> tip;  // (3 samples)
   double gap = 0;
-  std::string why;  // empty: there is one
+  std::string why;  // empty: the reference exists
 
   static constexpr int samples = 8;
 };
 
-/// References that rows in processes of their own share: the first that asks computes,
-/// the others wait. Made before the processes are, in memory that all of them see.
+/// References shared by the processes of the rows: the first to ask computes, the others
+/// wait. Created before the processes fork, in shared memory.
 class References {
  public:
   explicit References(std::size_t count);
@@ -27,8 +27,8 @@ class References {
   References(const References&) = delete;
   References& operator=(const References&) = delete;
 
-  /// Number `index`, by `compute` unless it is known. Who waits longer than `patience_s`
-  /// goes without: who computed has been killed.
+  /// Reference `index`, by `compute` unless it is known. A caller that waits longer than
+  /// `patience_s` returns without one: the computing process has been killed.
   Reference get(std::size_t index, double patience_s,
                 const std::function<Reference()>& compute);
 

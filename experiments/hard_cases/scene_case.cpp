@@ -17,8 +17,8 @@
 namespace tress::experiments::hard_cases {
 namespace {
 
-/// The tangents that are tried; of the scene's own model the scene's, and the usual one
-/// of the method that solves only once a step.
+/// The tangents to try; for the scene's own model the scene's, and the usual one for the
+/// method that solves only once a step.
 std::vector<std::string_view> tangents(const CommandLine& line, const Scene& scene,
                                        const ModelEntry& model,
                                        std::string_view integrator) {
@@ -58,7 +58,7 @@ void measure(const Work& work, Row& row) {
   set_survival(s, row);
 }
 
-/// Ours and the scene's own.
+/// The standard steps and the scene's own.
 std::vector<double> steps_of(const CommandLine& line, const Scene& scene, double only) {
   std::set<double> all{scene.options.step};
   for (const double dt : tried_steps(line)) all.insert(dt);
@@ -87,7 +87,7 @@ SceneSurvival survive(const Scene& given, const SceneCriteria& criteria, double 
                       const WorkLimit& limit) {
   Scene scene = given;
   scene.guard = true;
-  scene.options.max_work = 0;  // it is counted here, over all strands
+  scene.options.max_work = 0;  // counted here, over all strands
   const double dt = scene.options.step;
   World world(scene);
   SceneGauge gauge(scene, world, criteria);

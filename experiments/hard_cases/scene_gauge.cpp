@@ -45,7 +45,7 @@ SceneGauge::SceneGauge(const Scene& scene, World& world, const SceneCriteria& cr
   }
 }
 
-/// Comparisons are such that what is not a number breaks a limit.
+/// Comparisons are written so that NaN violates a limit.
 const SceneGauge::Criterion* SceneGauge::broken() {
   for (Criterion& criterion : criteria_) {
     const double now = criterion.read();
@@ -82,7 +82,7 @@ double SceneGauge::depth() {
   return most;
 }
 
-/// By chords: a system tells how much the worst piece is off, not which it is.
+/// By chords: a system reports the strain of the worst segment, not its index.
 std::string SceneGauge::stretched_place() const {
   const std::vector<double>& x = world_.positions();
   double most = 0;

@@ -9,14 +9,14 @@
 
 namespace tress::experiments::hard_cases {
 
-/// What a run of a scene keeps besides what the guard of simulations asks for (Guard).
+/// Bounds on a run of a scene besides those of the simulation guard (Guard).
 struct SceneCriteria {
   double stretch = 0.5;    // of a piece, over its length; the guard's own bound
   double depth = 0;        // m, in a body, beyond that at the start; 0: allowed_depth()
   double energy_gain = 0;  // J, kinetic, elastic and of effects; 0: the guard's bound
 };
 
-/// Watches a scene from step to step; reads both, which outlive it.
+/// Watches a scene at every step; scene and world must outlive it.
 class SceneGauge {
  public:
   struct Criterion {
@@ -28,12 +28,12 @@ class SceneGauge {
     double largest = 0;
   };
 
-  /// From the present state of the world on.
+  /// Starts from the present state of the world.
   SceneGauge(const Scene& scene, World& world, const SceneCriteria& criteria);
 
-  /// After a step: the criterion that does not hold, null while all do.
+  /// After a step: the violated criterion, null if all hold.
   const Criterion* broken();
-  /// The one that has used up the most of its limit.
+  /// The criterion nearest to its limit.
   const Criterion& nearest() const;
 
  private:

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::string_view names[] = {"refused", "not finished", "unstable", "stable",
                                       "stable and accurate"};
-// Of order 2, and what it damps at the reference's steps no step of the table resolves.
+// Of order 2; no step of the table resolves what it damps at the reference's steps.
 constexpr std::string_view reference_integrator = "bdf2";
-// A reference is one where it is this much better than what it judges.
+// A reference is valid if it is this much better than what it judges.
 constexpr double reference_margin = 5;
 
 std::string text(double x) {
@@ -27,7 +27,7 @@ std::string text(double x) {
   return out.str();
 }
 
-/// Why no formulation serves: the reason against the most usual one.
+/// Why no formulation is supported: the reason for the most usual one.
 std::string objection(const IntegratorEntry& entry, System& system) {
   return refusal(entry, system,
                  system.layout().constraints > 0 ? Formulation::projection
@@ -38,7 +38,7 @@ std::string objection(const IntegratorEntry& entry, System& system) {
 struct Course {
   Options options;
   std::vector<double> stops;
-  double growth;  // of neighbouring steps, at most
+  double growth;  // largest ratio of neighbouring steps
 };
 
 Course course(const HardCase& hard, const Options& options, double dt, double shorter) {
@@ -59,10 +59,10 @@ Course course(const HardCase& hard, const Options& options, double dt, double sh
 struct Watched {
   Simulation end;
   std::vector<double> tips;
-  bool cut;  // its work was done
+  bool cut;  // the work ran out
 };
 
-/// These two factor a dense matrix where their tangent is exact.
+/// These two factor a dense matrix if their tangent is exact.
 bool dense(const Situation& s, std::string_view model) {
   return (model == "kirchhoff_nodal" || model == "force_transport") &&
          s.parameters.word("tangent") == "exact";
@@ -99,7 +99,7 @@ Watched watch(std::string_view integrator, const HardCase& hard, const Subject& 
   return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>(), cut};
 }
 
-/// The reference's tips at one step; empty and `why` where there is none.
+/// The reference's tips at one step; empty, with `why`, if there is none.
 std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
                             const Parameters& defaults, const Options& options, double dt,
                             const WorkLimit& limit, std::string& why) {

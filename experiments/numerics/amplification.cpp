@@ -57,9 +57,9 @@ std::optional<double> amplification(std::string_view integrator, double omega_h,
 }
 
 std::optional<double> largest_stable_omega_h(std::string_view integrator, double zeta) {
-  // A double root on the unit circle computes to a radius of one plus sqrt(eps).
+  // A double root on the unit circle is computed with a radius up to one plus sqrt(eps).
   constexpr double on_the_circle = 1 + 1e-7;
-  // The scan goes up from below every limit of interest in steps finer than any island.
+  // The scan starts below every limit of interest, in steps finer than any island.
   constexpr double first = 1e-4, last = 1e3, factor = 1.01;
   const auto stable = [&](double omega_h) {
     return *amplification(integrator, omega_h, zeta) <= on_the_circle;

@@ -7,14 +7,14 @@
 
 namespace tress::experiments {
 
-/// What one step of a fixed-step method does to the violation C of a constraint under
-/// Baumgarte feedback: the test equation
+/// Effect of one step of a fixed-step method on the violation C of a constraint under
+/// Baumgarte feedback, by the test equation
 ///     C'' + beta C' + alpha C = 0,   omega^2 = alpha,   beta = 2 zeta omega.
 /// Small violations obey it whatever the motion is, because the feedback acts along the
 /// constraint's own gradient.
 
 /// Spectral radius of the step's matrix on (C, h C') (velocity_verlet: with h^2 C'' too).
-/// Empty for a method that is not among those with a finite limit below.
+/// Empty for methods without a finite limit below.
 std::optional<double> amplification(std::string_view integrator, double omega_h,
                                     double zeta);
 

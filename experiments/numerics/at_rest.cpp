@@ -10,8 +10,8 @@
 namespace tress::experiments {
 namespace {
 
-constexpr int loads = 8;            // gravity in steps of
-constexpr double load_ratio = 3;    // this factor
+constexpr int loads = 8;            // number of gravity steps
+constexpr double load_ratio = 3;    // gravity ratio of successive steps
 constexpr double accuracy = 1e-10;  // of the typical sizes
 constexpr int iterations = 100;
 

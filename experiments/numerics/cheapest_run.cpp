@@ -8,7 +8,8 @@ namespace {
 
 constexpr double little_gain = 0.8;
 
-// Errors this many times the target need not fall with the step yet: all is damped away.
+// Errors beyond this multiple of the target need not fall with the step yet: the motion
+// is damped away.
 constexpr double far = 10;
 
 }  // namespace

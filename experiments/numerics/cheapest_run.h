@@ -9,35 +9,35 @@
 
 namespace tress::experiments {
 
-/// One way to meet a wanted error.
+/// One way to meet a target error.
 struct CheapRun {
   int elements;
   double dt;     // s
-  double error;  // of the tip, tip_error; infinite: the run failed
-  double work;   // of that one run, total_work()
+  double error;  // tip_error; infinite: the run failed
+  double work;   // of this run, total_work()
 };
 
 struct CheapSearch {
   double target;  // of the error
   std::span<const int> elements;
-  double coarsest, finest;  // s, steps tried, each half the one before
+  double coarsest, finest;  // s; tried steps halve from coarsest to finest
   double most_work = std::numeric_limits<double>::infinity();  // of all runs together
 };
 
 struct Cheapest {
-  std::optional<CheapRun> run;  // none met the target
-  bool complete;                // false: the work was used up before all were tried
+  std::optional<CheapRun> run;  // empty: no run met the target
+  bool complete;                // false: the work ran out before all were tried
 };
 
-/// For one model by one integrator, where all are to be compared and the same answer must
-/// come on every machine. What beats all others on one machine's clock, robustly, is what
-/// cost_of_accuracy's Search looks for.
+/// For one model and one integrator, when all combinations are to be compared and the
+/// answer must be the same on every machine. For the method that is robustly fastest on
+/// one machine's clock see cost_of_accuracy's Search.
 ///
-/// The run of least work whose error is at most the target: for every number of elements
-/// the longest step that meets it. A number of elements is given up when a step half as
-/// long gains less than a fifth of an error near the target (what is left is not of
-/// time), or takes more work than the best run so far. Work and not time decides, so that
-/// the answer is the same on every machine.
+/// Finds the run of least work whose error is at most the target: for every number of
+/// elements the longest step that meets it. A number of elements is abandoned when
+/// halving the step reduces an error near the target by less than a fifth (the remaining
+/// error is not temporal), or takes more work than the best run so far. Work decides
+/// rather than time, so that the answer is the same on every machine.
 Cheapest cheapest_run(const CheapSearch& search,
                       const std::function<CheapRun(int elements, double dt)>& run);
 

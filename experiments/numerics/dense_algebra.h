@@ -4,33 +4,33 @@
 
 #include "contract/layers.h"
 
-/// Decompositions of dense matrices, O(n^3), compiled once: each takes the compiler some
-/// seconds wherever it is used.
+/// Decompositions of dense matrices, O(n^3), instantiated here once: each costs some
+/// seconds of compile time per use.
 namespace tress::experiments {
 
-/// x of a x = b, by LU.
+/// Solves a x = b by LU.
 Eigen::MatrixXd solution(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-/// x of the least |a x - b|, columns of full rank.
+/// Minimises |a x - b|; the columns of a have full rank.
 Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& a,
                                        const Eigen::VectorXd& b);
-/// An orthonormal base of what is orthogonal to independent columns.
+/// An orthonormal basis of the orthogonal complement of independent columns.
 Eigen::MatrixXd complement(const Eigen::MatrixXd& columns);
 /// Whether a symmetric matrix is positive definite.
 bool is_definite(const Eigen::MatrixXd& symmetric);
 
-/// Of a general square matrix, in no order.
+/// Eigenvalues of a general square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
-/// Of a symmetric one, ascending.
+/// Ascending.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
-/// Columns of `vectors` belong to `values`.
+/// Column i of `vectors` belongs to values[i].
 struct Eigenpairs {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// The real parts, in no order.
+/// The real parts, unordered.
 Eigenpairs real_eigenpairs(const Eigen::MatrixXd& matrix);
-/// a x = value b x, a symmetric and b symmetric and positive definite, ascending.
+/// Solves a x = value b x, a symmetric, b symmetric positive definite; ascending.
 Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 }  // namespace tress::experiments

@@ -7,7 +7,7 @@
 namespace tress::experiments {
 namespace {
 
-// Beyond this length error nothing is left of a strand.
+// Beyond this length error the run counts as diverged.
 constexpr double longest = 10;
 
 double largest(In x) {

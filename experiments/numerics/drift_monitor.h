@@ -6,8 +6,8 @@
 
 namespace tress::experiments {
 
-/// Watches a run for what constraints and energy do; an Observer that never allocates.
-/// Parametric systems have no constraints: their violation is zero by construction.
+/// Observes constraint violation and energy drift over a run; never allocates. Parametric
+/// systems have no constraints: their violation is zero by construction.
 class DriftMonitor {
  public:
   /// `escape` (m): a violation beyond it ends the run as diverged.
@@ -18,10 +18,10 @@ class DriftMonitor {
   double g_max() const { return g_max_; }
   double g_final() const { return g_final_; }
   double g_rate_max() const { return g_rate_max_; }
-  /// Largest |E - E_start| of a conservative system over the
-  /// energy scale (largest kinetic energy met); NaN when the system has no energetics.
+  /// Largest |E - E_start| of a conservative system over the energy scale (largest
+  /// kinetic energy reached); NaN when the system has no energetics.
   double energy_drift() const;
-  /// Largest |length/rest - 1| of a piece of the body; NaN when the system does not say.
+  /// Largest |length/rest - 1| of a segment; NaN when the system does not provide it.
   double length_error() const { return length_error_; }
   bool escaped() const { return escaped_; }
 

@@ -9,7 +9,7 @@
 namespace tress::experiments {
 
 /// Slope of log y against log x by least squares, the exponent p of y ~ x^p. All entries
-/// positive, at least two different x.
+/// must be positive, with at least two different x.
 inline double log_log_slope(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   double x_mean = 0, y_mean = 0;

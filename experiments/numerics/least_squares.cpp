@@ -16,7 +16,7 @@ namespace tress::experiments {
 namespace {
 
 constexpr int most_iterations = 60;
-constexpr double out_of_reach = 1e6;  // a residual where there is none: never accepted
+constexpr double out_of_reach = 1e6;  // residual where undefined: never accepted
 
 template <class T, void (*release)(T*)>
 struct Release {
@@ -28,7 +28,7 @@ using Workspace =
 using Matrix = std::unique_ptr<gsl_matrix, Release<gsl_matrix, gsl_matrix_free>>;
 using Vector = std::unique_ptr<gsl_vector, Release<gsl_vector, gsl_vector_free>>;
 
-/// What GSL calls; it is C, so exceptions wait until it has returned.
+/// Callback data for GSL; it is C, so exceptions wait until it has returned.
 struct Problem {
   const ResidualAt& residual;
   double difference;
@@ -160,8 +160,8 @@ LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
     int why = 0;
     double largest = 1;
     for (const double x : start) largest = std::max(largest, std::abs(x));
-    // GSL's is relative to x; its tests of the gradient and of the sum, which are not
-    // scaled, are left out.
+    // GSL's tolerance is relative to x; its unscaled tests of the gradient and of the sum
+    // are disabled.
     code = gsl_multifit_nlinear_driver(most_iterations, tolerance / largest, 0, 0,
                                        nullptr, nullptr, &why, workspace.get());
   }

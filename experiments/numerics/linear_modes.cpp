@@ -16,7 +16,7 @@ LinearModes linear_modes(System& system, In q) {
   const Eigen::MatrixXd dynamics = solution(mass, stiffness);
   LinearModes modes;
   modes.slowest_rad_s = std::numeric_limits<double>::infinity();
-  // A double real eigenvalue computes to a pair apart by sqrt(eps).
+  // A double real eigenvalue is computed as a pair sqrt(eps) apart.
   constexpr double real = 1e-7;
   for (const std::complex<double> square : eigenvalues(dynamics)) {
     const std::complex<double> s = std::sqrt(-square);

@@ -4,10 +4,10 @@
 
 namespace tress::experiments {
 
-/// Watches momentum over a run of a free body.
+/// Tracks the momentum drift over a run of a free body.
 class MomentumDrift {
  public:
-  /// The state at t = 0. The system must keep count of its momentum.
+  /// Takes the state at t = 0. The system must provide its momentum.
   MomentumDrift(Energetics& energetics, In q, In v);
   void see(double t, In q, In v);
 

@@ -9,7 +9,7 @@
 
 namespace tress::experiments {
 
-/// Fills `pareto` of every row that is ok: no other such row of its group has both less
+/// Fills `pareto` of every ok row: true if no other ok row of its group has both less
 /// wall_s and less of the column `error`.
 void add_pareto(std::vector<Row>& rows, std::string_view error,
                 const std::function<std::string(const Row&)>& group);

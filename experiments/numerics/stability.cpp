@@ -32,7 +32,7 @@ struct Trial {
   bool stable() const { return broken == Broken::nothing; }
 };
 
-/// What the trials say so far, whatever their order.
+/// Summary of the trials so far, in any order.
 StepLimit summary(std::vector<Trial> trials, double resolution) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown, 0, false, false};
@@ -91,7 +91,7 @@ StabilityJudge::StabilityJudge(System& system, const StabilityBounds& bounds,
   }
 }
 
-/// Comparisons are such that NaN breaks a bound.
+/// Comparisons are written so that NaN violates a bound.
 bool StabilityJudge::operator()(double t, In q, In v) {
   if (energetics_ != nullptr) {
     const double gain = energetics_->energy(t, q, v).total() - energy_start_;
@@ -127,7 +127,7 @@ StabilityRun StabilityJudge::verdict(const Simulation& run) const {
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
                                       double t_end, const StabilityBounds& bounds) {
-  // 1e-9: a whole number of steps up to rounding is not run one step longer.
+  // 1e-9: a whole number of steps up to rounding gets no extra step.
   const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
   StabilityJudge judge(system, bounds, start);
   const Simulation run =
@@ -161,7 +161,7 @@ StepLimit find_step_limit(const StepSearch& search,
     return broken.has_value();
   };
 
-  // 1e-6: the last step of the scan is not lost to rounding.
+  // 1e-6: rounding must not lose the last step of the scan.
   const double ratio = search.ratio;
   const int count =
       1 + static_cast<int>(std::log(search.coarsest / search.finest) / std::log(ratio) +

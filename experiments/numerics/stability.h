@@ -12,43 +12,43 @@
 
 namespace tress::experiments {
 
-/// What a stable run keeps, besides staying finite. Energy bounds are for passive scenes;
-/// a moving root puts energy in, so driven scenes are bounded by where the tip gets and
-/// how fast.
+/// Bounds that a stable run keeps, besides staying finite. Energy bounds are for passive
+/// scenes; a moving root puts energy in, so driven scenes are bounded by the reach and
+/// speed of the tip.
 struct StabilityBounds {
   static constexpr double none = std::numeric_limits<double>::infinity();
-  double energy = none;  // J, mechanical energy above that of the start
+  double energy = none;  // J, mechanical energy gain since the start
   double reach = none;   // m, distance of the tip from the root
   double speed = none;   // m/s, of the tip relative to the root
 };
 
-/// Which of it did not hold first.
+/// Which bound was violated first.
 enum class Broken { nothing, not_finite, energy, reach, speed, stretch, no_solution };
 std::string_view name(Broken broken);
 
-/// One judged run; the maxima are over the part that was run.
+/// One judged run; maxima are over the part that was run.
 struct StabilityRun {
   Broken broken = Broken::nothing;
-  double t = 0;            // s, where it ended
-  double energy_gain = 0;  // J, 0 when not asked for
+  double t = 0;            // s, at the end of the run
+  double energy_gain = 0;  // J, 0 unless bounded
   double reach = 0;        // m
   double speed = 0;        // m/s
   Stats stats;
-  std::string failure;  // the integrator's words for no_solution
+  std::string failure;  // the integrator's message for no_solution
 
   bool stable() const { return broken == Broken::nothing; }
 };
 
-/// Watches one run for what breaks first; an Observer that never allocates. The root is
-/// the system's first material point, the tip its last.
+/// Detects the first bound that a run violates; an Observer that never allocates. The
+/// root is the system's first material point, the tip its last.
 class StabilityJudge {
  public:
   /// Throws InputError when a bound needs a form that the system lacks.
   StabilityJudge(System& system, const StabilityBounds& bounds, const State& start);
 
-  /// False as soon as a bound is broken.
+  /// False as soon as a bound is violated.
   bool operator()(double t, In q, In v);
-  /// Of the run that was watched, once it has ended.
+  /// Verdict on the watched run, once it has ended.
   StabilityRun verdict(const Simulation& run) const;
 
  private:
@@ -62,15 +62,15 @@ class StabilityJudge {
   StabilityRun run_;
 };
 
-/// Steps of exactly `options.step` until `t_end` is reached or passed, so that what is
-/// judged is the step asked for, not one that divides t_end; ends where a bound breaks.
-/// Empty when Options::max_work is used up before. Throws as StabilityJudge.
+/// Steps of exactly `options.step` until `t_end` is reached or passed, so that the
+/// requested step is judged, not one that divides t_end; stops when a bound is violated.
+/// Empty when Options::max_work is used up first. Throws as StabilityJudge.
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
                                       double t_end, const StabilityBounds& bounds);
 
-/// The runs of one search, which together may take so much work (total_work()): a row's
-/// result then depends on no clock.
+/// The runs of one search, with a common work limit (total_work()), so that a row's
+/// result depends on no clock.
 class StabilityRuns {
  public:
   StabilityRuns(std::string_view integrator, System& system, const Options& options,
@@ -84,7 +84,7 @@ class StabilityRuns {
         bounds_(bounds),
         left_(most_work) {}
 
-  /// judge_run() of this step (s); empty when the work is used up.
+  /// judge_run() at this step (s); empty when the work is used up.
   std::optional<StabilityRun> judge(double dt);
 
  private:
@@ -97,32 +97,32 @@ class StabilityRuns {
   double left_;
 };
 
-/// How the largest stable step is looked for.
+/// Parameters of the search for the largest stable step.
 struct StepSearch {
   double coarsest = 0.1;     // s, "cap": larger steps are not tried
   double finest = 1e-6;      // s
-  double ratio = 1.7782794;  // of neighbours in the scan: four per decade
-  double resolution = 1.05;  // dt_first_unstable / dt_max of the answer
+  double ratio = 1.7782794;  // of successive steps in the scan: four per decade
+  double resolution = 1.05;  // target dt_first_unstable / dt_max
   /// Stability is not always monotone: steps below a stable one are tested until
-  /// everything down to a `depth`-th of it was stable too.
+  /// everything down to 1/depth of it was stable too.
   double depth = 30;
 };
 
-/// Steps that were not tried or not met are NaN.
+/// NaN: not tried, or not found.
 struct StepLimit {
-  double stable;        // s, largest step such that all tested up to it were stable
+  double stable;        // s, largest step with all tested steps up to it stable
   double unstable;      // s, smallest unstable step tested
-  Broken limited_by;    // what broke there; nothing: all steps tested were stable
+  Broken limited_by;    // the violation there; nothing: all tested steps were stable
   double stable_above;  // s, largest stable step above `unstable`: not monotone
   double finest;        // s, smallest step tested
   int runs;
   bool resolved;  // unstable / stable is within the resolution, or nothing was unstable
-  bool complete;  // and all was stable down to the depth: nobody gave up
+  bool complete;  // and all was stable down to the depth, within the work limit
 };
 
 /// Scans from coarse to fine. At the first stable step it bisects (geometrically) between
-/// `stable` and `unstable`, then goes on down to the depth, where the next unstable step
-/// begins anew. An empty answer of `judge` ends the search.
+/// `stable` and `unstable`, then continues down to the depth, where the next unstable
+/// step restarts the procedure. An empty result of `judge` ends the search.
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge);
 

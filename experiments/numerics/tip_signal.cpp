@@ -9,14 +9,14 @@
 namespace tress::experiments {
 namespace {
 
-/// The cubic of the step that ends at `i`, at the share s of it.
+/// The cubic of the step that ends at `i`, at the fraction s of it.
 double on_cubic(const TipSignal& signal, std::size_t i, double s) {
   const double h = signal.t[i] - signal.t[i - 1], r = 1 - s;
   return r * r * (1 + 2 * s) * signal.x[i - 1] + s * s * (1 + 2 * r) * signal.x[i] +
          h * s * r * (r * signal.v[i - 1] - s * signal.v[i]);
 }
 
-/// The index of the step, or the piece of a line, that ends at or after t.
+/// The index of the step, or line segment, that ends at or after t.
 std::size_t piece(In ends, double t) {
   const auto at = std::ranges::lower_bound(ends, t) - ends.begin();
   return static_cast<std::size_t>(
@@ -27,13 +27,13 @@ struct Turn {
   double t, x;
 };
 
-/// Start, and every place where the velocity changes its sign.
+/// The start, and every point where the velocity changes its sign.
 std::vector<Turn> turns(const TipSignal& signal) {
   std::vector<Turn> all{{signal.t.front(), signal.x.front()}};
   for (std::size_t i = 1; i < signal.t.size(); ++i) {
     const double before = signal.v[i - 1], now = signal.v[i];
     if (before * now > 0 || before == 0) continue;
-    // Where the velocity is zero by the chord: off by h^2, where the cubic is flat.
+    // Zero of the velocity by the chord: off by h^2, where the cubic is flat.
     const double s = before / (before - now);
     all.push_back(
         {signal.t[i - 1] + s * (signal.t[i] - signal.t[i - 1]), on_cubic(signal, i, s)});
@@ -54,7 +54,7 @@ std::vector<Turn> without_ripples(const std::vector<Turn>& all) {
       const std::size_t last = kept.size() - 1;
       if (swing(kept, last - 1) >= swing(kept, last)) break;
       if (kept.size() == 3) {
-        kept.erase(kept.begin());  // smaller than the one after it
+        kept.erase(kept.begin());  // smaller than the next one
       } else if (swing(kept, last - 1) < swing(kept, last - 2)) {
         kept.erase(kept.end() - 3, kept.end() - 1);
       } else {

@@ -17,17 +17,17 @@ struct TipSignal {
   std::vector<double> t, x, v;  // s, m, m/s
 };
 
-/// `axis`: 0, 1, 2 for x, y, z. A breach of `guard`, if there is one, ends the run.
+/// `axis`: 0, 1, 2 for x, y, z. A breach of `guard`, if given, ends the run.
 TipSignal run_tip_signal(std::string_view integrator, System& system,
                          const Options& options, int axis, double t_end,
                          Guard* guard = nullptr);
 
-/// At `times`, all within the run, by the cubic through places and velocities at both
-/// ends of a step: off by (omega h)^4/384 of an oscillation of rate omega at steps h.
+/// Displacement at `times`, all within the run, by cubic Hermite interpolation over each
+/// step: error (omega h)^4/384 for an oscillation of rate omega at steps h.
 std::vector<double> displacement(const TipSignal& signal, In times);
 
 /// Half the difference of successive turning points, midway between them. Turning points
-/// of ripples on a larger swing are left out, as in rainflow counting (ASTM E1049): those
+/// of ripples on a larger swing are skipped, as in rainflow counting (ASTM E1049): those
 /// between which the signal moves less than before and after, and, at the beginning, less
 /// than after.
 struct Swings {
@@ -35,9 +35,9 @@ struct Swings {
 };
 Swings swings(const TipSignal& signal);
 
-/// At `times`, on straight lines of ln(half) through the swings, prolonged beyond the
-/// first and the last: exact for the exponential decay of one mode. Empty when there are
-/// fewer than two swings.
+/// Envelope at `times`, by straight lines of ln(half) through the swings, extrapolated
+/// beyond the first and the last: exact for the exponential decay of one mode. Empty when
+/// there are fewer than two swings.
 std::vector<double> envelope(const TipSignal& signal, In times);
 
 }  // namespace tress::experiments

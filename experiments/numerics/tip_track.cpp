@@ -24,7 +24,7 @@ void TipSamples::start(In q, In v) {
 
 void TipSamples::step_to(double t, In q, In v) {
   const double h = t - before_.t;
-  // Only a step that ends beyond the next time of interest is read.
+  // Only a step that ends beyond the next sample time is read.
   if (next() <= t + growth_ * h) {
     const End now = read(t, q, v);
     while (3 * static_cast<std::size_t>(count_) > tips.size() && next() <= t) {
@@ -58,7 +58,7 @@ void TipSamples::interpolate(const End& now) {
 
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat, Guard* guard) {
-  // Of all adaptive methods here SUNDIALS' let steps grow the most, tenfold.
+  // Of all adaptive methods here SUNDIALS' increases steps the most, tenfold.
   constexpr double even = 1.5, uneven = 15;
   const auto method = make_integrator(integrator, system, options);
   const State start = initial_state(system);

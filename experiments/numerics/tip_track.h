@@ -10,14 +10,13 @@
 
 namespace tress::experiments {
 
-/// Where a tip, the last material point, is at t_end k / count, k = 1 .. count. Steps do
-/// not land on these times: in between, the tip is on the cubic through its places and
-/// velocities at both ends of a step, whose error falls as the fourth power of the step.
-/// Places are read while the run is there: what q means may change as it goes on
-/// (System::accept).
+/// Positions of a tip, the last material point, at t_end k / count, k = 1 .. count. Steps
+/// do not land on these times: in between, the tip follows the cubic Hermite interpolant
+/// of the step, whose error falls as the fourth power of the step. Positions are read
+/// during the run: the meaning of q may change as it goes on (System::accept).
 class TipSamples {
  public:
-  /// `growth`: a step is at most so many times as long as the one before.
+  /// `growth`: largest ratio of successive steps.
   TipSamples(System& system, double t_end, int count, double growth);
 
   void start(In q, In v);
@@ -43,19 +42,19 @@ class TipSamples {
   End before_{};
 };
 
-/// One run of a strand from its initial state, seen at its tip.
+/// One run of a strand from its initial state, sampled at its tip.
 struct TipRun {
   Status status;
   std::string failure;
   Stats stats;
-  double wall_s;            // of stepping: setting up and reading the tip are not in it
+  double wall_s;            // stepping only, without setup and reading the tip
   std::vector<double> tip;  // (3 samples) m; fewer when the run failed
   int unknowns;             // coordinates
 };
 
-/// Runs to t_end; the tip is sampled as TipSamples says. repeat = 0, or a failure: one
-/// run, not timed; else the median, as time_run. `guard` watches the first run, not those
-/// that are timed; what it finds is the run's failure.
+/// Runs to t_end; samples the tip by TipSamples. repeat = 0, or a failure: one untimed
+/// run; else the median time, as time_run. `guard` watches the first run, not the timed
+/// ones; a breach is the run's failure.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat = 0, Guard* guard = nullptr);
 

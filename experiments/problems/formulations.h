@@ -6,8 +6,8 @@
 
 namespace tress::experiments {
 
-/// The formulations by which an integrator drives a system, its own best first. Without
-/// Baumgarte's feedback, whose gains are the subject of constraint_drift.
+/// The formulations by which an integrator drives a system, its preferred one first.
+/// Excludes Baumgarte feedback, whose gains are the subject of constraint_drift.
 std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
                                              System& system);
 

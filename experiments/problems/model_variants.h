@@ -7,15 +7,15 @@
 
 namespace tress::experiments {
 
-/// A strand model with its choices of how lengths are kept.
+/// A strand model with its options for keeping lengths.
 struct ModelVariant {
   const ModelEntry* model;
   ModelSettings settings;
-  std::string words;  // "stretch=inextensible"; empty: the model as it comes
+  std::string words;  // "stretch=inextensible"; empty: model defaults
 };
 
-/// Every strand model as it comes and with every other word of its choices `stretch` and
-/// `stretch_springs`.
+/// Every strand model with its defaults and with every other value of its options
+/// `stretch` and `stretch_springs`.
 std::vector<ModelVariant> length_variants();
 
 }  // namespace tress::experiments

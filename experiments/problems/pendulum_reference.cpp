@@ -40,7 +40,7 @@ PendulumReference::State PendulumReference::at(double t) const {
   const double k = std::sqrt(m_);
   double sn = 0, cn = 0, dn = 0;
   if (m_ < 1) {
-    // One period at most, so that the argument keeps its digits over long times.
+    // Reduced to one period, so that the argument keeps its digits over long times.
     const double u = std::remainder(omega_ * t + phase_, 4 * quarter_period(m_));
     gsl_sf_elljac_e(u, m_, &sn, &cn, &dn);
     return {2 * std::asin(k * sn), 2 * omega_ * k * cn};

@@ -24,7 +24,7 @@ Problem bead(std::string_view name, const char* form) {
                   .coarse_step = 0.02,
                   .scale = {1},
                   .reference = checkpoints(5, 10),
-                  // GSL's elliptic functions over a handful of periods: rounding.
+                  // Error of GSL's elliptic functions over a few periods: rounding.
                   .reference_gap = 1e-14,
                   .compared = points};
   const PendulumReference exact(std::sqrt(9.81), {M_PI / 2, 0});
@@ -35,7 +35,7 @@ Problem bead(std::string_view name, const char* form) {
   return problem;
 }
 
-/// The end state that the Test Set prints; every angle on its own scale, as its scd does.
+/// The end state printed by the Test Set; every angle on its own scale, as in its scd.
 Problem published(std::string_view model, double coarse_step) {
   const PublishedEnd& end = *published_end(model);
   Problem problem{.name = model,
@@ -51,7 +51,7 @@ Problem published(std::string_view model, double coarse_step) {
   return problem;
 }
 
-/// The values at every checkpoint of one tight run; throws when it fails, because every
+/// The values at every checkpoint of one tight run; throws if it fails, because every
 /// error would then be meaningless.
 std::vector<Checkpoint> tight_run(const Problem& problem, std::string_view integrator,
                                   Formulation formulation) {
@@ -100,7 +100,7 @@ std::vector<Problem> make_problems() {
       Formulation::projection, Formulation::acceleration);
   all.push_back(published("andrews_squeezer", 2e-4));
   // The printed end state has five digits (tests/models/published): our own has more.
-  // Each coordinate on its own scale: the elastic modes are micrometres beside the
+  // Each coordinate on its own scale: the elastic modes are of micrometres, unlike the
   // crank's turns.
   add("slider_crank", "slider_crank", {}, 0.1, 1e-3, {}, 1, coordinates,
       Formulation::projection, Formulation::acceleration);

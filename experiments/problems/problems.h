@@ -19,11 +19,11 @@ struct ProblemError {
 /// The state at one time of a run.
 struct Checkpoint {
   double t;
-  std::vector<double> values;  // of what the problem compares
+  std::vector<double> values;  // the compared quantities
 };
 
 /// A problem whose end state is known: exactly, as published, or from two integrators of
-/// different families whose disagreement is kept as the reference's own error.
+/// different families whose disagreement is stored as the reference's own error.
 struct Problem {
   std::string_view name;
   std::string_view model;
@@ -34,7 +34,8 @@ struct Problem {
   std::vector<Checkpoint> reference;  // the last one at t_end
   double reference_gap;               // relative to scale
 
-  /// What is compared: coordinates, or material points where form must not matter.
+  /// What is compared: coordinates, or material points for independence of the
+  /// formulation.
   std::function<std::vector<double>(System&, const State&)> compared;
 
   std::unique_ptr<System> make() const;
@@ -43,8 +44,8 @@ struct Problem {
 /// The material points of a state, three coordinates each.
 std::vector<double> points(System& system, const State& state);
 
-/// A run that stops at every checkpoint, so that errors which happen to cancel at one
-/// time do not pass for accuracy.
+/// A run that is compared at every checkpoint, so that errors which happen to cancel at
+/// one time do not pass for accuracy.
 struct ProblemRun {
   Simulation end;
   ProblemError error;  // over all checkpoints reached
@@ -52,14 +53,14 @@ struct ProblemRun {
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
                        const Options& options);
 
-/// The problem with its reference values filled in by an explicit Runge-Kutta method, and
-/// how far an Adams method is from them, both at 1e-13, with constraints as given.
+/// The problem with reference values from an explicit Runge-Kutta method and their
+/// distance from those of an Adams method, both at 1e-13, with constraints as given.
 Problem computed(Problem problem, Formulation runge_kutta, Formulation adams);
 
-/// t_end k / count for k = 1 .. count, no values yet.
+/// t_end k / count for k = 1 .. count, without values.
 std::vector<Checkpoint> checkpoints(double t_end, int count);
 
-/// Made once, at the first call; the doubly computed references take about a second.
+/// Built on the first call; the doubly computed references take about a second.
 std::span<const Problem> problems();
 
 }  // namespace tress::experiments

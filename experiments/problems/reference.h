@@ -7,7 +7,7 @@
 
 namespace tress::experiments {
 
-/// Distances between a value and its reference, entry by entry over a typical size.
+/// Entry-wise distances between a value and its reference.
 struct ErrorNorms {
   double max = 0;  // largest |value - reference|, in the unit of the entries
   double rms = 0;
@@ -19,11 +19,11 @@ ErrorNorms error_norms(In value, In reference, In scale);
 
 /// Significant correct digits, -log10 of the largest componentwise relative error, as
 /// defined by the Test Set for IVP Solvers (Mazzia and Magherini, Bari, release 2.4);
-/// entries whose reference is zero are left out there and here. At most 16.
+/// entries whose reference is zero are left out, as there. At most 16.
 double scd(In value, In reference);
 
-/// Two independent references for one answer and how far apart they are. An error is
-/// believed when it is at least `margin` times the gap.
+/// Two independent references for one answer and their distance. An error is trusted when
+/// it is at least `margin` times the gap.
 class ReferenceGap {
  public:
   static constexpr double margin = 10;
@@ -35,7 +35,7 @@ class ReferenceGap {
   double gap() const { return gap_; }
   bool trusts(double relative_error) const { return relative_error >= margin * gap_; }
 
-  /// Marks an ok row `below_reference` when its error cannot be told from the gap.
+  /// Marks an ok row `below_reference` when its error is not resolved by the gap.
   void mark(Row& row, double relative_error) const;
 
  private:

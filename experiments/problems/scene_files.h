@@ -9,14 +9,14 @@
 
 namespace tress::experiments {
 
-/// A scene file under its own name, ending and all, which no scene of ours has.
+/// A scene file under its full name with extension, which no built-in scene has.
 struct SceneFile {
   std::string name;
   Scene scene;
 };
 
-/// Reads what every strand model can be tried on. Throws InputError as read_scene does,
-/// on a scene whose model brings its own geometry, and on two files of one name.
+/// Reads scenes that every strand model can be tried on. Throws InputError as read_scene
+/// does, on a scene whose model brings its own geometry, and on two files of one name.
 std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files);
 
 /// The scene simulated by this model and integrator. A model other than the scene's own
@@ -25,7 +25,7 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 /// cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
 
-/// Of the strand that has most.
+/// Element count of the strand with the most elements.
 std::size_t most_elements(const Scene& scene);
 
 }  // namespace tress::experiments

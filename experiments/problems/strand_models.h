@@ -14,12 +14,12 @@ namespace tress::experiments {
 /// describes it: every strand scene runs on each of them.
 std::vector<const ModelEntry*> strand_models();
 
-/// The default of a choice, empty where the model has no such parameter.
+/// The default of an option, empty if the model has no such parameter.
 std::string_view first_word(const ModelEntry& model, std::string_view key);
 
 bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
 
-/// Of the seeds' semi-implicit step: the stiff tangent, the default of models without.
+/// Tangent of the semi-implicit step: the stiff one, or the default of models without it.
 std::string_view usual_tangent(const ModelEntry& model);
 
 /// Sets those parameters that the model has.

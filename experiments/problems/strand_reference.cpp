@@ -8,7 +8,7 @@
 namespace tress::experiments {
 namespace {
 
-// Local errors of 1e-5 leave 1e-7 of the length after 2 s, as the gap of the two shows.
+// Local errors of 1e-5 leave 1e-7 of the length after 2 s, according to the gap.
 constexpr double tolerance = 1e-5;
 
 constexpr int steps_per_sample = 8;
@@ -68,7 +68,7 @@ TipReference converged_model(const MakeStrand& make, std::string_view model, int
                              const TipSampling& sampling) {
   Options options;
   options.rtol = options.atol = tolerance;
-  // Of few elements steps would be longer than what the cubic between them follows.
+  // With few elements steps would be too long for the cubic interpolation between them.
   options.max_step = sampling.t_end / sampling.samples / steps_per_sample;
   return both(tip(make, model, elements, "gsl_rk8pd", options, sampling),
               tip(make, model, elements, "cvode_adams", options, sampling),

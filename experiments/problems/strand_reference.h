@@ -9,18 +9,18 @@
 
 namespace tress::experiments {
 
-/// A strand of one scene by a model of the catalogue, cut into equal elements.
+/// A strand of one scene by a model of the catalogue, with equal elements.
 using MakeStrand =
     std::function<std::unique_ptr<System>(std::string_view model, int elements)>;
 
-/// What a tip does, known from two sides, (3 samples) each as run_tip samples it, and how
-/// far the two are apart (tip_error).
+/// Tip motion from two independent computations, (3 samples) each as run_tip samples it,
+/// and their distance (tip_error).
 struct TipReference {
   std::vector<double> tip, other;
   double gap = 0;
 };
 
-/// The time over which tips are compared, and what errors are measured by.
+/// The times at which tips are compared, and the length that scales errors.
 struct TipSampling {
   double t_end;   // s
   int samples;    // t_end k / samples, k = 1 .. samples
@@ -28,13 +28,13 @@ struct TipSampling {
 };
 
 /// The equations of one model at N elements, integrated to convergence by an explicit
-/// Runge-Kutta method of order 8, and by an Adams method. Both follow the fastest bending
-/// mode, so cost grows as N^3: about 3 s for 2 s of 20 elements of a hair. Throws
+/// Runge-Kutta method of order 8, and by an Adams method. Both resolve the fastest
+/// bending mode, so cost grows as N^3: about 3 s for 2 s of 20 elements of a hair. Throws
 /// std::runtime_error when one of them fails.
 TipReference converged_model(const MakeStrand& make, std::string_view model, int elements,
                              const TipSampling& sampling);
 
-/// Models whose answers for the continuous rod are independent.
+/// Models whose approximations of the continuous rod are independent.
 struct RodModels {
   std::string_view one, other;
 };
@@ -47,30 +47,29 @@ struct Finest {
   double step = 2.5e-4;  // s: an error of 2e-5 of the length before extrapolation
 };
 
-/// Tips of one run at all instants at which they are compared; throws std::runtime_error
-/// where it fails.
+/// Tips of one run at all compared instants; throws std::runtime_error if the run fails.
 using TipsOf =
     std::function<std::vector<double>(std::string_view model, std::string_view integrator,
                                       int elements, const Options& options)>;
 
 /// The continuous rod: one model with the finest and half as many elements by
-/// implicit_midpoint, each at the finest step and twice that, extrapolated to none in the
-/// step (order 2) and then in the element length (order 2; what is left of a higher order
-/// is small already). The same of the other model by generalized_alpha is the other side.
+/// implicit_midpoint, each at the finest step and twice that, extrapolated to zero step
+/// (order 2) and then to zero element length (order 2; remainders of higher order are
+/// already small). The other side is the same for the other model by generalized_alpha.
 TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
                            const Finest& finest = {});
 
 /// The equations of one model at the elements of `finest`, extrapolated in the step alone
-/// by both methods: for scenes that explicit methods are too slow for.
+/// by both methods: for scenes on which explicit methods are too slow.
 TipReference extrapolated_model(const TipsOf& tips, double length, std::string_view model,
                                 const Finest& finest);
 
-/// The rod of a strand of the catalogue. About 10 s for 2 s of a hair.
+/// The rod limit of a strand of the catalogue. About 10 s for 2 s of a hair.
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models = clamped_rod);
 
-/// x + (x - coarse) / (ratio^2 - 1): what two answers of order 2 tend to when the second
-/// was made with steps or elements `ratio` times as fine [Richardson 1911].
+/// x + (x - coarse) / (ratio^2 - 1): the limit of two answers of order 2 when the second
+/// has steps or elements `ratio` times as fine [Richardson 1911].
 std::vector<double> extrapolated(In coarse, In fine, double ratio);
 
 }  // namespace tress::experiments

@@ -14,7 +14,7 @@
 namespace tress::experiments {
 namespace {
 
-// Even 0.1 s, the longest step tried, is three steps a period of the shaken clamps.
+// Even 0.1 s, the longest step tried, gives three steps per period of the shaken clamps.
 constexpr double any_step = StabilityBounds::none;
 
 std::vector<StrandScene> make_scenes() {
@@ -60,7 +60,7 @@ std::vector<StrandScene> make_scenes() {
                  any_step,
                  true});
   // A helix of 0.9 cm radius and 1.7 cm pitch. The clamp accelerates and brakes within
-  // each 0.1 s: a third of that meets both.
+  // each 0.1 s: a third of that resolves both.
   all.push_back({"curl_drop",
                  "curly strand, dropped by 5 cm and pulled up again",
                  {{"root", "drop_pull"},
@@ -73,8 +73,8 @@ std::vector<StrandScene> make_scenes() {
                  1,
                  0.1 / 3,
                  true});
-  // Kinetic energy enough to bend the strand to a half circle; at 5 m/s it would be
-  // coiled up several times. A step of half the stop ends where the clamp brakes most.
+  // Kinetic energy enough to bend the strand to a half circle; 5 m/s would coil it up
+  // several times. A step of half the stop ends where the clamp brakes most.
   all.push_back({"whip",
                  "hanging, the root stops from 2 m/s within 10 ms",
                  {{"root", "stop"},
@@ -130,7 +130,7 @@ State perturbed_start(System& system) {
   State start = initial_state(system);
   std::vector<double> q_typ(start.q.size()), v_typ(start.v.size());
   system.scale(q_typ, v_typ);
-  constexpr double golden = 0.6180339887498949;  // its multiples are spread evenly
+  constexpr double golden = 0.6180339887498949;  // its multiples are evenly spread
   for (std::size_t i = 0; i < v_typ.size(); ++i) {
     const double x = golden * static_cast<double>(i + 1);
     start.v[i] += perturbation * (2 * (x - std::floor(x)) - 1) * v_typ[i];

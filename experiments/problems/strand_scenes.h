@@ -9,8 +9,8 @@
 
 namespace tress::experiments {
 
-/// One strand in one situation, as parameters that every strand model has; what is not
-/// set keeps its default, a hair of 10 cm and 40 um radius (EI = 6e-9 N m^2, 6.5e-7 kg).
+/// One strand in one situation, as parameters common to all strand models; unset ones
+/// keep their default, a hair of 10 cm and 40 um radius (EI = 6e-9 N m^2, 6.5e-7 kg).
 struct StrandScene {
   std::string_view name;
   std::string_view what;
@@ -22,44 +22,43 @@ struct StrandScene {
 
 std::span<const StrandScene> strand_scenes();
 
-/// Throws InputError naming the nearest scene when there is no such scene.
+/// Throws InputError naming the nearest scene if there is no such scene.
 const StrandScene& find_strand_scene(std::string_view name);
 
-/// The initial state with every rate off by up to 1e-3 of its typical size (a millionth
-/// of the energy), so that nothing unstable is spared by symmetry: a straight strand
-/// released in a plane never twists. Projected onto the constraints, where there are any.
+/// The initial state with every rate perturbed by up to 1e-3 of its typical size (a
+/// millionth of the energy), so that symmetry hides no instability: a straight strand
+/// released in a plane never twists. Projected onto the constraints, if any.
 State perturbed_start(System& system);
 
-/// What a stable run of the scene keeps, for `system` made with `parameters`.
+/// Bounds of a stable run of the scene, for `system` made with `parameters`.
 ///
-/// Passive: 1 % of the energy that the scene can turn into motion, which is that of the
+/// Passive: 1 % of the energy that the scene can convert to motion, which is that of the
 /// start above the strand hanging straight and unloaded, E(0) + m g L/2.
 ///
 /// Driven: the tip stays within 1.001 L of the root and below strand_speed_bound.
-/// Inextensible models cannot leave the first: it catches what a model with stretch does
-/// in an instability, and leaves ten times the strain rho a L/E that 100 g put on a hair
-/// of 10 cm.
+/// Inextensible models cannot violate the first: it detects instabilities of models with
+/// stretch, and is ten times the strain rho a L/E that 100 g put on a hair of 10 cm.
 StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& parameters,
                                  System& system);
 
-/// The same for any passive system released at `start`, a tree for one: 1 % of the
+/// The same for any passive system released at `start`, such as a tree: 1 % of the
 /// largest kinetic energy until t_end, found by steps of 1 ms. Throws InputError when
-/// those are not stable themselves.
+/// those are themselves unstable.
 StabilityBounds release_bounds(System& system, const State& start, double t_end);
 
-/// Speed (m/s) of the tip relative to the root that no motion of the strand exceeds until
-/// t_end. In the frame of the clamp the clamp does no work. The forces there that do are
-/// gravity and, per mass, at most f = |a| + (|alpha| + omega^2) L from the root's motion;
-/// a turning clamp changes the potential of gravity by at most |omega x g| L per mass and
-/// time. With u^2/2 the energy per mass above that of the strand hanging straight and
-/// unloaded, u u' <= u f + |omega x g| L, hence
+/// Upper bound on the speed (m/s) of the tip relative to the root until t_end, for any
+/// motion of the strand. In the frame of the clamp the clamp does no work. The working
+/// forces there are gravity and, per mass, at most f = |a| + (|alpha| + omega^2) L from
+/// the root's motion; a turning clamp changes the potential of gravity by at most |omega
+/// x g| L per mass and time. With u^2/2 the energy per mass above that of the strand
+/// hanging straight and unloaded, u u' <= u f + |omega x g| L, hence
 ///
 ///     u <= sqrt(2 g L + 2 int |omega x g| L dt) + int f dt,
 ///
-/// 2 g L from the upright strand, which has more than any unloaded shape. u bounds the
-/// root mean square speed of the strand. The tip may be faster, as that of a whip: all of
-/// the energy in the last tenth, turning about its own start, makes it sqrt(30) u. To
-/// that comes |omega| L, from the clamp's frame to one that does not turn.
+/// where 2 g L is that of the upright strand, the most of any unloaded shape. u bounds
+/// the root mean square speed of the strand. The tip may be faster, as in a whip: all of
+/// the energy in the last tenth, turning about its own start, gives sqrt(30) u. Adding
+/// |omega| L transforms from the clamp's frame to a non-rotating one.
 double strand_speed_bound(const Parameters& parameters, double t_end);
 
 }  // namespace tress::experiments

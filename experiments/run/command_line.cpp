@@ -18,16 +18,17 @@ namespace {
 constexpr int most_jobs = 1024;
 constexpr int most_repeats = 1'000'000;
 
-/// Options as CLI11 collects them: text, so that our own messages name place and remedy.
+/// Options as CLI11 collects them: text, so that our own messages can name location and
+/// remedy.
 struct Raw {
   std::string models, integrators, elements, options, scene, out, shard, timeout,
       progress;
   std::string jobs, repeat, seed;
   std::vector<std::string> set;
-  std::vector<std::string> own;  // of the experiment's own options
+  std::vector<std::string> own;  // the experiment's own options
 };
 
-/// Whether an option of the experiment stands in for the one that all have.
+/// Whether an option of the experiment replaces the shared one.
 bool takes_place(std::span<const OwnOption> own, std::string_view name) {
   return std::ranges::find(own, name, &OwnOption::name) != own.end();
 }
@@ -183,7 +184,7 @@ void refuse_unused(std::string_view name, const CommandLine& line,
   }
 }
 
-/// Where the table goes unless the user says so.
+/// Default location of the table.
 std::string default_table(std::string_view name, const CommandLine& line,
                           std::span<const OwnOption> own) {
   std::string table = fmt::format("results/{}", name);

@@ -15,7 +15,8 @@ namespace tress::experiments {
 
 enum class ProgressMode { automatic, none, json };
 
-/// What the user asked for: the command line over the options file over these defaults.
+/// The user's options: the command line overrides the options file, which overrides these
+/// defaults.
 struct CommandLine {
   std::vector<std::string> models, integrators;  // empty: the experiment's choice
   std::vector<int> elements;                     // empty: the experiment's choice
@@ -32,30 +33,29 @@ struct CommandLine {
   ProgressMode progress = ProgressMode::automatic;
 
   std::vector<std::string> argv;
-  /// Where an option, or the key of a setting as "set:key", was given: "--models" or
+  /// Where each option, or setting (as "set:key"), was given: "--models" or
   /// "options.toml:3:1". For messages.
   std::map<std::string, std::string, std::less<>> places;
   std::string place(std::string_view option) const;
 };
 
-/// An option of one experiment: --name VALUE says the same as --set key=VALUE. One that
-/// is named as an option that all experiments have takes its place.
+/// An option of one experiment: --name VALUE is short for --set key=VALUE. It replaces a
+/// shared option of the same name.
 struct OwnOption {
   std::string_view name, key, help;
   /// VALUE is a file: the default table is results/<experiment>.<file>.csv.
   bool names_table = false;
 };
 
-/// An option that all experiments share and one of them has no use for: it is not shown
-/// by
-/// --help, and giving it is refused with this reason rather than left without effect.
+/// A shared option without effect in this experiment: --help omits it, and using it is an
+/// error with this reason.
 struct Unused {
   std::string_view option, why;
 };
 inline constexpr Unused not_random{"seed", "nothing in it is random"};
 inline constexpr Unused not_repeated{"repeat", "no row is timed more than once"};
 
-/// Whether a choice such as --models leaves `id` in; an empty one leaves everything in.
+/// Whether a choice such as --models includes `id`; an empty choice includes everything.
 bool wanted(const std::vector<std::string>& chosen, std::string_view id);
 
 /// The user asked for help or the version: print `what()` and leave with 0.

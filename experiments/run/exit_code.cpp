@@ -14,8 +14,8 @@
 namespace tress::experiments {
 namespace {
 
-/// One line; of a long one, say with a key of a megabyte in it, the beginning and the
-/// end, where place and remedy stand.
+/// One line; a long message (a key of a megabyte, say) is shortened to its beginning and
+/// its end, which holds location and remedy.
 std::string readable(std::string_view message) {
   constexpr std::size_t part = 2000;
   std::string line = one_line(message);

@@ -7,7 +7,7 @@
 
 namespace tress::experiments {
 
-/// What every program of ours ends with.
+/// Exit codes of all programs.
 enum ExitCode {
   done = 0,
   internal_error = 1,
@@ -16,10 +16,11 @@ enum ExitCode {
   interrupted = 130
 };
 
-/// The code of a whole main(): that of `run`, or where it throws, of what it throws, said
-/// in one line on standard error. An Answer is printed and is `done`. A file size limit
-/// becomes an error of write instead of a signal; SIGINT and SIGTERM end the program at
-/// once with `interrupted` where nothing else answers them (Interruption, sweep).
+/// Exit code of a whole main(): the result of `run`, or the code of the exception it
+/// throws, reported in one line on standard error. An Answer is printed and yields
+/// `done`. Exceeding a file size limit is a write error, not a signal; SIGINT and SIGTERM
+/// end the program at once with `interrupted` unless something else handles them
+/// (Interruption, sweep).
 int exit_code(std::string_view program, const std::function<int()>& run);
 
 }  // namespace tress::experiments

@@ -30,7 +30,7 @@ namespace {
 
 constexpr const char* standard_output = "-";
 
-/// Rows by run_id, in the order they are to be written.
+/// Rows by run_id, in output order.
 class Rows {
  public:
   void keep(Row row) {
@@ -48,13 +48,13 @@ class Rows {
   }
   const std::vector<Row>& all() const { return rows_; }
 
-  /// The planned rows first and in their order, then those of earlier plans.
+  /// The planned rows first, in their order, then those of earlier plans.
   std::vector<Row> ordered(const std::vector<Case>& plan) const {
     std::vector<Row> result;
     std::set<std::string_view> taken;
     for (const Case& work : plan) {
       const std::string id(work.identity.text("run_id"));
-      // Further rows of a case have its run_id before a point.
+      // The run_ids of a case's further rows append a point to its own.
       for (auto at = place_.lower_bound(id);
            at != place_.end() && (at->first == id || at->first.starts_with(id + '.'));
            ++at) {
@@ -74,8 +74,8 @@ class Rows {
   std::map<std::string, std::size_t> place_;
 };
 
-/// Throws InputError on a model, integrator or number of elements that was asked for and
-/// that no row has, though rows have one: it would be left out without a word.
+/// Throws InputError on a requested model, integrator or number of elements that no row
+/// has, although some rows have one: it would be ignored silently.
 void check_honoured(const CommandLine& line, const std::vector<Case>& cases) {
   std::vector<std::string> counts;
   for (const int count : line.elements) counts.push_back(std::to_string(count));
@@ -118,7 +118,7 @@ std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
 
 std::string journal_file(const CommandLine& line) { return line.out + ".journal"; }
 
-/// With the contents of the files that the settings name, by default or as chosen.
+/// Includes the contents of the files that the settings name, by default or as chosen.
 RunKey run_key(const Experiment& experiment, const CommandLine& line) {
   const Settings settings(line, experiment.settings);
   std::vector<std::string> files{line.options_file};
@@ -140,7 +140,7 @@ RunKey run_key(const Experiment& experiment, const CommandLine& line) {
 
 /// Rows of a complete table from an earlier run with the same settings.
 void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
-  std::error_code ignored;  // check_output has told what is wrong with it
+  std::error_code ignored;  // check_output has reported the problem
   if (!std::filesystem::exists(line.out, ignored)) return;
   const CsvTable table = read_csv(line.out);
   check_header(table, experiment.columns, line.out);
@@ -201,7 +201,7 @@ int report(const Experiment& experiment, const CommandLine& line,
     const bool finding = experiment.finding && experiment.finding(row);
     if (failed == nullptr && !row.ok() && !finding) failed = &row;
   }
-  // For progress as JSON the manifest has them.
+  // With JSON progress they are in the manifest.
   if (line.progress != ProgressMode::json) tell_verdicts(experiment.name, verdicts);
   if (line.progress != ProgressMode::none || failed != nullptr) {
     std::string text;
@@ -246,13 +246,13 @@ int merge_tables(const Experiment& experiment, const CommandLine& line) {
   return merged.conflicts.empty() ? code : rows_failed;
 }
 
-/// Standard output can only be tried by writing to it, so it gets the header now.
+/// Standard output can only be checked by writing to it, so it gets the header now.
 void check_place(const Experiment& experiment, const CommandLine& line) {
   if (line.out == standard_output) {
     write_all(STDOUT_FILENO, csv_line(header(experiment.columns)), "standard output");
     return;
   }
-  std::error_code ignored;  // check_output tells what is wrong with the directory
+  std::error_code ignored;  // check_output reports problems with the directory
   const bool ours = line.places.count("out") == 0;
   if (ours) std::filesystem::create_directory("results", ignored);
   check_output(line.out);
@@ -268,8 +268,8 @@ std::unique_ptr<Journal> open_journal(const Experiment& experiment,
 int run_rows(const Experiment& experiment, const CommandLine& line) {
   Rows rows;
   std::unique_ptr<Journal> journal;
-  // What is wrong with a named output is told before a plan that may take seconds for its
-  // references; a plan that fails leaves nothing behind.
+  // Problems with a named output are reported before planning, which may take seconds for
+  // its references; a plan that fails leaves nothing behind.
   const bool named = line.out != standard_output && line.places.count("out") > 0;
   if (named) {
     check_output(line.out);
@@ -304,9 +304,10 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
     Progress progress(line.progress, experiment.name, todo.size());
     const auto keep = [&](std::vector<Row> of, double seconds) {
       progress.finished(of.front(), seconds);
-      // A case's first row comes last: where it is there, all of them are.
+      // A case's first row is stored last: if it is present, all of them are.
       for (std::size_t i = of.size(); i-- > 0;) {
-        static_cast<void>(in_order(of[i], columns));  // an undeclared column: our mistake
+        static_cast<void>(in_order(of[i], columns));  // an undeclared column: a
+                                                      // programming error
         if (journal) journal->append(of[i]);
         rows.keep(std::move(of[i]));
       }

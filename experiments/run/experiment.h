@@ -14,8 +14,8 @@
 
 namespace tress::experiments {
 
-/// When a case has to end. One that looks at `passed()` can stop by itself with what it
-/// measured; one that does not is killed shortly after.
+/// Time limit of a case. A case that polls `passed()` can stop early and keep its
+/// measurements; one that does not is killed shortly after the limit.
 class Deadline {
  public:
   using Clock = std::chrono::steady_clock;
@@ -31,18 +31,18 @@ class Deadline {
   Clock::time_point end_;
 };
 
-/// One row to be measured, in a process of its own: it may crash, hang or throw, and the
+/// One row to be measured, in its own process: if that crashes, hangs or throws, the
 /// table still gets its row.
 struct Case {
-  Row identity;  // the columns that tell this row from all others; hashed into run_id
-  std::function<void(Row&, const Deadline&)> run;  // the row comes with the identity set
-  /// Instead of `run`, where one piece of work answers several rows: all of them, from
-  /// the identity. The first has the run_id of the case, the others ".001" and so on
-  /// behind it.
+  Row identity;  // columns that identify the row; hashed into run_id
+  std::function<void(Row&, const Deadline&)> run;  // gets the row with its identity set
+  /// Replaces `run` where one computation yields several rows: returns all of them, given
+  /// the identity. The first has the run_id of the case; the others append ".001" and so
+  /// on.
   std::function<std::vector<Row>(const Row&, const Deadline&)> run_rows = {};
 };
 
-/// What the rows that have `value` in `column` are about, in words: {"what", "..."}.
+/// Glossary entry for the rows that have `value` in `column`: {"what", "..."}.
 struct Gloss {
   std::string_view column, value;
   std::vector<std::pair<std::string_view, std::string_view>> texts;
@@ -52,36 +52,35 @@ struct Gloss {
 struct Experiment {
   std::string_view name, question;
   std::string_view example;  // arguments only: "--models bead_on_wire --quick"
-  /// False: no time in the table is what is asked for first, and as many rows run at once
-  /// as the machine has processors unless --jobs says otherwise. True: one at a time.
+  /// False: no time in the table is a primary result, and as many rows run at once as the
+  /// machine has processors unless --jobs overrides it. True: one at a time.
   bool timed = true;
-  /// s, of a row with --quick, unless --timeout says otherwise: for hangs only, since no
-  /// result may depend on what else the machine does. Work bounds a row
-  /// (Options::max_work).
+  /// s, per row with --quick unless --timeout overrides it. Only against hangs: no result
+  /// may depend on the machine's load. Options::max_work bounds the work of a row.
   double quick_timeout_s = 60;
-  std::span<const Column> columns;  // status, reason and run_id are added to them
+  std::span<const Column> columns;  // status, reason and run_id are appended
   std::span<const Parameter> settings =
-      {};                                   // keys of --set that are the experiment's own
-  std::span<const OwnOption> options = {};  // short for --set of some of them
-  std::span<const Unused> unused = {};      // of the shared options: refused
+      {};                                   // the experiment's own --set keys
+  std::span<const OwnOption> options = {};  // short forms of --set
+  std::span<const Unused> unused = {};      // shared options that are refused
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
-  /// Optional: states what the table must show; a claim that is broken makes the exit
-  /// code 3. Neither is called on a single shard.
+  /// Optional: the claims that the table must show; a broken claim makes the exit code 3.
+  /// Neither `checks` nor `derive` is called on a single shard.
   std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
-  /// Optional: kept in the manifest, where the report page reads it.
+  /// Optional: stored in the manifest for the report page.
   std::function<std::vector<Gloss>()> glossary = {};
-  /// Optional: a row that is not ok but is what the experiment set out to find (a
+  /// Optional: a row that is not ok but is an expected result of the experiment (a
   /// divergence beyond a limit, say) does not make the exit code 3.
   std::function<bool(const Row&)> finding = {};
-  /// Optional: what to say of the complete table, or to write beside it.
+  /// Optional: reports on the complete table, or writes files beside it.
   std::function<void(const CommandLine&, const std::vector<Row>&)> conclude = {};
 };
 
-/// The whole main(): options, --list, sweep, table, manifest; returns the exit code.
-/// 0 all rows ok, no claim broken; 1 internal error; 2 usage or input error; 3 some rows
-/// failed or a claim that was judged is broken or changed (the table is complete); 130
+/// The whole main(): options, --list, sweep, table, manifest; returns the exit code. 0:
+/// all rows ok, no claim broken; 1: internal error; 2: usage or input error; 3: some rows
+/// failed, or a judged claim is broken or changed (the table is complete); 130:
 /// interrupted (resumable).
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 

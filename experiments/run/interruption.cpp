@@ -41,7 +41,7 @@ void Interruption::wait() {
   int signal = 0;
   sigwait(&set, &signal);
   if (over_) return;
-  // A second one is no longer waited for: exit_code()'s handler ends the program.
+  // A second signal is not waited for: exit_code()'s handler ends the program.
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
   const auto held = hold();
   try {

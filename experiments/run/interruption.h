@@ -11,12 +11,11 @@
 
 namespace tress::experiments {
 
-/// SIGINT and SIGTERM end the program at any moment, whatever its other threads are at: a
-/// thread of its own waits for them, calls what is to be saved, says that --resume goes
-/// on, and leaves with exit code 130. A second signal ends the program at once.
+/// Handles SIGINT and SIGTERM whatever the other threads are doing: a dedicated thread
+/// waits for them, calls the registered `save`, prints that --resume continues the run,
+/// and exits with code 130. A second signal ends the program at once.
 ///
-/// To be made before any other thread: all later ones inherit that they are not
-/// disturbed.
+/// Construct before any other thread: later threads inherit the blocked signals.
 class Interruption {
  public:
   explicit Interruption(std::string_view program);
@@ -24,10 +23,10 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// While one lives no signal is answered: for what must be done whole or not at all.
+  /// No signal is handled while a hold exists: for operations that must be atomic.
   [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
-  /// While it lives a signal calls `save` before the end.
+  /// While it exists, a signal calls `save` before the program ends.
   class Save {
    public:
     Save(Interruption& of, std::function<void()> save);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A kill loses nothing that was written; only a power cut needs the sync, so once a
+/// A kill loses nothing that was written; only a power failure needs the sync, so once a
 /// second is enough and short rows stay cheap.
 constexpr std::chrono::seconds between_syncs{1};
 

@@ -11,16 +11,15 @@
 
 namespace tress::experiments {
 
-/// Rows as they finish, one line of JSON each behind its checksum, so that nothing
-/// finished is ever lost. One process at a time holds a journal; a last line torn by a
-/// kill is dropped on opening.
+/// Finished rows, one checksummed line of JSON each, so that no finished row is lost. One
+/// process at a time holds a journal; opening drops a last line torn by a kill.
 class Journal {
  public:
   enum class Mode { fresh, resume };
 
   /// Throws InputError when the file cannot be written, another process holds it, an
-  /// unfinished journal exists and the mode is `fresh`, its key differs, or a line is not
-  /// as it was written.
+  /// unfinished journal exists and the mode is `fresh`, its key differs, or a line is
+  /// corrupt.
   Journal(std::string file, const RunKey& key, Mode mode);
 
   const std::vector<Row>& rows() const { return rows_; }  // found on opening
@@ -36,8 +35,8 @@ class Journal {
   std::chrono::steady_clock::time_point synced_;
 };
 
-/// A row as one line of JSON without its end of line, and back; parse throws
-/// std::runtime_error on text that is not such a line.
+/// A row as one line of JSON without the newline, and back; from_json_line throws
+/// std::runtime_error on malformed text.
 std::string to_json_line(const Row& row);
 Row from_json_line(std::string_view line);
 

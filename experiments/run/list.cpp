@@ -40,7 +40,7 @@ constexpr const char* legend =
     "g index 2 (GGL), 3 index 3, r RATTLE, c corrected positions; a number is the reason "
     "for a gap, below";
 
-/// Reasons in order of appearance, each kept once and known by its number.
+/// Reasons in order of appearance, each stored once and identified by its number.
 class Footnotes {
  public:
   int number(const std::string& reason) {
@@ -75,7 +75,7 @@ std::string parameter_lines(std::span<const Parameter> parameters) {
   return text;
 }
 
-/// "pab 2,3": formulations that work, then the notes on those that do not.
+/// "pab 2,3": formulations that work, then the numbers of the notes on the others.
 std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& notes) {
   std::string works, gaps;
   for (const auto& [formulation, order] : integrator.formulations) {
@@ -91,7 +91,7 @@ std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& n
   return works.empty() || gaps.empty() ? works + gaps : works + ' ' + gaps;
 }
 
-/// "pabj", and behind them those of another order than the nominal one: ", 3 of order 1".
+/// "pabj", followed by those whose order is not the nominal one: ", 3 of order 1".
 std::string letters_of(const IntegratorEntry& entry) {
   std::string nominal, others;
   for (const auto& [formulation, order] : entry.formulations) {

@@ -9,9 +9,9 @@
 
 namespace tress::experiments {
 
-/// What --list prints: models with their parameters, integrators, the experiment's and
-/// the integrators' keys, and which integrator drives which model under which formulation
-/// of the constraints, every gap with its reason.
+/// Output of --list: models with their parameters, integrators, the keys of the
+/// experiment and of the integrators, and which integrator drives which model under which
+/// constraint formulation, with the reason for every gap.
 std::string catalogue_text(std::span<const ModelEntry> models,
                            std::span<const IntegratorEntry> integrators,
                            std::span<const Parameter> experiment_settings);

@@ -9,7 +9,7 @@
 
 namespace tress::experiments {
 
-/// What a timing depends on. Deliberately no host name: tables are published.
+/// The hardware and system on which a timing depends. No host name: tables are published.
 struct Machine {
   std::string cpu;     // model name
   int cpus = 0;        // hardware threads

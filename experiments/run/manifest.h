@@ -9,14 +9,14 @@
 
 namespace tress::experiments {
 
-/// How a table was made: written next to it as <table>.meta.json.
+/// Provenance of a table, written next to it as <table>.meta.json.
 class Manifest {
  public:
-  /// Looks at machine, source tree and SUNDIALS now, before the work; warns on standard
+  /// Records machine, source tree and SUNDIALS before the work starts; warns on standard
   /// error when SUNDIALS is a slow build or the machine is busy.
   Manifest(const Experiment& experiment, const CommandLine& line);
 
-  /// A file that the work depends on, kept with its text and checksum.
+  /// A file that the work depends on, stored with its text and checksum.
   void add_input(std::string file, std::string text);
 
   /// The JSON text, with end time, load and the counts of `rows`.
@@ -33,7 +33,7 @@ class Manifest {
   std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
 };
 
-/// "--set", seed, quick and the like in canonical order: what a resumed run must repeat.
+/// "--set", seed, quick and the like in canonical order: a resumed run must repeat them.
 std::string settings_text(const CommandLine& line);
 
 }  // namespace tress::experiments

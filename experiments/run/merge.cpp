@@ -9,7 +9,7 @@
 namespace tress::experiments {
 namespace {
 
-/// Name of the first column, timings left out, in which the rows differ; empty when none.
+/// Name of the first column, except timings, in which the rows differ; empty if none.
 std::string_view difference(const Row& a, const Row& b, std::span<const Column> columns) {
   for (const Column& column : columns) {
     if (!column.timing && a.text(column.name) != b.text(column.name)) return column.name;

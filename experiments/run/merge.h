@@ -10,15 +10,16 @@ namespace tress::experiments {
 
 struct Merged {
   std::vector<Row> rows;               // one per run_id, in order of first appearance
-  std::vector<std::string> conflicts;  // one line each: which rows contradict each other
+  std::vector<std::string> conflicts;  // one line per pair of contradictory rows
 };
 
-/// Joins tables of one experiment. Of rows with the same run_id an ok one wins over a
-/// failed one, else the first; two ok rows that differ outside the timing columns are a
-/// conflict. Throws InputError when a table's header is not the experiment's.
+/// Joins tables of one experiment. Among rows with the same run_id an ok row wins over a
+/// failed one, otherwise the first wins; two ok rows that differ outside the timing
+/// columns are a conflict. Throws InputError when a table's header is not the
+/// experiment's.
 Merged merge(std::span<const std::string> files, std::span<const Column> columns);
 
-/// Throws InputError unless `table` has the columns that the experiment writes today.
+/// Throws InputError unless `table` has the experiment's current columns.
 void check_header(const CsvTable& table, std::span<const Column> columns,
                   const std::string& file);
 

@@ -13,7 +13,7 @@
 namespace tress::experiments {
 namespace {
 
-/// A scalar, or a list of scalars joined by commas: what the option of that name accepts.
+/// A scalar, or a list of scalars joined by commas, as the option of that name accepts.
 std::string option_text(const toml::node& node, const std::string& where) {
   const auto text_of = [&where](const toml::node& scalar) {
     std::string text = scalar_text(scalar);
@@ -131,7 +131,8 @@ void read_options_file(const std::string& file, CommandLine& line) {
     if (line.places.emplace(name, where).second) {
       reader->second(value, where, line);
     } else {
-      CommandLine checked;  // the command line wins, but a wrong value is still an error
+      CommandLine checked;  // the command line overrides, but a wrong value is still an
+                            // error
       reader->second(value, where, checked);
     }
   }

@@ -9,8 +9,8 @@
 
 namespace tress::experiments {
 
-/// How far a sweep is, on standard error: a bar with the time left on a terminal, a plain
-/// line now and then otherwise, one JSON object per row with `json`, nothing with `none`.
+/// Progress of a sweep on standard error: a bar with the remaining time on a terminal,
+/// else occasional plain lines; one JSON object per row with `json`, nothing with `none`.
 class Progress {
  public:
   Progress(ProgressMode mode, std::string_view name, std::size_t rows);
@@ -18,7 +18,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A row that took so long.
+  /// A row that took `seconds`.
   void finished(const Row& row, double seconds);
 
  private:
@@ -33,7 +33,7 @@ class Progress {
   Clock::time_point start_, last_;
 };
 
-/// 42 s, 3 min 20 s, 2 h 05 min.
+/// Formats as 42 s, 3 min 20 s, 2 h 05 min.
 std::string readable_duration(double seconds);
 
 }  // namespace tress::experiments

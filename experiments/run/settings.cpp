@@ -16,7 +16,7 @@ bool declares(std::span<const Parameter> parameters, std::string_view key) {
                      [key](const Parameter& p) { return p.name == key; });
 }
 
-/// The catalogues' own lookups name the option; here an options file may be the place.
+/// The catalogues' lookups name the option; here the location may be an options file.
 template <typename Entry>
 void check_ids(const std::vector<std::string>& ids, std::span<const Entry> catalogue,
                std::string_view kind, const std::string& where) {
@@ -44,7 +44,7 @@ Settings::Settings(const CommandLine& line, std::span<const Parameter> experimen
   for (const auto& [key, value] : line_.set) {
     const std::string where = line_.place("set:" + key);
     if (owner(key, where) != Owner::experiment) continue;
-    Parameters checked(declared_, where);  // so that messages name this very place
+    Parameters checked(declared_, where);  // so that messages name this location
     checked.set(key, value);
     experiment_.set(key, value);
   }

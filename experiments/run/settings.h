@@ -11,28 +11,28 @@
 
 namespace tress::experiments {
 
-/// Who takes each `--set key=value`: the first of the experiment's own settings, the
-/// integrators' options and the parameters of the selected models (all models when none
-/// is selected) that knows the key. Everything is checked when this is built.
+/// Assigns each `--set key=value` to its owner: the first of the experiment's own
+/// settings, the integrators' options and the parameters of the selected models (all
+/// models when none is selected) that has the key. The constructor checks everything.
 class Settings {
  public:
-  /// Throws InputError on an unknown model, integrator or key (naming the nearest of all
-  /// that could have been meant) and on a value that its owner refuses.
+  /// Throws InputError on an unknown model, integrator or key (naming the nearest valid
+  /// one) and on a value that the owner rejects.
   Settings(const CommandLine& line, std::span<const Parameter> experiment);
 
-  /// The experiment's own settings: defaults, then what the user set.
+  /// The experiment's own settings: defaults overridden by the user's values.
   const Parameters& experiment() const { return experiment_; }
 
-  /// `start` with what the user set on top.
+  /// `start` overridden by the user's values.
   Options options(Options start = {}) const;
 
-  /// Defaults of `model`, then what the user set; keys it does not know are for others.
+  /// Defaults of `model` overridden by the user's values; keys unknown to it are ignored.
   Parameters parameters(const ModelEntry& model) const;
 
-  /// Throws InputError on a key of models, which a scene says itself.
+  /// Throws InputError on a model key: a scene defines these itself.
   void leave_models_to_the_scene() const;
 
-  /// Whether the user set this key, wherever it went.
+  /// Whether the user set this key, whoever owns it.
   bool chosen(std::string_view key) const;
 
  private:
@@ -47,8 +47,8 @@ class Settings {
   Parameters experiment_;
 };
 
-/// Throws InputError on --models and --elements where a scene says itself which model it
-/// has and how its strands are cut.
+/// Throws InputError on --models and --elements: a scene defines its own models and
+/// discretisation.
 void leave_strands_to_the_scene(const CommandLine& line);
 
 }  // namespace tress::experiments

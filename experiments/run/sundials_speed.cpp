@@ -16,8 +16,8 @@ constexpr int sums_per_timing = 500;
 constexpr int timings = 25;
 
 /// Not inlined and on plain pointers, as N_VLinearSum has it. This file is compiled for
-/// the baseline instruction set (CMakeLists.txt), as SUNDIALS is: the ratio shall tell
-/// optimisation levels apart, not vector widths.
+/// the baseline instruction set (CMakeLists.txt), as SUNDIALS is: the ratio is to
+/// distinguish optimisation levels, not vector widths.
 [[gnu::noinline]] void linear_sum(double a, const double* x, double b, const double* y,
                                   double* z) {
   for (int i = 0; i < entries; ++i) z[i] = a * x[i] + b * y[i];

@@ -16,10 +16,10 @@ namespace tress::experiments {
 namespace {
 
 constexpr int longest_wait_ms = 200;
-/// A process whose pipe is closed ends within microseconds; look again soon.
+/// A process whose pipe is closed ends within microseconds; poll again soon.
 constexpr int ending_wait_ms = 1;
 
-/// SIGINT and SIGTERM turned into something that poll() sees, while this lives.
+/// Converts SIGINT and SIGTERM to an event that poll() sees, during its lifetime.
 class Interrupts {
  public:
   Interrupts() {

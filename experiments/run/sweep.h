@@ -9,9 +9,9 @@ namespace tress::experiments {
 
 enum class SweepEnd { complete, interrupted };
 
-/// Runs every case in a process of its own, `jobs` at a time, in order. `finished` gets
-/// each case's rows, and how long it ran, as soon as they are there. SIGINT and SIGTERM
-/// stop the sweep: running cases are killed and repeated by the next run.
+/// Runs every case in its own process, `jobs` at a time, in order. `finished` gets each
+/// case's rows and run time as soon as the case ends. SIGINT and SIGTERM stop the sweep:
+/// running cases are killed and repeated by the next run.
 SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
                const std::function<void(std::vector<Row>, double seconds)>& finished);
 

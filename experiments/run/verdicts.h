@@ -8,35 +8,35 @@
 
 namespace tress::experiments {
 
-/// A claim that is known not to hold, why, and the number that decides it: as long as
-/// that stays within these bounds it is a finding and no alarm.
+/// A claim known not to hold, the reason, and bounds on its deciding number: within these
+/// bounds it is a finding and no alarm.
 struct KnownLimit {
   std::string_view claim;
   double least, most;
   std::string_view reason;
 };
 
-/// What a finished table must show, claim by claim: told when it is written and kept in
-/// the manifest, so that the report can show it. A claim speaks of certain rows, and it
-/// is judged where they were run; a time, or a ratio of times, depends on the machine and
-/// is a figure, never a claim.
+/// The claims about a finished table: printed when it is written and stored in the
+/// manifest for the report. A claim refers to certain rows and is judged where they were
+/// run; a time, or a ratio of times, depends on the machine and is a figure, never a
+/// claim.
 class Verdicts {
  public:
   enum class State {
     held,
     broken,       // alarm
-    known_limit,  // does not hold, as is known
-    changed,      // alarm: a known limit that is none any more, or another one
-    not_judged,   // the rows it speaks of were not run
+    known_limit,  // known not to hold
+    changed,      // alarm: a known limit that now holds or is out of its bounds
+    not_judged,   // the rows it refers to were not run
     figure
   };
 
   struct Verdict {
     std::string claim;
     bool held;
-    double value;  // the number that decided; NaN: there is none
+    double value;  // the deciding number; NaN: none
     State state = held ? State::held : State::broken;
-    std::string reason = {};  // of what neither held nor broke
+    std::string reason = {};  // why it neither held nor broke
 
     bool alarm() const { return state == State::broken || state == State::changed; }
   };
@@ -45,11 +45,11 @@ class Verdicts {
     all_.push_back({std::move(claim), held, value});
   }
 
-  /// A claim that one row can show and all of them together refute: `complete` tells
-  /// whether those that could show it were run.
+  /// A claim that one row can show but only all rows together refute: `complete`
+  /// indicates whether all rows that could show it were run.
   void check_found(std::string claim, bool held, bool complete, double value);
 
-  /// As `check`, of what does not hold and is known not to.
+  /// As `check`, for a claim known not to hold.
   void check_known(std::string claim, bool held, double value, const KnownLimit& limit);
 
   void not_judged(std::string claim);

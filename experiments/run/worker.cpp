@@ -31,7 +31,7 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// What the case measures, as it stands where the case throws.
+/// The measured rows, or the partial rows if the case throws.
 std::vector<Row> measured(const Case& work, const Deadline& deadline) {
   Row row = work.identity;
   try {
@@ -57,7 +57,7 @@ std::vector<Row> measured(const Case& work, const Deadline& deadline) {
 [[noreturn]] void run_case(const Case& work, double timeout_s, int pipe, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it died before the line above
+  if (getppid() != parent) _exit(1);  // the parent died before the line above
   reset_signals();
   dup2(STDERR_FILENO, STDOUT_FILENO);
   try {
@@ -144,7 +144,7 @@ std::optional<std::vector<Row>> Worker::poll() {
   if (timed_out) kill(-process_, SIGKILL);
   const pid_t ended = waitpid(process_, &wait_status, timed_out ? 0 : WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
-  kill(-process_, SIGKILL);  // children that it may have left behind
+  kill(-process_, SIGKILL);  // including children it may have left behind
   process_ = -1;
   drain();
   return result(wait_status, timed_out);
@@ -161,7 +161,7 @@ std::vector<Row> Worker::result(int wait_status, bool timed_out) const {
       }
       return rows;
     } catch (const std::exception&) {
-      // Not our lines: told below as a crash.
+      // Malformed output: reported below as a crash.
     }
   }
   Row row = work_->identity;

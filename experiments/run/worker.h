@@ -11,23 +11,23 @@
 
 namespace tress::experiments {
 
-/// One case in a forked process of its own group, which dies with its parent. Its row
-/// comes back through a pipe (its rows, of Case::run_rows); what it prints goes to
+/// One case in a forked process with its own process group, which dies with its parent.
+/// Its row (or rows, from Case::run_rows) comes back through a pipe; its output goes to
 /// standard error.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
   Worker(const Case& work, double timeout_s);
-  ~Worker();  // kills what still runs
+  ~Worker();  // kills a running process
   Worker(Worker&& other) noexcept;
   Worker& operator=(Worker&&) = delete;
 
-  double seconds() const;             // since it began
+  double seconds() const;             // since the start
   int pipe() const { return pipe_; }  // -1 once the far end is closed
   Clock::time_point killed_at() const { return kill_at_; }
 
-  /// Reads what there is; the rows once the process has ended or its time is over: its
+  /// Reads what is available. Returns rows once the process has ended or timed out: its
   /// own, or the identity with status timeout or crashed.
   std::optional<std::vector<Row>> poll();
 

@@ -1,5 +1,5 @@
 // What does a step cost against the number of elements: by solver, by tangent, by modes,
-// and on trees? With the seed's table of frames per second beside ours.
+// and on trees? Beside the published table of frames per second.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -41,15 +41,15 @@ constexpr Column columns[] = {
 };
 
 constexpr double frame = 1.0 / 30;  // s
-constexpr double t_end = 1;         // s, of a run that is judged
+constexpr double t_end = 1;         // s, of a judged run
 
-/// A strand some steps into its own motion; the cheapest solver gets it there.
+/// A strand some steps into its motion, computed with the cheapest solver.
 struct Moving {
   double t;  // s
   State state;
 };
 
-// s; what a step costs does not depend on it: short enough for models that come apart.
+// s; the cost of a step does not depend on it: short enough for models that diverge.
 constexpr double timed_step = 1e-4;
 
 Options step_of(double h, System& system) {
@@ -156,7 +156,7 @@ constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
 };
 
-/// A model that cannot do the scene of a file.
+/// A model that cannot represent the scene of a file.
 bool finding(const Row& row) { return row.status() == "refused"; }
 
 constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_euler"},

@@ -11,14 +11,14 @@
 namespace tress::experiments::scaling {
 namespace {
 
-// Smaller strands are mostly what a step costs without any element.
+// Smaller strands mostly measure the constant cost of a step.
 constexpr double first_fitted = 20;
 
 std::string series_of(const Row& row) {
   return joined(row, {"structure", "model", "solver", "tangent", "modes", "grows"});
 }
 
-/// Trees have the size that they have.
+/// Trees have a fixed size.
 bool in_series(const Row& row) {
   return row.text("structure") == straight || row.has("grows");
 }

@@ -51,8 +51,8 @@ std::vector<Variation> methods_of_strands() {
   return all;
 }
 
-/// Every other strand model: each of its solvers, or once where it has no choice, with
-/// the stiff tangent where it has one.
+/// Every other strand model: each of its solvers, or once if it has no choice, with the
+/// stiff tangent if available.
 std::vector<Variation> methods_of_others() {
   const std::vector<Variation> known = methods_of_strands();
   std::vector<Variation> all;
@@ -81,7 +81,7 @@ std::vector<int> element_counts(const CommandLine& line) {
   return {1, 2, 5, 10, 20, 30, 50, 100, 200, 500};
 }
 
-/// Beyond, a dense matrix takes seconds a step.
+/// Above this, a dense matrix takes seconds a step.
 constexpr int largest_dense = 200;
 
 struct SeedFrames {
@@ -174,7 +174,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
   const std::vector<Variation> others = methods_of_others();
   methods.insert(methods.end(), others.begin(), others.end());
   std::vector<ScalingCase> all;
-  // Size by size: what is compared is measured within the same minute.
+  // Size by size: compared rows are measured within the same minute.
   for (const int elements : element_counts(line)) {
     for (const Variation& m : methods) {
       if (!keeps("structure", straight) || !wanted_method(m)) continue;

@@ -12,10 +12,10 @@
 
 namespace tress::experiments::scaling {
 
-/// A straight strand, by this name in the column `structure`; other names are trees.
+/// Name of a straight strand in the column `structure`; other names are trees.
 inline constexpr std::string_view straight = "straight";
 
-/// One row of scaling: which strand or tree, and how its model solves S x = b.
+/// One row of scaling: the strand or tree, and how its model solves S x = b.
 struct ScalingCase {
   std::string_view structure;
   const ModelEntry* model;
@@ -23,21 +23,21 @@ struct ScalingCase {
   int elements;
 
   Row identity() const;
-  /// The model's: defaults, the user's, those of the released strand or of the tree with
-  /// its material, this row's.
+  /// The model's: defaults, then the user's, those of the released strand or of the tree
+  /// with its material, and this row's.
   Parameters parameters(const Settings& settings) const;
-  /// Whether frames per second are asked for: sizes of the seed's table, all unknowns.
+  /// Whether frames per second are reported: sizes of the published table, all unknowns.
   bool in_seed_table() const;
-  /// The seed's frames per second at 30 a second [Bertails-Descoubes 2010, "Performance
-  /// results"], on hardware of 2008, where it gives them.
+  /// Published frames per second at 30 a second [Bertails-Descoubes 2010, "Performance
+  /// results"], on hardware of 2008; empty where not given.
   std::optional<double> seed_fps() const;
 };
 
-/// Keys of --set that choose rows.
+/// --set keys that select rows.
 std::span<const Parameter> scaling_settings();
 
-/// The rows that the command line and its settings leave: every solver, tangent and set
-/// of modes over the sizes, dense matrices up to a size, and the five trees.
+/// The rows that the command line and its settings select: every solver, tangent and set
+/// of modes over the sizes, dense matrices up to a size limit, and the five trees.
 std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& settings);
 
 }  // namespace tress::experiments::scaling

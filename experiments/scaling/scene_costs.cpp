@@ -14,7 +14,7 @@
 namespace tress::experiments::scaling {
 namespace {
 
-// s; what a step costs does not depend on it: short enough for models that come apart.
+// s; the cost of a step does not depend on it: short enough for models that diverge.
 constexpr double timed_step = 1e-4;
 
 constexpr int most_strands = 64;  // without --full

@@ -1,4 +1,4 @@
-// Runs scenes and writes what they do, for people and for other programs.
+// Runs scenes and writes the results, for people and for other programs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -8,11 +8,11 @@
 
 namespace tress::experiments::scene_runs {
 
-/// What a run looks like, for the report page and for other programs: <stem>.json, and
-/// where asked for <stem>_vtk/ and <stem>.usda, all with the same lines.
+/// Drawn output of a run for the report page and other programs: <stem>.json, and on
+/// request <stem>_vtk/ and <stem>.usda, all with the same lines.
 class Pictures {
  public:
-  /// Throws InputError where hairs cannot be drawn between the scene's strands.
+  /// Throws InputError where hairs cannot be interpolated between the scene's strands.
   Pictures(const Scene& scene, const World& world, const Readout& readout,
            const SceneRunOptions& options);
   void write(const std::vector<Frame3d>& frames) const;

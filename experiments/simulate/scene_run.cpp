@@ -22,7 +22,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Simulated time, wall time and what is left, on standard error.
+/// Simulated time, wall time and the remaining time, on standard error.
 class TimeBar {
  public:
   TimeBar(ProgressMode mode, const Scene& scene)
@@ -58,7 +58,7 @@ class TimeBar {
   double last_ = 0;
 };
 
-/// Refuses a state that this program has not written, though its key says so.
+/// Rejects a state that this program has not written, even if its key matches.
 void restore(World& world, const Snapshot& saved) {
   const auto sizes = [](const Snapshot& snapshot) {
     std::vector<std::array<std::size_t, 3>> all;
@@ -85,7 +85,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   Recording recording(options.stem, key, readout, options.resume);
   const auto between_saves =
       static_cast<std::size_t>(std::round(scene.checkpoint * scene.frame_rate));
-  std::optional<Snapshot> latest;  // of the last frame, where nothing else is saved
+  std::optional<Snapshot> latest;  // of the last frame, if no other state is saved
   const Interruption::Save save(interruption, [&] {
     if (latest) recording.save(*latest);
   });

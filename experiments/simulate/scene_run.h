@@ -13,7 +13,7 @@ struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
   int threads = 1;
   bool resume = false;
-  std::size_t hairs = 0;  // between the strands, in .json and .usda
+  std::size_t hairs = 0;  // drawn between the strands, in .json and .usda
   bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
   bool usd = false;       // <stem>.usda
   ProgressMode progress = ProgressMode::automatic;
@@ -24,19 +24,19 @@ struct SceneRun {
   End end;
   std::string reason;  // of a failure
   std::size_t frames;
-  long rejected;  // steps tried again with shorter ones
+  long rejected;  // steps repeated with shorter ones
   double wall_s, simulated_s;
   double indicator = 0;  // largest World::error_indicator
 };
 
-/// Runs a scene and writes what it does: series, pictures, and while it goes on what a
-/// later run continues from (see Recording). `key` names the run among others. Pictures
-/// of all frames are written at the end.
+/// Runs a scene and writes series, pictures, and during the run the states from which a
+/// later run can continue (see Recording). `key` identifies the run. Pictures of all
+/// frames are written at the end.
 ///
-/// A scene with checkpoint_s is built anew from every state that it saves, in a run that
-/// goes through as in one that continues: both give the same numbers, bit by bit. Without
-/// checkpoint_s `interruption` saves the state of the last frame; integrators that use
-/// earlier steps begin anew there, so that both agree within their accuracy.
+/// A scene with checkpoint_s is rebuilt from every state that it saves, in uninterrupted
+/// and resumed runs alike: both give bitwise equal numbers. Without checkpoint_s
+/// `interruption` saves the state of the last frame; multistep integrators restart there,
+/// so that both agree within their accuracy.
 SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
                    Interruption& interruption);
 

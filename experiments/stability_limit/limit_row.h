@@ -14,14 +14,15 @@ struct FoundLimit {
   StabilityRun run;
 };
 
-/// Looks for the largest step that `judge` calls stable (empty: the work is used up) and
-/// fills the columns about it; the row fails where no stable step was found, which is
-/// when nothing is returned, or not in the work that there was.
+/// Searches for the largest step that `judge` finds stable (empty: the work is used up)
+/// and fills the columns about it. The row fails, and nothing is returned, if no stable
+/// step exists or none was found within the work limit.
 std::optional<FoundLimit> find_limit(
     const StepSearch& search,
     const std::function<std::optional<StabilityRun>(double dt)>& judge, Row& row);
 
-/// The columns about the run at the limit and what a step (s of wall time) of it costs.
+/// Sets the columns about the run at the limit and the cost (s of wall time) of one of
+/// its steps.
 void set_cost(const FoundLimit& limit, double cost, Row& row);
 
 }  // namespace tress::experiments::stability_limit

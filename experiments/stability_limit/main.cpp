@@ -1,5 +1,5 @@
 // What is the largest stable step of a strand, against the number of its elements, and
-// what decides it: the solver, the tangent, damping or the scene?
+// which factor decides it: the solver, the tangent, damping or the scene?
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -55,7 +55,7 @@ constexpr Column columns[] = {
     {"dt_bending_s", "nodal, explicit methods: the same of bending alone"},
 };
 
-/// Wall time (s) of a step, over at most so many steps that a row does not take long.
+/// Wall time (s) of a step, over a limited number of steps so that a row stays short.
 double step_cost(const StabilityCase& c, System& system, const Options& options,
                  int repeat) {
   constexpr double most_steps = 500;
@@ -135,8 +135,8 @@ constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
 };
 
-/// A method without a stable step, or one that needs so many that nobody waits for them,
-/// is what is looked for.
+/// A method without a stable step, or one that needs impractically many steps, is an
+/// expected result.
 bool finding(const Row& row) {
   return row.status() == "unstable" || row.status() == "gave_up" ||
          row.status() == "refused";

@@ -20,7 +20,7 @@ constexpr int claimed_nodes = 200;
 struct NodalMethod {
   std::string_view integrator, tangent, start;
 };
-/// Stiff: implicit in the terms of highest order only, as in the paper.
+/// Stiff: implicit only in the terms of highest order, as in the paper.
 constexpr NodalMethod nodal_methods[] = {
     {"linearly_implicit_midpoint", "stiff", "space"},
     {"linearly_implicit_midpoint", "stiff", "plane"},
@@ -55,8 +55,8 @@ Frequencies highest(const Parameters& parameters) {
           2 * std::sqrt(moduli.x / (rho * section.polar())) / h};
 }
 
-/// Straight, with small velocities; in the plane of gravity none of twist and of
-/// curvature about e2.
+/// Straight, with small velocities; in the plane of gravity without twist or curvature
+/// about e2.
 State start_of(std::string_view start, System& system) {
   State state = perturbed_start(system);
   if (start == "plane") {
@@ -82,7 +82,7 @@ void measure(const NodalCase& c, Row& row) {
     row.set("dt_theory_s", *of_explicit / std::max(bending, twist));
     row.set("dt_bending_s", *of_explicit / bending);
   }
-  // Newton's steps with dense tangents are not the claim's, and 1e5 of them too many.
+  // Newton's steps with dense tangents are outside the claim, and 1e5 of them too many.
   if (of_explicit || c.which.tangent == "stiff") {
     if (const auto run = runs().judge(claimed_step)) {
       row.set("at_claim", name(run->broken)).set("t_claim_s", run->t);
@@ -145,7 +145,7 @@ void check_explicit_limits(const std::vector<Row>& rows, Verdicts& verdicts) {
     ratio = std::max({ratio, found, 1 / found});
   }
   // The clamp lowers the highest frequency by (pi/2N)^2/2, 0.3 % at N = 20, and the
-  // search leaves 5 %.
+  // search resolves 5 %.
   const std::string theory = "explicit limits are those of the grid's twist to 6 %";
   if (ratio > 1) {
     verdicts.check(theory, ratio < 1.06, ratio);
@@ -175,7 +175,7 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
                                 elements,
                                 undamped};
       if (!which.selected(line, rows)) continue;
-      // Waves that an explicit step makes grow are seen after a few tens of steps.
+      // Waves amplified by an explicit step are visible after a few tens of steps.
       const double t_end = largest_stable_omega_h(m.integrator, 0) ? 0.02
                            : line.quick                            ? 0.25
                                                                    : 1;

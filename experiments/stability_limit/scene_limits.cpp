@@ -32,7 +32,8 @@ Broken broken_by(const Breach& breach) {
   return Broken::energy;
 }
 
-/// The scene's own tangent, and the usual one of the method that solves only once a step.
+/// The scene's own tangent, and the usual one for the method that solves only once a
+/// step.
 std::set<std::string> tangents_of(const Scene& scene, std::string_view integrator) {
   if (first_word(*scene.model, "tangent").empty()) return {""};
   std::set<std::string> all{std::string(scene.model_options.word("tangent"))};
@@ -49,7 +50,8 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   scene.options.max_work = left;
   scene.guard = true;
   World world(scene);
-  // Whole steps, a few at a time: a step that shorter ones had to replace is too long.
+  // Whole steps, a few at a time: a step that had to be replaced by shorter ones is too
+  // long.
   const double steps = std::ceil(t_end / dt - 1e-9), parts = std::min(steps, 16.0);
   Status status = Status::ok;
   for (double part = 1; part <= parts && status == Status::ok; ++part) {

@@ -9,19 +9,19 @@
 
 namespace tress::experiments::stability_limit {
 
-/// How the limits of scenes are looked for.
+/// Search parameters for the limits of scenes.
 struct SceneLimits {
   StepSearch search;
-  double most_work;  // of a row, total_work()
-  double horizon;    // s that a run simulates, at most the scene's duration
+  double most_work;  // per row, total_work()
+  double horizon;    // s simulated per run, at most the scene's duration
   std::size_t strands;
   int repeat;
 };
 
-/// Rows about scene files: the largest step of each method such that the scene as a whole
-/// keeps what the guard of simulations asks for (Guard), and no step has to be repeated
-/// by shorter ones. Of many strands that do not touch each other, typical ones. Throws
-/// InputError on --models and --elements, which a scene says itself.
+/// Rows for scene files: the largest step of each method such that the scene as a whole
+/// satisfies the simulation guard (Guard), and no step has to be repeated with shorter
+/// ones. Of many strands that do not touch each other, typical ones are run. Throws
+/// InputError on --models and --elements, which a scene defines itself.
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how);

@@ -9,7 +9,7 @@
 namespace tress::experiments::stability_limit {
 namespace {
 
-/// All that tells rows apart but for the column that is compared.
+/// All columns that identify a row except the compared one.
 std::string setting_of(const Row& row, std::string_view compared) {
   std::string key;
   for (const std::string_view column :
@@ -20,16 +20,16 @@ std::string setting_of(const Row& row, std::string_view compared) {
   return key;
 }
 
-/// A limit is known to lie between these two; unstable is infinite at the cap.
+/// A limit lies between these two; unstable is infinite at the cap.
 struct Bracket {
   double stable, unstable;
-  double finest;  // smallest step tested, 0 when the search was done
+  double finest;  // smallest step tested, 0 when the search completed
   bool above(const Bracket& other) const { return stable >= other.unstable; }
-  /// Whether the search got to where the other one found its limit.
+  /// Whether the search reached the other one's limit.
   bool reaches(const Bracket& other) const { return finest <= other.unstable; }
 };
 
-/// By setting, of the rows with this word in this column that have a limit.
+/// By setting, of the rows with this value in this column that have a limit.
 std::map<std::string, Bracket> limits_of(const std::vector<Row>& rows,
                                          std::string_view column, std::string_view word) {
   std::map<std::string, Bracket> limits;
@@ -51,8 +51,8 @@ struct Worst {
   bool held = true;
 };
 
-/// One verdict per scene. `violated` tells whether two brackets break the claim, `ratio`
-/// how far they are from doing so.
+/// One verdict per scene. `violated`: whether two brackets break the claim; `ratio`: how
+/// close they are to doing so.
 template <typename Violated, typename Ratio>
 void check_pairs(const std::vector<Row>& rows, std::string_view column,
                  std::string_view first, std::string_view second,
@@ -103,7 +103,7 @@ void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
       [](const Bracket& a, const Bracket& b) { return a.above(b); },
       [](double a, double b) { return a / b; }, verdicts);
 
-  // A row whose search found no limit has no number, and no comparison holds.
+  // A row whose search found no limit has no number, so comparisons never hold.
   const auto limit = [&](std::string_view integrator, std::string_view tangent,
                          const std::string& claim, auto holds) {
     const Row* row = shaken(rows, integrator, tangent);

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::stability_limit {
 
-/// What the table of stability_limit must show. Two limits are the same when the brackets
+/// The claims about the table of stability_limit. Two limits are equal when the brackets
 /// of their bisections, from dt_max_s to dt_first_unstable_s, have a step in common; the
-/// number that decides is the ratio of the two dt_max_s of the worst pair.
+/// deciding number is the ratio of the two dt_max_s of the worst pair.
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::stability_limit

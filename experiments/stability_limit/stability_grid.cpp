@@ -65,17 +65,18 @@ constexpr Parameter settings_of_rows[] = {
 };
 
 // EI/gamma is the relaxation rate; gamma damps modes beyond 2 EI/gamma over-critically.
-// The seed's gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
+// The "seed" gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
 // a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
-// leaves the motion as it is and only rounds off what the grid adds.
+// leaves the motion unchanged and only damps artefacts of the grid.
 constexpr Damping dampings[] = {undamped, {"light", "1e-12"}, {"seed", "1e-10"}};
 
 struct Variation {
   std::string_view model, integrator, solver, tangent;
 };
 
-/// Against the number of elements: the seed's kind of step on every solver, our
-/// reconstruction of its recursion, the whole tangent, and the serial chain.
+/// Against the number of elements: the semi-implicit step with the stiff tangent on every
+/// solver, our reconstruction of the published recursion, the exact tangent, and the
+/// serial chain.
 constexpr Variation methods[] = {
     {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
     {"super_helix", "semi_implicit_euler", "composite", "stiff"},
@@ -85,8 +86,8 @@ constexpr Variation methods[] = {
     {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
 };
 
-/// Every other strand model, by the usual step and by whole Newton steps: its first
-/// solver.
+/// Every other strand model with its first solver, by the usual step and by full Newton
+/// steps.
 std::vector<Variation> methods_of(const ModelEntry& model) {
   const std::string_view solver = first_word(model, "solver");
   return {{model.id, "semi_implicit_euler", solver, usual_tangent(model)},
@@ -110,9 +111,9 @@ constexpr Variation further_methods[] = {
 /// Where methods are compared.
 constexpr int usual_elements = 20;
 
-/// Of --quick, a method of each kind that a user is likely to consider: explicit, of
+/// For --quick, one method of each kind that a user is likely to consider: explicit, of
 /// order 1, symplectic, with one solve a step, and two that damp fast modes. The others
-/// say nothing new about stability.
+/// add nothing about stability.
 constexpr std::string_view quick_integrators[] = {"rk4",
                                                   "semi_implicit_euler",
                                                   "backward_euler",
@@ -122,7 +123,7 @@ constexpr std::string_view quick_integrators[] = {"rk4",
                                                   "linearly_implicit_midpoint"};
 constexpr std::string_view quick_scenes[] = {"release", "compress", "shake", "curl_drop",
                                              "whip"};
-/// Of models that are not the seed's: these scenes and numbers of elements.
+/// For models other than those of of_the_seed(): these scenes and numbers of elements.
 constexpr std::string_view quick_scenes_of_others[] = {"release", "shake"};
 constexpr int quick_elements_of_others[] = {5, usual_elements, 40};
 
@@ -136,8 +137,8 @@ std::vector<int> element_counts(const CommandLine& line) {
   return {1, 2, 5, 10, usual_elements, 40};
 }
 
-/// `others`: and every other fixed-step integrator, by the linear-time solver with the
-/// whole tangent.
+/// `others`: also every other fixed-step integrator, by the linear-time solver with the
+/// exact tangent.
 std::vector<Variation> all_methods(const CommandLine& line, bool others) {
   std::vector<Variation> all(std::begin(methods), std::end(methods));
   for (const ModelEntry* model : strand_models()) {
@@ -156,8 +157,8 @@ std::vector<Variation> all_methods(const CommandLine& line, bool others) {
   return all;
 }
 
-/// Whether a row is there when nothing on the command line says so. --quick shows what
-/// damping does on two scenes at two counts, the default on four at all.
+/// Whether a row is included by default. --quick shows the effect of damping on two
+/// scenes at two sizes, the default on four scenes at all sizes.
 bool usual(const CommandLine& line, const StabilityCase& c) {
   if (line.full) return true;
   constexpr std::string_view damped[] = {"shake", "curl_drop", "release", "whip"};
@@ -184,7 +185,7 @@ bool possible(const StabilityCase& c, const Settings& settings) {
     const auto system = c.model->make(c.parameters(settings));
     return !usable_formulations(find_integrator(c.integrator), *system).empty();
   } catch (const InputError&) {
-    return false;  // a scene that the model does not take
+    return false;  // a scene that the model does not support
   }
 }
 

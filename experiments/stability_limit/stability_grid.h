@@ -21,7 +21,7 @@ struct Damping {
 
 inline constexpr Damping undamped{"none", "0"};
 
-/// One row of stability_limit: which strand, how it moves and who steps it.
+/// One row of stability_limit: the strand, its motion and the method.
 struct StabilityCase {
   const StrandScene* scene;
   const ModelEntry* model;
@@ -30,26 +30,27 @@ struct StabilityCase {
   Damping damping;
 
   Row identity() const;
-  /// Whether the command line and the settings leave it in.
+  /// Whether the command line and the settings select this row.
   bool selected(const CommandLine& line, const Parameters& rows) const;
-  /// The model's: defaults, the user's, the scene's, this row's.
+  /// The model's: defaults, then the user's, the scene's, and this row's.
   Parameters parameters(const Settings& settings) const;
 };
 
-/// Keys of --set that choose rows and say how steps are searched.
+/// --set keys that select rows and control the search for steps.
 std::span<const Parameter> stability_settings();
 
-/// What the user set this key to; `usual` where it was left at 0.
+/// The user's value of this key; `usual` if it is 0.
 double set_or(const Parameters& rows, std::string_view key, double usual);
 
-/// How steps are searched; `finest` (s) and `depth` where the user says nothing else.
+/// Search parameters for steps; `finest` (s) and `depth` are defaults that the user may
+/// override.
 StepSearch step_search(const Parameters& rows, double finest, double depth);
 
-/// Whether a study of all integrators looks at this one: it has a step, and is among
-/// those that were named, or is one that --quick keeps.
+/// Whether a study of all integrators includes this one: it has a step, and is named, or
+/// is one that --quick keeps.
 bool considered(const CommandLine& line, const IntegratorEntry& entry);
 
-/// The rows that the command line and its settings leave, without those whose model the
+/// The rows that the command line and its settings select, without those whose model the
 /// integrator refuses.
 std::vector<StabilityCase> stability_cases(const CommandLine& line,
                                            const Settings& settings);

@@ -43,7 +43,7 @@ double measure_greenhill(const ModelTrial& trial) {
       0.3 * greenhill, 3 * greenhill);
 }
 
-// How the column of euler() is held at its loaded end.
+// Support of the loaded end of euler()'s column.
 enum EulerEnd { tip_free = 1, tip_pinned = 2, tip_clamped = 3 };
 
 double euler(double end) {
@@ -93,7 +93,7 @@ double ring_twist(double poisson_ratio) {
   return 2 * pi * std::sqrt(3.0) * (1 + poisson_ratio);
 }
 
-/// Of the parabola, twist over square, through the last three points.
+/// Zero of the parabola, twist over square, through the last three points.
 double zero_of_last(const std::vector<std::array<double, 2>>& points) {
   if (points.size() < 4) throw std::runtime_error("no ring to begin with");
   double at_zero = 0;
@@ -107,13 +107,13 @@ double zero_of_last(const std::vector<std::array<double, 2>>& points) {
   return at_zero;
 }
 
-/// A strand that twists by -Tw at rest, bent to a ring that does not twist, its end held
-/// to its clamp: of a round section the same as an untwisted one closed after Tw. As its
+/// A strand that twists by -Tw at rest, bent to a ring without twist, its end held to its
+/// clamp: for a round section equivalent to an untwisted one closed after Tw. As its
 /// sections may roll while the ring turns about the tangent at the clamp, at no cost, a
-/// spring of 0.1 EI/L^3 holds its far point in place: modes that buckle are 1e3 times as
-/// stiff at 0.8 and 1.2 of the threshold, which this moves by 1e-4 or less.
+/// spring of 0.1 EI/L^3 holds its far point in place: buckling modes are 1e3 times as
+/// stiff at 0.8 and 1.2 of the threshold, which this shifts by 1e-4 or less.
 double measure_ring(const ModelTrial& trial) {
-  // Least square beside that of the spring's.
+  // Least square relative to that of the spring.
   const auto least_square = [&](double twist) {
     TestRod rod{.poisson_ratio = trial.parameter};
     rod.natural = uniform_shape({-twist / rod.length, 0, 0});
@@ -131,8 +131,9 @@ double measure_ring(const ModelTrial& trial) {
     const std::vector<SmallMotion> motions = statics.motions();
     return motions[motions[0].square > 0 ? 1 : 0].square;
   };
-  // At the threshold both motions that buckle the ring are soft and the iteration, though
-  // it starts at the ring, may leave it: where it is comes from the last that were found.
+  // At the threshold both buckling motions of the ring are soft and the iteration,
+  // although started at the ring, may leave it: the threshold is fitted to the last
+  // points found.
   constexpr double start = 0.7, step = 0.04, last = 1.5;
   const double expected = ring_twist(trial.parameter);
   std::vector<std::array<double, 2>> known;  // twist, square
@@ -152,8 +153,8 @@ double measure_ring(const ModelTrial& trial) {
 constexpr double lateral = 4.012599343578896;
 
 /// A blade with a tip load along its depth; GJ by St Venant's torsion of the ellipse
-/// [1855]. The bending in the plane of the load that comes first changes the load by some
-/// (EI_2 + GJ)/(2 EI_1), 7e-4 where it is 40 times as deep as wide.
+/// [1855]. Prior bending in the plane of the load changes the load by about (EI_2 +
+/// GJ)/(2 EI_1), 7e-4 for a depth of 40 times the width.
 double measure_lateral(const ModelTrial& trial) {
   const TestRod rod;
   Strand strand = rod.strand(trial.elements, horizontal_clamp());
@@ -187,12 +188,12 @@ std::string no_common_inertia(const ModelVariant& variant) {
              : std::string();
 }
 
-// Load P L^2/EI at which the first two frequencies of Beck's column meet, and where they
-// do: a double root of p^2 + 2 w^2 (1 + cos a cosh b) + p w sin a sinh b, a^2, b^2 =
-// sqrt(p^2/4 + w^2) +- p/2.
+// Load P L^2/EI at which the first two frequencies of Beck's column meet, and the common
+// frequency: a double root of p^2 + 2 w^2 (1 + cos a cosh b) + p w sin a sinh b, a^2, b^2
+// = sqrt(p^2/4 + w^2) +- p/2.
 constexpr double beck_load = 20.050953618974, beck_rate = 11.015557706142;
 
-// What is measured of Beck's column.
+// Measured quantity of Beck's column.
 enum BeckQuantity { flutter_load = 1, flutter_rate = 2 };
 
 double beck(double quantity) {
@@ -200,7 +201,7 @@ double beck(double quantity) {
 }
 
 /// Squares x, y of the first two frequencies as their sum and (x - y)^2, which is smooth
-/// where they meet and turn complex. A round column has each twice, in either plane.
+/// where they meet and become complex. A round column has each twice, once per plane.
 struct TwoSquares {
   double sum, discriminant;
 };

@@ -28,8 +28,8 @@ double bent_by_weight(const ModelTrial& trial, double grading) {
   return -tip.z / tip.x;
 }
 
-/// Where the weight is large the strand turns down within sqrt(1/(2 Gamma)) L of the
-/// clamp, and elements have to be short there.
+/// Under a large weight the strand turns down within sqrt(1/(2 Gamma)) L of the clamp, so
+/// elements have to be short there.
 double bent_graded(const ModelTrial& trial) {
   return bent_by_weight(trial, std::max(1.0, std::sqrt(trial.parameter) / 4));
 }

@@ -6,7 +6,7 @@
 
 namespace tress::experiments::validation {
 
-/// A clamped strand bent by its weight or by a force at its tip.
+/// A clamped strand bent by its weight or by a tip force.
 std::vector<ValidationTest> cantilever_tests();
 
 }  // namespace tress::experiments::validation

@@ -19,8 +19,8 @@ constexpr double length = 1, radius = 2e-6;  // m
 constexpr Material material{
     .density = 1000, .youngs_modulus = 1e9, .shear_modulus = 3.4e8};
 
-// bdf2, since the weight comes on a chain that is not yet stretched: what rings then is
-// of no interest and makes the tension oscillate.
+// bdf2, since the weight is applied to an unstretched chain: the resulting ringing is
+// irrelevant and makes the tension oscillate.
 constexpr std::string_view integrator = "bdf2";
 
 Strand chain(int elements, const Frame& frame, const Shape& initial = {}) {
@@ -41,13 +41,13 @@ Signal pulse(double amplitude, double duration) {
   };
 }
 
-constexpr double upper = 0.9;  // L from the tip, where the pulse is seen first
+constexpr double upper = 0.9;  // L from the tip, where the pulse is first observed
 
 double travel(double lower) {
   return 2 * (std::sqrt(upper) - std::sqrt(lower)) * std::sqrt(length / earth_gravity);
 }
 
-/// The node at a place `from_tip` (over L), which has to be one.
+/// The node at a position `from_tip` (over L), which has to exist.
 int node_at(double from_tip, int elements) {
   const double node = (1 - from_tip) * elements;
   if (std::abs(node - std::round(node)) > 1e-9) {
@@ -88,20 +88,20 @@ double folded_speed(double fallen) {
 }
 
 double measured_speed(const ModelTrial& trial) {
-  // Two segments at least make the fold.
+  // The fold takes at least two segments.
   const double fold = std::max(0.04, 2.0 / trial.elements) * length;
   const Shape folded = [fold](double s) {
     return Vec{0, std::abs(s - length / 2) < fold / 2 ? pi / fold : 0, 0};
   };
   const auto system =
       on_strand(trial.variant, chain(trial.elements, hanging_clamp(), folded), weight());
-  // Until a tip that falls freely is there.
+  // Until a freely falling tip arrives there.
   const double fallen = trial.parameter * length;
   const double t_end = std::sqrt(2 * fallen / earth_gravity);
   const Track z = track(integrator, *system, 5e-4, t_end, place(*system, -1, 2));
   for (std::size_t i = 1; i + 1 < z.t.size(); ++i) {
     if (z.value.front() - z.value[i] < fallen) continue;
-    // The speed at the middles of two steps, of which one is before and one after.
+    // The speed at the midpoints of two steps, one before and one after.
     const auto speed = [&](std::size_t k) {
       return (z.value[k - 1] - z.value[k]) / (z.t[k] - z.t[k - 1]);
     };

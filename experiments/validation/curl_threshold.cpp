@@ -13,8 +13,9 @@ namespace {
 struct Curl {
   double phi, poisson_ratio, gamma;
 
-  /// theta and theta' over x = 1 - s, from the tip. Solutions that miss the clamp grow as
-  /// straight ones would, one way or the other, so that one tip angle is right.
+  /// theta and theta' over x = 1 - s, from the tip. Solutions that miss the clamp diverge
+  /// like straight ones, to one side or the other, so that exactly one tip angle is
+  /// right.
   void bend(double x, const double* y, double* dy) const {
     const bool missing = y[0] < 0 || y[1] > 0;
     dy[0] = y[1];
@@ -43,7 +44,7 @@ struct Curl {
     return find_root(at_clamp, 0, std::numbers::pi);
   }
 
-  /// Passes 0 where the plane is left.
+  /// Crosses 0 where the strand leaves the plane.
   double determinant() const {
     const Slope slope = [this](double x, const double* y, double* dy) { turn(x, y, dy); };
     const std::vector<double> y =
@@ -73,7 +74,7 @@ double curl_threshold(double phi, double poisson_ratio) {
       value = next;
     }
   } catch (const std::runtime_error&) {
-    // The tip points up: strands that leave their plane have done so at more weight.
+    // The tip points up: such strands left their plane at a larger weight.
   }
   throw InputError("a strand of this phi stays in its plane at any weight", "phi",
                    "give an angle of 1.8 pi or more (nu = 0.5)");

@@ -21,7 +21,7 @@ double distance(const Vec& x, const Vec& y) { return std::sqrt(dot(x - y, x - y)
 
 double unity(double) { return 1; }
 
-/// From nearly straight; the strand closes on its clamp.
+/// Starts nearly straight; the strand closes on its clamp.
 double measure_roll_up(const ModelTrial& trial) {
   TestRod rod;
   const double curvature = 2 * pi * trial.parameter / rod.length;
@@ -32,9 +32,9 @@ double measure_roll_up(const ModelTrial& trial) {
   return 1 + distance(statics.tip(), {}) / rod.length;
 }
 
-// Curly hair of 15 cm, radius 8 mm and pitch 10 mm: curvature and twist times L, tip
-// over L at rest in its weight. Boundary-value problem of Kirchhoff's equations on two
-// meshes that agree to 1e-12 (GJ/EI = 1/1.4).
+// Curly hair of 15 cm, radius 8 mm and pitch 10 mm: curvature and twist times L, tip over
+// L in equilibrium under its weight. Boundary-value problem of Kirchhoff's equations on
+// two meshes that agree to 1e-12 (GJ/EI = 1/1.4).
 constexpr double curly_curvature = 18.0361544841071, curly_twist = 3.58817892564338;
 constexpr double curly_gamma = 35.8678125;
 constexpr Vec curly_tip{0.1575486055087, 0.0070779385289, -0.2017219830847};
@@ -56,8 +56,8 @@ double spring_rise(double force) {
   return std::sin(helix.pitch_angle) / std::sin(spring_pitch_angle);
 }
 
-/// Ends disturb the helix within some sqrt(EI/F): the middle third of eight turns is
-/// uniform. Rise along the axis over arc length, over that at rest.
+/// End effects reach about sqrt(EI/F): the middle third of eight turns is uniform. Rise
+/// along the axis over arc length, relative to that at rest.
 double measure_spring(const ModelTrial& trial) {
   TestRod rod;
   const double c = std::cos(spring_pitch_angle), s = std::sin(spring_pitch_angle);
@@ -106,9 +106,9 @@ double measure_curl(const ModelTrial& trial) {
 }
 
 // Cantilever of 45 degrees [Bathe & Bolourchi 1979]: radius 100, E = 1e7, nu = 0, unit
-// square: EI = GJ = 1e7/12, force 600 across its plane. Out-of-plane way of the tip of
-// the inextensible rod, from Kirchhoff's equations (the published 53.4 has stretch and
-// shear).
+// square: EI = GJ = 1e7/12, force 600 across its plane. Out-of-plane displacement of the
+// tip of the inextensible rod, from Kirchhoff's equations (the published 53.4 includes
+// stretch and shear).
 constexpr double bathe_radius = 100, bathe_force = 600, bathe_bending = 1e7 / 12;
 constexpr double bathe_tip = 53.46859844;
 

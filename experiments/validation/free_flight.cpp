@@ -15,8 +15,8 @@ namespace tress::experiments::validation {
 namespace {
 
 constexpr double flight_time = 0.5;  // s: three quarters of a turn
-constexpr double energy_bound = 10;  // times the start's: diverged
-constexpr double most_work = 6e7;    // of a row
+constexpr double energy_bound = 10;  // times the initial energy: diverged
+constexpr double most_work = 6e7;    // per row
 
 Parameters thrown(const Settings& settings, const ModelEntry& model, int elements) {
   Parameters p = settings.parameters(model);
@@ -26,8 +26,8 @@ Parameters thrown(const Settings& settings, const ModelEntry& model, int element
   return p;
 }
 
-/// Adaptive methods without the tangent follow the waves of stretching of a hair,
-/// microseconds long.
+/// Adaptive methods without the tangent resolve the stretching waves of a hair, of
+/// microseconds.
 bool flies(const IntegratorEntry& entry, const CommandLine& line) {
   if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
   return line.full || !entry.adaptive || entry.tangent;
@@ -90,8 +90,9 @@ void add_flights(const CommandLine& line, const IntegratorEntry& entry, Flight f
   }
 }
 
-/// That angular momentum changes as `holds` says in all rows of fixed steps that
-/// `speaks_of` picks and that finish, one at least; the worst is the last in their order.
+/// Claim that the angular momentum changes as `holds` requires in all fixed-step rows
+/// that `speaks_of` selects and that finish, at least one; the worst is the last in their
+/// order.
 template <typename SpeaksOf, typename Holds, typename Order>
 void check_change(const std::string& claim, const std::vector<Row>& rows,
                   SpeaksOf speaks_of, Holds holds, Order order, Verdicts& verdicts) {
@@ -154,7 +155,7 @@ void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts) {
         return row.number("dt_s") > 5e-3 && row.text("integrator") == "backward_euler";
       },
       [](double least) { return least > 0.01; }, std::greater{}, verdicts);
-  // Of particles alone: der's kinetic energy does not keep the spin of sections (der.h).
+  // For particles only: der's kinetic energy omits the spin of sections (der.h).
   check_change(
       "implicit_midpoint keeps that of mass_spring to 1e-9", rows,
       [](const Row& row) {

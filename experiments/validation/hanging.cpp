@@ -36,16 +36,16 @@ double sag(double span) { return Catenary(span).sag(); }
 
 constexpr double rope_length = 1;
 
-/// EI/(H a^2) = 1/(Gamma a^3), H the tension at the lowest point, is how much EI is felt
-/// there: a hundredth at most. As in a hanging chain it is felt within Gamma^(-1/2) of an
-/// end too, and the clamp looks along the rope; weight stretches it by
+/// EI/(H a^2) = 1/(Gamma a^3), H the tension at the lowest point, is the relative effect
+/// of EI there: a hundredth at most. As in a hanging chain its effect at an end reaches
+/// about Gamma^(-1/2), and the clamp is aligned with the rope; weight stretches it by
 /// Gamma r^2/(4 L^2), 4e-5 to 4e-4.
 double rope_gamma(const Catenary& rope) {
   return std::max(1e5, 100 / std::pow(rope.a, 3));
 }
 
-/// From the shape of the rope, hanging between its clamp and its tip, which is held in
-/// place. The lowest point is the middle one, of an even number of elements.
+/// Starts from the shape of the rope, hanging between its clamp and its tip, which is
+/// held in place. The lowest point is the middle node; the number of elements is even.
 double measure_sag(const ModelTrial& trial) {
   if (trial.elements % 2 != 0) {
     throw InputError("no node in the middle", "test catenary",

@@ -6,7 +6,7 @@
 
 namespace tress::experiments::validation {
 
-/// A strand so heavy that it does not feel its stiffness, held at both ends.
+/// A strand whose weight dominates its stiffness, held at both ends.
 std::vector<ValidationTest> hanging_tests();
 
 }  // namespace tress::experiments::validation

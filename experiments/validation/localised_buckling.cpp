@@ -15,8 +15,8 @@ using std::numbers::pi;
 constexpr double decay = 12;  // the ends' tilt is below 0.01
 constexpr Vec axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};
 
-/// With the natural twist that lets the sections follow the helix in its tails: they need
-/// not turn once more within the elements.
+/// With the natural twist for which the sections follow the helix in its tails, without
+/// an additional turn within the elements.
 LocalisedHelix helix(const TestRod& rod, double degrees) {
   LocalisedHelix all{degrees * pi / 180, decay, 1 + rod.poisson_ratio};
   all.natural_twist = all.moment() / 2 - all.twist();
@@ -63,7 +63,7 @@ Vec LocalisedHelix::darboux(double s) const {
   // Euler's angles about the pull, the tilted axis and the tangent: precession psi, tilt
   // theta, spin phi. Moments about the pull and the tangent are both M, so psi' = M/(1 +
   // cos theta) and phi' = twist - psi' cos theta; psi is the sum of M s/2 and twice the
-  // angle by which the tilt's half has passed its largest.
+  // angle by which half the tilt has passed its maximum.
   const double x = decay * (s - 0.5), slope = std::tan(largest_tilt / 2);
   const double half = std::asin(std::sin(largest_tilt / 2) / std::cosh(x));
   const double theta = 2 * half;
@@ -87,8 +87,8 @@ std::vector<ValidationTest> localised_buckling_tests() {
       .source = "Coyne 1990; van der Heijden & Thompson 2000: closed form",
       .parameter = "largest tilt against the pull (degrees)",
       .quantity = "T L^2/EI that holds the ends at that shortening and turning",
-      // At cos(tilt) = -D GJ/(2 EI), 93 degrees, two equilibria of the same ends meet;
-      // near it all depends on the smallest errors.
+      // At cos(tilt) = -D GJ/(2 EI), 93 degrees, two equilibria with the same ends
+      // coincide; near it the result is sensitive to the smallest errors.
       .range = {45, 65},
       .quick = {{60}, {40, 80}},
       .usual = {{45, 55, 65}, {40, 80, 160}},

@@ -10,20 +10,20 @@ namespace tress::experiments::validation {
 /// The equilibrium of a long straight isotropic rod, pulled and twisted at its ends,
 /// whose tilt from the line of the pull decays to both sides of its middle [Coyne 1990;
 /// van der Heijden & Thompson 2000]: cos(tilt) = 1 - (1 - cos(largest)) sech^2(decay (s -
-/// 1/2)), in units of the rod's length and EI. Of an endless rod; at the ends of this one
-/// the tilt is 4 exp(-decay/2) sin(largest/2) or less.
+/// 1/2)), in units of the rod's length and EI. Exact for an infinite rod; at the ends of
+/// this one the tilt is 4 exp(-decay/2) sin(largest/2) or less.
 struct LocalisedHelix {
   double largest_tilt;       // rad, in (0, pi)
   double decay;              // times L
   double bend_to_twist;      // EI/GJ
-  double natural_twist = 0;  // times L; of a round section it changes nothing but frames
+  double natural_twist = 0;  // times L; affects only the frames of a round section
 
   double tension() const;     // T L^2/EI
   double moment() const;      // M L/EI, along the pull
   double shortening() const;  // of the distance of the ends, over L
   double twist() const;       // times L
   double turning() const;     // of one end against the other, rad
-  /// Darboux vector over s/L, times L; the frame at s = 0 is that of the clamp.
+  /// Darboux vector over s/L, times L; the frame at s = 0 is the clamp's.
   Vec darboux(double s) const;
 };
 

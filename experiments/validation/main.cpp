@@ -1,5 +1,5 @@
 // Is the physics right? Every strand model against published tests of slender rods, and
-// every integrator on a hair that nothing acts on.
+// every integrator on a free hair without forces.
 #include "experiments/run/experiment.h"
 #include "experiments/validation/free_flight.h"
 #include "experiments/validation/table.h"
@@ -11,9 +11,9 @@ std::vector<Case> cases(const CommandLine& line) {
   return validation_cases(line, Settings(line, validation_settings()));
 }
 
-/// That a model refuses a test, or has no answer to it in the time there is, is an
-/// answer, and so is a step too long for a flying hair; what must hold is among the
-/// checks, and a claim with a row that was killed is broken.
+/// A model that refuses a test, or finds no answer within the time limit, is a valid
+/// result, and so is a step too long for a flying hair; required results are among the
+/// checks, and a claim with a killed row is broken.
 bool finding(const Row& row) {
   return row.text("test") == free_flight || row.status() == "refused" ||
          row.status() == "failed" || row.status() == "timeout";

@@ -18,8 +18,8 @@ using std::numbers::pi;
 constexpr double length = 0.1, radius = 1e-3;  // m
 constexpr double hinge = length / 1000;        // m
 constexpr double hinge_share = 0.0005;         // k over m g L/2
-// rho g S L^3/EI = 0.5: it bends by its weight by a few thousandths of its length.
-// Stiffer rods swing alike, but Newton has more digits to lose.
+// rho g S L^3/EI = 0.5: it bends under its weight by a few thousandths of its length.
+// Stiffer rods swing alike, but cost Newton more digits.
 constexpr Material material{
     .density = 1300, .youngs_modulus = 1e8, .shear_modulus = 1e10};
 
@@ -29,7 +29,7 @@ struct Rod {
 
 Rod rod() {
   const double per_length = material.density * CrossSection{radius, radius}.area();
-  // From the hinge's end to the tip, seen from the hinge's middle.
+  // From the hinge's end to the tip, measured from the hinge's middle.
   const double from = hinge / 2, to = length - hinge / 2;
   return {per_length * earth_gravity * (to * to - from * from) / 2,
           per_length * (to * to * to - from * from * from) / 3,
@@ -56,9 +56,10 @@ Strand strand(int elements, double amplitude) {
   return strand;
 }
 
-/// Seen at the tip over three periods, by steps of 1/400 of one: (omega h)^2 = 2.5e-4.
-/// bdf2: what is stiff in a rigid rod is not resolved by such steps and has to be damped;
-/// implicit_midpoint does not, and its Newton iteration then fails for most models.
+/// Measured at the tip over three periods, by steps of 1/400 of one: (omega h)^2 =
+/// 2.5e-4. bdf2: such steps do not resolve the stiff modes of a rigid rod, which have to
+/// be damped; implicit_midpoint does not, and its Newton iteration then fails for most
+/// models.
 double swinging_period(const ModelTrial& trial) {
   const auto system =
       on_strand(trial.variant, strand(trial.elements, trial.parameter), weight());
@@ -79,9 +80,9 @@ double pendulum_period(double amplitude) {
   const double most = potential(amplitude);
   const double other = find_root([&](double theta) { return potential(theta) - most; },
                                  -1.1 * amplitude, 0);
-  // T = 2 int dtheta/rate(theta) between the turning points; with theta = middle +
-  // half sin phi the integrand is smooth and periodic, and the rule of midpoints
-  // converges faster than any power.
+  // T = 2 int dtheta/rate(theta) between the turning points; with theta = middle + half
+  // sin phi the integrand is smooth and periodic, and the midpoint rule converges faster
+  // than any power.
   const double middle = (amplitude + other) / 2, half = (amplitude - other) / 2;
   constexpr int points = 200;
   double sum = 0;

@@ -21,22 +21,22 @@ namespace {
 
 using std::numbers::pi;
 
-// Rubber; only T R^2/EI matters. R is that of the contact, which keeps the plies apart by
-// more than the thread is thick: fewer segments follow its turns.
+// Rubber; only T R^2/EI matters. R is the contact radius, which keeps the plies apart by
+// more than the thread's thickness: fewer segments follow its turns.
 constexpr double length = 0.5, radius = 5e-4;  // m
 constexpr double ply_radius = 4e-3;            // m, R
 constexpr double thread_separation = 0.03;     // m
-// Twice as slow, or at half the step, the angle is the same to 0.3 %.
+// At half the speed, or half the step, the angle changes by less than 0.3 %.
 constexpr double turning = 2, waiting = 3;  // s
 constexpr Material material{
     .density = 1000, .youngs_modulus = 1e6, .shear_modulus = 1e6 / 3};
 
 struct Held {
-  int first, corner, tip;  // nodes of the handle that are held
+  int first, corner, tip;  // held nodes of the handle
 };
 
 Held handle(int elements) {
-  const int n = std::max(4, elements / 25);  // of its two arms
+  const int n = std::max(4, elements / 25);  // per arm
   if (elements < 10 * n) {
     throw InputError("no room for a handle", "plectoneme", "give 40 or more elements");
   }
@@ -44,7 +44,7 @@ Held handle(int elements) {
 }
 
 Strand thread(int elements, double turns) {
-  // Bent a little, so that it bows out to one side.
+  // Slightly bent, so that it bows out to one side.
   Strand strand =
       make_strand(material, {radius, radius}, {.elements = elements, .length = length},
                   uniform_shape({0, 0.01 / length, 0}));
@@ -61,7 +61,7 @@ Strand thread(int elements, double turns) {
   return strand;
 }
 
-/// Places of all nodes at the start (m).
+/// Positions of all nodes at the start (m).
 std::vector<double> start_places(const ModelVariant& variant, const Strand& strand) {
   const auto system = on_strand(variant, strand, {});
   MaterialPoints& points = *system->material_points();
@@ -70,12 +70,12 @@ std::vector<double> start_places(const ModelVariant& variant, const Strand& stra
   return x;
 }
 
-/// Over the angle of the equilibrium: 1 where theory and model agree.
+/// Relative to the angle of the equilibrium: 1 where theory and model agree.
 double measured_angle(const ModelTrial& trial) {
   const Strand strand = thread(trial.elements, trial.parameter);
   const Held held = handle(trial.elements);
   std::vector<double> x = start_places(trial.variant, strand);
-  constexpr double stiffness = 1;  // N/m: gives by 0.4 mm
+  constexpr double stiffness = 1;  // N/m: yields by 0.4 mm
   std::vector<std::shared_ptr<const Tether>> hands;
   std::vector<std::size_t> nodes;
   for (const int node : {held.first, held.corner, held.tip}) {
@@ -140,7 +140,8 @@ Ply ply(std::span<const double> x, double apart, double separation, double reach
     std::size_t edge_of_it = 0;
     Vec other;
     for (std::size_t j = i + far; j + 1 < count; ++j) {
-      // The nearest point of the edge, so that nothing depends on where nodes are.
+      // The nearest point of the edge, so that the result is independent of node
+      // positions.
       const Vec from = load3(&x[3 * j]), edge = load3(&x[3 * j + 3]) - from;
       const double at = std::clamp(dot(here - from, edge) / dot(edge, edge), 0.0, 1.0);
       const Vec gap = from + at * edge - here;
@@ -151,7 +152,7 @@ Ply ply(std::span<const double> x, double apart, double separation, double reach
         other = from + at * edge;
       }
     }
-    // Where the range begins there may be nearer ones: the loop at the end.
+    // At the limit of the range there may be nearer ones: the loop at the end.
     if (nearest > reach || edge_of_it == i + far) continue;
     const Vec tangent = load3(&x[3 * i + 3]) - (i > 0 ? load3(&x[3 * i - 3]) : here);
     middles.push_back(0.5 * (here + other));

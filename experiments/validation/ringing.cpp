@@ -18,7 +18,7 @@ using std::numbers::pi;
 const double beam_length = TestRod().length;  // m
 constexpr double bent = 0.05;  // rad, the largest curvature or twist times L
 
-/// A straight hair that is not at rest there.
+/// A straight hair with an initial shape out of equilibrium.
 Strand hair(int elements, const Shape& initial) {
   TestRod rod;
   rod.initial = initial;

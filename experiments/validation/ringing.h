@@ -6,16 +6,15 @@
 
 namespace tress::experiments::validation {
 
-/// A straight hair, without weight, that rings in one of its modes, seen in time.
+/// A straight, weightless hair that rings in one of its modes, observed in time.
 ///
-/// friction: bent in the shape of its first bending mode and let go. With Kelvin-Voigt
+/// friction: released from the shape of its first bending mode. With Kelvin-Voigt
 ///   friction gamma in bending that mode decays by the rate (gamma/EI) omega^2/2, omega =
-///   1.8751^2 sqrt(EI/(rho S L^4)): what the calibration of gamma rests on.
+///   1.8751^2 sqrt(EI/(rho S L^4)): the basis of the calibration of gamma.
 ///
-/// torsion: twisted in the shape of a mode of torsion and let go: omega_n = (2 n - 1)
-///   pi/2 sqrt(G/rho)/L, the twist of the seeds' experiment running to and fro. Seen in
-///   the kinetic energy, which swings as sin^2(omega t): not every model tells how its
-///   tip turns.
+/// torsion: released from the shape of a torsional mode: omega_n = (2 n - 1) pi/2
+///   sqrt(G/rho)/L, a twist wave running to and fro. Observed in the kinetic energy,
+///   which oscillates as sin^2(omega t): not every model reports the rotation of its tip.
 std::vector<ValidationTest> ringing_tests();
 
 }  // namespace tress::experiments::validation

@@ -47,8 +47,8 @@ double measured_rate(const ModelTrial& trial) {
   const double g = 0.02 * height * std::pow(2 * modes.low / pi, 2);
   const auto system =
       on_strand(trial.variant, strand, {std::make_shared<Gravity>(Vec{0, 0, -g})});
-  // The other wave is 1.2 times as fast. Six periods do not tell the two apart, but the
-  // weight, which pulls along the axis, makes the second a hundredth of the first.
+  // The other wave is 1.2 times as fast. Six periods do not separate the two, but the
+  // weight, which pulls along the axis, excites the second a hundredth as much.
   const double once = 2 * pi / modes.low;
   const Track z =
       track("implicit_midpoint", *system, once / 50, 6 * once, middle_height(*system));

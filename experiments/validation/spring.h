@@ -19,7 +19,7 @@ namespace tress::experiments::validation {
 ///
 /// m the mass per length of wire: two waves of speeds c_1, c_2, which both turn and
 /// stretch. Clamped above and free below their first modes are (pi/2) c_k/(length of
-/// wire). For flat turns D_11 = GJ/r^2, and the one that stretches has omega = (pi/2)
+/// wire). For flat turns D_11 = GJ/r^2, and the stretching wave has omega = (pi/2)
 /// sqrt(k/m) with Love's stiffness k = GJ/(r^2 wire) [G d^4/(8 D^3 n)] and m the mass of
 /// the wire: an effective mass of 4 m/pi^2 rather than the m/3 of a spring under a heavy
 /// weight.

@@ -16,7 +16,7 @@ namespace {
 
 const double rod_length = TestRod().length;  // m
 
-const double away = 0.05 * rod_length;  // where a tip is that slipped, m
+const double away = 0.05 * rod_length;  // displacement beyond which a tip has slipped, m
 
 /// The clamp goes down by eps L in the first 70 % of the time and then waits. The time is
 /// 56 periods of the strand, which drag damps to 0.7 of critical.
@@ -36,8 +36,7 @@ bool slips(const ModelVariant& variant, const Strand& strand, double height,
                                 {std::make_shared<Body>(Plane{}, plane, law),
                                  std::make_shared<LinearDrag>(0, 5 * TestRod().rate())});
   const auto gone = [](double x) { return std::abs(x) > away; };
-  // A quarter of the step where one is too long for Newton's iteration to follow the
-  // strand as it buckles.
+  // A quarter of the step if Newton's iteration cannot follow the strand as it buckles.
   for (double step = t_end / 1000;; step /= 4) {
     try {
       const Track x =

@@ -79,7 +79,7 @@ std::vector<std::string> chosen_tests(const CommandLine& line, const Settings& s
   const std::string_view names = settings.experiment().word("tests");
   if (!names.empty()) return split(names, ',', "--set tests");
   std::vector<std::string> all;
-  // Only free_flight leaves a choice of integrators.
+  // Only free_flight has a choice of integrators.
   if (line.integrators.empty()) {
     for (const ValidationTest& test : validation_tests()) all.emplace_back(test.name);
   }
@@ -118,8 +118,8 @@ Row identity(const ValidationTest& test, const ModelVariant& variant) {
   return row;
 }
 
-/// Of every variant of every model the test's grid, or one row that says why the test
-/// refuses it.
+/// The test's grid for every variant of every model, or one row with the reason why the
+/// test refuses it.
 void add_cases(const ValidationTest& test, const CommandLine& line,
                const Settings& settings, std::vector<Case>& all) {
   if (!line.integrators.empty()) {
@@ -188,7 +188,7 @@ std::vector<Case> validation_cases(const CommandLine& line, const Settings& sett
 }
 
 void fit_validation_orders(std::vector<Row>& rows) {
-  // Equilibria are found to 1e-9 of their sizes, thresholds to 1e-6 of themselves.
+  // Equilibria are accurate to 1e-9 of their sizes, thresholds to a relative 1e-6.
   constexpr double rounding = 2e-6;
   struct Series {
     std::vector<double> elements, errors;
@@ -222,7 +222,7 @@ void check_validation(const std::vector<Row>& rows, Verdicts& verdicts) {
       std::optional<double> worst;
       for (const Row& row : rows) {
         if (row.text("test") != test.name || row.text("model") != model) continue;
-        // A row that was killed does not say whether it is judged.
+        // A killed row does not record whether it is judged.
         const bool judged = row.has("judged")
                                 ? row.text("judged") == "true"
                                 : row.number("elements") >= test.judged_from;

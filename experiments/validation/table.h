@@ -7,26 +7,26 @@
 #include "experiments/run/settings.h"
 #include "experiments/validation/test.h"
 
-/// The table of validation: which rows there are and what they must show.
+/// The table of validation: its rows and the claims about them.
 namespace tress::experiments::validation {
 
 std::span<const Column> validation_columns();
-/// What each test is, where it comes from, and what is asked why.
+/// What each test is, its source, and the reasons for its tolerances.
 std::vector<Gloss> validation_glossary();
 
-/// Keys of --set: which tests, and which values of their parameters.
+/// --set keys: tests, and values of their parameters.
 std::span<const Parameter> validation_settings();
 
-/// Of every test and every variant of every model of a strand the test's grid, or one row
-/// that says why the test refuses it; then the rows of free_flight.h.
+/// For every test and every variant of every strand model the test's grid, or one row
+/// with the reason why the test refuses it; then the rows of free_flight.h.
 std::vector<Case> validation_cases(const CommandLine& line, const Settings& settings);
 
 /// Fills `order`: error ~ elements^-order at one parameter, by least squares over rows
-/// whose error is above what rounding leaves.
+/// whose error is above the rounding level.
 void fit_validation_orders(std::vector<Row>& rows);
 
-/// That each test's claimed models pass it wherever they are judged, and what
-/// free_flight.h says.
+/// Checks that each test's claimed models pass it wherever they are judged, and the
+/// claims of free_flight.h.
 void check_validation(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::validation

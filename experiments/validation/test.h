@@ -10,7 +10,7 @@
 
 namespace tress::experiments::validation {
 
-/// One model of the catalogue put to one test.
+/// One test of one model of the catalogue.
 struct ModelTrial {
   const ModelVariant& variant;
   int elements;      // N
@@ -18,44 +18,44 @@ struct ModelTrial {
   const Deadline& deadline;
 };
 
-/// A published test of slender rods: a number that is known for the continuous rod, and
-/// how a model's is measured. Adding a test = one object in a file of its kind, and that
-/// kind's line in validation_tests().
+/// A published test of slender rods: a known number for the continuous rod, and how to
+/// measure a model's. To add a test: one object in a file of its kind, and that kind's
+/// line in validation_tests().
 struct ValidationTest {
   std::string_view name;
   std::string_view what;       // one line
-  std::string_view source;     // who published it, and how the reference is computed
-  std::string_view parameter;  // what it is, with unit
-  std::string_view quantity;   // what is measured, with unit
+  std::string_view source;     // publication, and how the reference is computed
+  std::string_view parameter;  // meaning, with unit
+  std::string_view quantity;   // measured quantity, with unit
 
-  /// Values of the parameter for which the test is made; both ends belong to it.
+  /// Range of the parameter for which the test is valid; inclusive.
   struct Range {
     double low, high;
     bool whole = false;
   };
   Range range;
 
-  /// What is tried; --elements and --set parameters=... replace them.
+  /// Default grid; --elements and --set parameters=... override it.
   struct Grid {
     std::vector<double> parameters;
     std::vector<int> elements;
   };
   Grid quick, usual, full;
 
-  /// On |measured/reference - 1| from `judged_from` elements on; of fewer it is told, not
-  /// judged. `why` says where the number comes from.
+  /// On |measured/reference - 1| from `judged_from` elements on; with fewer it is
+  /// reported, not judged. `why` justifies the value.
   double tolerance;
   std::string_view why;
   int judged_from;
-  /// Models of which the finished table must show it; the others are told.
+  /// Models for which the finished table must show it; others are only reported.
   std::vector<std::string_view> claimed;
 
-  /// Of the continuous rod.
+  /// For the continuous rod.
   std::function<double(double parameter)> reference;
-  /// Why the test says nothing about a model, empty where it does: "planar", "no twist".
-  /// None: it suits every model.
+  /// Why the test does not apply to a model, empty if it does: "planar", "no twist".
+  /// Null: it applies to every model.
   std::function<std::string(const ModelVariant&)> refusal = {};
-  /// Models that take minutes for it: --quick leaves them out unless they are named.
+  /// Models that take minutes: --quick leaves them out unless they are named.
   std::vector<std::string_view> slow = {};
   /// Throws InputError where the model refuses the rod (a row `refused`), and
   /// std::runtime_error where it finds no answer (a row `failed`).

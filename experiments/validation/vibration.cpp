@@ -34,8 +34,8 @@ double measure_heavy_rod(const ModelTrial& trial) {
   return bending_mode(statics, 1) / rod.rate();
 }
 
-// EI moves the modes of a chain by its boundary layer at the clamp, Gamma^(-1/2)/2 of
-// themselves: 5e-4. At this length weight stretches it by Gamma r^2/(4 L^2) = 4e-4.
+// EI shifts the modes of a chain by its boundary layer at the clamp, relatively by
+// Gamma^(-1/2)/2: 5e-4. At this length weight stretches it by Gamma r^2/(4 L^2) = 4e-4.
 constexpr double chain_gamma = 1e6, chain_length = 1;
 
 double chain_mode(double mode) {

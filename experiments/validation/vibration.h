@@ -6,7 +6,7 @@
 
 namespace tress::experiments::validation {
 
-/// Frequencies of small free vibrations about a state of rest.
+/// Frequencies of small free vibrations about an equilibrium.
 std::vector<ValidationTest> vibration_tests();
 
 }  // namespace tress::experiments::validation

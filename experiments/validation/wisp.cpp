@@ -16,11 +16,11 @@ namespace {
 
 const double length = TestRod().length;  // m
 
-/// A strand that is pressed together slowly, in 40 of its periods a move, and damped to
-/// 0.7 of critical.
+/// A strand that is compressed slowly, in 40 of its periods per move, and damped to 0.7
+/// of critical.
 struct Pressed {
   std::unique_ptr<System> system;
-  double moving, waiting;  // s, of each of its moves
+  double moving, waiting;  // s, of each move
 };
 
 /// The clamp goes down by each of `moves` (m), one after the other.
@@ -35,7 +35,7 @@ Pressed pressed(const ModelTrial& trial, std::vector<double> moves) {
     strand.root.translations.push_back({{0, 0, -1}, smooth_step(move, t, all.moving)});
     t += all.moving + all.waiting;
   }
-  // Gives way by 1e-4 L under the load.
+  // Yields by 1e-4 L under the load.
   const auto hand = std::make_shared<Tether>(
       Tether::Settings{.stiffness = 22 * TestRod().force() / (1e-4 * length),
                        .target = {0, 0, held},

@@ -11,7 +11,7 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-/// Most correct digits that a method has on a problem; none: it was not run.
+/// Most correct digits that a method reaches on a problem; empty: not run.
 std::optional<double> best_scd(const std::vector<Row>& rows, std::string_view scene,
                                std::string_view integrator) {
   std::optional<double> best;
@@ -22,8 +22,8 @@ std::optional<double> best_scd(const std::vector<Row>& rows, std::string_view sc
   return best;
 }
 
-/// Six digits on a problem by `least` methods at least. Of these it takes that many to
-/// show it, and only if all of them were run have they not.
+/// At least `least` methods reach six digits on a problem. So many of these suffice to
+/// confirm it; to refute it all of them must have been run.
 struct DigitsClaim {
   std::string_view claim, scene;
   std::vector<std::string_view> by;
@@ -69,7 +69,7 @@ double steps_of(const std::vector<Row>& rows, int order, double rtol) {
   return std::nan("");
 }
 
-/// At 1e-3 the outcome hangs on how far Newton's iteration goes: 100 steps or 10 000.
+/// At 1e-3 the outcome depends on how far Newton's iteration goes: 100 steps or 10 000.
 void check_bdf(const std::vector<Row>& rows, Verdicts& verdicts) {
   const double second = steps_of(rows, 2, 1e-4);
   const double fifth = steps_of(rows, 5, 1e-4);

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::work_precision {
 
-/// What the table must show: digits that methods reach on published problems, the order
-/// of total errors in element length, what a high order costs BDF on a rod, and the
-/// claims about the swing.
+/// The claims about the table: digits reached on published problems, the order of total
+/// errors in element length, the cost of a high BDF order on a rod, and the claims about
+/// the swing.
 void check_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::work_precision

@@ -1,7 +1,7 @@
 // What does accuracy cost in time, per integrator? Error against the wall time of a run,
 // from loose to tight, on problems with exact, published or doubly computed references;
-// the maximum order of BDF on the Beam; the tip of strands, of time alone and against the
-// continuous rod, where other simulators were measured too; and any scene.
+// the maximum order of BDF on the Beam; the tip of strands, in time error alone and
+// against the continuous rod, where other simulators were also measured; and any scene.
 #include <iterator>
 #include <vector>
 
@@ -67,7 +67,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// A step or tolerance too loose for the method is where its curve ends, not a mistake.
+/// A step or tolerance too loose for the method is the end of its curve, not an error.
 bool finding(const Row&) { return true; }
 
 constexpr OwnOption command_options[] = {

@@ -5,11 +5,11 @@
 
 namespace tress::experiments::work_precision {
 
-/// The columns that every run fills: what it counted,
+/// Fills the columns common to all runs: counters,
 void set_counts(const Stats& stats, Row& row);
-/// how far it is from its reference, whose two sides are `gap` apart,
+/// distance from the reference, whose two sides are `gap` apart,
 void set_error(double relative, double gap, Row& row);
-/// and what it took (s).
+/// and times (s).
 void set_time(double wall, double simulated, Row& row);
 
 }  // namespace tress::experiments::work_precision

@@ -14,8 +14,8 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-constexpr double quick_work = 1e7;  // of a run
-constexpr int usual_order = 2;      // the highest of cvode_bdf unless told otherwise
+constexpr double quick_work = 1e7;  // per run
+constexpr int usual_order = 2;      // the default maximum of cvode_bdf
 
 struct Work {
   const Problem& problem;
@@ -55,14 +55,15 @@ void measure(const Work& work, Row& row) {
   set_time(wall, problem.t_end, row);
 }
 
-/// The formulations a table of manageable size shows: the method's own best. --full: all.
+/// The formulations shown in a table of manageable size: the method's preferred one.
+/// --full: all.
 std::vector<Formulation> shown(const IntegratorEntry& entry, System& system, bool full) {
   std::vector<Formulation> list = usable_formulations(entry, system);
   if (!full && list.size() > 1) list.erase(list.begin() + 1, list.end());
   return list;
 }
 
-/// Builds the list; knows what the user asked for.
+/// Builds the list according to the user's options.
 class List {
  public:
   List(const CommandLine& line, const Settings& settings)
@@ -95,7 +96,7 @@ class List {
       for (int level = 0; level < points; ++level) rung(work, level);
       return;
     }
-    // That high orders crawl is what these rows are for.
+    // These rows are to show that high orders are slow.
     work.options.max_work = base_.max_work;
     for (int order = 1; order <= 5; ++order) {
       work.options.max_order = order;
@@ -125,7 +126,7 @@ class List {
 }  // namespace
 
 std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings) {
-  // What only strands have.
+  // Options that only apply to strands.
   const bool of_strands = !line.elements.empty() || !keeps(settings, "error", "time") ||
                           !keeps(settings, "modes", "") ||
                           !keeps(settings, "solver", "") ||

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::work_precision {
 
-/// The rows about problems whose end is known (problems()): every integrator from loose
-/// to tight. The Beam by cvode_bdf has every maximum order, which that of its usual one
-/// is among.
+/// The rows for problems with a known end state (problems()): every integrator from loose
+/// to tight tolerances. The Beam by cvode_bdf has every maximum order, including the
+/// default.
 std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings);
 
 }  // namespace tress::experiments::work_precision

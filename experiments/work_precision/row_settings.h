@@ -7,10 +7,10 @@
 
 namespace tress::experiments::work_precision {
 
-/// Keys of --set that choose rows.
+/// --set keys that select rows.
 std::span<const Parameter> row_settings();
 
-/// Whether the user's choice of rows leaves this word of a key in.
+/// Whether the user's choice for this key includes this value.
 bool keeps(const Settings& settings, std::string_view key, std::string_view word);
 
 }  // namespace tress::experiments::work_precision

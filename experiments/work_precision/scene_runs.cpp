@@ -23,9 +23,9 @@ namespace {
 
 constexpr double rate = 60;  // 1/s, of the instants at which tips are compared
 
-/// How far the sweep goes.
+/// Extent of the sweep.
 struct Extent {
-  double work;         // of a run
+  double work;         // per run
   int rungs;           // steps or tolerances of a curve
   int model_halvings;  // of a frame, to the step of a model's reference
   Finest rod;
@@ -41,7 +41,7 @@ Extent extent(const CommandLine& line, const Settings& settings) {
   return made;
 }
 
-/// A scene file as all its runs have it: typical strands, up to the horizon.
+/// A scene file as used by all its runs: typical strands, up to the horizon.
 class Study {
  public:
   Study(SceneFile file, const Settings& settings)
@@ -63,8 +63,8 @@ class Study {
   bool touching() const { return scene_.interaction.has_value(); }
   double duration() const { return scene_.duration; }
 
-  /// Strands of so many elements, 0: as the file has them. Which are chosen does not
-  /// depend on how they are cut.
+  /// Strands with this many elements, 0: the file's discretisation. The choice of strands
+  /// does not depend on it.
   Scene cut(int elements) const {
     Scene made = elements > 0 ? with_elements(scene_, elements) : scene_;
     return chosen_.empty() ? made : only(std::move(made), chosen_);
@@ -77,7 +77,7 @@ class Study {
   double length_ = 0;
 };
 
-/// What errors of one model at one number of elements are measured against.
+/// References for the errors of one model at one number of elements.
 struct Sides {
   std::optional<TipReference> time, total;
 };
@@ -92,7 +92,7 @@ struct Curve {
   Extent extent;
 };
 
-/// One run: a row for each error, the same run in both.
+/// One run: one row per error kind, from the same run.
 std::vector<Row> measured(const Curve& work, const Scene& scene, const Row& identity) {
   const TipPaths run = tip_paths(scene, 0);
   const int repeat = run.once_s > long_run_s ? 1 : work.extent.repeat;
@@ -117,7 +117,7 @@ std::vector<Row> measured(const Curve& work, const Scene& scene, const Row& iden
   return rows;
 }
 
-/// Steps of the run, each an evaluation and a solve at least, as total_work() counts.
+/// Steps of the run, each at least an evaluation and a solve, as total_work() counts.
 double least_work(const Scene& scene) {
   const double steps = scene.duration / scene.options.step;
   return 2 * steps * (static_cast<double>(most_elements(scene)) + 10);
@@ -161,7 +161,7 @@ std::vector<Row> curve(const Curve& work, const Row& identity) {
   return rows;
 }
 
-/// The tips of one reference run, steps and elements as the reference asks for.
+/// The tips of one reference run, with the reference's steps and elements.
 TipsOf tips_of(const Study& study, int given_elements) {
   return [&study, given_elements](std::string_view model, std::string_view integrator,
                                   int elements, const Options& options) {
@@ -173,18 +173,18 @@ TipsOf tips_of(const Study& study, int given_elements) {
   };
 }
 
-/// Nothing, and `why`, where a reference cannot be made.
+/// Empty, with `why`, if a reference cannot be computed.
 template <class F>
 std::optional<TipReference> made(const F& make, std::string& why) {
   try {
     return make();
-  } catch (const std::exception& error) {  // refused, or it did not run to its end
+  } catch (const std::exception& error) {  // refused, or the run failed
     why = error.what();
     return {};
   }
 }
 
-/// A row that says why there are no others.
+/// A row with the reason why there are no others.
 Case without(Row identity, std::string_view kind, const std::string& why) {
   identity.set("error_kind", kind);
   return {identity, [why](Row& row, const Deadline&) { row.failed("refused", why); }};

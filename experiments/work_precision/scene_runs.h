@@ -8,10 +8,11 @@
 
 namespace tress::experiments::work_precision {
 
-/// Rows about scene files: the tips' error against wall time, root mean square over the
-/// run and over the length, by every strand model and integrator that the user leaves in.
-/// A fixed step is halved from a frame on until several steps got through or the next one
-/// would take more work than a run may; above them stays the finest that did not.
+/// Rows for scene files: the tips' error against wall time, root mean square over the run
+/// and over the length, by every selected strand model and integrator. A fixed step
+/// starts at one frame and is halved until several steps succeeded or the next one would
+/// exceed the work limit of a run; of the coarser ones that failed only the finest is
+/// kept.
 ///
 /// time: against the same model at a much finer step; total: against the continuous rod,
 /// where strands do not touch each other. References are computed here. Throws InputError

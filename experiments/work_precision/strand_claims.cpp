@@ -16,10 +16,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Its runs alone are within every error that is asked for here.
+// Its runs alone reach every target error used here.
 constexpr std::string_view sure = "implicit_midpoint";
 
-/// That some run has an error, and in what time.
+/// Checks that some run meets an error, and reports its time.
 void check_target(const std::vector<Row>& rows, std::string_view kind, double error,
                   const std::string& what, Verdicts& verdicts) {
   const Row* best = nullptr;
@@ -40,7 +40,7 @@ void check_target(const std::vector<Row>& rows, std::string_view kind, double er
                   best->number("wall_s"));
 }
 
-/// The time error of a run with converged steps, by all that tells rows apart but for the
+/// The time error of a run with converged steps, by all identifying columns except the
 /// modes.
 std::map<std::string, double> converged_errors(const std::vector<Row>& rows,
                                                std::string_view modes) {
@@ -59,7 +59,7 @@ std::map<std::string, double> converged_errors(const std::vector<Row>& rows,
 /// tangent, so nothing but the section's rotational inertia, (r/L)^2 of the strand's,
 /// twists a straight strand that starts without twist.
 void check_twist(const std::vector<Row>& rows, Verdicts& verdicts) {
-  constexpr double least = 1e-4;  // errors below are made of rounding too
+  constexpr double least = 1e-4;  // smaller errors include rounding
   double worst = 0;
   bool any = false;
   const auto bend = converged_errors(rows, "bend");
@@ -103,7 +103,7 @@ void check_swing_claims(const std::vector<Row>& all, Verdicts& verdicts) {
   check_target(rows, "time", 0.001, "0.1 % time error with 20 elements", verdicts);
   check_target(rows, "total", 0.01, "1 % total error", verdicts);
   check_twist(rows, verdicts);
-  // A tenth of the smallest error that a claim is about.
+  // A tenth of the smallest error in a claim.
   check_references(rows, "time", 1e-3 / ReferenceGap::margin,
                    "time: Runge-Kutta and Adams agree to 0.01 %", verdicts);
   check_references(rows, "total", 1e-3 / ReferenceGap::margin,

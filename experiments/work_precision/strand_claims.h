@@ -7,9 +7,9 @@
 
 namespace tress::experiments::work_precision {
 
-/// What the rows of the swing must show: runs with a time error of 1 % and of 0.1 % at
+/// The claims about the rows of the swing: runs with a time error of 1 % and of 0.1 % at
 /// the peers' number of elements and with a total error of 1 %, whose times are figures;
-/// that twist does not matter; that the references agree.
+/// twist does not matter; the references agree.
 void check_swing_claims(const std::vector<Row>& all, Verdicts& verdicts);
 
 }  // namespace tress::experiments::work_precision

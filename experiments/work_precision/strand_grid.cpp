@@ -14,7 +14,7 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-/// How far and with which matrix a step's equations are solved. Tolerances are over
+/// Accuracy and matrix of the solution of a step's equations. Tolerances are over
 /// System::scale: 0.3 is a curvature of 0.3 over the length of the strand.
 struct Newton {
   Refresh refresh = Refresh::every_iteration;
@@ -68,7 +68,7 @@ constexpr Variation methods[] = {
     {"gsl_bsimp", {}, {}, 0, true},
 };
 
-/// What is compared on other strands and for the total error.
+/// The methods compared on other strands and for the total error.
 constexpr Variation best[] = {
     {"implicit_midpoint", "stiff", loose},
     {"linearly_implicit_midpoint", "stiff"},
@@ -85,8 +85,8 @@ constexpr Body others[] = {
     chain,
 };
 
-// Twist has next to no mass, so what Newton leaves over of it comes back undamped and
-// larger: only converged steps or methods that damp fast modes get through.
+// Twist has almost no mass, so Newton's remaining error in it returns undamped and
+// amplified: only converged steps or methods that damp fast modes succeed.
 constexpr Body twisting{"super_helix", "bend_twist", "recursive"};
 constexpr Variation twisting_methods[] = {
     {"implicit_midpoint", "stiff", loose, 0, true},
@@ -117,7 +117,7 @@ Ladder ladder(const IntegratorEntry& entry, bool implicit, const CommandLine& li
   return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
 }
 
-/// Whether step (s) and elements are worth each other: both errors are of order 2, so the
+/// Whether step (s) and elements are balanced: both errors are of order 2, so the
 /// cheapest way to a total error keeps step times elements between fixed bounds.
 bool balanced(double step, int elements) {
   return step * elements >= 0.025 && step * elements <= 0.161;
@@ -135,7 +135,7 @@ std::string_view name(Refresh refresh) {
   return "when_slow";
 }
 
-/// Builds the list; knows what the user asked for.
+/// Builds the list according to the user's options.
 class Grid {
  public:
   Grid(const CommandLine& line, const Settings& settings)
@@ -200,7 +200,7 @@ class Grid {
     add(c, ladder(entry, !m.tangent.empty(), line_));
   }
 
-  /// Every model as it is by default. Half of the sizes show the order.
+  /// Every model with its defaults. Half of the sizes show the order.
   void add_release() {
     const std::vector<int> sizes =
         counts(line_.quick ? std::initializer_list<int>{3, 5, 10, 20, 40}
@@ -249,7 +249,7 @@ class Grid {
       if (both && !c.adaptive && !balanced(x, c.elements)) continue;
       (c.adaptive ? c.options.rtol : c.options.step) = x;
       if (c.adaptive) c.options.atol = x;
-      // --set can make two ways of iterating the same.
+      // --set can make two Newton settings equal.
       if (known_.insert(describe(c.identity())).second) all_.push_back(c);
     }
   }

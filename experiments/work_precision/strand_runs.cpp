@@ -14,8 +14,8 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-/// What errors are measured against: made before any row runs, since rows run in
-/// processes of their own.
+/// References for errors: computed before any row runs, since rows run in separate
+/// processes.
 class References {
  public:
   References(const Settings& settings, const std::vector<StrandCase>& cases) {
@@ -28,7 +28,7 @@ class References {
   const TipReference& of(const StrandCase& c) const { return all_.at(key(c)); }
 
  private:
-  /// Of the rod itself: no model and no elements.
+  /// For the continuous rod: no model and no elements.
   using Key = std::tuple<std::string_view, std::string_view, int>;
   static Key key(const StrandCase& c) {
     if (c.error_kind == "total") return {c.strand->name, "", 0};

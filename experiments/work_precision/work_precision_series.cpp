@@ -12,10 +12,10 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-// Finest points that make a slope; coarser ones are often before the asymptotic range.
+// Number of finest points in a slope; coarser ones are often pre-asymptotic.
 constexpr std::size_t fitted_points = 4;
 
-// Errors this close to the reference's own, or to rounding, say nothing about order.
+// Errors this close to the reference's own, or to rounding, do not indicate the order.
 constexpr double rounding = 1e-12;
 
 struct Point {
@@ -33,7 +33,7 @@ double slope(const std::vector<Point>& points) {
 
 bool is_total(const Row& row) { return row.text("error_kind") == "total"; }
 
-/// What tells curves of total errors apart.
+/// Columns that identify a curve of total errors.
 std::string curve_of(const Row& row) {
   return joined(row, {"scene", "model", "integrator", "solver"});
 }
@@ -45,7 +45,7 @@ std::string series_of(const Row& row) {
                                       "solver", "elements"});
 }
 
-/// The smallest step of every series of total errors: where time adds least.
+/// The smallest step of every series of total errors: where time error is least.
 std::map<std::string, double> finest_steps(const std::vector<Row>& rows) {
   std::map<std::string, double> finest;
   for (const Row& row : rows) {
@@ -60,7 +60,7 @@ std::map<std::string, double> finest_steps(const std::vector<Row>& rows) {
 void add_orders(std::vector<Row>& rows) {
   const auto finest = finest_steps(rows);
   const auto fitted = [&finest](const Row& row) {
-    // Of the swing steps are balanced with elements and Newton's iteration ends early.
+    // For the swing, steps are balanced with elements and Newton's iteration ends early.
     if (!row.ok() || !row.has("dt_s") || row.text("scene") == swing.name) return false;
     return !is_total(row) || row.number("dt_s") == finest.at(curve_of(row));
   };

@@ -10,7 +10,7 @@
 namespace tress::experiments::validation {
 namespace {
 
-/// The `count`-th root above 0, looked for in steps that no two roots share.
+/// The `count`-th root above 0, searched in steps shorter than the distance of roots.
 double nth_root(const std::function<double(double)>& f, int count, double step) {
   double at = step, value = f(at);
   for (;;) {
@@ -42,8 +42,8 @@ double heavy_rod_mode(double gamma, int mode) {
     };
     return integrate_scaled(minors, 0, 1, {1, 0, 0, 0, 0, 0})[0];
   };
-  // Neighbours are 1.5 apart in a beam (its first from 0, standing), pi/2 sqrt(Gamma) as
-  // a chain.
+  // Neighbouring roots are 1.5 apart for a beam (the first from 0, standing), pi/2
+  // sqrt(Gamma) for a chain.
   const double step = gamma < 0 ? 0.02 : 0.2 * (1 + std::sqrt(gamma));
   return nth_root(clamp, mode, step);
 }

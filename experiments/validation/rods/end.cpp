@@ -25,7 +25,7 @@ Vec rotation_vector(const Frame& frame) {
   return (s > 0 ? 2 * std::atan2(s, q.w) / s : 2) * q.v;
 }
 
-/// The last components of x, as many as there are rows.
+/// The last `rows` components of x.
 Eigen::VectorXd last_of(const Vec& x, int rows) {
   const double components[3] = {x.x, x.y, x.z};
   Eigen::VectorXd last(rows);
@@ -113,7 +113,7 @@ std::vector<std::size_t> EndConditions::turning(double t, In q) {
   const Eigen::VectorXd here = section(t, q);
   std::vector<double> moved(q.begin(), q.end());
   std::vector<std::size_t> all;
-  constexpr double far = 0.1;  // of what is typical: nothing turns by chance
+  constexpr double far = 0.1;  // of the typical size: no rotation vanishes by accident
   for (std::size_t j = 0; j < q.size(); ++j) {
     moved[j] = q[j] + far * q_typ_[j];
     if (section(t, moved) != here) all.push_back(j);
@@ -127,12 +127,12 @@ Eigen::MatrixXd EndConditions::curvature(double t, In q, const Eigen::VectorXd& 
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   if (sections_ == 0) return all;
   std::vector<double> moved(q.begin(), q.end());
-  // A step that turns the end by this: error step^2 and eps/step^2, 1e-7.
+  // A step that rotates the end by this: error step^2 and eps/step^2, 1e-7.
   constexpr double step = 3e-4;
   const Eigen::MatrixXd slope = section_gradient(t, q);
   std::vector<double> steps(q.size());
   for (std::size_t i = 0; i < q.size(); ++i) {
-    constexpr double little = 1e-3;  // such an unknown turns it to second order only
+    constexpr double little = 1e-3;  // such an unknown rotates it to second order only
     const double turn = slope.row(static_cast<Index>(i)).norm();
     steps[i] = step / (turn * q_typ_[i] > little ? turn : 1 / q_typ_[i]);
   }
@@ -145,7 +145,7 @@ Eigen::MatrixXd EndConditions::curvature(double t, In q, const Eigen::VectorXd& 
     moved[j] = q[j];
     return w;
   };
-  // By one unknown both ways, less twice where it stands: f'' steps^2.
+  // Central second difference in one unknown: f'' steps^2.
   const double here = moment.dot(section(t, q));
   std::vector<double> alone;
   alone.reserve(active.size());

@@ -8,19 +8,19 @@
 
 namespace tress::experiments::validation {
 
-/// What a test does with the free end of a strand.
+/// Loads and supports of the free end of a strand in a test.
 struct End {
-  /// What is held of the section at the tip: nothing, its tangent, or all of its frame.
+  /// The constrained part of the tip section: nothing, its tangent, or its whole frame.
   enum class Section { free, tangent, frame };
 
   Vec force{};               // dead, N, times the load
   std::vector<Vec> along{};  // unit vectors along which the tip is held ...
-  Vec place{};               // ... at this place, m
+  Vec place{};               // ... at this position, m
   Section section = Section::free;
   Frame frame{};  // to which the section is held
-  /// Of models whose last half edge neither bends nor twists, that half edge as a spring
-  /// between it and what holds it: how far (rad/(N m)) it gives to a moment, and how far
-  /// it turns (rad) at rest, about the axes of the section.
+  /// For models whose last half edge neither bends nor twists, a spring in its place
+  /// between the edge and the support: compliance (rad/(N m)) to a moment, and rotation
+  /// (rad) at rest, about the axes of the section.
   Vec compliance{}, rest{};
 
   /// Rows of the section: 0, 2 (about e1, e2) or 3 (about e0, e1, e2).
@@ -30,8 +30,8 @@ struct End {
 /// The conditions c = 0 that hold an end, as functions of q: along_i . (x - place), then
 /// the rotation vector from `frame` to the section, about the axes of `frame`; with a
 /// half edge, from `frame` to that edge, plus `rest` and compliance times the moment.
-/// Gradients of the place come from the velocities of the tip, exactly, those of the
-/// section by differences of order 4.
+/// Gradients of the position are exact, from the velocities of the tip; those of the
+/// section are by differences of order 4.
 class EndConditions {
  public:
   /// Throws std::runtime_error when the section is held and the model has no end_frame.
@@ -41,14 +41,15 @@ class EndConditions {
   int places() const { return places_; }
   Eigen::VectorXd value(double t, In q);
   Eigen::MatrixXd gradient(double t, In q);  // (n x rows)
-  /// d(gradient of the section . moment)/dq, (n x n), by differences to 1e-8 of itself.
+  /// d(gradient of the section . moment)/dq, (n x n), by differences, relative error
+  /// 1e-8.
   Eigen::MatrixXd curvature(double t, In q, const Eigen::VectorXd& moment);
   /// Diagonal of the compliance, (rows); 0: rigid.
   Eigen::VectorXd compliance() const;
 
  private:
   Eigen::VectorXd section(double t, In q);
-  /// Coordinates that turn the section at all.
+  /// Coordinates that rotate the section.
   Eigen::MatrixXd section_gradient(double t, In q);  // (n, sections)
   std::vector<std::size_t> turning(double t, In q);
 

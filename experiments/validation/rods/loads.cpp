@@ -6,7 +6,7 @@
 namespace tress::experiments::validation {
 namespace {
 
-/// Of the polynomial through the points of Gauss's rule, at the end of its interval.
+/// Weights of the polynomial through the Gauss points, at the end of its interval.
 std::vector<double> at_end(int points) {
   const std::vector<QuadraturePoint> rule = gauss_legendre(points, 1);
   std::vector<double> weights;
@@ -37,7 +37,7 @@ double Weight::potential(double t, const Points& p) const noexcept {
 }
 
 const std::vector<double>& TipPoints::weights(const Points& p) const {
-  // Models carry a segment's mass by one node, n + 1 in all, or by several points.
+  // Models lump a segment's mass at one node, n + 1 in all, or at several points.
   const int points = p.count > elements_ + 1 ? p.count / elements_ : 1;
   if (weights_.size() != static_cast<std::size_t>(points)) weights_ = at_end(points);
   return weights_;

@@ -5,7 +5,7 @@
 #include "math/vec3.h"
 #include "models/effects/effect.h"
 
-/// What loads a strand in a test of statics. Time is the load: 0 none, 1 all of it.
+/// Loads of a strand in a test of statics. Time is the load factor: 0 none, 1 full.
 namespace tress::experiments::validation {
 
 /// Gravity g t (m/s^2). O(points).
@@ -25,30 +25,30 @@ class Weight final : public Effect {
   Vec g_;
 };
 
-/// The tip by the last points. Where the last one is a node it is the tip. Points of
-/// Gauss's rule in each segment stop short of it: there what is smooth along the segment
-/// is at the tip sum_k w_k f_k, the polynomial through the points of the last segment.
-/// Exact for cubic splines and rigid links; the place of a helix's tip is off by 6e-4
-/// kappa^3 h^4 or less with four points, and with the more that models take for a large
-/// angle kappa h by less.
+/// Interpolates the tip from the last points. If the last point is a node it is the tip.
+/// Gauss points of a segment stop short of it: a quantity that is smooth along the
+/// segment is then sum_k w_k f_k at the tip, by the polynomial through the points of the
+/// last segment. Exact for cubic splines and rigid links; for a helix the tip position is
+/// off by 6e-4 kappa^3 h^4 or less with four points, and by less with the additional
+/// points that models take for a large angle kappa h.
 class TipPoints {
  public:
   explicit TipPoints(int elements) : elements_(elements) {}
-  /// w of the last points, as many as it has entries.
+  /// w of the last points, one per entry.
   const std::vector<double>& weights(const Points& p) const;
 
  private:
   int elements_;
-  mutable std::vector<double> weights_{1};  // as last asked for: those of one model
+  mutable std::vector<double> weights_{1};  // as last requested: for one model
 };
 
-/// A force (N) on the tip, dead: constant in direction and size. w_k F acts on each of
-/// the TipPoints, with the same work.
+/// A dead force (N) on the tip, constant in direction and size. w_k F acts on each of the
+/// TipPoints, with the same work.
 class TipForce final : public Effect {
  public:
   explicit TipForce(int elements) : tip_(elements) {}
 
-  Vec force{};  // changes while equilibrium is sought
+  Vec force{};  // changes during the search for equilibrium
 
   std::string_view name() const override { return "tip_force"; }
   Needs needs() const override { return {}; }
@@ -62,8 +62,8 @@ class TipForce final : public Effect {
   TipPoints tip_;
 };
 
-/// A force P (N) that pushes the tip back along the strand's own tangent there: -P w_k
-/// t_k on each of the TipPoints, so that its work -P t . dx is that at the tip. It has no
+/// A force P (N) that pushes the tip back along the strand's tangent there: -P w_k t_k on
+/// each of the TipPoints, so that its work -P t . dx is that at the tip. It has no
 /// potential.
 class FollowerForce final : public Effect {
  public:

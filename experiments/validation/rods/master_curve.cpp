@@ -25,7 +25,7 @@ Cantilever cantilever(double gamma, double alpha) {
     dy[0] = y[1];
     dy[1] = (gamma * x + alpha) * std::sin(std::min(y[0], right_angle));
   };
-  // The first steps by hand, up to 1e-9 squared: there a relative accuracy means nothing.
+  // The start by a series, to 1e-9 squared: relative accuracy is meaningless there.
   const double start = 3e-5 / std::sqrt(1 + gamma + alpha);
   const auto from_tip = [=](double log_tip) -> std::vector<double> {
     const double tip = std::exp(log_tip), push = std::sin(tip) * start;

@@ -18,8 +18,8 @@ struct Cantilever {
   double tip_angle;      // theta, rad
 };
 
-/// By shooting from the tip, whose angle is what is sought; 1e-10 of all numbers for
-/// Gamma and alpha in [0, 1e5], not both 0. Throws InputError on others.
+/// By shooting from the tip for its unknown angle; relative accuracy 1e-10 for Gamma and
+/// alpha in [0, 1e5], not both 0. Throws InputError otherwise.
 Cantilever cantilever(double gamma, double alpha);
 
 }  // namespace tress::experiments::validation

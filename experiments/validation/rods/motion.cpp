@@ -15,7 +15,7 @@
 namespace tress::experiments::validation {
 namespace {
 
-/// Keeps the lowest of the points at which it is asked for its potential; does nothing.
+/// Records the lowest of the points passed to its potential; exerts no force.
 class LowestPoint final : public Effect {
  public:
   std::string_view name() const override { return "lowest_point"; }

@@ -62,7 +62,7 @@ double strongest_rate(const Track& track, double from, double to) {
     }
     return std::abs(sum);
   };
-  // A peak is 4 pi/duration wide to either side: eighths of that find it, and near its
+  // A peak is 4 pi/duration wide to either side: eighths of that locate it, and near its
   // top it is a parabola.
   const double step = std::numbers::pi / (2 * duration);
   double best = from, most = strength(from);

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 bool symmetric(const MatrixXd& matrix) {
-  // Differences of a residual make a symmetric matrix to 1e-9 of its largest entry.
+  // Differences of a residual make a symmetric matrix only to 1e-9 of its largest entry.
   constexpr double noise = 1e-6;
   return (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <=
          noise * matrix.cwiseAbs().maxCoeff();
@@ -35,7 +35,7 @@ std::vector<SmallMotion> of_symmetric(const MatrixXd& mass, const MatrixXd& stif
   return all;
 }
 
-/// M and K over the motions that the conditions leave.
+/// M and K on the subspace that satisfies the conditions.
 struct Reduced {
   MatrixXd right, mass, stiffness;
 };

@@ -14,19 +14,19 @@ struct SmallMotion {
   Eigen::VectorXd shape;
 };
 
-/// Those of M x'' + K x = columns e with rows x = 0, ascending. M must be positive
-/// definite there. Where all is symmetric, K = K^T and columns = rows^T: the eigenvalues
-/// of M against K + shift M with the least shift >= 0 that makes it definite, so that the
-/// smallest are as accurate as K is, however stiff the rest (stretching, shear). Of
-/// others: real parts of the eigenvalues of M^-1 K and their vectors. `typical`: sizes
-/// of the unknowns.
+/// Solutions of M x'' + K x = columns e with rows x = 0, ascending. M must be positive
+/// definite on that subspace. In the symmetric case, K = K^T and columns = rows^T: the
+/// eigenvalues of M against K + shift M with the least shift >= 0 that makes it definite,
+/// so that the smallest are as accurate as K is, however stiff the rest (stretching,
+/// shear). Otherwise: real parts of the eigenvalues of M^-1 K and their vectors.
+/// `typical`: sizes of the unknowns.
 std::vector<SmallMotion> small_motions(const Eigen::MatrixXd& mass,
                                        const Eigen::MatrixXd& stiffness,
                                        const Eigen::MatrixXd& columns,
                                        const Eigen::MatrixXd& rows, In typical);
 
-/// omega^2 of the same, complex where motions grow, ascending by real parts: whatever is
-/// symmetric, so that a small part that is not counts.
+/// omega^2 of the same, complex where motions grow, ascending by real parts: without the
+/// symmetric shortcut, so that a small asymmetric part counts.
 std::vector<std::complex<double>> squares_of_motions(const Eigen::MatrixXd& mass,
                                                      const Eigen::MatrixXd& stiffness,
                                                      const Eigen::MatrixXd& columns,

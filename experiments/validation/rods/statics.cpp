@@ -16,16 +16,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int iterations = 200;
-constexpr double accuracy = 1e-11;  // of typical sizes: as good as it gets
-// Where stretch is stiff or a motion is soft rounding leaves corrections that shrink no
-// more; so small, and so often in vain, they may stay.
+constexpr double accuracy = 1e-11;  // of typical sizes: the attainable accuracy
+// Where stretch is stiff or a motion is soft, rounding stops corrections from shrinking;
+// below this size, after so many futile steps, they are accepted.
 constexpr double rounding = 1e-5;
 constexpr int in_vain = 3;
 constexpr double far = 1e-3;         // corrections that change a section's curvature
 constexpr double longest = 1.5;      // correction, in typical sizes
-constexpr double largest_ratio = 3;  // of two loads
+constexpr double largest_ratio = 3;  // of successive loads
 constexpr double least_ratio = 1.003;
-// Of all steps of one strand, cubes of the number of unknowns: about half a minute.
+// Limit over all steps of one strand, in cubes of the number of unknowns: about half a
+// minute.
 constexpr double most_work = 2e11;
 
 Effects loads(const Vec& gravity, std::shared_ptr<const Effect> tip, Effects others) {
@@ -45,9 +46,9 @@ VectorXd residual(System& system, double t, In q) {
 
 }  // namespace
 
-/// Columns as the forces of the conditions enter the residual, rows as displacements
-/// enter the conditions: the same for a residual that is the gradient of an energy, not
-/// for one that is an acceleration.
+/// Columns: effect of the conditions' forces on the residual; rows: effect of
+/// displacements on the conditions. They agree for a residual that is the gradient of an
+/// energy, not for one that is an acceleration.
 struct Statics::Conditions {
   MatrixXd columns, rows;
   VectorXd compliance;
@@ -86,7 +87,7 @@ Statics::Conditions Statics::conditions() {
   const Vec force = tip_force_->force;
   const VectorXd loaded = residual(*system_, t_, q_);
   for (Index i = 0; i < places; ++i) {
-    constexpr double size = 1e-6;  // N, of a hair's; r is linear in it
+    constexpr double size = 1e-6;  // N, for a hair; r is linear in it
     tip_force_->force = force + size * end_.along[static_cast<std::size_t>(i)];
     all.columns.col(m + i) = (loaded - residual(*system_, t_, q_)) / size;
   }
@@ -96,7 +97,7 @@ Statics::Conditions Statics::conditions() {
   return all;
 }
 
-/// Of r - G^T lambda - C^T e.
+/// Derivative of r - G^T lambda - C^T e.
 MatrixXd Statics::stiffness() {
   MatrixXd all = dense_stiffness(*system_, t_, q_);
   if (const auto m = static_cast<std::size_t>(lambda_.size()); m > 0) {
@@ -105,13 +106,13 @@ MatrixXd Statics::stiffness() {
   return all - curvature_;
 }
 
-/// O(n^2) frames of the end: the dearest part of a step by far.
+/// O(n^2) evaluations of the end frame: by far the most expensive part of a step.
 void Statics::take_curvature() {
   const Index sections = conditions_->rows() - conditions_->places();
   curvature_ = conditions_->curvature(t_, q_, holding_.tail(sections));
 }
 
-/// The dead force and those that hold the place.
+/// The dead force and those that hold the position.
 void Statics::load_tip() {
   Vec force = t_ * end_.force;
   for (std::size_t i = 0; i < end_.along.size(); ++i) {
@@ -120,8 +121,9 @@ void Statics::load_tip() {
   tip_force_->force = force;
 }
 
-/// lambda and e of the least residual where the strand is: with those of another load, or
-/// none, the first corrections of a strand under tension would be those of a slack one.
+/// lambda and e of the least residual in the current state: with those of another load,
+/// or zero, the first corrections of a strand under tension would be those of a slack
+/// one.
 void Statics::guess_forces() {
   const Index m = lambda_.size(), rows = m + conditions_->rows();
   if (rows == 0) return;
@@ -213,7 +215,7 @@ void Statics::relax(double t) {
 
 void Statics::follow(double from, double to) {
   const auto cut = [](double ratio) { return std::sqrt(ratio); };
-  // A first load that is too large: less of it.
+  // Reduces a first load that is too large.
   constexpr double less = 0.1, least_part = 1e-4;
   double at = from, ratio = largest_ratio;
   for (;;) {
@@ -265,7 +267,7 @@ Statics::Motion Statics::motion() {
   take_curvature();
   const Conditions now = conditions();
   MatrixXd k = stiffness();
-  // What gives is a spring, the rest a constraint.
+  // Compliant rows are springs, the others constraints.
   std::vector<Index> rigid;
   for (Index i = 0; i < now.rows.rows(); ++i) {
     if (now.compliance[i] > 0) {

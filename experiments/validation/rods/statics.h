@@ -12,51 +12,50 @@
 
 namespace tress::experiments::validation {
 
-/// One model of a strand and its equilibria: r(q) = G^T lambda + C^T e under the load t,
-/// g = 0, c = 0, with the model's own constraints g, and c those that hold the end, by
-/// Newton's iteration on all unknowns. Dense, O(n^3): for some hundred unknowns.
+/// One strand model and its equilibria: r(q) = G^T lambda + C^T e under the load t, g =
+/// 0, c = 0, with the model's own constraints g, and the end conditions c, by Newton's
+/// iteration on all unknowns. Dense, O(n^3): for some hundred unknowns.
 class Statics {
  public:
-  /// At the strand's initial state. Under the load t the strand has the weight of t
-  /// `gravity` (m/s^2) and t end.force at its tip; what is held is held at any load.
-  /// `others` act as well, at the time t. Throws InputError where the model refuses the
-  /// strand.
+  /// Starts at the strand's initial state. Under the load t the strand has the weight of
+  /// t `gravity` (m/s^2) and t end.force at its tip; supports hold at any load. `others`
+  /// act as well, at the time t. Throws InputError where the model refuses the strand.
   Statics(const ModelVariant& variant, const Strand& strand, const Vec& gravity,
           End end = {}, Effects others = {});
 
-  /// Moves the place at which the end is held.
+  /// Moves the position at which the end is held.
   void hold_at(const Vec& place) { end_.place = place; }
-  /// Goes where another strand of the same model is.
+  /// Copies the state of another strand of the same model.
   void start_at(const Statics& other);
-  /// The equilibrium at this load, from where the strand is. Throws std::runtime_error
-  /// when the iteration does not converge; the strand is then where it was.
+  /// Finds the equilibrium at this load from the current state. Throws std::runtime_error
+  /// when the iteration does not converge; the state is then unchanged.
   void relax(double t);
-  /// relax() from `from`, or less of it where that is too much, to `to` (both > 0), loads
-  /// as far apart by a factor as the iteration bears.
+  /// relax() from `from` (or a smaller load if that fails) to `to`, both > 0, in the
+  /// largest load factors for which the iteration converges.
   void follow(double from, double to);
 
   System& system() { return *system_; }
   In q() const { return q_; }
-  /// Of the last load: root and ends of the segments, (3 count) m.
+  /// At the last load: root and ends of the segments, (3 count) m.
   std::vector<double> points();
   Vec tip();
   /// Forces (N) along end.along, then moments (N m) about axes of end.frame, that hold
   /// the end.
   std::vector<double> holding() const { return {holding_.begin(), holding_.end()}; }
-  /// Elastic energy and that of the weight, J.
+  /// Elastic and gravitational energy, J.
   double energy();
 
-  /// About the equilibrium with all that holds it; the least square is negative where the
-  /// equilibrium is not stable.
+  /// Small motions about the equilibrium with all supports; the least square is negative
+  /// where the equilibrium is unstable.
   std::vector<SmallMotion> motions();
-  /// Their omega^2, with what follower loads make of them: complex where they grow.
+  /// Their omega^2 including follower loads: complex where they grow.
   std::vector<std::complex<double>> squares();
   double least_square() { return motions().front().square; }
-  /// What a shape does to the points, (3 count) m.
+  /// Displacements of the points in a motion's shape, (3 count) m.
   std::vector<double> displacements(const SmallMotion& motion);
 
  private:
-  struct Conditions;  // their slopes at the present state
+  struct Conditions;  // gradients of the conditions at the present state
   Conditions conditions();
   struct Motion;  // M, K and the conditions of small motions
   Motion motion();
