@@ -60,7 +60,7 @@ export const nodal_steps = {
   caption: `Largest stable step of finite differences of Kirchhoff's equations in curvatures
     against the number of nodes, a straight hair of 10 cm let go horizontally. Split:
     implicit in the terms of highest order only. Hollow with an arrow: stable up to the end
-    of the scan, a lower bound. The large cross is the source's claim, 200 nodes at 10 µs. Made from
+    of the scan, a lower bound. The large cross is the published claim, 200 nodes at 10 µs. Made from
     the rows of stability_limit.csv whose study is "nodal".`,
 
   rows: rows_of,

@@ -31,7 +31,7 @@ const panel_height = 330;
 const ours = '#1F7FC2';
 const source = '#D55E00';
 
-// Ratio of the two solvers: ours as a line with the trees beside it, the source's dashed.
+// Ratio of the two solvers: ours as a line with the trees beside it, the published one dashed.
 function ratio_panel(pairs, { panel_width, theme }) {
   const shown = pairs.flatMap((pair) => [
     ...(pair.ours ? [{ ...pair, whose: 'ours', ratio: pair.ours }] : []),
@@ -123,7 +123,7 @@ function cost_panel(title, rows, trees, { panel_width, x, y, style }) {
     ['exponent', 'slope', '.2f'],
     ['dt_max_s', 'largest stable dt (s)', '.3e'],
     ['fps', 'frames per second', '.3g'],
-    ['seed_fps', "source's frames per second"],
+    ['seed_fps', 'published frames per second'],
   ]);
   const names = [...group_by(rows, (row) => row.method).values()].map((members) =>
     members.reduce((last, row) => (row.elements > last.elements ? row : last)),
@@ -188,7 +188,7 @@ export const scaling = {
   caption: `Cost of one time step against the number of elements of a straight strand, one
     line per solver, with the power of N fitted by the experiment from 20 elements on; hollow
     diamonds are the five trees. Last: how many times the recursive step the composite one
-    costs; diamonds are trees, squares what the source's frames per second say (rounded
+    costs; diamonds are trees, squares what the published frames per second say (rounded
     there, and equal at one and two elements). Its hardware was of 2008, so its frames per
     second are not comparable with ours, the ratio is. Made from scaling.csv.`,
 
@@ -261,6 +261,6 @@ export const scaling = {
     const rows = this.rows(tables);
     return `Two log-log charts against the number of elements: cost per step of
       ${distinct(rows.map((r) => r.method)).length} solvers in microseconds, and the ratio
-      of composite to recursive, ours and the source's.`;
+      of composite to recursive, ours and the published ones.`;
   },
 };

@@ -13,7 +13,7 @@ export const variant_name = ({ model, variant }) =>
   variant ? `${spaced(model)}, ${String(variant).split('=').at(-1)}` : spaced(model);
 
 const papers_step = 'semi_implicit_euler';
-// Reduced coordinates: the models of the seed, whose solvers and tangents are compared.
+// Reduced coordinates: the models of [Bertails et al. 2006], whose solvers and tangents are compared.
 export const is_reduced = (row) => /^(super_helix|articulated_chain)/.test(row.model);
 const is_helix = (row) => /^super_helix/.test(row.model);
 const is_less_implicit = (row) =>
@@ -50,7 +50,7 @@ export const has_limit = (row) => succeeded(row) && is_positive(row.dt_max_s);
 const dampings = {
   none: 'no damping',
   light: 'light damping',
-  seed: "the source's damping",
+  seed: 'the published damping',
 };
 export const damping_rank = ({ damping }) => Object.keys(dampings).indexOf(damping);
 export const damping_name = ({ damping }) => dampings[damping] ?? spaced(damping);
@@ -90,7 +90,7 @@ export function scaling_series(rows) {
 }
 
 // Composite against recursive at the same structure and element count: our cost per step,
-// and the source's frames per second where it gives both.
+// and the published frames per second where it gives both.
 export function solver_pairs(rows) {
   const plain = rows.filter(
     (row) => is_helix(row) && ['recursive', 'composite'].includes(method_name(row)),

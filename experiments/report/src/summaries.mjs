@@ -129,7 +129,7 @@ export function scaling_summary({ scaling: rows = [] }) {
   );
   return grid_html(
     'scaling-numbers',
-    "Frames per second: the source's table (hardware of 2008) and ours",
+    "Frames per second: the published table (hardware of 2008) and ours",
     [
       'structure',
       'elements',

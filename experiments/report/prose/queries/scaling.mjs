@@ -1,4 +1,4 @@
-// Cost of a step against elements, and the source's table.
+// Cost of a step against elements, and the published table.
 import { solver_pairs, spaced } from '../../src/strand.mjs';
 import { group_by, is_positive, succeeded } from '../../src/tables.mjs';
 import { number, range, rows_of, table } from '../markdown.mjs';
@@ -20,10 +20,10 @@ export function source_table(tables) {
       'recursive, µs a step',
       'composite, µs a step',
       'composite / recursive',
-      "the source's ratio",
+      'the published ratio',
       'recursive, frames/s',
-      'the source, recursive',
-      'the source, composite',
+      'published, recursive',
+      'published, composite',
     ],
     pairs.map(({ structure, elements, composite, recursive, ours, source }) => [
       spaced(structure),

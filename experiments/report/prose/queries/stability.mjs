@@ -20,7 +20,7 @@ const ways = [
 const damped = [
   ['none', 'none'],
   ['light', 'light'],
-  ['seed', "the source's"],
+  ['seed', 'the published'],
 ];
 
 // Scenes and dampings down, ways to step across, super_helix of 20 elements.

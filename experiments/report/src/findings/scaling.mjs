@@ -24,7 +24,7 @@ export function scaling_finding({ scaling: rows = [] }) {
       .map(
         ({ elements, ours, source }) =>
           `${format_ratio(ours)} the recursive one at ${elements} elements` +
-          (source ? ` (the source's frames: ${format_ratio(source)})` : ''),
+          (source ? ` (the published frames: ${format_ratio(source)})` : ''),
       )
       .join(', ') +
     '.'
@@ -66,7 +66,7 @@ function tree_sentences(rows) {
       const frames = is_positive(recursive.fps)
         ? `, ${format_number(recursive.fps)} frames per second at its largest stable step` +
           (is_positive(recursive.seed_fps)
-            ? ` (source: ${format_number(recursive.seed_fps)} on hardware of 2008)`
+            ? ` (published: ${format_number(recursive.seed_fps)} on hardware of 2008)`
             : '')
         : '';
       return (
