@@ -86,7 +86,7 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
   for (int first = 0; first < points; first += Pack::lanes) {
     PointBlock block;
     for (int lane = 0; lane < Pack::lanes; ++lane) {
-      QuadraturePoint point{segment.length / 2, 0};  // lanes without one carry no mass
+      QuadraturePoint point{segment.length / 2, 0};  // unused lanes carry no mass
       if (first + lane < points) point = rule[static_cast<std::size_t>(first + lane)];
       block.s.set(lane, point.at);
       block.length.set(lane, point.weight);
@@ -97,8 +97,8 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
   segment.last_block = reduced.blocks.size();
 }
 
-/// Each segment's inertia about its tangent. A helix has half of it at its start, where
-/// its parent's tip turns, a rigid link all of it.
+/// Each segment's inertia about its tangent. For a helix, half of it is lumped at its
+/// start, where its parent's tip turns; for a rigid link all of it.
 void add_rotors(ReducedStrand& reduced, const Strand& strand, bool rigid) {
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
