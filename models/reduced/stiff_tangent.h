@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// A tangent of the right size for the segments of Kinematics, with its zero blocks set.
+/// A tangent for the segments of Kinematics, with transfer, local and tip set to zero.
 template <class Shape, class K>
 TreeTangent<Shape> empty_tangent(const K& kinematics) {
   TreeTangent<Shape> tangent;
