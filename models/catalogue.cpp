@@ -37,7 +37,7 @@ std::unique_ptr<System> with_parameters(const Parameters& parameters) {
 using Batch = std::unique_ptr<System>(std::span<const Strand>, const ReducedOptions&,
                                       std::vector<Effects>);
 
-/// Null for the options that batches do not have.
+/// Null for options that batches do not support.
 template <Batch* make>
 std::unique_ptr<System> together(std::span<const Strand> strands,
                                  const Parameters& parameters,

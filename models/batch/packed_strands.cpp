@@ -14,7 +14,7 @@ void refuse(bool refused, const std::string& what, const char* remedy) {
   if (refused) throw InputError(what, "batch of strands", remedy);
 }
 
-/// Quadrature points a segment, which all of a strand's have.
+/// Quadrature points per segment, equal for all segments of a strand.
 int points(const ReducedStrand& strand) {
   const ReducedSegment& segment = strand.segments.front();
   return Pack::lanes * static_cast<int>(segment.last_block - segment.first_block);

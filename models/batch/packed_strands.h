@@ -7,20 +7,20 @@
 
 namespace tress::models {
 
-/// Up to four strands, one in each lane; lanes without one hold the first again.
+/// Up to four strands, one per lane; unused lanes repeat the first strand.
 struct PackedStrands {
   std::vector<ReducedSegmentOf<Pack>> segments;
   std::vector<PointBlock> blocks;
-  std::vector<RootMotion> roots;  // of each lane
-  std::vector<Effects> effects;   // of each strand
+  std::vector<RootMotion> roots;  // one per lane
+  std::vector<Effects> effects;   // one per strand
 };
 
-/// These options with as many quadrature points as the strand has that needs most.
+/// These options with the largest number of quadrature points that any strand needs.
 ReducedOptions with_same_points(std::span<const Strand> strands, Unknown unknown,
                                 ReducedOptions options);
 
-/// Throws InputError unless there are one to four strands, clamped, with the same
-/// segments hanging on the same, under the stiff tangent and the recursive method.
+/// Throws InputError unless there are one to four clamped strands with the same
+/// segments and parents, and options select the stiff tangent and the recursive method.
 PackedStrands packed(std::span<const Strand> strands, Unknown unknown,
                      const ReducedOptions& options, std::vector<Effects> effects);
 

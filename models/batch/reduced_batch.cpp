@@ -9,7 +9,8 @@
 namespace tress::models {
 namespace {
 
-/// `alone` makes one strand; `PlanarKernel` is that of one unknown a segment.
+/// `alone` makes a single strand; `PlanarKernel` is the kernel for one unknown per
+/// segment.
 template <template <class, int> class Mechanics, template <class> class Kernel,
           template <class> class PlanarKernel = Kernel>
 std::unique_ptr<System> make_batch(std::span<const Strand> strands, Unknown unknown,

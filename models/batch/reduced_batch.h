@@ -8,8 +8,8 @@
 
 namespace tress::models {
 
-/// The equations of ReducedSystem with the stiff tangent, solved recursively; of four
-/// strands where the kernel's numbers are packs.
+/// The equations of ReducedSystem with the stiff tangent, solved recursively, for four
+/// strands if the kernel's scalar is a pack.
 template <class Kernel, int dofs>
 class RecursiveMechanics {
  public:
@@ -32,7 +32,7 @@ class RecursiveMechanics {
   RecursiveSolver<MassShape<dofs, typename K::Real>> solver_;
 };
 
-/// Those of ForceTransport, solved by sweeps.
+/// The equations of ForceTransport, solved by sweeps.
 template <class Kernel, int dofs>
 class TransportMechanics {
  public:
@@ -55,13 +55,13 @@ class TransportMechanics {
   TransportSweeps<Kernel, dofs> sweeps_;
 };
 
-/// Up to four strands, one in each lane of a pack, under the stiff tangent: the equations
-/// of the single ones to rounding (points add up in another order), at the cost of one
-/// strand or little more. Kernel: over packs.
+/// Up to four strands, one per lane of a pack, with the stiff tangent. Results match
+/// those of single strands to rounding (points are summed in another order), at little
+/// more than the cost of one strand. The Kernel is over packs.
 template <template <class, int> class Mechanics, class Kernel, int dofs>
 class ReducedBatch final : public StrandBlock {
  public:
-  /// `strands`: of what is packed, for everything but steps.
+  /// `strands`: the packed strands as single systems, used for everything but steps.
   ReducedBatch(PackedStrands packed, std::vector<std::unique_ptr<System>> strands)
       : StrandBlock(std::move(strands)),
         kinematics_(std::move(packed.segments), std::move(packed.blocks),
@@ -106,7 +106,7 @@ class ReducedBatch final : public StrandBlock {
       packed[k] = Pack(from[0][k], from[1][k], from[2][k], from[3][k]);
     }
   }
-  /// `retry` unless all of it is finite.
+  /// Returns `retry` unless all numbers are finite.
   Status scatter(const std::vector<Pack>& packed, Out x) const {
     const std::size_t n = unknowns();
     bool finite = true;
@@ -131,7 +131,7 @@ class ReducedBatch final : public StrandBlock {
     kinematics_.move(t, q_, v_, zero_);
     scatter_points([](const auto& m) { return m.frame * m.v; }, u);
   }
-  /// `of` the root's and of all tips' motion.
+  /// Applies `of` to the motion of the root and of all tips.
   template <class Of>
   void scatter_points(Of of, Out x) const {
     const std::size_t n = kinematics_.segments().size() + 1;

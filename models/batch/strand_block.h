@@ -7,9 +7,9 @@
 
 namespace tress::models {
 
-/// Strands of equally many unknowns as one system: coordinates, material points, energy
-/// and power are those of the strands, one after the other. Derived classes bring the
-/// equations of motion.
+/// Strands with equal numbers of unknowns as one system: coordinates and material points
+/// are those of the strands, one after the other; energy and power are their sums.
+/// Derived classes provide the equations of motion.
 class StrandBlock : public System,
                     protected ExplicitForm,
                     protected Energetics,
@@ -29,7 +29,7 @@ class StrandBlock : public System,
 
  protected:
   std::size_t strands() const { return strands_.size(); }
-  std::size_t unknowns() const { return unknowns_; }  // of each strand
+  std::size_t unknowns() const { return unknowns_; }  // per strand
 
  private:
   In of(std::size_t strand, In x) const {
@@ -55,7 +55,7 @@ class StrandBlock : public System,
 
   std::vector<std::unique_ptr<System>> strands_;
   std::size_t unknowns_;
-  int points_;  // of each strand
+  int points_;  // per strand
 };
 
 }  // namespace tress::models

@@ -10,8 +10,8 @@ namespace tress::models {
 
 /// Fixed angle theta0 at b between u = a - b and v = c - b:
 ///     C = (cos theta0 - cos theta) / sin theta0,   cos theta = u.v / (|u| |v|),
-/// which is theta - theta0 (rad) to first order, whatever the lengths. Regular for theta
-/// in (0, pi); the straight and the folded angle are where any single equation fails.
+/// which is theta - theta0 (rad) to first order for any lengths. Regular for theta in
+/// (0, pi); at 0 and pi no single equation is regular.
 struct Angle {
   static constexpr int node_count = 3;
   static constexpr int inputs = 9;

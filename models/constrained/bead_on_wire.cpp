@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// Where the bead is; x, u and tangent are what effects see.
+/// Position and motion of the bead; effects see x, u and tangent.
 struct BeadOnWire::State {
   CurvePoint p;
   double x[3];

@@ -11,15 +11,15 @@
 
 namespace tress::models {
 
-/// A bead of mass m on a wire x = c(s), the parametric form: one coordinate s, no
-/// constraint (its violation is zero because no g exists),
+/// A bead of mass m on a wire x = c(s) in parametric form: one coordinate s, no
+/// constraint (the violation is zero because no g exists),
 ///
 ///     r = c'.(m (c' s'' + c'' s'^2) - f(t, x, x')),    x' = c' s',    M = m |c'|^2,
 ///
-/// with the exact tangent (c''' included) or the stiff one, which drops the derivatives
-/// of the inertia terms m c'.(c' s'' + c'' s'^2) by s and s' and keeps those of the load.
+/// with the exact tangent (including c''') or the stiff one, which drops the s and s'
+/// derivatives of the inertia terms m c'.(c' s'' + c'' s'^2) and keeps those of the load.
 /// The implicit form (x, lambda) is a ParticleSystem with one module of on_curve.h.
-/// Units: s in the curve's unit (rad for those built here). All O(1).
+/// Units: s in the curve's unit (rad for those built here). Every call is O(1).
 class BeadOnWire final : public System,
                          private SparseForm,
                          private ExplicitForm,
@@ -29,7 +29,7 @@ class BeadOnWire final : public System,
   struct Setup {
     std::shared_ptr<const Curve> curve;
     double mass = 1;           // kg, > 0
-    double length = 1;         // m of strand that drag acts on
+    double length = 1;         // m, strand length on which drag acts
     double start = 0;          // s at t = 0
     double start_speed = 0;    // m/s along increasing s
     double extent = 1;         // m, typical size
@@ -38,8 +38,7 @@ class BeadOnWire final : public System,
     Tangent tangent = Tangent::exact;
   };
 
-  /// Throws InputError on a mass that is not positive or a curve with c' = 0 at the
-  /// start.
+  /// Throws InputError if mass <= 0 or c' = 0 at the start.
   BeadOnWire(Setup setup, Effects effects);
 
   Layout layout() const override { return {1, 0}; }

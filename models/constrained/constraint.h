@@ -22,13 +22,13 @@ struct Node {
 inline constexpr int max_constraint_inputs = 9;
 inline constexpr int max_constraint_rows = 3;
 
-/// One modular constraint C(z) = 0, local: z are the numbers of its nodes, in their
-/// order. These three functions give everything the assembly (constraint_set.h) needs:
+/// One modular, local constraint C(z) = 0; z holds the coordinates of its nodes, in their
+/// order. These three functions provide all that the assembly (constraint_set.h) needs:
 ///
 ///     C' = (dC/dz) z',   C'' - G a = z'^T H z' + (dC/dz) p'',   dC'/dz = H z',
 ///
 /// with H the second derivatives. Time enters only through anchors p(t), which are part
-/// of z, so no module has time derivatives of its own. Pure, no allocation. [Witkin 1997]
+/// of z, so modules have no explicit time dependence. Pure, no allocation. [Witkin 1997]
 /// A. Witkin, Physically Based Modeling: Constrained Dynamics, SIGGRAPH course notes,
 /// section 4.
 class Constraint {
@@ -48,7 +48,7 @@ class Constraint {
 
 using Constraints = std::vector<std::unique_ptr<const Constraint>>;
 
-/// A constraint out of a kernel: a small struct with `node_count`, `inputs`, `rows`,
+/// A constraint made from a kernel: a small struct with `node_count`, `inputs`, `rows`,
 /// `linear`, scale(extent), value(z, c) (a template on the scalar), gradient(z, g) and
 /// hessian(z, w, h) on plain arrays; matrices are row-major.
 template <class Kernel>
@@ -78,7 +78,7 @@ class Module final : public Constraint {
   Kernel kernel_;
 };
 
-/// A kernel of two points that depends on d = x - origin only, out of one of d.
+/// A two-point kernel made from a kernel of d = x - origin.
 template <class Inner>
 struct Difference {
   static constexpr int node_count = 2;

@@ -8,30 +8,29 @@
 
 namespace tress::models {
 
-/// A point whose place is prescribed: fixed at x, or moving as `motion` says (then x
+/// A point with prescribed position: fixed at x, or following `motion` (x is then
 /// unused).
 struct Anchor {
   Vec x;
   std::shared_ptr<const Curve> motion;
 };
 
-/// Assembles modules into g(t, q) = 0 with block-sparse G. The numbers of particle i are
-/// q[3i..3i+2], of parameter j q[3 particles + j]; anchors follow as prescribed inputs
-/// p(t), from which the time derivatives of g come. Rows stand in the order of the
-/// modules, so a chain whose particles and links are added from one end to the other has
-/// a banded KKT matrix once q and lambda are interleaved. Everything is O(modules).
+/// Assembles modules into g(t, q) = 0 with block-sparse G. Particle i has coordinates
+/// q[3i..3i+2], parameter j has q[3 particles + j]; anchors follow as prescribed inputs
+/// p(t), the source of the time derivatives of g. Rows are in the order of the modules,
+/// so a chain whose particles and links are added from one end to the other has a banded
+/// KKT matrix once q and lambda are interleaved. Every call is O(modules).
 class ConstraintSet final : public ConstraintForm {
  public:
-  /// Throws InputError when a module names an unknown node, or one node twice.
+  /// Throws InputError if a module names an unknown node, or the same node twice.
   ConstraintSet(Constraints modules, std::vector<Anchor> anchors, int particles,
                 int parameters, double extent);
 
   int rows() const { return gradient_.cols; }
 
-  /// Adds to `columns` (one list of rows per column of S) every pair that curvature
-  /// couples.
+  /// Adds every pair coupled by curvature to `columns` (one row list per column of S).
   void couple(std::vector<std::vector<int>>& columns) const;
-  /// Looks up where curvature goes in S; call once, before add_curvature.
+  /// Looks up the positions of curvature entries in S; call once, before add_curvature.
   void bind(const Pattern& s);
 
   const Pattern& pattern() const override { return gradient_; }
@@ -70,12 +69,12 @@ class ConstraintSet final : public ConstraintForm {
   int parameters_;
   int coordinates_;
   double extent_;
-  Pattern gradient_;  // of G^T
+  Pattern gradient_;  // pattern of G^T
   std::vector<Item> items_;
   std::vector<int>
       input_;  // per local input: coordinate, or coordinates + 3 anchor + axis
-  std::vector<int> rank_;  // per local input: place in its column of G^T, -1: prescribed
-  std::vector<int> coupling_;  // per local pair: place in S, -1: prescribed
+  std::vector<int> rank_;  // per local input: index in its column of G^T, -1: prescribed
+  std::vector<int> coupling_;  // per local pair: index in S, -1: prescribed
   std::vector<double> place_, velocity_, acceleration_;  // (3 anchors)
 };
 

@@ -9,13 +9,13 @@
 
 namespace tress::models {
 
-/// Position (m) and its first three derivatives by the curve's parameter.
+/// Position (m) and its first three derivatives with respect to the curve's parameter.
 struct CurvePoint {
   Vec c, d1, d2, d3;
 };
 
-/// A smooth curve in space. As a wire its parameter is any s; as a prescribed motion of
-/// an anchor its parameter is the time (s). Callers may pass their own.
+/// A smooth curve in space. The parameter is any s for a wire, and the time (s) for the
+/// prescribed motion of an anchor. Callers may pass their own.
 class Curve {
  public:
   virtual ~Curve() = default;
@@ -61,7 +61,7 @@ class FourierCurve final : public Curve {
 /// centre + a cos(s) + b sin(s): a circle when a and b are orthogonal and of equal
 /// length.
 std::unique_ptr<FourierCurve> ellipse(Vec centre, Vec a, Vec b);
-/// The same, rising by `rise` (m) per radian.
+/// An ellipse that rises by `rise` (m) per radian.
 std::unique_ptr<FourierCurve> helix_curve(Vec centre, Vec a, Vec b, Vec rise);
 /// size/3 (sin s + 2 sin 2s, cos s - 2 cos 2s, -sin 3s): the trefoil knot, about `size`
 /// metres in radius.

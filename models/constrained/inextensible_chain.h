@@ -14,22 +14,22 @@ namespace tress::models {
 /// Open: pivot at the origin, straight along x, n particles, n rows; released
 /// horizontally. Closed: a regular polygon of perimeter L in the x-z plane beside its
 /// first particle, which is fixed at the origin: n particles, n + 3 rows. Both may spin
-/// about the vertical through the origin, a rigid motion and so consistent.
+/// about the vertical through the origin, a rigid and therefore consistent motion.
 struct ChainShape {
   int links = 10;  // n: >= 1 open, >= 3 closed
   bool closed = false;
   double mass = 1;        // m, kg, whole strand
   double length = 1;      // L, m
   double gravity = 9.81;  // m/s^2, along -z
-  double drag = 0;        // nu, kg/(m s), on the strand's length
+  double drag = 0;        // nu, kg/(m s), per strand length
   double spin = 0;        // rad/s
 };
 
 /// Throws InputError on sizes out of range.
 ParticleScene inextensible_chain(const ChainShape& shape);
 
-/// Gravity and drag as a scene asks for them: what is zero is not built. `height` (m)
-/// sets the typical speed sqrt(g height).
+/// Adds gravity and drag to a scene; zero terms are not built. `height` (m) sets the
+/// typical speed sqrt(g height).
 void add_gravity_and_drag(ParticleScene& scene, double gravity, double drag,
                           double height);
 

@@ -19,7 +19,7 @@ struct Coincidence {
   void hessian(const double* d, const double* w, double* h) const;
 };
 
-/// C = (|d|^2 - l^2) / (2 l) (m): the error of the length to first order, without a root.
+/// C = (|d|^2 - l^2) / (2 l) (m): the length error to first order, without square root.
 struct FixedDistance {
   static constexpr int rows = 1;
   static constexpr bool linear = false;
@@ -50,7 +50,7 @@ struct OnPlane {
   void hessian(const double* d, const double* w, double* h) const;
 };
 
-/// C = (x - b).(c - b)/l (m): 0 where x is across from c, seen from b. With l = |c - b|
+/// C = (x - b).(c - b)/l (m): 0 if x - b is orthogonal to c - b. For l = |c - b|, C is
 /// the component of x - b along c - b.
 struct Across {
   static constexpr int node_count = 3;  // x, b, c
@@ -68,7 +68,7 @@ struct Across {
   void hessian(const double* z, const double* w, double* h) const;
 };
 
-/// Point x held at a point of space: an anchor (fixed or moving) or another particle.
+/// Holds point x at `where`: an anchor (fixed or moving) or another particle.
 std::unique_ptr<Constraint> fixed_point(Node x, Node where);
 /// |a - b| = length (m, > 0). Either end may be an anchor.
 std::unique_ptr<Constraint> distance(Node a, Node b, double length);

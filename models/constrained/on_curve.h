@@ -8,7 +8,7 @@
 
 namespace tress::models {
 
-/// On the ellipse of semi-axes a, b along unit vectors e1, e2 (2 rows, m):
+/// Point on the ellipse with semi-axes a, b along unit vectors e1, e2 (2 rows, m):
 ///     C1 = sqrt(ab)/2 ((y1/a)^2 + (y2/b)^2 - 1),   C2 = y3,   y_i = e_i.d, e3 = e1 x e2.
 /// For a circle C1 = (y1^2 + y2^2 - r^2)/(2 r), the radial error to first order; on an
 /// ellipse |dC1/dx| varies between sqrt(b/a) and sqrt(a/b) but never vanishes.
@@ -31,7 +31,7 @@ struct OnEllipse {
   void hessian(const double* d, const double* w, double* h) const;
 };
 
-/// On the helix of radius r about e3, rising by p per radian (2 rows, m):
+/// Point on the helix of radius r about e3 that rises by p per radian (2 rows, m):
 ///     C1 = y1 - r cos(y3/p),   C2 = y2 - r sin(y3/p).
 struct OnHelix {
   static constexpr int rows = 2;
@@ -52,8 +52,8 @@ struct OnHelix {
   void hessian(const double* d, const double* w, double* h) const;
 };
 
-/// On any curve: C = x - c(s) (3 rows, m) with the curve's parameter s as a massless
-/// coordinate, so the mass matrix is singular but the KKT matrix is not (c' != 0).
+/// Point on any curve: C = x - c(s) (3 rows, m) with the curve's parameter s as a
+/// massless coordinate; the mass matrix is singular but the KKT matrix is not (c' != 0).
 struct OnCurve {
   static constexpr int node_count = 2;
   static constexpr int inputs = 4;
@@ -72,7 +72,7 @@ std::unique_ptr<Constraint> point_on_ellipse(Node x, Node centre, Vec a, Vec b);
 /// x on centre + a cos s + b sin s + rise s: a, b orthogonal and equally long, rise along
 /// a x b.
 std::unique_ptr<Constraint> point_on_helix(Node x, Node centre, Vec a, Vec b, Vec rise);
-/// x on any curve, with a parameter node of its own.
+/// x on any curve, with its own parameter node.
 std::unique_ptr<Constraint> point_on_curve(Node x, Node parameter,
                                            std::shared_ptr<const Curve> curve);
 

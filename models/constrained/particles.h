@@ -8,7 +8,7 @@
 
 namespace tress::models {
 
-/// What a particle system is made of; built on the fly, e.g. a two-link pendulum:
+/// The parts of a particle system. Example, a two-link pendulum:
 ///
 ///     ParticleScene scene;
 ///     const Node pivot = scene.add_anchor({0, 0, 0});
@@ -19,13 +19,13 @@ namespace tress::models {
 ///     scene.effects.push_back(std::make_unique<Gravity>(Vec{0, 0, -9.81}));
 ///     ParticleSystem system(std::move(scene));
 ///
-/// Add particles and constraints in the order in which they hang together: see
-/// constraint_set.h. Modules: joints.h, on_curve.h, angles.h, or the caller's own.
+/// Add particles and constraints in the order of their connection: see constraint_set.h.
+/// Modules: joints.h, on_curve.h, angles.h, or the caller's own.
 struct ParticleScene {
   struct Particle {
     double mass;    // kg, > 0
     Vec x, v;       // at t = 0, m and m/s
-    double length;  // strand length carried, m (what drag acts on)
+    double length;  // strand length carried, m, on which drag acts
   };
   struct MasslessParameter {
     double s, rate;  // at t = 0
@@ -41,29 +41,29 @@ struct ParticleScene {
   std::vector<Anchor> anchors;
   Constraints constraints;
   Effects effects;
-  double typical_speed = 0;  // m/s; the fastest particle counts too; 0: extent per second
+  double typical_speed = 0;  // m/s; at least the fastest particle's; 0: extent per second
 };
 
-/// Particles with any constraints and effects (the seed's "tinkertoys"):
+/// Particles with any constraints and effects ("tinkertoys"):
 ///
 ///     r = M a - f(t, x, v),   M = diag(m_i I3, 0 for parameters),
 ///     S(w) = w.acc M - w.pos df/dx - w.vel df/dv   (3x3 blocks of the effects).
 ///
 /// q = (x_1, ..., x_N, s_1, ...) in m (parameters in their curve's unit). Effects see the
-/// particles through Points, computed as far as they need; without effects f = 0 costs
-/// nothing. residual is O(N), linearize and solve invert 3x3 blocks. With parameters M is
-/// singular (traits().regular_mass false, linearize is `fatal`) while the KKT matrix is
-/// regular: use a constrained formulation, which reads sparse_form() and
-/// constraint_form(). The work of moving anchors is not in power(): it depends on the
-/// multipliers.
+/// particles through Points, of which only the needed fields are computed; without
+/// effects f = 0 costs nothing. residual is O(N), linearize and solve invert 3x3 blocks.
+/// With parameters M is singular (traits().regular_mass is false, linearize returns
+/// `fatal`) while the KKT matrix is regular: use a constrained formulation, which reads
+/// sparse_form() and constraint_form(). power() omits the work of moving anchors, which
+/// depends on the multipliers.
 class ParticleSystem final : public System,
                              private SparseForm,
                              private ExplicitForm,
                              private Energetics,
                              private MaterialPoints {
  public:
-  /// Throws InputError on no particles, a mass that is not positive, numbers that are not
-  /// finite, or a state that violates the constraints.
+  /// Throws InputError if there are no particles, a mass is not positive, a number is not
+  /// finite, or the state violates the constraints.
   explicit ParticleSystem(ParticleScene scene);
 
   Layout layout() const override;
@@ -106,7 +106,7 @@ class ParticleSystem final : public System,
   Needs needs_;
   ConstraintSet constraints_;
   Pattern pattern_;
-  std::vector<int> block_;  // (9 particles) places of the 3x3 blocks in pattern_
+  std::vector<int> block_;  // (9 particles) indices of the 3x3 blocks in pattern_
   std::vector<double> mass_, length_;
   std::vector<double> load_;     // (3 particles)
   std::vector<double> blocks_;   // (9 particles) S(w), row-major

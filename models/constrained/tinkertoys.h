@@ -8,27 +8,26 @@
 
 namespace tress::models {
 
-/// Structures made of particles and modular constraints, each of one `size` s, at rest or
-/// spinning rigidly about the vertical through the origin.
+/// Structures of particles and modular constraints with one `size` s, at rest or spinning
+/// rigidly about the vertical through the origin. Particles and constraint rows:
 ///
-/// | structure | particles     | rows             | made of | | chain     | s | s |
-/// distances from an anchor                 | | ring      | s             | s + 3 |
-/// distances, one fixed point               | | net       | s^2           | s (2 s - 1)
-/// | distances, top row on anchors; no spin   | | tree      | 2^s - 1       | 2^s - 1 +
-/// forks  | distances, one angle per fork, forks =   | |           |               | |
-/// 2^(s-1) - 1                              | | truss     | 3 (s + 1)     | 6 + 12 s | a
-/// fixed point, a rigid triangle, 12 bars | |           |               | | per bay |
+/// - chain: s and s; distances from an anchor.
+/// - ring: s and s + 3; distances, one fixed point.
+/// - net: s^2 and s (2 s - 1); distances, top row on anchors; no spin.
+/// - tree: 2^s - 1 and 2^s - 1 + forks; distances, one angle per fork,
+///   forks = 2^(s-1) - 1.
+/// - truss: 3 (s + 1) and 6 + 12 s; a fixed point, a rigid triangle, 12 bars per bay.
 ///
 /// The truss is over-constrained: each bay of 3 particles (9 coordinates) has 12 bars, so
-/// G lacks rank by exactly 3 s everywhere, and what moves is a rigid body about the
-/// origin.
+/// G is rank-deficient by exactly 3 s everywhere, and the truss moves as a rigid body
+/// about the origin.
 enum class Structure { chain, ring, net, tree, truss };
 
 struct ToyShape {
   Structure structure = Structure::chain;
   int size = 4;
   double mass = 1;    // kg, all particles together, equal shares
-  double length = 1;  // m: of chain, ring's perimeter, net's side, tree's height, truss
+  double length = 1;  // m: chain, ring's perimeter, net's side, tree's height, truss
   double gravity = 9.81;  // m/s^2, along -z
   double drag = 0;        // kg/(m s), on length shared equally between the particles
   double spin = 0;        // rad/s, not for the net

@@ -10,10 +10,10 @@
 
 namespace tress::models {
 
-/// Force of air that moves with w(t, x) on a strand, by any law of air_law.h in any field
-/// of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All of its work is
-/// power; there is no potential. Law and field are types, so that still air costs
-/// nothing. O(points).
+/// Force on a strand of air that moves with velocity w(t, x), for any law of air_law.h
+/// and any field of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All
+/// its work counts as power; there is no potential. Law and field are types, so still air
+/// costs nothing. O(points).
 template <class Law, class Wind>
 class AirDrag final : public Effect {
   static constexpr bool uniform = Wind::Flow::uniform;
@@ -82,7 +82,7 @@ class AirDrag final : public Effect {
   Wind wind_;
 };
 
-/// Parameters of AnisotropicAirLaw, for the effects that offer it.
+/// Parameters of AnisotropicAirLaw, for effects that offer it.
 inline constexpr Parameter air_density_parameter{.name = "air_density_kg_m3",
                                                  .help = "density of the air (kg/m^3)",
                                                  .number = 1.2,
@@ -116,7 +116,7 @@ inline constexpr Parameter c_tangential_parameter{
     .min = 0,
     .max = 1e6};
 
-/// What `make` returns for the AnisotropicAirLaw that the parameters above describe.
+/// Returns make(law) for the AnisotropicAirLaw that the parameters above describe.
 template <class Make>
 std::unique_ptr<const Effect> with_anisotropic_law(const Parameters& parameters,
                                                    const Make& make) {

@@ -6,8 +6,8 @@
 #include "models/effects/effect.h"
 
 /// Laws of the force that air exerts on point i of a strand moving at u (m/s) relative to
-/// it. `slope` is dforce/du at a fixed tangent, `by_tangent` dforce/dt at a fixed u. A
-/// law says whether it looks at the tangent and whether u counts the velocity of the
+/// it. `slope` is dforce/du at fixed tangent, `by_tangent` dforce/dt at fixed u. A law
+/// declares whether it depends on the tangent, and whether u includes the velocity of the
 /// point or only that of the air.
 namespace tress::models {
 
@@ -24,27 +24,28 @@ struct LinearAirLaw {
   }
 };
 
-/// The same on a strand taken to stand still: a force that the wind alone decides.
+/// Linear law on a strand assumed at rest: the force depends on the wind only.
 struct StandingAirLaw : LinearAirLaw {
   static constexpr bool relative = false;
 };
 
-/// b(u) = c u: drag in the square of the speed, c in kg/m^2.
+/// b(u) = c u: quadratic drag, c in kg/m^2.
 struct SquareDrag {
   double c = 0;
   double value(double u) const { return c * u; }
   double slope(double) const { return c; }
 };
 
-/// b(u) = rho C(Re) r u of a cylinder of radius r across the flow, Re = 2 r rho u/mu,
-/// with C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White, Viscous Fluid Flow, curve
-/// fit for the circular cylinder]. The fit has no linear law at Re -> 0, where C Re of a
-/// cylinder falls slower than any power of Re; here
+/// b(u) = rho C(Re) r u of a cylinder of radius r in cross flow, Re = 2 r rho u/mu, with
+/// C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White, Viscous Fluid Flow, curve fit for the
+/// circular cylinder]. The fit has no linear limit for Re -> 0, where C Re of a cylinder
+/// falls slower than any power of Re; we use
 ///
 ///     C Re = Re + 10 (Re^2 + Re_0^2)^(1/6),   Re_0 = 0.1,    b = mu C Re/2,
 ///
-/// smooth in u, with C Re -> 4.6 at Re = 0. Within 0.2 % of the fit for Re > 1, and for
-/// 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's C Re = 8 pi/(2.002 - ln Re).
+/// which is smooth in u, with C Re = 4.6 at Re = 0. It is within 0.2 % of the fit for
+/// Re > 1, and for 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's
+/// C Re = 8 pi/(2.002 - ln Re).
 struct CylinderDrag {
   static constexpr double reynolds_0 = 0.1;
   double half_viscosity = 0;      // mu/2, Pa s
@@ -63,7 +64,7 @@ struct CylinderDrag {
 };
 
 /// Independent normal and tangential drag of a thin cylinder [Ablow & Schechter 1983,
-/// Ocean Engineering 10(6) 443-457]: per length, with u_t = (u.t) t and u_n = u - u_t,
+/// Ocean Engineering 10(6) 443-457], per length, with u_t = (u.t) t and u_n = u - u_t:
 ///
 ///     f = -b(|u_n|) u_n - 1/2 rho C_t 2 pi r |u_t| u_t.
 ///

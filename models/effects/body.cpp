@@ -112,7 +112,7 @@ bool has_size(const Ellipsoid& e) {
 }
 bool has_size(const DistanceGrid&) { return true; }
 
-/// What an outline has of a shape, wherever it is.
+/// The part of an outline that does not depend on the pose.
 struct Drawn {
   std::string_view shape;
   Vec half_axes;
@@ -132,8 +132,8 @@ Vec place_in(const BodyPose& pose, const double* x) {
   return pose.frame.back(load3(x) - pose.x);
 }
 
-/// The distance from a shape of a place that is nearer than `reach`; of others most are
-/// told apart without a search.
+/// The distance from a shape for points nearer than `reach`; most others are excluded
+/// without a search.
 template <class Shape>
 std::optional<Distance> near(const Shape& shape, const Vec& x, double reach) {
   if constexpr (requires { shape.at_least(x); }) {
@@ -186,7 +186,7 @@ Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
   }
   if (head_) check(*head_, "effect body");
   if (const auto* grid = std::get_if<DistanceGrid>(&shape_)) {
-    // Between points the interpolant may lie 1.2 spacings below the least of them: the
+    // Between points the interpolant may lie 1.2 spacings below the least value: the
     // negative weights of two directions sum to 0.28, the values differ by 3 sqrt(2).
     const double needed = law.offset + 2 * grid->samples().spacing;
     if (grid->clearance() < needed) {

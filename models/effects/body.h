@@ -16,7 +16,7 @@ std::span<const Parameter> body_parameters();
 
 using BodyShape = std::variant<Plane, Sphere, Capsule, Ellipsoid, DistanceGrid>;
 
-/// Where a body is and how it moves.
+/// Position and motion of a body.
 struct BodyPose {
   Vec x;        // of its origin, m
   Frame frame;  // its axes
@@ -26,18 +26,18 @@ struct BodyPose {
   Vec surface_velocity(const Vec& at) const { return v + cross(omega, at - x); }
 };
 
-/// Contact of the strand with a rigid body: per point l times the load of BodyContact,
-/// which is a force per length, so that the answer does not depend on how many points a
-/// strand has; points that carry no length feel nothing. The elastic part is the
-/// potential; power is what damping and friction take (<= 0 on a body at rest) and the
-/// work of the body's motion against the elastic part, f_elastic.surface_velocity.
-/// O(points).
+/// Contact of the strand with a rigid body: per point, l times the load of BodyContact, a
+/// force per length, so the result does not depend on the number of points; points
+/// without length receive no force. The elastic part is the potential; power is that of
+/// damping and friction (<= 0 on a body at rest) plus that of the body's motion against
+/// the elastic part, f_elastic.surface_velocity. O(points).
 class Body final : public Effect {
  public:
-  /// `head`: the motion that the body follows, which stands at `place` while the head is
-  /// at its rest; nothing: it stays there. Throws InputError on numbers that are negative
-  /// or not finite, a frame that is no rotation, and a grid whose surface comes within
-  /// two spacings of contact with its second layer, where it could not be felt any more.
+  /// `head`: the motion that the body follows; the body is at `place` while the head is
+  /// at rest, and stays there if no head is given. Throws InputError on numbers that are
+  /// negative or not finite, a frame that is not a rotation, and a grid whose surface
+  /// comes within two spacings of contact with its second layer, where contact would go
+  /// undetected.
   Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
        std::optional<RootMotion> head = {});
 
@@ -52,7 +52,7 @@ class Body final : public Effect {
   double power(double t, const Points& p) const noexcept override;
 
   std::optional<double> penetration(double t, In x) const override;
-  /// None of a distance grid.
+  /// Empty for a distance grid.
   std::optional<Outline> outline(double t) const override;
 
   BodyPose pose(double t) const;

@@ -15,13 +15,13 @@ namespace tress::models {
 ///
 ///     f = N (n - mu e(|u_t|) u_t),   N = k d |g| h(1 - c u_n),   E = k d^2/2
 ///
-/// c damps in proportion to the depth, so that no force jumps when contact begins or ends
-/// [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]; h(s) = s for s >= 1/2 and (s +
-/// 1/2)^2/2 from there down to 0 at s = -1/2, so that the contact never pulls and h(1) =
-/// 1: a strand at rest feels the spring only. Coulomb friction is full at |u_t| >= v and
-/// falls smoothly below, e(y) = 1/y and (2 - y/v)/v [Li et al. 2020, Incremental
-/// Potential Contact, eq. 15]: what should stick creeps at less than v. Both dissipate.
-/// The load is continuous; its derivatives jump where contact begins.
+/// c damps in proportion to the depth, so the force does not jump when contact begins or
+/// ends [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]; h(s) = s for s >= 1/2 and (s +
+/// 1/2)^2/2 from there down to 0 at s = -1/2, so the contact never pulls, and h(1) = 1,
+/// so only the spring acts on a strand at rest. Coulomb friction is full at |u_t| >= v
+/// and falls smoothly below, e(y) = 1/y and (2 - y/v)/v [Li et al. 2020, Incremental
+/// Potential Contact, eq. 15]: sticking contacts creep at less than v. Both terms
+/// dissipate. The load is continuous; its derivatives jump where contact begins.
 struct BodyContact {
   double stiffness = 0;  // k, N/m^2
   double damping = 0;    // c, s/m
@@ -31,7 +31,7 @@ struct BodyContact {
 
   double depth(const Distance& to) const { return offset - to.value; }
 
-  /// Of a point in contact, d > 0; N/m.
+  /// Elastic load on a point in contact, d > 0; N/m.
   Vec elastic_load(const Distance& to) const {
     return (stiffness * depth(to)) * to.gradient;
   }

@@ -75,7 +75,7 @@ Ellipsoid::Nearest Ellipsoid::nearest(const Vec& x) const {
     normal[i] = at[i] == 0 ? 0 : at[i] / (s + above[i]);
   }
   // On the middle plane near the centre no root is right of the pole: the nearest points
-  // stand above and below.
+  // are above and below.
   if (s == 0) normal[least] = std::sqrt(std::max(0.0, -g)) / a[least];
   const Vec n{normal[0], normal[1], normal[2]};
   const double length = norm(n);

@@ -11,21 +11,21 @@ namespace tress::models {
 
 struct RootMotion;
 
-/// One line of the list of effects: what a scene may name as [effects.id]. Adding an
-/// effect = its own files, one line here, one CMake line.
+/// One line of the list of effects, which a scene names as [effects.id]. A new effect
+/// needs its own files, one line here and one CMake line.
 struct EffectEntry {
   std::string_view id;
   std::string_view summary;  // one line
   std::string_view source;
   std::span<const Parameter> parameters;
-  /// `head`: the rigid motion that all roots follow, for bodies that follow it too.
+  /// `head`: the rigid motion of all roots, for bodies that follow it.
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
   bool many = false;  // a scene may name several: [[effects.id]]
 };
 
 std::span<const EffectEntry> effects();
 
-/// Throws InputError naming `where` and the nearest id when there is no such effect.
+/// Throws InputError naming `where` and the nearest id if there is no such effect.
 const EffectEntry& find_effect(std::string_view id, const std::string& where);
 
 }  // namespace tress::models

@@ -9,9 +9,9 @@ namespace tress::models {
 
 std::span<const Parameter> constant_force_parameters();
 
-/// A force that is the same everywhere and always: f = l p + m a per point with p in N/m
-/// and a in N/kg, potential energy -f.x (zero at the origin). Reads length and mass and,
-/// for the potential only, position. O(points).
+/// A force constant in space and time: f = l p + m a per point with p in N/m and a in
+/// N/kg, potential energy -f.x (zero at the origin). Reads length and mass and, for the
+/// potential only, position. O(points).
 class ConstantForce final : public Effect {
  public:
   /// Throws InputError unless all numbers are finite.

@@ -10,18 +10,19 @@
 
 namespace tress::models {
 
-/// What two strands do to each other per length (N/m), over the gap d from the other
-/// strand's nearest point and the velocity u against it:
+/// Force per length (N/m) between two strands, as a function of the gap d from the other
+/// strand's nearest point and the velocity u relative to it:
 ///
 ///     F = K (P - rho)+ d/rho - D w(rho) u,    rho^2 = |d|^2 + (P/1000)^2
 ///     w = 1 up to P, 1 - 3 s^2 + 2 s^3 from P to the outer radius, s in [0, 1]; 0 beyond
 ///
-/// K (P - d) and D are [Wang, thesis, NCTU, section 5.2]: K = 2e-6, D = 2e-5 or 2e-6,
+/// K (P - d) and D follow [Wang, thesis, NCTU, section 5.2]: K = 2e-6, D = 2e-5 or 2e-6,
 /// P_inner = 3 mm, no units, on strands of segments of about l = 1 cm. We read them as
-/// N/m and N s/m of a segment; per length K/l = 2e-4 N/m^2 and D/l = 2e-3 or 2e-4 N s/m^2
-/// do not depend on how strands are cut. Reconstruction: that reading, rho in place of
-/// |d| (so that F is smooth and finite where strands coincide; beyond P/10 it changes
-/// less than 1e-4 of F), w and the outer radius. K's force has a kink at P, w's has none.
+/// N/m and N s/m per segment; per length, K/l = 2e-4 N/m^2 and D/l = 2e-3 or 2e-4 N s/m^2
+/// do not depend on the discretisation. Our reconstruction: that reading, rho in place of
+/// |d| (F is then smooth and finite where strands coincide; beyond P/10 F changes by less
+/// than 1e-4 of itself), w and the outer radius. The force of K has a kink at P, w does
+/// not.
 class ContactLaw {
  public:
   struct Values {
@@ -39,16 +40,16 @@ class ContactLaw {
 
   /// Throws InputError naming `where` unless the outer radius exceeds the inner one.
   ContactLaw(const Values& values, const std::string& where);
-  /// Of contact_parameters.
+  /// From the values of contact_parameters().
   ContactLaw(const Parameters& parameters, const std::string& where);
 
   double inner() const { return law_.inner; }
-  /// No force beyond, m.
+  /// Distance beyond which there is no force, m.
   double reach() const { return law_.viscosity > 0 ? law_.outer : law_.inner; }
 
   Vec force(const Vec& d, const Vec& u) const noexcept;
   Slopes slopes(const Vec& d, const Vec& u) const noexcept;
-  /// Of the repulsion, J/m.
+  /// Potential of the repulsion, J/m.
   double potential(const Vec& d) const noexcept;
   double weight(double rho) const noexcept;        // w
   double weight_slope(double rho) const noexcept;  // w'

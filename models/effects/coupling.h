@@ -8,14 +8,14 @@
 
 namespace tress::models {
 
-/// What the loads of one contact on its four points owe to the places and velocities of
-/// all four,
+/// Derivatives of the loads of one contact on its four points with respect to the
+/// positions and velocities of all four,
 ///
-///     df_a = sum_r onto_ar y_r,    y_r = sum_c by_place_cr . dx_c + by_velocity_cr .
-///     dv_c
+///     df_a = sum_r onto_ar y_r
+///     y_r = sum_c by_place_cr . dx_c + by_velocity_cr . dv_c
 ///
-/// in world components, N/m and N s/m between f and x, v: of rank four, for the points
-/// share one force and one place of it.
+/// in world components, N/m and N s/m between f and x, v. The rank is four: the points
+/// share one force and its point of application.
 struct Coupling {
   static constexpr std::size_t rank = 4;
   struct End {

@@ -12,8 +12,8 @@ namespace tress::models {
 /// Numbers of the four points of a contact.
 using FourPoints = std::array<std::size_t, 4>;
 
-/// Where contacts between points that are means of coordinates (each P q) may have
-/// derivatives.
+/// Pattern of the derivatives of contacts between points that are means of coordinates
+/// (each P q).
 class CouplingColumns {
  public:
   CouplingColumns(int coordinates, const std::vector<MaterialPoints::Mean>& means)
@@ -26,7 +26,7 @@ class CouplingColumns {
   std::vector<std::vector<int>> columns_;
 };
 
-/// values += P^T (pos df/dx + vel df/dv) P, on such a pattern.
+/// values += P^T (pos df/dx + vel df/dv) P on that pattern.
 void add_coupling(const Pattern& pattern, const std::vector<MaterialPoints::Mean>& means,
                   const Coupling& contact, double pos, double vel, InOut values) noexcept;
 

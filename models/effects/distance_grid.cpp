@@ -59,7 +59,7 @@ class Numbers {
                      "check nx ny nz in the first line");
   }
   std::string where() const {
-    // Line ends that close the file begin no line.
+    // Trailing line ends do not start a new line.
     const std::size_t end = text_.find_last_not_of(" \t\r\n") + 1;
     const auto read =
         static_cast<std::ptrdiff_t>(std::min(end, text_.size() - rest_.size()));
@@ -85,7 +85,7 @@ class Numbers {
 
 }  // namespace
 
-/// The 4 x 4 x 4 points around a place; `first` is none where there are not as many.
+/// The 4 x 4 x 4 points around a position; `first` is empty if the grid lacks them.
 struct DistanceGrid::Cell {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::size_t first = none;
@@ -202,7 +202,7 @@ DistanceGrid read_distance_grid(const std::string& file) {
   if (!(s.spacing > 0)) {
     throw InputError("the spacing is not positive", numbers.where(), "give it in m, > 0");
   }
-  // Not reserved at once: the file may promise more than it holds.
+  // No reserve(): the header may announce more values than the file holds.
   for (std::size_t i = 0; i < s.nx * s.ny * s.nz; ++i) {
     s.value.push_back(numbers.next<double>("a distance"));
     if (!std::isfinite(s.value.back())) {

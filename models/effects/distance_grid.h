@@ -8,11 +8,11 @@
 
 namespace tress::models {
 
-/// A signed distance sampled at the points of a regular grid, interpolated by cubic
-/// convolution in each direction [Keys 1981, IEEE Trans. ASSP 29(6), eq. 15]: once
-/// continuously differentiable, exact for polynomials of degree 2, error O(spacing^3).
-/// The gradient is that of the interpolant, so that its length is 1 only up to
-/// O(spacing^2). Outside the grid and in its outermost layer the distance is infinite.
+/// A signed distance sampled on a regular grid and interpolated by cubic convolution in
+/// each direction [Keys 1981, IEEE Trans. ASSP 29(6), eq. 15]: C^1, exact for polynomials
+/// of degree 2, error O(spacing^3). The gradient is that of the interpolant, so its
+/// length is 1 only up to O(spacing^2). Outside the grid and in its outermost layer the
+/// distance is infinite.
 class DistanceGrid {
  public:
   struct Samples {
@@ -21,8 +21,8 @@ class DistanceGrid {
     double spacing = 0;         // m
     std::vector<double> value;  // (nx ny nz) m, x fastest; < 0 inside
   };
-  /// Throws InputError naming `where` unless there are 4 points and more each way, as
-  /// many values, all finite, and spacing > 0.
+  /// Throws InputError naming `where` unless there are at least 4 points in each
+  /// direction, a finite value for each point, and spacing > 0.
   DistanceGrid(Samples samples, const std::string& where);
 
   Distance distance(const Vec& x) const;
@@ -38,15 +38,15 @@ class DistanceGrid {
   Samples s_;
 };
 
-/// Reads a text file of numbers, separated by blanks or line ends, `#` to the end of the
-/// line being a comment:
+/// Reads a text file of numbers separated by blanks or line ends; `#` starts a comment to
+/// the end of the line:
 ///
-///     nx ny nz        points each way, 4 or more and at most 2e7 in all
-///     x y z           place of the first point, m
+///     nx ny nz        points per direction, 4 or more and at most 2e7 in all
+///     x y z           position of the first point, m
 ///     spacing         m
 ///     value ...       nx ny nz signed distances, m, < 0 inside; x fastest, z slowest
 ///
-/// which is what SDFGen [Batty, github.com/christopherbatty/SDFGen] writes from a mesh.
+/// This is the format that SDFGen [Batty, github.com/christopherbatty/SDFGen] writes.
 /// Throws InputError with the file and line.
 DistanceGrid read_distance_grid(const std::string& file);
 

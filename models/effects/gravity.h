@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// How every model's catalogue entry asks for its strength.
+/// Parameter for its strength in every model's catalogue entry.
 inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
                                              .help = "gravity along -z (m/s^2)",
                                              .number = 9.81,

@@ -8,10 +8,10 @@ namespace tress::models {
 
 std::span<const Parameter> linear_drag_parameters();
 
-/// Viscous drag of still air on a thin strand and damping in proportion to mass: f = -r v
-/// per point with r = nu l + c m, l the strand length (m) and m the mass (kg) that the
-/// point carries, nu in kg/(m s) and c in 1/s. It only dissipates: power = -r |v|^2,
-/// df/dv = -r I. On a uniform strand c is the same as nu = c rho A more. O(points).
+/// Viscous drag of still air on a thin strand and mass-proportional damping: f = -r v per
+/// point with r = nu l + c m, l the strand length (m) and m the mass (kg) that the point
+/// carries, nu in kg/(m s) and c in 1/s. Purely dissipative: power = -r |v|^2,
+/// df/dv = -r I. On a uniform strand, c is equivalent to adding c rho A to nu. O(points).
 class LinearDrag final : public Effect {
  public:
   /// Throws InputError unless both are finite and >= 0.

@@ -11,7 +11,7 @@ namespace tress::models {
 
 std::span<const Parameter> quadratic_drag_parameters();
 
-/// Drag of still air in the square of the speed, unlike across and along the strand
+/// Quadratic drag of still air, different across and along the strand
 /// (AnisotropicAirLaw, effects/air_law.h). In moving air use the effect `wind` instead.
 std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
                                                   const RootMotion& head);

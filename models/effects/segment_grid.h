@@ -11,17 +11,17 @@
 namespace tress::models {
 
 /// Broad phase: which segments of many polylines may lie within `reach` of a point. A
-/// uniform grid, its cells in a hash table [Teschner et al. 2003]; a segment stands in
-/// every cell which it can come within `reach` of. Temporal coherence [Bertails et al.
-/// 2006, section 4.1]: the cells keep a margin of half the reach and stand until some
-/// point has moved that far since they were filled. Memory and filling O(segments) where
-/// segments are of similar length.
+/// uniform grid with its cells in a hash table [Teschner et al. 2003]; a segment is
+/// listed in every cell that it can come within `reach` of. Temporal coherence [Bertails
+/// et al. 2006, section 4.1]: the cells include a margin of half the reach and remain
+/// valid until some point has moved that far since they were filled. Memory and filling
+/// are O(segments) for segments of similar length.
 class SegmentGrid {
  public:
-  /// points[k] >= 2: of polyline k; reach > 0, m.
+  /// points[k] >= 2: number of points of polyline k; reach > 0, m.
   SegmentGrid(std::span<const int> points, double reach);
 
-  /// Takes the places of all points (3 each), polyline after polyline.
+  /// Takes the positions of all points (3 each), polyline after polyline.
   void update(In x);
 
   std::size_t segments() const { return pieces_.size(); }
@@ -37,15 +37,15 @@ class SegmentGrid {
   struct Entry {
     int polyline, segment;
   };
-  /// Every segment within reach of x and some others, ascending; where a
-  /// bucket holds two cells, some twice.
+  /// Every segment within reach of x and some others, ascending; some appear
+  /// twice if a bucket holds two cells.
   std::span<const Entry> near(const Vec& x) const noexcept {
     const std::size_t b = bucket(cell(x));
     return {entries_.data() + start_[b], entries_.data() + start_[b + 1]};
   }
 
   long fillings() const { return fillings_; }
-  /// Of segments in cells.
+  /// Number of entries of segments in cells.
   std::size_t entries() const { return entries_.size(); }
 
  private:
@@ -57,7 +57,7 @@ class SegmentGrid {
     int segment;
   };
   Cell cell(const Vec& x) const noexcept;
-  /// Of cells in a row along z one after the other: neighbours in memory.
+  /// Cells in a row along z get consecutive buckets, neighbours in memory.
   unsigned bucket(const Cell& c) const noexcept {
     const std::uint64_t h = static_cast<std::uint64_t>(c.x) * 0x9E3779B97F4A7C15u ^
                             static_cast<std::uint64_t>(c.y) * 0xC2B2AE3D27D4EB4Fu;
@@ -69,12 +69,12 @@ class SegmentGrid {
 
   double reach_;
   std::vector<int> polyline_;          // of each segment
-  std::vector<StraightPiece> pieces_;  // as they are now
-  std::vector<double> filled_;         // the points when the cells were filled
+  std::vector<StraightPiece> pieces_;  // at the current positions
+  std::vector<double> filled_;         // positions when the cells were filled
   double cell_ = 0, inverse_cell_ = 0;
-  unsigned mask_ = 0;  // number of buckets, a power of two, less one
+  unsigned mask_ = 0;  // number of buckets (a power of two) - 1
   std::vector<Mark> marks_;
-  std::vector<int> last_;   // per bucket: segment of several parts marked last
+  std::vector<int> last_;   // per bucket: last marked segment of several parts
   std::vector<int> start_;  // of bucket b: entries_[start_[b], start_[b + 1])
   std::vector<Entry> entries_;
   long fillings_ = 0;
@@ -83,7 +83,7 @@ class SegmentGrid {
 inline SegmentGrid::Cell SegmentGrid::cell(const Vec& x) const noexcept {
   const auto index = [this](double coordinate) {
     const double at = std::floor(coordinate * inverse_cell_);
-    // Written so that nan lands at the end too.
+    // Written so that NaN also maps to the end.
     constexpr double end = 1e9;
     return static_cast<int>(at > -end ? at < end ? at : end : -end);
   };

@@ -49,7 +49,7 @@ SelfContact::SelfContact(const ContactLaw& law, double separation)
                    "itself");
 }
 
-/// Lengths at rest: each point's, half to either side, all of it at the strand's ends.
+/// Rest lengths: half of each point's length to either side, all of it at strand ends.
 inline SelfContact::Edge SelfContact::first_edge(const Points& p) {
   const std::size_t i = p.length.empty() || p.length[0] > 0 ? 0 : next(p, 0);
   Edge edge{i, i, 0, 0};
@@ -80,7 +80,7 @@ bool SelfContact::nearest(const Points& p, const Vec& x, std::size_t first,
     const Vec start = load3(&p.x[3 * i]), lever = x - start;
     const double apart = dot(lever, lever);
     if (apart > clear * clear) {
-      // Beyond the reach, as are all edges until then: so many points or more are passed.
+      // Out of reach, as are all edges before: skip at least this many points.
       const double strides = (std::sqrt(apart) - clear) / stride;
       skip = static_cast<std::size_t>(std::min(strides, static_cast<double>(last - i)));
       continue;

@@ -13,18 +13,18 @@ namespace tress::models {
 
 std::span<const Parameter> self_contact_parameters();
 
-/// A strand that touches itself, as in plectonemes: the polyline through the points that
+/// Self-contact of a strand, as in plectonemes: the polyline through the points that
 /// carry length, in their order along an unbranched strand, repels and drags itself
-/// (ContactLaw). Samples stand on it, no farther apart at rest than half the inner
-/// radius; each meets the nearest point of the part of the strand that begins
-/// `separation` (m, along the arc at rest) before it, and that of the part after it, with
-/// half of its length, since what it meets has samples too. Forces are distributed to the
-/// four points about a contact and sum to zero (PieceContact). Where two places are
-/// equally near, as inside a corner of the polyline, the force jumps from one to the
-/// other: a coil of 20 elements came to rest there, and implicit steps are solved on the
-/// jump (integrators/stage.h). The repulsion is in potential(). Samples march along the
-/// strand in strides that cannot reach a contact: O(n) for n points of a strand in the
-/// open, O(n^2) at worst.
+/// (ContactLaw). Its samples are at most half the inner radius apart at rest; each
+/// interacts, with half of its length because the other side has samples too, with the
+/// nearest point of the part of the strand that begins `separation` (m, along the arc at
+/// rest) before it, and with that of the part after it. Forces are distributed to the
+/// four points about a contact and sum to zero (PieceContact). If two places are equally
+/// near, as inside a corner of the polyline, the force jumps from one to the other: a
+/// coil of 20 elements came to rest there, and implicit steps are solved on the jump
+/// (integrators/stage.h). The repulsion is in potential(). The search along the strand
+/// takes strides too short to skip a contact: O(n) for n points without near contacts,
+/// O(n^2) at worst.
 class SelfContact final : public Effect {
  public:
   /// Throws InputError unless `separation` is finite and exceeds the law's reach: a
@@ -44,14 +44,14 @@ class SelfContact final : public Effect {
   double power(double t, const Points& p) const noexcept override;
 
  private:
-  /// Of a strand's polyline: from point i to point j, and the arc at rest.
+  /// Edge of the polyline from point i to point j, with the arc at rest.
   struct Edge {
     std::size_t i, j;
     double from, length;  // m
   };
   struct Place {
     std::size_t i, j;  // points of the edge
-    double at;         // on it
+    double at;         // position on the edge
   };
   static Edge first_edge(const Points& p);
   static void go_on(const Points& p, Edge& edge);  // to the next edge

@@ -141,8 +141,8 @@ class StrandInteraction::OnStrand final : public Effect {
     for (const auto& [i, c] : found_) of_contact(i, c);
   }
 
-  /// found_ = of the points as they are. A step asks for load and derivatives at the same
-  /// places, and the search is most of either's cost.
+  /// Sets found_ for the current points. A step needs load and derivatives at the same
+  /// positions, and the search dominates the cost of both.
   void find(const Points& p) const {
     if (found_after_ == all_.updates_ && std::ranges::equal(p.x, found_at_)) return;
     found_.clear();
@@ -210,7 +210,7 @@ double StrandInteraction::mean_distance() const {
     open.push_back({strand, x, length});
     total += length;
   });
-  // Grids of ever larger reach, for samples that have met nobody yet.
+  // Grids of increasing reach, for samples without a neighbour so far.
   for (double reach = law_.reach(); !open.empty(); reach *= 2) {
     if (!std::isfinite(reach * reach)) return std::nan("");  // so are the places
     SegmentGrid grid(points_, reach);

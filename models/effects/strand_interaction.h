@@ -14,43 +14,43 @@ namespace tress::models {
 /// The table [effects.strand_interaction] of a scene: `coupling` and the contact law.
 std::span<const Parameter> strand_interaction_parameters();
 
-/// Many strands, each a System of its own, that repel and drag each other (ContactLaw).
-/// The effect of a strand pushes its points, each by the force per length times the
-/// length it carries, away from the polylines of all other strands' material points *as
-/// they were after the last step* (lagged partners): it is a pure function between two
-/// update()s, whoever calls it from whichever thread. Of every other strand the nearest
-/// point counts; a second one, of an arc that comes back, does not: counted by segments,
-/// a joint would push twice and a strand cut finer push more.
+/// Many strands, each a separate System, that repel and drag each other (ContactLaw). The
+/// effect of a strand pushes its points, each by the force per length times the length it
+/// carries, away from the polylines of all other strands' material points *as they were
+/// after the last step* (lagged partners). It is a pure function between two update()s,
+/// for any caller and thread. Only the nearest point of every other strand counts, even
+/// if a second arc of that strand is near: counting segments, a joint would push twice
+/// and a finer discretisation would push more.
 ///
-/// Derivatives are of the own point; the partners stand still. Nothing of the load is in
-/// potential(), power() counts all of it. Action and reaction differ by what partners
-/// move in a step, first order in it, and by how the two strands are cut. Forces between
-/// points are seen only as well as points lie: nearer to each other than the inner
-/// radius.
+/// Derivatives are with respect to the strand's own point; partners are fixed. None of
+/// the load is in potential(); power() counts all of it. Action and reaction differ by
+/// the motion of partners in a step, first order in the step, and by the discretisations
+/// of the two strands. Contacts are resolved only if points are closer to each other than
+/// the inner radius.
 ///
-/// A load takes one look into the broad phase per point, O(points + candidates); update()
+/// A load takes one query of the broad phase per point, O(points + candidates); update()
 /// is O(segments).
 class StrandInteraction {
  public:
-  /// points[k]: material points of strand k, a polyline. Throws InputError when a strand
-  /// has fewer than two, or the law is none.
+  /// points[k]: material points of strand k, a polyline. Throws InputError if a strand
+  /// has fewer than two, or the law is invalid.
   StrandInteraction(const Parameters& parameters, std::vector<int> points);
   StrandInteraction(const ContactLaw& law, std::vector<int> points);
 
-  /// Refers to *this, which outlives it and does not move. No load before update(). Keeps
-  /// what it found last: one thread at a time, though others may ask other effects.
+  /// Refers to *this, which must outlive it and not move. No load before update(). Caches
+  /// its last search: one thread at a time per effect; other threads may use others.
   std::unique_ptr<const Effect> effect(std::size_t strand) const;
 
   /// At the start and after every step: positions and velocities (3 each) of all strands'
   /// material points, strand after strand.
   void update(In x, In v);
 
-  // Readouts of the strands as they are after update(). Strands are looked at every
-  // inner radius or closer (up to 64 times a segment); not for every step.
-  /// Of strands that come closer to each other than the inner radius.
+  // Readouts of the strands after update(), too costly for every step. Strands are
+  // sampled at most one inner radius apart (up to 64 samples a segment).
+  /// Number of pairs of strands closer to each other than the inner radius.
   long touching_pairs() const;
-  /// From a strand to the nearest other one, the mean over the length of all strands, m:
-  /// the less, the more cluttered. Infinite for one strand only or before update().
+  /// Distance from a strand to the nearest other one, mean over the length of all
+  /// strands, m. Infinite for a single strand or before update().
   double mean_distance() const;
 
   const SegmentGrid& grid() const { return grid_; }
@@ -61,8 +61,8 @@ class StrandInteraction {
   /// The nearest point of another strand.
   struct Contact {
     int segment;
-    double s;  // on it
-    Vec gap;   // from there
+    double s;  // position on its segment
+    Vec gap;   // vector from there
   };
   template <class F>
   void each_contact(const SegmentGrid& grid, double reach, int strand, const Vec& x,

@@ -16,10 +16,10 @@ std::span<const Parameter> tether_parameters();
 ///     E = s (k |d|^2/2 + P sqrt(|d|^2 + soft^2)),  power = s c (X' - v).v + dE/dt at
 ///     fixed x
 ///
-/// a spring k (N/m) and a damper c (N s/m), and a pull of P (N) that fades within `soft`
-/// of its target. s rises from 0 to 1 in `ramp` seconds from t_on and falls back from
-/// t_off, 3 y^2 - 2 y^3, C^1. The point is the one that carries the place `at` (0 root, 1
-/// tip) along the accumulated lengths of the points. O(points) to find it.
+/// a spring k (N/m), a damper c (N s/m), and a pull of P (N) that fades within `soft` of
+/// the target. s rises from 0 to 1 in `ramp` seconds from t_on and falls back from t_off
+/// as 3 y^2 - 2 y^3, C^1. The tethered point carries the arc position `at` (0 root, 1
+/// tip) along the accumulated lengths of the points; finding it is O(points).
 class Tether final : public Effect {
  public:
   struct Settings {
@@ -46,9 +46,9 @@ class Tether final : public Effect {
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
 
-  /// Where it pulls to, for pictures.
+  /// Position of the target, for pictures.
   Vec target(double t) const;
-  /// The point it pulls at, an index.
+  /// Index of the tethered point.
   std::size_t held(const Points& p) const;
 
  private:
@@ -56,7 +56,7 @@ class Tether final : public Effect {
   double strength(double t) const;
   double strength_rate(double t) const;
   double soft_length(const Vec& d) const;
-  Vec attraction(const Vec& d) const;  // the load of springs and pull at s = 1
+  Vec attraction(const Vec& d) const;  // load of spring and pull at s = 1
   double energy(const Vec& d) const;   // at s = 1
 
   Settings s_;

@@ -83,7 +83,7 @@ std::unique_ptr<const Effect> in_wind(const Law& law, const Parameters& paramete
   return blow(SteadyWind{velocity});
 }
 
-/// Of law = force, as a force per length and velocity.
+/// The law for law = force, as a force per length and velocity.
 StandingAirLaw standing_law(const Parameters& parameters) {
   const Vec velocity = parameters.vec("velocity_m_s");
   const double speed = norm(velocity);

@@ -12,10 +12,10 @@ namespace tress::models {
 std::span<const Parameter> wind_parameters();
 
 /// Load of moving air: a field of effects/wind_field.h (`profile`) and a law of
-/// effects/air_law.h (`law`) for the velocity relative to it, so that it holds the drag
-/// as well: name it instead of linear_drag or quadratic_drag. law = force is a given
-/// force per length along the wind, whatever the strand does: F w/|U|, with F in N/m and
-/// U the velocity given. Throws InputError when that is 0 with law = force.
+/// effects/air_law.h (`law`) for the relative velocity. It includes the drag, so use it
+/// instead of linear_drag or quadratic_drag. law = force is a given force per length
+/// along the wind, independent of the strand's motion: F w/|U|, with F in N/m and U the
+/// given velocity. Throws InputError if U = 0 with law = force.
 std::unique_ptr<const Effect> make_wind(const Parameters& parameters,
                                         const RootMotion& head);
 

@@ -7,7 +7,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Uniform numbers that do not depend on the standard library, as its distributions do.
+/// Uniform numbers independent of the standard library's implementation.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : bits_(seed) {}
@@ -27,7 +27,7 @@ class Dice {
 
 Vec unit(const Vec& a) { return (1 / norm(a)) * a; }
 
-/// A direction across k, all alike probable.
+/// A uniformly distributed direction orthogonal to k.
 Vec across(Dice& dice, const Vec& k) {
   for (;;) {
     const Vec e = cross(k, dice.direction());

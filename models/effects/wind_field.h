@@ -8,8 +8,8 @@
 #include "contract/layers.h"
 #include "math/mat3.h"
 
-/// Velocity fields of the air, w(t, x) in m/s. at(t) is the flow at one instant;
-/// a uniform flow never looks at x.
+/// Velocity fields of the air, w(t, x) in m/s. at(t) is the flow at one instant; a
+/// uniform flow does not read x.
 namespace tress::models {
 
 struct UniformFlow {
@@ -50,9 +50,9 @@ struct SineWind {
 ///     psi = sum_m (e_m x k_m)/|k_m|^2 sin a_m,    w = U + sum_m e_m cos a_m,
 ///     a_m = k_m.(x - U t) + omega_m t + phase_m,  e_m.k_m = 0
 ///
-/// of isotropic random directions and of wave lengths from 2 to 1/2 of the given one. As
-/// eddies of size l in turbulence [Kolmogorov 1941] their speeds go as l^(1/3) and their
-/// times as l^(2/3). All derivatives are exact. `waves` sines per point and call.
+/// with isotropic random directions and wave lengths from 2 to 1/2 of the given one.
+/// Speeds scale as l^(1/3) and times as l^(2/3), as for eddies of size l in turbulence
+/// [Kolmogorov 1941]. All derivatives are exact. Cost: `waves` sines per point and call.
 class Gusts {
  public:
   static constexpr int waves = 24;
@@ -65,9 +65,9 @@ class Gusts {
     Mat3 gradient(const Vec& x) const { return gusts->gradient(t, x); }
   };
 
-  /// `rms`: of |w - U| over space (m/s); `length`: typical wave length (m, > 0); `time`:
-  /// of one turn of an eddy that long, seen by who travels with the wind (s, > 0). Equal
-  /// seeds give equal fields on every machine.
+  /// `rms`: root mean square of |w - U| over space (m/s); `length`: typical wave length
+  /// (m, > 0); `time`: turnover time of an eddy of that length in the frame of the mean
+  /// wind (s, > 0). Equal seeds give equal fields on every machine.
   Gusts(Vec mean, double rms, double length, double time, std::uint64_t seed);
 
   Flow at(double t) const { return {this, t}; }

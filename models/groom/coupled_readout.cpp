@@ -1,4 +1,4 @@
-// What strands that are one system tell of themselves: energy, momentum, places.
+// Readouts of strands that form one system: energy, momentum, positions.
 #include <algorithm>
 
 #include "models/groom/coupled_strands.h"

@@ -200,7 +200,8 @@ void CoupledStrands::reset() {
   if (contacts_->renew(x_)) build_matrix();
 }
 
-/// Where the pairs were found, then of each strand how many numbers and these.
+/// Positions at which the pairs were found, then per strand the size and data of its
+/// memory.
 std::vector<double> CoupledStrands::memory() const {
   std::vector<double> all = contacts_->made_at();
   for (const auto& strand : strands_) {

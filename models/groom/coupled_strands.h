@@ -16,23 +16,23 @@ namespace tress::models {
 ///
 ///     r = (r_1, ..., r_S) - P^T f,    x = P q + prescribed(t)
 ///
-/// with f the contact forces on the material points x (StrandContacts), both ways at the
-/// state of now and exactly opposite, so linear momentum is kept; drag acts
-/// across the gap, not along it, and angular momentum goes with it. The tangent has the
-/// strands' own on its diagonal and the contacts' between strands, and is factored sparse
-/// by KLU; the mass alone (w.vel = w.pos = 0) couples no strands, and each solves its
-/// own. The pattern follows the pairs of segments that may touch: accept() says true
-/// where they have changed, since the factors are gone; there is no SparseForm, whose
-/// pattern would be fixed. Contacts of points that move more than an eighth of the law's
-/// reach within one step may be missed in that step; before a start from any other than
-/// the initial state, accept() it.
+/// with f the contact forces on the material points x (StrandContacts), in both
+/// directions at the current state and exactly opposite, so linear momentum is conserved;
+/// drag acts across the gap, not along it, so angular momentum is not. The tangent has
+/// the strands' tangents on its diagonal and those of the contacts between strands, and
+/// is factored sparse by KLU; the mass alone (w.vel = w.pos = 0) couples no strands, and
+/// each strand solves with its own. The pattern follows the pairs of segments that may
+/// touch: accept() returns true if they have changed, since the factors are then invalid;
+/// there is no SparseForm, whose pattern would be fixed. Contacts of points that move
+/// more than an eighth of the law's reach within one step may be missed in that step.
+/// Before a start from a state other than the initial one, accept() it.
 class CoupledStrands final : public System, private Energetics, private MaterialPoints {
  public:
   /// Throws InputError, naming the strand, unless each has a sparse tangent, no
   /// constraints (their multipliers need a fixed pattern) and material points that are
   /// fixed means of coordinates (MaterialPoints::mean).
   CoupledStrands(std::vector<std::unique_ptr<System>> strands, const ContactLaw& law);
-  /// Of strand_interaction_parameters().
+  /// From the values of strand_interaction_parameters().
   CoupledStrands(std::vector<std::unique_ptr<System>> strands,
                  const Parameters& parameters);
 
@@ -49,12 +49,12 @@ class CoupledStrands final : public System, private Energetics, private Material
   void recall(In memory) override;
   std::string not_finite(double t, In q, In v) override;
 
-  /// Null unless all strands have it.
+  /// Null unless all strands have Energetics.
   Energetics* energetics() override;
   MaterialPoints* material_points() override { return this; }
 
   const StrandContacts& contacts() const { return *contacts_; }
-  /// The part of energy() that no strand has by itself, J.
+  /// The part of energy() that belongs to the contacts, J.
   double contact_potential(double t, In q, In v);
 
  private:
@@ -81,18 +81,18 @@ class CoupledStrands final : public System, private Energetics, private Material
 
   std::vector<std::unique_ptr<System>> strands_;
   std::vector<int> first_{0};        // coordinates before each strand; all
-  std::vector<int> first_point_{0};  // the same of material points
-  std::vector<Mean> means_;          // of all points, over all coordinates
+  std::vector<int> first_point_{0};  // material points before each strand; all
+  std::vector<Mean> means_;          // all points, over all coordinates
   std::unique_ptr<StrandContacts> contacts_;
-  std::vector<double> x_, u_;  // of all points
+  std::vector<double> x_, u_;  // all points
 
-  Pattern coupling_;  // of the contacts' part of the tangent
+  Pattern coupling_;  // pattern of the contacts' part of the tangent
   std::vector<double> coupling_values_;
   std::vector<std::vector<double>> strand_values_;
   std::unique_ptr<BlockMatrix> matrix_;  // a block per strand, then the coupling
   std::unique_ptr<LinearSolver> solver_;
   Status factored_ = Status::retry;
-  bool uncoupled_ = false;  // factored: each strand's own mass
+  bool uncoupled_ = false;  // each strand's own mass is factored
 };
 
 }  // namespace tress::models

@@ -10,23 +10,23 @@
 
 namespace tress::models {
 
-/// Contacts between the polylines of many strands, both ways: samples stand on every
-/// segment, at first no farther apart than half the inner radius, and each meets the
-/// nearest point of every other strand within reach with half of its length, since what
-/// it meets has samples too. Only pairs of segments in a list meet; it holds all that may
-/// come within reach while no point has moved more than a quarter of the reach since it
-/// was made.
+/// Contacts between the polylines of many strands, in both directions. Every segment has
+/// samples, initially at most half the inner radius apart; each interacts with the
+/// nearest point of every other strand within reach, with half of its length because the
+/// other strand has samples too. Only listed pairs of segments interact; the list holds
+/// all that may come within reach while no point has moved more than a quarter of the
+/// reach since the list was made.
 class StrandContacts {
  public:
-  /// points[k] >= 2: material points of strand k. x: where they all are at first (3
-  /// each), which says how long segments are.
+  /// points[k] >= 2: material points of strand k. x: initial positions of all points (3
+  /// each), which determine the lengths of segments.
   StrandContacts(const ContactLaw& law, std::vector<int> points, In x);
 
-  /// Makes the list anew if a point has moved half as far as it may. True: other pairs.
+  /// Rebuilds the list if a point has moved half as far as it may. True if pairs changed.
   bool update(In x);
-  /// Makes it at x whatever has moved.
+  /// Rebuilds the list at x in any case.
   bool renew(In x);
-  /// Where the list was made.
+  /// Positions at which the list was made.
   const std::vector<double>& made_at() const { return made_at_; }
 
   const ContactLaw& law() const { return law_; }
@@ -37,20 +37,20 @@ class StrandContacts {
     return std::span(partner_).subspan(
         first, static_cast<std::size_t>(start_[segment + 1]) - first);
   }
-  /// First of a segment's two points, among all.
+  /// Index of a segment's first point among all points.
   std::size_t point(int segment) const {
     return static_cast<std::size_t>(grid_.point(segment));
   }
 
-  /// of_contact(points, contact) for every contact of points at x with velocities v, in a
-  /// fixed order.
+  /// Calls of_contact(points, contact) for every contact of points at x with velocities
+  /// v, in a fixed order.
   template <class F>
   void each_contact(In x, In v, F of_contact) const;
 
  private:
   struct Samples {
     int count;
-    double length;  // of each, m
+    double length;  // per sample, m
   };
 
   ContactLaw law_;

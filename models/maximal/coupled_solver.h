@@ -9,14 +9,14 @@
 
 namespace tress::models {
 
-/// Solves with a matrix of fixed pattern and what contacts add between distant points, by
-/// KLU. The pattern follows the contacts: where other points touch than before, factor()
-/// allocates and analyses anew.
+/// Solves with a matrix of fixed pattern plus the contacts between distant points, by
+/// KLU. The pattern follows the contacts: if other points touch than before, factor()
+/// allocates and analyses again.
 class CoupledSolver {
  public:
   using Mean = MaterialPoints::Mean;
 
-  /// `uncoupled` must outlive this; means: the points of contacts.
+  /// `uncoupled` must outlive this; `means` are the contact points.
   CoupledSolver(const Pattern& uncoupled, std::vector<Mean> means)
       : uncoupled_(uncoupled), means_(std::move(means)) {}
 
@@ -29,7 +29,7 @@ class CoupledSolver {
 
   const Pattern& uncoupled_;
   std::vector<Mean> means_;
-  std::vector<FourPoints> touching_, touched_;  // now, and in the pattern
+  std::vector<FourPoints> touching_, touched_;  // current, and in the pattern
   Pattern coupling_;
   std::vector<double> coupling_values_;
   std::unique_ptr<BlockMatrix> matrix_;

@@ -21,25 +21,24 @@ namespace tress::models {
 ///
 /// The clamp is a wall half an edge before the first edge's middle: a joint of length l/2
 /// between the clamp's frame and edge 0, which makes the scheme second order. Rest
-/// strains are those between the chords of the natural shape. Mass is
-/// lumped at the nodes, rho (I1 + I2) l at the angles.
+/// strains are those between the chords of the natural shape. Mass is lumped at the
+/// nodes, rho (I1 + I2) l at the angles. A joint's twist is between -pi and pi.
 ///
-/// A joint's twist is between -pi and pi.
+/// Frames are functions of q relative to reference frames, which are fixed until an edge
+/// has turned by more than 60 degrees from its reference; accept() then takes the current
+/// frame as the reference and adds to theta' the turning of the old one, so neither
+/// frames nor spins jump.
 ///
-/// Frames are functions of q relative to reference frames that stay as they are until an
-/// edge has turned by more than 60 degrees from its own; accept() then takes the present
-/// frame as the reference and gives theta' the turning that the old one brought, so that
-/// neither frames nor spins jump.
-///
-/// The kinetic energy of the angles takes theta' for the section's spin, theta' + c . e'
-/// with c of rod_edge.h, so that M is constant: the difference grows with the angle from
-/// the reference. A free strand's angular momentum drifts by that, some (r/L)^2 of itself
-/// a radian whatever the step, and a new reference changes the energy by as much
-/// (tests/models/maximal/test_framed_spline.cpp). corde's quaternions have no such share.
+/// The kinetic energy of the angles uses theta' in place of the section's spin,
+/// theta' + c . e' with c of rod_edge.h, which keeps M constant; the difference grows
+/// with the angle from the reference. The angular momentum of a free strand therefore
+/// drifts by some (r/L)^2 of itself per radian for any step size, and a new reference
+/// changes the energy by as much (tests/models/maximal/test_framed_spline.cpp). The
+/// quaternions of corde do not have this error.
 struct DerOptions {
-  bool inextensible = false;         // |e| = l as constraints with multipliers
+  bool inextensible = false;         // |e| = l by constraints with multipliers
   bool quasi_static_twist = false;   // angles have no inertia
-  Tangent tangent = Tangent::exact;  // stiff: without second derivatives of strains
+  Tangent tangent = Tangent::exact;  // stiff: no second derivatives of strains
   LinearKind solver = LinearKind::automatic;
 };
 

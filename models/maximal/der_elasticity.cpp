@@ -8,9 +8,9 @@ namespace {
 
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-/// A matrix over (e, theta) of neighbouring edges, a row a pack for each edge, becomes
-/// one over (x, theta) of their nodes, the last of which has no angle: row 3 there stays
-/// as it is.
+/// Converts a matrix over (e, theta) of neighbouring edges, one pack per row and edge, to
+/// one over (x, theta) of their nodes. The last node has no angle: its row 3 is
+/// unchanged.
 template <int edges>
 void to_nodes(const Pack (&h)[4 * edges][edges], Pack (&m)[4 * (edges + 1)][edges + 1]) {
   // An edge is the node at its end less the one at its start.
@@ -134,8 +134,9 @@ void DerElasticity::add_force(const Placement& p, InOut f) noexcept {
   }
 }
 
-/// With T the turns of the two sides by (e, theta) before and behind the joint, and F the
-/// second derivative by those turns: T^T F T. Of the clamp's joint only what is behind.
+/// T^T F T, with T the rotations of the two sides by (e, theta) before and behind the
+/// joint, and F the second derivative by those rotations; for the clamp's joint only the
+/// side behind.
 void DerElasticity::joint_tangent(const Placement& p, std::size_t joint, double pos,
                                   double vel, Matrix& s) const noexcept {
   const RodJoint& data = joint_data_[joint];
@@ -229,7 +230,7 @@ void DerElasticity::add_slope_of_friction(const Placement& p, std::size_t joint,
   }
 }
 
-/// Stretching, and what the moments of its joints do on the second-order turn.
+/// Stretching, and the moments of the edge's joints times its second-order rotation.
 void DerElasticity::add_edge_tangent(std::size_t i, double pos,
                                      Pack (&h)[4]) const noexcept {
   const EdgeTurn& turn = edges_[i].turn;

@@ -17,7 +17,7 @@ class DerElasticity final : public Elasticity {
     double length;   // at rest, m
     double stretch;  // EA/l, N/m; 0: held by constraints
   };
-  /// `joints`: between neighbouring edges; with `walled` the one at the clamp first.
+  /// `joints`: between neighbouring edges; if `walled`, the clamp's joint comes first.
   DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints, bool walled,
                 Tangent tangent);
 
@@ -39,24 +39,25 @@ class DerElasticity final : public Elasticity {
     EdgeTurn turn;
     Frame frame;
     Vec spin;    // world components, rad/s
-    Vec moment;  // of the joints on the edge
+    Vec moment;  // exerted by the joints on the edge
   };
   struct Joint {
     JointStrain strain;
-    Vec rate;    // of the strains
+    Vec rate;    // rate of the strains
     Vec stress;  // elastic and friction
   };
-  /// Over (e, theta) of the edges before and behind a joint, a row a pack for each.
+  /// Matrix over (e, theta) of the edges before and behind a joint; one pack per row for
+  /// each edge.
   using Matrix = Pack[8][2];
 
   bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
-  /// Edge before a joint; meaningless for the clamp's.
+  /// Edge before a joint; undefined for the clamp's joint.
   std::size_t before(std::size_t joint) const { return walled_ ? joint - 1 : joint; }
   std::size_t after(std::size_t joint) const { return walled_ ? joint : joint + 1; }
   double theta(In z, std::size_t edge) const { return z[angles_ + edge]; }
 
-  /// Readies edges_ and joints_, unless they are those of this placement already: a step
-  /// asks for forces and tangent of the same one.
+  /// Computes edges_ and joints_ unless they belong to this placement already: a step
+  /// needs forces and tangent of the same one.
   void place(const Placement& p) noexcept;
   bool placed_at(const Placement& p) noexcept;  // and remembers p
   const Frame& frame_before(const Placement& p, std::size_t joint) const {

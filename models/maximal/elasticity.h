@@ -7,29 +7,29 @@
 
 namespace tress::models {
 
-/// A strand of redundant coordinates as its internal forces see it: all coordinates
-/// z = [held; q], those that the clamp prescribes first, their rates, and the clamp.
+/// State of a strand of redundant coordinates for its internal forces: all coordinates
+/// z = [held; q], those prescribed by the clamp first, their rates, and the clamp.
 struct Placement {
   const RootPose& root;
   In z, rate;
 };
 
-/// The energy and friction of an Elasticity as those of strains s(z, clamp), for the
+/// The energy and friction of an Elasticity in terms of strains s(z, clamp), for the
 /// ComplianceForm of contract/system.h.
 class StrainForm {
  public:
   virtual ~StrainForm() = default;
-  /// In the order along the strand from the root; coordinates are places in z.
+  /// Blocks in order along the strand from the root; coordinates are indices into z.
   virtual std::vector<ComplianceForm::Block> strain_blocks() const = 0;
-  /// Of block k at z, the values of its coordinates. The drift is what a turning clamp
-  /// makes of it.
+  /// Strain of block k at z, the values of its coordinates. The drift is the rate due to
+  /// a turning clamp.
   virtual void strain(std::size_t k, const RootPose& root, const double* z,
                       ComplianceForm::Value& value) noexcept = 0;
 };
 
 /// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are
-/// sets of coordinates (places in z) that one term couples; the tangent comes group by
-/// group, in the order of groups(), as square matrices.
+/// sets of coordinates (indices into z) coupled by one term; the tangent is delivered as
+/// one square matrix per group, in the order of groups().
 class Elasticity {
  public:
   virtual ~Elasticity() = default;
@@ -40,22 +40,22 @@ class Elasticity {
   virtual void add_tangent(const Placement& p, double pos, double vel,
                            GroupSum& s) noexcept = 0;
   virtual double energy(const Placement& p) noexcept = 0;  // J
-  /// W: what friction takes (negative) and a turning clamp gives.
+  /// Power (W) of friction (negative) and of a turning clamp.
   virtual double power(const Placement& p) noexcept = 0;
-  /// Angular momentum (kg m^2/s) of coordinates other than positions, of this inertia;
-  /// 0 where the model neglects it.
+  /// Angular momentum (kg m^2/s) of coordinates other than positions, with this inertia;
+  /// 0 if the model neglects it.
   virtual Vec spin(const Placement&, In /*inertia*/) noexcept { return {}; }
-  /// Largest |length/rest - 1| where nodes are not on the curve (see MaximalStrand).
+  /// Largest |length/rest - 1|, for nodes that are not on the curve (see MaximalStrand).
   virtual double stretch(const Placement&) noexcept { return 0; }
   /// Frame of the last edge, or of the section at the tip. Empty: there is none.
   virtual std::optional<Frame> end_frame(const Placement&) noexcept { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
-  /// True: the equations changed.
+  /// True if the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
-  virtual void reset() {}                                    // forgets every rebase()
+  virtual void reset() {}                                    // undoes every rebase()
   virtual std::vector<double> memory() const { return {}; }  // as System::memory()
   virtual void recall(In /*memory*/) {}
-  /// Null where the energy is not that of strains.
+  /// Null if the energy is not a function of strains.
   virtual StrainForm* strain_form() { return nullptr; }
 };
 

@@ -8,8 +8,8 @@
 
 namespace tress::models {
 
-/// Which entries of a sparse symmetric-pattern matrix square matrices over groups of
-/// coordinates touch. Coordinates below `held` are prescribed: their rows and columns are
+/// Maps square matrices over groups of coordinates to the entries of a sparse matrix of
+/// symmetric pattern. Coordinates below `held` are prescribed; their rows and columns are
 /// dropped.
 class Groups {
  public:
@@ -18,14 +18,14 @@ class Groups {
   /// Adds every pair of a group to `columns`, one list of rows per unprescribed
   /// coordinate.
   void couple(std::vector<std::vector<int>>& columns) const;
-  /// Looks up the places of all entries; call once.
+  /// Looks up the indices of all entries; call once.
   void bind(const Pattern& pattern);
 
   std::size_t size(std::size_t group) const { return start_[group + 1] - start_[group]; }
   std::span<const int> coordinates(std::size_t group) const {
     return std::span(coordinate_).subspan(start_[group], size(group));
   }
-  /// Places of the entries of a group's matrix, row by row; -1: dropped.
+  /// Indices of the entries of a group's matrix, row by row; -1: dropped.
   const int* places(std::size_t group) const { return &place_[first_place_[group]]; }
   std::size_t count() const { return start_.size() - 1; }
 
@@ -49,8 +49,8 @@ class GroupSum {
       if (place[k] >= 0) values_[static_cast<std::size_t>(place[k])] += matrix[k];
     }
   }
-  /// The same of rows of packs, of a group with one coordinate less than there are rows;
-  /// the last row and column are left out.
+  /// The same for rows of packs and a group with one coordinate fewer than rows; the last
+  /// row and column are omitted.
   template <std::size_t rows, std::size_t packs>
   void add(std::size_t group, const Pack (&matrix)[rows][packs]) {
     constexpr std::size_t size = rows - 1;

@@ -15,9 +15,9 @@ namespace tress::models {
 ///     kappa_1 = -(t+ . e2- - t- . e2+)/c,    kappa_2 = (t+ . e1- - t- . e1+)/c,
 ///     twist = atan2(e2- . e1+ - e1- . e2+, e1- . e1+ + e2- . e2+).
 ///
-/// These are the strains of [Bergou 2008, 2010], kb . (e1- + e1+)/2 and kb . (e2- +
-/// e2+)/2 with the curvature binormal kb = 2 t- x t+/c, and the angle left after t- is
-/// turned into t+ on the shortest way. |kappa| = 2 tan(angle/2). Not defined for
+/// These are the strains of [Bergou 2008, 2010]: kb . (e1- + e1+)/2 and kb . (e2- +
+/// e2+)/2 with the curvature binormal kb = 2 t- x t+/c, and the angle that remains after
+/// the minimal rotation of t- to t+. |kappa| = 2 tan(angle/2). Not defined for
 /// antiparallel tangents (c = 0).
 template <class T>
 Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
@@ -29,9 +29,9 @@ Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
           (dot(plus.e0, minus.e1) - dot(minus.e0, plus.e1)) / c};
 }
 
-/// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), all as the
-/// symmetric matrix of (u, w): six rows of one pack for u and one for w, whose last lanes
-/// are 0.
+/// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), stored as
+/// the symmetric matrix over (u, w): six rows of one pack for u and one for w, whose last
+/// lanes are 0.
 struct TwoVectorForm {
   Pack rows[6][2] = {};
 
@@ -87,8 +87,8 @@ struct TwoVectorForm {
 };
 
 /// The strains of a joint and their derivatives with respect to rotations exp([w-]x) and
-/// exp([w+]x) of the two frames, world components. The first ones depend on the relative
-/// rotation alone: d strain = gradient . (w+ - w-).
+/// exp([w+]x) of the two frames, world components. The first derivatives depend on the
+/// relative rotation only: d strain = gradient . (w+ - w-).
 struct JointStrain {
   JointStrain() = default;
   JointStrain(const Frame& minus, const Frame& plus)
@@ -101,14 +101,16 @@ struct JointStrain {
         curvature2((1 / c) * (cross(minus.e0, plus.e1) + cross(plus.e0, minus.e1)) +
                    value.z * k) {}
 
-  /// Sum of stress times second derivative of each strain: the terms of second order in
-  /// (w-, w+) are half of this form. With d = w+ - w-, on either side
-  /// m = (stress_2 e1 - stress_1 e2)/c, and s = (stress_1 kappa_1 + stress_2 kappa_2)/c:
+  /// Sum of stress times second derivative of each strain; the terms of second order in
+  /// (w-, w+) are half of this form. With d = w+ - w-,
+  /// m = (stress_2 e1 - stress_1 e2)/c on either side, and
+  /// s = (stress_1 kappa_1 + stress_2 kappa_2)/c:
   ///
   ///     (d . t-)(w- . (m+ + s t+)) - (d . (m+ + s t+))(w+ . t-) - (d . m-)(w- . t+)
   ///       + (d . t+)(w+ . m-) - s |d|^2 + (d . g)(d . k) + stress_0 w+ . (w- x twist),
   ///
-  /// g the gradients of the curvatures by twice their stresses and that of the twist.
+  /// where g sums the gradients of the curvatures, weighted by twice their stresses, and
+  /// that of the twist.
   TwoVectorForm second(const Frame& minus, const Frame& plus, const Vec& stress) const {
     TwoVectorForm form;
     const double s2 = stress.z / c, s1 = -stress.y / c;

@@ -11,8 +11,8 @@ namespace {
 
 using Bending = MassSpringOptions::Bending;
 
-// Of the slope of an altitude over the dihedral angle and an edge: below it the rest
-// shape is too straight for a tetrahedron.
+// Threshold for the slope of an altitude over the dihedral angle and an edge: below it
+// the rest shape is too straight for a tetrahedron.
 constexpr double flat = 1e-3;
 
 /// Springs of one strand at its rest shape.

@@ -1,5 +1,5 @@
-// What a strand of redundant coordinates tells of itself: energy, momentum, places, and
-// what is not finite.
+// Readouts of a strand of redundant coordinates: energy, momentum, positions, and the
+// location of numbers that are not finite.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -54,7 +54,7 @@ Status MaximalSystem::constrained_acceleration(double t, In q, In v, Out a) noex
   return kkt_->solve(a, lambda);
 }
 
-/// Work of the clamp: on node 0, to hold it on its path, and by constraints.
+/// Power of the clamp: on node 0, to hold it on its path, and through constraints.
 double MaximalSystem::root_power(double t, In q, In v) {
   if (strand_.root.fixed() || !regular_mass_) return 0;
   if (!strand_.clamped && !strand_.constraints) return 0;

@@ -139,7 +139,7 @@ Points MaximalSystem::points(Needs wanted) noexcept {
   return p;
 }
 
-/// load_ = of the effects on the mass points.
+/// load_ = loads of the effects on the mass points.
 void MaximalSystem::loads(double t) noexcept {
   if (strand_.effects.empty()) return;
   std::ranges::fill(load_, 0.0);
@@ -195,7 +195,8 @@ void MaximalSystem::add_mass(Weights w, GroupSum& sum) noexcept {
   }
 }
 
-/// s += what turning the tangents of the points p does to the loads. Overwrites blocks_.
+/// s += change of the loads due to rotation of the tangents at points p. Overwrites
+/// blocks_.
 void MaximalSystem::add_directions(double t, const Points& p, double pos,
                                    Out s) noexcept {
   std::ranges::fill(blocks_, 0.0);

@@ -15,12 +15,11 @@
 
 namespace tress::models {
 
-/// What a strand of redundant coordinates is made of. All coordinates are
-/// z = (x_0, ..., x_n, others): nodes' positions (m), then what the model adds (angles,
-/// quaternions). With `clamped` node 0 is the root and prescribed, z = [x_0; q], else q =
-/// z.
+/// The parts of a strand of redundant coordinates. All coordinates are z = (x_0, ...,
+/// x_n, others): node positions (m), then those of the model (angles, quaternions). If
+/// `clamped`, node 0 is the root and prescribed, z = [x_0; q]; otherwise q = z.
 struct MaximalStrand {
-  /// Carries mass and meets the effects.
+  /// A point that carries mass and receives the loads of effects.
   struct MassPoint {
     NodeMean at;
     double mass, length;  // kg, m
@@ -30,20 +29,20 @@ struct MaximalStrand {
   int nodes = 0;
   std::vector<double> z, rate;        // at t = 0
   std::vector<double> z_typ, z_rate;  // typical sizes of z and its rate
-  std::vector<double> inertia;        // of the other coordinates, >= 0
+  std::vector<double> inertia;        // inertia of the other coordinates, >= 0
   std::vector<MassPoint> mass;
   std::vector<NodeMean> shown;  // root and segments' ends: MaterialPoints
   std::vector<double> edges;    // m, between nodes at rest; none: Elasticity::stretch
   RootMotion root;
   std::unique_ptr<Elasticity> elasticity;
-  Frame to_tip;  // from Elasticity::end_frame to the section at the tip, as at rest
+  Frame to_tip;  // from Elasticity::end_frame to the section at the tip, at rest
   Effects effects;
-  /// Of q: its particles are the nodes that are not prescribed, its parameters the other
-  /// coordinates.
+  /// Constraints on q: particles are the nodes that are not prescribed, parameters the
+  /// other coordinates.
   std::unique_ptr<ConstraintSet> constraints;
   LinearKind solver = LinearKind::automatic;
   Tangent tangent =
-      Tangent::exact;  // stiff: loads as if the strand's tangent stood still
+      Tangent::exact;  // stiff: loads as if the strand's tangent were fixed
 };
 
 /// A strand of redundant coordinates behind the contract of contract/system.h:
@@ -51,10 +50,10 @@ struct MaximalStrand {
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///
 /// M is constant. Loads of effects act on the mass points. linearize assembles S in a
-/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. What couples
-/// distant points (Coupling) is in linearize and solve only; SparseForm has the blocks of
-/// each point by itself in its place. Where mass points are nodes and the elasticity has
-/// strains, so does the system (ComplianceForm).
+/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. Couplings of
+/// distant points (Coupling) are in linearize and solve only; SparseForm has only their
+/// diagonal blocks per point. If mass points are nodes and the elasticity has a
+/// StrainForm, the system has a ComplianceForm.
 class MaximalSystem final : public System,
                             private SparseForm,
                             private ExplicitForm,
@@ -125,21 +124,21 @@ class MaximalSystem final : public System,
   MaximalStrand strand_;
   Needs needs_;
   bool regular_mass_ = true;
-  Groups elastic_, massive_, inert_;  // of energies, of mass points, of other coordinates
+  Groups elastic_, massive_, inert_;  // for energies, mass points, other coordinates
   PointDirections directions_;
   Pattern pattern_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Coupling> contacts_;
-  std::unique_ptr<CoupledSolver> coupled_solver_;  // where effects have couplings
-  std::unique_ptr<LinearSolver> mass_solver_;      // made when first asked for
-  std::unique_ptr<Kkt> kkt_;                       // the same
+  std::unique_ptr<CoupledSolver> coupled_solver_;  // if effects have couplings
+  std::unique_ptr<LinearSolver> mass_solver_;      // made on first use
+  std::unique_ptr<Kkt> kkt_;                       // made on first use
   RootPose pose_;                                  // at pose_time_
   double pose_time_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> z_, rate_, force_;                        // all coordinates
-  std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // of the mass points
+  std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // per mass point
   std::vector<double> blocks_;                                  // (9 mass points)
   std::vector<double> values_, scratch_;
-  // Made when first asked for: blocks, and how many coordinates of each are prescribed.
+  // Made on first use: blocks, and the number of prescribed coordinates of each.
   std::vector<Block> compliant_;
   std::vector<std::size_t> prescribed_;
 };

@@ -10,7 +10,7 @@
 namespace tress::models {
 namespace {
 
-/// The path of a point fixed to the root's frame, as constraints want it.
+/// The path of a point fixed to the root's frame, for constraints.
 class RootPath final : public Curve {
  public:
   RootPath(RootMotion motion, const Vec& offset)
@@ -76,7 +76,7 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   parts.nodes = static_cast<int>(nodes);
   parts.z.assign(coordinates + others, 0.0);
   parts.rate = parts.z;
-  // Nodes matter by their places beside their neighbours.
+  // The relevant scale of a node is its distance from its neighbours.
   const double edge = strand.length() / static_cast<double>(initial.size());
   const double rate = typical_rate(strand);
   parts.z_typ.assign(coordinates, edge);

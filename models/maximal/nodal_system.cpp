@@ -273,7 +273,7 @@ double NodalSystem::power(double t, In q, In v) {
   const Points p =
       points({.position = true, .velocity = true, .tangent = needs_.tangent});
   for (const auto& effect : parts_.effects) sum += effect->power(t, p);
-  // The clamp holds node 0 on its path and turns against the moment of joint 0.
+  // The clamp moves node 0 on its path and rotates against the moment of joint 0.
   const Vec force = rod.mass[0] * pose_.a - motion_.load[0] - motion_.root_force();
   return sum + dot(force, pose_.v) -
          dot(pose_.frame * motion_.root_moment(), pose_.omega);
@@ -300,7 +300,7 @@ std::string NodalSystem::not_finite(double t, In q, In v) {
                        return not_finite_clamp(pose_.x, pose_.v, pose_.a);
                      },
                      [&] { return not_finite_load(parts_.effects, t, points(needs_)); },
-                     [&] {  // tension couples all of them: one tells of none other
+                     [&] {  // tension couples all entries: one does not locate the cause
                        std::vector<double> a(q.size());
                        static_cast<void>(acceleration(t, q, v, a));
                        return of_joints(a, "inertia or elasticity");

@@ -10,11 +10,11 @@
 
 namespace tress::models {
 
-/// What the system of kirchhoff_nodal.h is made of.
+/// The parts of the system of kirchhoff_nodal.h.
 struct NodalParts {
   StaggeredRod rod;
   RootMotion root;
-  std::vector<double> node_length;  // that effects meet, m
+  std::vector<double> node_length;  // length seen by effects, m
   std::vector<double> start;        // curvatures at t = 0
   double curvature = 1, rate = 1;   // typical sizes, 1/m and 1/s
   Tangent tangent = Tangent::exact;
@@ -43,7 +43,7 @@ class NodalSystem final : public System,
   MaterialPoints* material_points() override { return this; }
 
  private:
-  /// As many directions at once as fill the registers well.
+  /// Number of simultaneous directions, chosen to fill the registers.
   static constexpr int directions = 8;
   using Number = Dual<directions>;
 
@@ -67,18 +67,18 @@ class NodalSystem final : public System,
 
   NodalParts parts_;
   Needs needs_;
-  RootPose pose_;  // at the last time asked for
+  RootPose pose_;  // at the last requested time
   StaggeredMotion<double> motion_;
   StaggeredMotion<Number> moved_;
   std::vector<Number> q_, v_, a_;
-  std::vector<double> x_, u_, tangent_, load_;  // of the nodes, as effects see them
+  std::vector<double> x_, u_, tangent_, load_;  // per node, as seen by effects
   std::vector<double> load_by_x_, load_by_v_, load_by_t_;  // (9 nodes)
   std::vector<double> zero_;
   Pattern pattern_;
   std::vector<double> leading_by_q_,
-      leading_by_v_;  // of -a on the pattern, stiff tangent
+      leading_by_v_;  // derivatives of -a on the pattern, stiff tangent
   std::vector<double> values_;
-  Weights factored_;  // of the stiff tangent in solver_
+  Weights factored_;  // weights of the stiff tangent in solver_
   std::unique_ptr<LinearSolver> solver_;
 };
 

@@ -8,23 +8,24 @@
 namespace tress::models {
 
 /// Unit tangents of a strand at its mass points, t_i = d/|d| with d from the point before
-/// to the one behind, at the ends from or to the point itself, and what their derivatives
+/// to the one behind (at the ends from or to the point itself), and the contribution of
+/// their derivatives
 ///
 ///     dt_i = (I - t_i t_i^T) (dx_behind - dx_before)/|d|
 ///
-/// make of loads that depend on them. O(points).
+/// to the tangent of loads that depend on them. O(points).
 class PointDirections {
  public:
   /// `held` coordinates are prescribed.
   PointDirections(std::vector<NodeMean> points, int held);
 
-  /// From the places x of the points, (3 points) each.
+  /// Tangents t at positions x of the points, (3 points) each.
   void tangents(In x, Out t) const;
 
-  // For S: as those of Groups.
+  // As in Groups, for S.
   void couple(std::vector<std::vector<int>>& columns) const { groups_.couple(columns); }
   void bind(const Pattern& pattern) { groups_.bind(pattern); }
-  /// s += sum_i w_i blocks_i dt_i/dz, w_i the weights of point i; blocks (9 points)
+  /// s += sum_i w_i blocks_i dt_i/dz with w_i the weights of point i; blocks (9 points)
   /// row-major.
   void add_tangent(In x, In t, In blocks, Out s) const;
 
@@ -35,7 +36,7 @@ class PointDirections {
 
   std::vector<NodeMean> points_;
   Groups
-      groups_;  // of each point, from the first node of `before` to the last of `behind`
+      groups_;  // per point, from the first node of `before` to the last of `behind`
 };
 
 }  // namespace tress::models

@@ -10,8 +10,8 @@
 namespace tress::models {
 
 /// Material frame of the edge e (m) of a discrete rod at angle theta from its reference
-/// direction: with a = reference.e0 and t = e/|e|, the reference is turned from a to t on
-/// the shortest way [Bergou 2010] and then by theta about t. Not defined for t = -a.
+/// direction: with a = reference.e0 and t = e/|e|, the reference is turned by the minimal
+/// rotation from a to t [Bergou 2010], then by theta about t. Not defined for t = -a.
 template <class T>
 FrameOf<T> edge_frame(const Frame& reference, const Vec3<T>& e, const T& theta) {
   using std::cos;
@@ -24,13 +24,14 @@ FrameOf<T> edge_frame(const Frame& reference, const Vec3<T>& e, const T& theta) 
   return {t, m1, cross(t, m1)};
 }
 
-/// How the frame of an edge turns with its four coordinates y = (e, theta): by
+/// Rotation of the frame of an edge due to a change of its four coordinates
+/// y = (e, theta):
 ///
 ///     w(dy) = t x de/L + t (dtheta + c . de),    c = t x a/(L (1 + a . t)),
 ///
-/// c because turning the reference on the shortest way leaves a turn about t (the area
-/// that t sweeps on the sphere, seen from a). To second order the frame turns by
-/// w(dy) + Q(dy, dy)/2.
+/// where c accounts for the turn about t that the minimal rotation of the reference
+/// leaves (the area that t sweeps on the sphere, seen from a). To second order the frame
+/// turns by w(dy) + Q(dy, dy)/2.
 struct EdgeTurn {
   EdgeTurn() = default;
   EdgeTurn(const Vec& reference_tangent, const Vec& e)
@@ -43,7 +44,7 @@ struct EdgeTurn {
   Vec spin(const Vec& de, double dtheta) const {
     return (1 / length) * cross(t, de) + (dtheta + dot(c, de)) * t;
   }
-  /// The forces on e that have the work of a moment: moment . w = force . de + torque
+  /// The force on e that is work-conjugate to a moment: moment . w = force . de + torque
   /// dtheta, torque = moment . t.
   Vec force(const Vec& moment) const {
     return (1 / length) * cross(moment, t) + dot(moment, t) * c;
@@ -54,14 +55,14 @@ struct EdgeTurn {
     const Vec axis{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
     return spin(axis, 0);
   }
-  /// Its rows: a component of w by (e, theta).
+  /// Rows of that matrix: the derivatives of a component of w by (e, theta).
   std::array<Pack, 3> rows() const {
     const Vec u = (1 / length) * t;  // t x de/L = [u]x de
     return {Pack(t.x * c.x, t.x * c.y - u.z, t.x * c.z + u.y, t.x),
             Pack(t.y * c.x + u.z, t.y * c.y, t.y * c.z - u.x, t.y),
             Pack(t.z * c.x - u.y, t.z * c.y + u.x, t.z * c.z, t.z)};
   }
-  /// h += factor moment . Q as a symmetric matrix (4 x 4), a row a pack.
+  /// h += factor moment . Q as a symmetric matrix (4 x 4), one pack per row.
   void add_second(double factor, const Vec& moment, Pack (&h)[4]) const {
     const double along = dot(moment, t);
     const Vec across = (1 / length) * (moment - along * t);
@@ -90,9 +91,9 @@ struct EdgeTurn {
   Vec c;
 };
 
-/// Gives an edge that has turned by more than 60 degrees from its reference its present
-/// frame as the new one, and theta' the turning that the old one brought, so that neither
-/// the frame nor its spin jumps. False: left as it was.
+/// If an edge has turned by more than 60 degrees from its reference, takes the current
+/// frame as the new reference and adds to theta' the turning of the old one, so neither
+/// the frame nor its spin jumps. False if nothing changed.
 inline bool renew_reference(Frame& reference, const Vec& e, const Vec& de, double& theta,
                             double& theta_rate) {
   constexpr double far_turned = 0.5;  // cosine

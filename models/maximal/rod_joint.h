@@ -15,13 +15,13 @@ struct RodJoint {
   Vec friction;   // moment per rate of strain, N m s
 };
 
-/// The joint of half of each neighbour; of a clamp (`before` null) and half of the first
-/// segment.
+/// The joint that represents half of each neighbour; for a clamp (`before` null), half of
+/// the first segment.
 RodJoint rod_joint(const Material& material, const Segment* before, const Segment& after,
                    const Vec& rest);
 
-/// h over the edge from node to node and `others` more coordinates becomes a matrix over
-/// the two nodes and the others.
+/// Converts h over the edge between two nodes and `others` more coordinates to a matrix
+/// over the two nodes and the others.
 template <int others>
 void to_nodes(const double (&h)[3 + others][3 + others],
               double (&m)[6 + others][6 + others]) {

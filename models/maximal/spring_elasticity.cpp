@@ -16,7 +16,7 @@ constexpr bool has_metric = requires(const Strain s, const Vec* e,
   s.metric(e, m);
 };
 
-/// A spring as it stands.
+/// A spring in its current state.
 template <class Strain>
 struct Stretched {
   static constexpr int edges = Strain::edges;
@@ -99,7 +99,7 @@ void add_filtered(const Stretched<Strain>& now, double pos,
   }
 }
 
-/// A matrix over edges as one over the nodes at their ends.
+/// Converts a matrix over edges to one over the nodes at their ends.
 template <int edges>
 void to_nodes(const EdgeMatrix<edges>& of_edges, EdgeMatrix<edges + 1>& of_nodes) {
   for (int i = 0; i < of_edges.size; ++i) {
@@ -189,7 +189,7 @@ double SpringElasticity::energy(const Placement& p) noexcept {
   return sum;
 }
 
-/// A turning clamp changes s faster than the nodes do: by s' less what they bring.
+/// A turning clamp adds to the rate of s: s' minus the contribution of the nodes.
 double SpringElasticity::power(const Placement& p) noexcept {
   double sum = 0;
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {

@@ -14,25 +14,24 @@ template <class Strain>
 struct Spring {
   Strain strain;
   std::size_t first = 0;  // edge
-  double stiffness = 0;   // k: N/m, or N m where s is a number
-  double friction = 0;    // c: the same times s
-  double rest = 0;        // of s
+  double stiffness = 0;   // k: N/m, or N m if s is dimensionless
+  double friction = 0;    // c: unit of k times s
+  double rest = 0;        // rest value of s
 };
 
-/// All springs of a chain of nodes z = (x_0, ..., x_n). Strains at the wall turn with the
-/// clamp.
+/// All springs of a chain of nodes z = (x_0, ..., x_n). Wall strains turn with the clamp.
 using Springs =
     std::tuple<std::vector<Spring<Chord<1>>>, std::vector<Spring<Chord<2>>>,
                std::vector<Spring<Hinge>>, std::vector<Spring<Altitude>>,
                std::vector<Spring<WallBend>>, std::vector<Spring<WallAltitude>>>;
 
-/// Which terms df/dz has. With g the gradient of s,
+/// The terms included in df/dz. With g the gradient of s,
 ///
 ///     exact      k g g^T + (k (s - rest) + c s') H + c g (ds'/dz)^T
 ///     filtered   k g g^T + k max(0, 1 - rest/s) (J^T J - g g^T), s = |b|, J = db/dz:
 ///
-/// what a spring under pressure does across its direction is dropped, and with it all
-/// that could make the matrix indefinite or, with friction, unsymmetric.
+/// filtered drops the transverse term of a spring under compression, and with it all
+/// terms that could make the matrix indefinite or, with friction, unsymmetric.
 enum class SpringTangent { exact, filtered };
 
 class SpringElasticity final : public Elasticity, private StrainForm {
@@ -54,7 +53,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
 
   Springs springs_;
   SpringTangent tangent_;
-  std::vector<std::size_t> along_;  // numbers of all springs, from the root to the tip
+  std::vector<std::size_t> along_;  // indices of all springs, from root to tip
 };
 
 }  // namespace tress::models

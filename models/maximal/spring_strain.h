@@ -5,11 +5,10 @@
 #include "contract/layers.h"
 #include "math/frame.h"
 
-/// What the springs of a chain of points measure, each a function of neighbouring edges e
+/// Strains of the springs of a chain of points, each a function of neighbouring edges e
 /// (m). `value` is the definition, for any scalar; `gradient` and `hessian` are its
-/// derivatives, written out. A strain that is the length of a vector b also has `metric`,
-/// J^T J with J = db/de, which is what is left of the second derivative of |b|^2/2
-/// without that of b.
+/// closed-form derivatives. A strain that is the length of a vector b also has `metric`,
+/// J^T J with J = db/de, the second derivative of |b|^2/2 without that of b.
 namespace tress::models {
 
 /// A matrix over edges, row-major in blocks of 3 x 3.
@@ -90,8 +89,8 @@ struct Chord {
 
 /// Angle between two edges, as the length of the curvature binormal (kb, delta),
 /// kb = 2 e0 x e1/(|e0| |e1| + e0 . e1), so |kb| = 2 tan(angle/2) [Bergou et al. 2008].
-/// Three points have no direction in which a straight joint would bend: |kb| has a kink
-/// there, which delta rounds off. Not defined for edges that point against each other.
+/// Three points do not define the bending direction of a straight joint: |kb| has a kink
+/// there, which delta rounds off. Not defined for antiparallel edges.
 struct Hinge {
   static constexpr int edges = 2;
   static constexpr double delta = 1e-6;
@@ -123,7 +122,7 @@ struct Hinge {
 };
 
 /// Altitude of the tetrahedron of three edges (m): the signed distance between its
-/// diagonals e0 + e1 and e1 + e2, of a gently bent strand the shortest of the seven,
+/// diagonals e0 + e1 and e1 + e2, the shortest of its seven for a gently bent strand,
 ///
 ///     h = e0 . (e1 x e2)/sqrt(|n|^2 + floor),   n = (e0 + e1) x (e1 + e2);
 ///
@@ -142,7 +141,7 @@ struct Altitude {
   void hessian(const Vec* e, EdgeMatrix<3>& h) const;
 };
 
-/// The same with a wall's tangent as the first edge, `length` long.
+/// Altitude with a wall's tangent of length `length` as the first edge.
 struct WallAltitude {
   static constexpr int edges = 2;
   double floor = 0, length = 0;

@@ -7,25 +7,26 @@
 
 namespace tress::models {
 
-/// A clamped rod cut for kirchhoff_nodal.h: n edges between the nodes 0 (at the clamp) to
-/// n; joint j turns edge j from edge j - 1, joint 0 from the clamp.
+/// A clamped rod discretised for kirchhoff_nodal.h: n edges between nodes 0 (at the
+/// clamp) to n; joint j turns edge j relative to edge j - 1, joint 0 relative to the
+/// clamp.
 struct StaggeredRod {
   std::vector<double> length,
-      rotor;                 // of edges: m, and inertia about the tangent, kg m^2
-  std::vector<double> mass;  // of nodes, kg
-  std::vector<double> arc;   // that a joint stands for, m
+      rotor;                 // per edge: m, and inertia about the tangent, kg m^2
+  std::vector<double> mass;  // per node, kg
+  std::vector<double> arc;   // arc length per joint, m
   std::vector<RodJoint> joints;
 
   std::size_t edges() const { return length.size(); }
 };
 
-/// A constant times a vector: a third of the work of a product of derivative numbers.
+/// A constant times a vector, at a third of the cost of a product of derivative numbers.
 template <class T>
 Vec3<T> scaled(double s, const Vec3<T>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 
-/// cay(phi), seen from the frame that it turns, with c of kirchhoff_nodal.h:
+/// cay(phi) in the components of the frame that it turns, with c of kirchhoff_nodal.h:
 /// (1 - c |phi|^2/2) + c [phi]x + c phi phi^T/2.
 template <class T>
 FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
@@ -37,8 +38,9 @@ FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
           {xz + w.y, yz - w.x, T(1) - xx - yy}};
 }
 
-/// Its motion for joint curvatures q (1/m; twist, curvature about e1, about e2) and their
-/// rates; equations in kirchhoff_nodal.h. T is double or a derivative number. O(n).
+/// Motion of a StaggeredRod for joint curvatures q (1/m; twist, curvature about e1, about
+/// e2) and their rates; equations in kirchhoff_nodal.h. T is double or a derivative
+/// number. O(n).
 template <class T>
 class StaggeredMotion {
  public:
@@ -54,20 +56,20 @@ class StaggeredMotion {
 
   void place(const StaggeredRod& rod, const RootPose& root, std::span<const T> q,
              std::span<const T> rate) noexcept;
-  /// After `place`, with `load` of the nodes.
+  /// Call after `place`, with `load` of the nodes set.
   void accelerate(const StaggeredRod& rod, const RootPose& root, std::span<T> a) noexcept;
 
   const Vec3<T>& tangent(std::size_t edge) const { return edges_[edge].frame.e0; }
   const T& roll(std::size_t edge) const { return edges_[edge].roll; }
   const Vec3<T>& strain(std::size_t joint) const { return joints_[joint].strain; }
   const Vec3<T>& strain_rate(std::size_t joint) const { return joints_[joint].rate; }
-  /// After `accelerate`: of the first edge on the clamp, and its moment in the clamp's
-  /// frame.
+  /// After `accelerate`: force of the first edge on the clamp, and its moment in the
+  /// clamp's frame.
   const Vec3<T>& root_force() const { return force_.front(); }
   Vec3<T> root_moment() const { return moment(joints_.front(), 0.5); }
 
-  std::vector<Vec3<T>> x, v;  // of nodes: m, m/s; set by `place`
-  std::vector<Vec3<T>> load;  // on nodes, N
+  std::vector<Vec3<T>> x, v;  // nodes: m, m/s; set by `place`
+  std::vector<Vec3<T>> load;  // nodes, N
 
  private:
   struct Edge {
@@ -102,8 +104,8 @@ class StaggeredMotion {
   std::vector<Edge> edges_;
   std::vector<Joint> joints_;
   std::vector<Row> rows_;
-  std::vector<Vec3<T>> force_;         // of edges, 0 beyond the last
-  std::vector<Vec3<T>> acceleration_;  // of nodes
+  std::vector<Vec3<T>> force_;         // edges, 0 beyond the last
+  std::vector<Vec3<T>> acceleration_;  // nodes
 };
 
 template <class T>
@@ -131,7 +133,7 @@ void StaggeredMotion<T>::place(const StaggeredRod& rod, const RootPose& root,
   }
 }
 
-/// Force across the edges and turning about them from the balance of moments.
+/// Transverse forces of the edges and rotation about them from the balance of moments.
 template <class T>
 void StaggeredMotion<T>::shear(const StaggeredRod& rod) noexcept {
   const auto times = [](const Vec& k, const Vec3<T>& y) {
@@ -145,7 +147,7 @@ void StaggeredMotion<T>::shear(const StaggeredRod& rod) noexcept {
   }
   for (std::size_t j = 0; j < edges_.size(); ++j) {
     Edge& edge = edges_[j];
-    // In the edge's own frame: moments of neighbours are nearly equal there, and their
+    // In the edge's own frame, moments of neighbours are nearly equal, and their
     // difference loses no digits to a rotation.
     Vec3<T> gain = scaled(-1, moment(joints_[j], -0.5));
     if (j + 1 < edges_.size()) gain = gain + moment(joints_[j + 1], 0.5);
@@ -157,7 +159,7 @@ void StaggeredMotion<T>::shear(const StaggeredRod& rod) noexcept {
   }
 }
 
-/// Adds the tension to the forces, and its share to the accelerations.
+/// Adds the tension to the forces, and its contribution to the accelerations.
 template <class T>
 void StaggeredMotion<T>::tension(const StaggeredRod& rod) noexcept {
   const std::size_t n = edges_.size();

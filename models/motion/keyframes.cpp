@@ -27,7 +27,7 @@ void check(const std::vector<double>& times, const std::vector<double>& values) 
   if (!good) refuse("keyframes are not in order");
 }
 
-/// The knots with the two more; their x is 0 and not known yet.
+/// The knots including the two additional ones, whose x is unknown and set to 0.
 Knots with_two_more(const std::vector<double>& times, const std::vector<double>& values) {
   const std::size_t last = times.size() - 1;
   const double part = last == 1 ? 1.0 / 3 : 0.5;

@@ -10,7 +10,7 @@
 
 namespace tress::models {
 
-/// A twice differentiable function of time at one instant.
+/// Values at one instant of a twice differentiable function of time.
 struct SignalValue {
   double value = 0, rate = 0, acceleration = 0;
 };
@@ -23,21 +23,19 @@ Signal one_minus_cosine(double amplitude, double frequency);
 /// From 0 to `height` between t0 and t0 + duration (s, > 0, else InputError), C^2:
 /// height (6 x^5 - 15 x^4 + 10 x^3).
 Signal smooth_step(double height, double t0, double duration);
-/// Travels at `speed`, passes 0 at t0 and comes to rest by t0 + duration (s, > 0, else
-/// InputError) after another speed duration/2, C^2: rate speed (1 - 3 x^2 + 2 x^3).
+/// Moves at `speed`, passes 0 at t0 and comes to rest at t0 + duration (s, > 0, else
+/// InputError) after a further speed duration/2, C^2: rate speed (1 - 3 x^2 + 2 x^3).
 Signal stop(double speed, double t0, double duration);
 Signal sum(Signal a, Signal b);
 
-/// A cross-section of a strand in space: its centre (m) and its material frame, e0 the
-/// tangent.
+/// A cross-section of a strand in space: centre (m) and material frame, e0 the tangent.
 struct StrandPlace {
   Vec x;
   Frame frame;
 };
 
-/// Where the clamp is and how it moves: position in the world (m), frame (its e0 is the
-/// root tangent), and their first and second derivatives (angular ones in world
-/// components).
+/// Position and motion of the clamp: position in the world (m), frame (e0 is the root
+/// tangent), and their first and second derivatives (angular ones in world components).
 struct RootPose {
   Vec x, v, a;
   Frame frame;
@@ -46,7 +44,7 @@ struct RootPose {
 
 /// Prescribed rigid motion of a clamp: rotations about fixed world axes through one
 /// centre, then translations along fixed directions, each driven by a signal. With R_i
-/// the rotation of part i about axis a_i by the angle s_i(t), the first part first,
+/// the rotation of part i about axis a_i by the angle s_i(t), applied in order i = 1..n,
 ///
 ///     R = R_n ... R_1,   frame = R frame_0,   x = c + R (x_0 - c) + sum_j d_j s_j
 ///     omega <- R_i omega + s_i' a_i            (from omega = alpha = 0, i = 1..n)
@@ -55,7 +53,7 @@ struct RootPose {
 /// exact up to rounding; O(parts).
 struct RootMotion {
   struct Part {
-    Vec direction;  // of a translation: any length; of an axis: not 0, normalised
+    Vec direction;  // translation: any length; rotation axis: not 0, normalised
     Signal signal;
   };
   Vec position;               // at rest, m

@@ -6,10 +6,10 @@
 
 namespace tress::models {
 
-/// To `height` in `duration` from t = 0 on, and back in another: two smooth_steps.
+/// To `height` and back, each in `duration`, from t = 0 on: two smooth_steps.
 Signal there_and_back(double height, double duration);
 
-/// A body with one degree of freedom x, at rest until a force acts on it from t0 on:
+/// A body with one degree of freedom x, at rest until a force acts from t0 on:
 /// inertia x'' + damping x' + stiffness x = force sin(2 pi frequency (t - t0)).
 struct Oscillator {
   double inertia = 1;    // kg m^2 of an angle x, > 0
@@ -32,8 +32,8 @@ Signal driven_oscillator(const Oscillator& body, double t0);
 
 /// Through `values` at `times` (s, ascending, at least two), C^2 everywhere: at rest
 /// until the first time and after the last. A cubic spline whose first and last interval
-/// is halved by one more knot (a single one cut in three), for the two conditions that
-/// rest adds at either end, x' = x'' = 0. Throws InputError on other times.
+/// is halved by an additional knot (a single interval is divided in three), to satisfy
+/// the rest conditions x' = x'' = 0 at either end. Throws InputError on other times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
 }  // namespace tress::models

@@ -30,8 +30,8 @@ constexpr double spring_stiffness = 4530, spring_length = .07785, drive_torque =
 constexpr double square(double x) { return x * x; }
 
 // Two bodies hinged together, the outer one carried by `outer` and turned by `inner`:
-// T = h(q_inner) (v_outer^2 + v_inner v_outer), h = c cos + s sin. The only part of the
-// mass matrix that moves.
+// T = h(q_inner) (v_outer^2 + v_inner v_outer), h = c cos + s sin. The only variable part
+// of the mass matrix.
 struct Elbow {
   int inner;
   int outer;

@@ -12,14 +12,13 @@ namespace tress::models {
 /// Base of systems with a handful of coordinates: S(w) is a full n x n matrix. The kernel
 /// states the mechanics once, for any scalar:
 ///
-///     kernel.residual(t, q, v, a, r)     r = M a - f
-///     kernel.inertia(q, x, r)            r = M(q) x
-///     kernel.elastic(q, r)               r += dV/dq of its springs (only for
-///     Tangent::stiff)
+///     kernel.residual(t, q, v, a, r)   r = M a - f
+///     kernel.inertia(q, x, r)          r = M(q) x
+///     kernel.elastic(q, r)             r += dV/dq of its springs (Tangent::stiff only)
 ///
-/// and S(w) follows exactly: column k is the derivative of the residual along
-/// (a_k, v_k, q_k) = (w.acc, w.vel, w.pos), taken with derivative numbers. Cost O(n)
-/// residuals to linearize, O(n^3) to factor; no heap memory after construction.
+/// S(w) follows exactly: column k is the derivative of the residual along (a_k, v_k, q_k)
+/// = (w.acc, w.vel, w.pos), taken with derivative numbers. Cost: O(n) residuals to
+/// linearize, O(n^3) to factor; no heap memory after construction.
 template <int n, class Kernel>
 class DenseSystem : public System, public SparseForm {
  public:

@@ -7,7 +7,7 @@
 namespace tress::models {
 namespace {
 
-// Any per-coordinate vector summed as the term's angle is.
+// Sums a per-coordinate vector in the same way as the term's angle.
 double along(const LoopTerm& term, In x) {
   return term.j < 0 ? x[term.i] : x[term.i] + x[term.j];
 }

@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// One link of a planar loop: length * trig(angle), its angle q_i or q_i + q_j.
+/// One link of a planar loop: length * trig(angle) with angle q_i or q_i + q_j.
 struct LoopTerm {
   enum Trig { cosine, sine };
   int constraint;
@@ -18,9 +18,9 @@ struct LoopTerm {
 };
 
 /// Closure of planar linkages, g_k(q) = sum_terms length trig(q_i [+ q_j]) - target_k =
-/// 0. Every derivative of a term is the same term turned by quarter turns, so value,
-/// gradient, rate, bias and curvature all read one table. The system's tangent must be
-/// stored full (n x n, compressed columns). Cost O(terms).
+/// 0. Every derivative of a term is the same term rotated by quarter turns, so value,
+/// gradient, rate, bias and curvature use one table. The system's tangent must be stored
+/// full (n x n, compressed columns). Cost O(terms).
 class LoopClosure final : public ConstraintForm {
  public:
   LoopClosure(int coordinates, std::span<const LoopTerm> terms,
@@ -46,7 +46,7 @@ class LoopClosure final : public ConstraintForm {
   int coordinates_;
   std::vector<LoopTerm> terms_;
   std::vector<double> targets_;  // (m) m
-  std::vector<Slots> slots_;     // of each term in the values on pattern_
+  std::vector<Slots> slots_;     // per term, indices into the values on pattern_
   double typical_length_;
   Pattern pattern_;
 };

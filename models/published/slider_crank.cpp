@@ -14,9 +14,9 @@ namespace {
 constexpr int modes = 4;
 enum Coordinate { crank, rod, block, elastic_0, tip = elastic_0 + 3, coordinates };
 
-// Data of the Test Set, problem "crank" (SI). Its program cuts pi to 3.1415927, but its
-// end values were computed with pi: only so do the accelerations printed for the end
-// state follow from that state (13 digits; of the lateral ones 3 to 6 with the cut pi).
+// Data of the Test Set, problem "crank" (SI). Its program truncates pi to 3.1415927, but
+// its end values were computed with pi: only then do the printed end accelerations follow
+// from the end state (13 digits; with truncated pi the lateral ones match 3 to 6).
 using std::numbers::pi;
 constexpr double m2 = 0.151104, m3 = 0.075552;      // rod, block (kg)
 constexpr double l1 = 0.15, l2 = 0.30;              // crank, rod (m)

@@ -18,14 +18,14 @@ namespace tress::models {
 /// the slide's axis, block at the rod's end, both in m; phi_1 = Omega t, in rad). The
 /// rod's end moves with q_4, so the first two constraints carry it. lambda has the
 /// opposite sign to the Test Set's. No damping, no gravity, linear elasticity: the Test
-/// Set's default, the version its end values at t = 0.1 s belong to (references.h).
+/// Set's default, to which its end values at t = 0.1 s belong (references.h).
 /// `start = rigid` is its second start, on the rigid motion, which makes the rod ring.
 ///
 /// Source: B. Simeon, Modelling a flexible slider crank mechanism by a mixed system of
 /// DAEs and PDEs, Math. Modelling of Systems 2 (1996) 1-18; Mazzia & Magherini, Test Set
-/// for IVP Solvers, release 2.4, problem "crank". Where we differ: block position and
-/// velocities are completed from the constraints, which the nine printed digits meet only
-/// to 1e-9.
+/// for IVP Solvers, release 2.4, problem "crank". Difference here: block position and
+/// velocities are completed from the constraints, which the nine printed digits satisfy
+/// only to 1e-9.
 std::span<const Parameter> slider_crank_parameters();
 std::unique_ptr<System> make_slider_crank(const Parameters& parameters);
 

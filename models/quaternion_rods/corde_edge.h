@@ -11,14 +11,14 @@ namespace tress::models {
 ///
 ///     |e| - l,    e/|e| - t(q),    |q|^2 - 1:
 ///
-/// stretching, what couples the quaternion to the edge, and what keeps its norm.
+/// for stretching, the coupling of quaternion and edge, and the norm of the quaternion.
 /// A Part of strained.h.
 struct CordeEdge {
   static constexpr int strains = 5, coordinates = 7;
   double length;  // l at rest, m
   /// EA/l (N/m); l kappa three times, l nu (J).
   double stiffness[strains];
-  double friction[strains];  // of stretch only, N s/m
+  double friction[strains];  // stretch only, N s/m
 
   template <class T>
   void strain(const T* x, T* s) const {

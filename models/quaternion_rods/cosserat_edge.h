@@ -9,9 +9,8 @@ namespace tress::models {
 ///
 ///     R(q)^T e/l - e0,    |q|^2 - 1:
 ///
-/// stretch and shear along the two axes of the section, and what keeps the norm. R is the
-/// frame of q/|q|, so that norm and shear have nothing to do with each other. A Part of
-/// strained.h.
+/// for stretch, shear along the two axes of the section, and the norm of the quaternion.
+/// R is the frame of q/|q|, so norm and shear are independent. A Part of strained.h.
 struct CosseratEdge {
   static constexpr int strains = 4, coordinates = 7;
   double length;              // l at rest, m

@@ -9,7 +9,7 @@
 namespace tress::models {
 namespace {
 
-/// The frame of a clamp as the quaternion before q, and its rate.
+/// Stores the clamp's frame as the quaternion before q, and its rate.
 void store_wall(const RootPose& root, const Quaternion& q, double* x, double* rate) {
   const Quaternion wall = nearer(q, quaternion_of(root.frame));
   store_quaternion(wall, x);

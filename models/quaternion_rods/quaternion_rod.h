@@ -12,7 +12,8 @@
 namespace tress::models {
 
 /// Bending and twisting between neighbouring quaternions x = (q_j, q_{j+1}) of a rod, or
-/// of a clamp's frame and the first: strains 2 vec(conj(q_j) q_{j+1}) less those at rest.
+/// between a clamp's frame and the first: strains 2 vec(conj(q_j) q_{j+1}) minus those at
+/// rest.
 /// A Part of strained.h.
 struct QuaternionJoint {
   static constexpr int strains = 3, coordinates = 8;
@@ -34,12 +35,12 @@ struct QuaternionJoint {
 };
 
 /// Internal forces of a rod with a quaternion for every edge, coordinates z = (x_0, ...,
-/// x_n, q_0, ..., q_{n-1}). `Edge` is what an edge has beside the joints: a Part over
+/// x_n, q_0, ..., q_{n-1}). `Edge` holds the strains of a single edge: a Part over
 /// (x_{i+1} - x_i, q_i). Instantiated for CordeEdge and CosseratEdge.
 template <class Edge>
 class QuaternionRod final : public Elasticity, private StrainForm {
  public:
-  /// `joints`: between neighbouring edges; with `walled` the one at the clamp first.
+  /// `joints`: between neighbouring edges; if `walled`, the clamp's joint comes first.
   QuaternionRod(std::vector<Edge> edges, std::vector<QuaternionJoint> joints,
                 bool walled);
 
@@ -69,9 +70,9 @@ class QuaternionRod final : public Elasticity, private StrainForm {
                    ComplianceForm::Value& value) const noexcept;
 
   bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
-  /// Place in z of the quaternion of an edge.
+  /// Index in z of the quaternion of an edge.
   std::size_t at(std::size_t edge) const { return quaternions_ + 4 * edge; }
-  /// Edge behind a joint; the one before is its neighbour, or the clamp.
+  /// Edge behind a joint; before it is the previous edge, or the clamp.
   std::size_t behind(std::size_t joint) const { return walled_ ? joint : joint + 1; }
   Local<Edge> edge(const Placement& p, std::size_t i) const noexcept;
   Local<QuaternionJoint> joint(const Placement& p, std::size_t j) const noexcept;

@@ -19,28 +19,29 @@ namespace tress::models {
 ///     E = sum_edges l (C_s^T diag(EA, k GA, k GA) C_s + nu (|q|^2 - 1)^2)/2
 ///       + sum_joints C_b^T diag(GJ, EI1, EI2) C_b/(2 l),
 ///
-/// l of a joint the mean of its edges. The papers measure C_s in the world's axes, with
-/// one stiffness, and normalise quaternions after each correction; here C_s is in the
-/// section's axes and R of q/|q|, and norms are held by nu as in corde.h. So all of the
-/// model is an energy: xpbd drives it by its ComplianceForm, every other integrator by
-/// the contract, and the two can be compared. Joints, wall at the clamp and friction
-/// (gamma/l on C_b') are those of corde.h; there is no friction on C_s.
+/// l of a joint is the mean of its edges. The papers measure C_s in world axes, with one
+/// stiffness, and normalise quaternions after each correction; here C_s is in the
+/// section's axes, R is the frame of q/|q|, and nu keeps the norms as in corde.h. The
+/// whole model thus derives from an energy: xpbd uses its ComplianceForm, every other
+/// integrator the general contract, and the two can be compared. Joints, wall at the
+/// clamp and friction (gamma/l on C_b') are those of corde.h; there is no friction on
+/// C_s.
 ///
-/// Order 2 as corde; stretch and shear are the material's own, so that a light cantilever
-/// bends lower by 4 EI/(k GA L^2) of its deflection and nothing locks. The norm softens
-/// joints as there, by 2 (u l)^2/norm in bending of curvature u.
+/// Order 2 as corde. Stretch and shear have the material's stiffness, so a light
+/// cantilever bends lower by 4 EI/(k GA L^2) of its deflection and nothing locks. The
+/// norm softens joints as in corde.h, by 2 (u l)^2/norm in bending of curvature u.
 ///
-/// Quaternions have the section's inertia, (r/l)^2 of a node's, and edge_inertia rho A
-/// l^3 on top, by default none. The papers' weights are free numbers of the size of a
-/// node's, and xpbd needs them so: by the section's own inertia all corrections of shear
-/// go into quaternions, sweeps converge by thousands, and, as quaternions turn far on the
-/// way, to a motion that is not the energy's. With 1/2, nodes and quaternions of an edge
-/// weigh the same. It slows swinging and bending in the order l^2 of the scheme (the
-/// error of a release becomes 1.7 times as large) and twisting most: waves of twist run
-/// at sqrt(GJ/(rho A edge_inertia))/l instead of sqrt(G/rho).
+/// Quaternions have the section's inertia, (r/l)^2 of a node's, plus edge_inertia rho A
+/// l^3, by default none. The papers' weights are free parameters comparable to a node's,
+/// and xpbd needs such weights: with the section's inertia all corrections of shear go
+/// into quaternions, convergence takes thousands of sweeps, and because quaternions turn
+/// far on the way, the limit is not the motion of this energy. With 1/2, nodes and
+/// quaternions of an edge have equal weights. It slows swinging and bending in the order
+/// l^2 of the scheme (the error of a release becomes 1.7 times as large) and twisting
+/// most: waves of twist run at sqrt(GJ/(rho A edge_inertia))/l instead of sqrt(G/rho).
 ///
-/// The stiffest oscillations turn edges against their shear, by the section's inertia at
-/// sqrt(k GA/(2 rho I)) whatever l is: explicit methods have steps below the time of a
+/// The stiffest oscillations turn edges against their shear, with the section's inertia
+/// at sqrt(k GA/(2 rho I)) for any l: explicit methods need steps below the time of a
 /// shear wave across the section.
 ///
 /// Rotations between neighbours stay below 180 degrees, tensions below k GA (beyond it
@@ -48,7 +49,7 @@ namespace tress::models {
 struct XpbdCosseratOptions {
   double shear_factor = 0.9;  // k [Cowper 1966: 6 (1 + p)/(7 + 6 p), solid circle, p 1/2]
   double norm = 100;          // nu l^2/EI
-  double edge_inertia = 0;    // of quaternions beside the section's, over rho A l^3
+  double edge_inertia = 0;    // of quaternions, beyond the section's, over rho A l^3
   LinearKind solver = LinearKind::automatic;
 };
 

@@ -6,13 +6,13 @@
 
 namespace tress::models {
 
-/// A helix (helix.h) without twist that bends about e1 alone: with kappa = (0, k, 0), a
+/// A helix (helix.h) without twist that bends about e1 only: with kappa = (0, k, 0), a
 /// circular arc in the plane of e0 and e2,
 ///
 ///     P(s) = (S, 0, -k A),    E(s) e0 = (cos ks, 0, -sin ks),    W(s) e1 = s e1.
 ///
-/// Directions x and y have an e1 component alone. Derivatives with respect to k follow
-/// from d/dk of f(k^2) = k f1 and from S = s - k^2 B, so that none cancels at k = 0.
+/// Directions x and y have only an e1 component. Derivatives with respect to k follow
+/// from d/dk of f(k^2) = k f1 and from S = s - k^2 B, without cancellation at k = 0.
 /// R = double, or Pack: four elements.
 template <class R>
 class ArcOf {
@@ -81,7 +81,7 @@ class ArcOf {
       return second.at(p) + third.at(p);
     }
   };
-  /// Turns about e1.
+  /// Rotations about e1.
   struct Turn {
     R factor;
     template <class T>

@@ -10,7 +10,7 @@ namespace tress::models {
 
 /// Serial chain of rigid links with ball joints, bending and twisting springs and rest
 /// angles [Hadap, Magnenat-Thalmann 2001; Hadap 2006]. Unknowns are the rotation vectors
-/// of the joints (rad). A joint stands for half of each of the links beside it: stiffness
+/// of the joints (rad). A joint represents half of each adjacent link: stiffness
 /// diag(GJ, EI1, EI2)/l with l that arc length, so the joint at the clamp is twice as
 /// stiff. Solved by Featherstone's articulated-body sweep with stiffness and friction
 /// inside, or by the dense matrix of composite bodies. Throws InputError (see

@@ -5,7 +5,7 @@
 
 namespace tress::models {
 
-/// Chains of rigid links: compiled once, in articulated_chain.cpp.
+/// Chains of rigid links, instantiated in articulated_chain.cpp.
 extern template class ReducedSystem<BallLink, 1>;
 extern template class ReducedSystem<BallLink, 2>;
 extern template class ReducedSystem<BallLink, 3>;

@@ -7,9 +7,9 @@ namespace tress::models {
 
 /// Kinematics of a rigid straight link behind a ball joint: with the rotation vector
 /// theta of the joint, E = exp([theta]x), the link points along E e0 and turns with W(1)
-/// theta'. A joint is a helix of length 1 that goes nowhere, so its rotation and its
-/// angular velocity are those of Helix; positions are s E e0. The rotation vector is
-/// regular for |theta| < 2 pi, which a joint between links never needs to leave.
+/// theta'. Rotation and angular velocity of a joint are those of a Helix of length 1;
+/// positions are s E e0. The rotation vector is regular for |theta| < 2 pi, which
+/// suffices for a joint between links.
 /// R = double, or Pack: four links.
 template <class R>
 class BallLinkOf {
@@ -22,7 +22,7 @@ class BallLinkOf {
   struct At {
     T s;
   };
-  /// Every vector of a rigid link grows with the distance from the joint.
+  /// Every vector of a rigid link is proportional to the distance from the joint.
   struct Ray {
     Vec direction;
     template <class T>
@@ -44,7 +44,7 @@ class BallLinkOf {
   }
   At<R> tip() const { return {length_}; }
 
-  // Rotation of the joint; it does not depend on where on the link.
+  // Rotation of the joint, the same everywhere on the link.
   struct Turn {
     Vec value;
     template <class T>
@@ -58,7 +58,7 @@ class BallLinkOf {
     return {joint_.d2W(x1, x2, y).at(at_)};
   }
 
-  // With t = E e0: dt[x] = (W x) x t, and again.
+  // With t = E e0: dt[x] = (W x) x t, applied repeatedly.
   Ray position() const { return {along_}; }
   Ray first(const Vec& x) const { return {cross(w(x), along_)}; }
   Ray second(const Vec& x1, const Vec& x2) const {

@@ -23,11 +23,11 @@ template <int rows>
 }
 
 /// c (+)= sign a b for small column-major blocks of fixed size inside larger ones, given
-/// by their first entries and column strides; b, with a row stride too, may be
-/// transposed. Loops rather than Eigen's products: those unroll completely, and a 9 x 6 x
-/// 21 product then takes the compiler minutes. A column of c stays in vector registers;
-/// without `unroll 1` the compiler unrolls its loop before it comes to vectorise it, and
-/// the product takes more than twice as long; packs are vectors already. Inlined, so that
+/// by their first entries and column strides; b also has a row stride and may be
+/// transposed. Loops replace Eigen's products, which unroll completely: a 9 x 6 x 21
+/// product then takes the compiler minutes. A column of c stays in vector registers;
+/// without `unroll 1` the compiler unrolls its loop before vectorising it, and the
+/// product takes more than twice as long; packs are vectors already. Inlined, so that
 /// strides are constants.
 template <int sign, bool onto, int rows, int inner, int columns, class T>
 [[gnu::always_inline]] inline void multiply(const T* a, int a_stride, const T* b,
@@ -45,7 +45,7 @@ template <int sign, bool onto, int rows, int inner, int columns, class T>
   }
 }
 
-/// The same unrolled completely: for the smallest.
+/// The same product, unrolled completely, for the smallest blocks.
 template <int sign, bool onto, int rows, int inner, int columns, class T>
 [[gnu::always_inline]] inline void multiply_small(const T* a, int a_stride, const T* b,
                                                   int b_step, int b_stride, T* c,
@@ -69,8 +69,8 @@ template <int sign, bool onto, int rows, int inner, int columns, class T>
   }
 }
 
-/// A block of a small column-major matrix, or its transpose: what Eigen's blocks are, but
-/// each of theirs takes the compiler as long as the whole product.
+/// A block of a small column-major matrix, or its transpose. Replaces Eigen's blocks,
+/// each of which takes the compiler as long as the whole product.
 template <class T, int rows, int columns>
 struct Part {
   static constexpr int RowsAtCompileTime = rows, ColsAtCompileTime = columns;
@@ -116,7 +116,7 @@ inline void add(const A& a, B&& b, double factor = 1) {
   }
 }
 
-/// The same for matrices and parts of them, a column-major.
+/// The same for matrices and parts of them; a is column-major.
 template <int sign, bool onto, class A, class B, class C>
 inline void multiply(const A& a, const B& b, C&& c) {
   constexpr int rows = A::RowsAtCompileTime, inner = A::ColsAtCompileTime,

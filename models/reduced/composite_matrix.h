@@ -10,9 +10,9 @@
 namespace tress::models {
 
 /// The dense matrix of all unknowns, as in [Bertails et al. 2006], but assembled in
-/// O(N^2) by composite bodies [Featherstone's CRBA]: what hangs on a tip, with its joints
-/// held, is summed up once from the free ends; column block i then takes one walk to the
-/// root (and, for an exact tangent, one through the segments below).
+/// O(N^2) by composite bodies [Featherstone's CRBA]: the bodies beyond a tip, with their
+/// joints locked, are summed once from the free ends; column block i then takes one walk
+/// to the root (and, for an exact tangent, one through the segments below).
 template <class Shape>
 class CompositeMatrix {
  public:
@@ -37,7 +37,7 @@ class CompositeMatrix {
   template <int columns>
   using Load = Eigen::Matrix<double, wrench, columns>;
 
-  /// full_[i] maps [s; x] of segment i to its [w; r] with all segments below held still.
+  /// full_[i] maps [s; x] of segment i to its [w; r] with all joints below it locked.
   void compose(const TreeTangent<Shape>& tangent) {
     at_root_.setZero();
     for (std::size_t i = 0; i < full_.size(); ++i) hanging_[i] = tangent.segments[i].tip;
@@ -72,8 +72,8 @@ class CompositeMatrix {
     }
   }
 
-  /// The load that column block `column` puts on the tip of `segment` meets the residuals
-  /// from there to the root; a symmetric matrix gets the mirror image too.
+  /// Adds the load of column block `column` on the tip of `segment` to the residuals from
+  /// there to the root; a symmetric matrix gets the mirror image too.
   template <int columns>
   void walk_up(const TreeTangent<Shape>& tangent, int segment, int column,
                Load<columns>& load) {
@@ -99,8 +99,8 @@ class CompositeMatrix {
     }
   }
 
-  /// Motion that column block `column` gives to everything below `from` (the root when
-  /// `from` is the number of segments).
+  /// Motion due to column block `column` of everything below `from` (the root if `from`
+  /// is the number of segments).
   template <int columns>
   void walk_down(const TreeTangent<Shape>& tangent, std::size_t from,
                  Part<const double, states, columns> motion, int column) {

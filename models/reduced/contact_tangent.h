@@ -7,9 +7,9 @@
 
 namespace tress::models {
 
-/// What a contact adds to an exact tangent (ExactTangent): how the places and velocities
-/// of its points vary with their segments' states and unknowns, and what a force on them
-/// does, at the motion that Kinematics holds. O(1) a contact.
+/// Contribution of a contact to an exact tangent (ExactTangent): derivatives of the
+/// positions and velocities of its points by their segments' states and unknowns, and the
+/// effect of a force on them, at the motion held by Kinematics. O(1) per contact.
 template <class Kernel, int dofs>
 class ContactTangent {
  public:
@@ -50,7 +50,7 @@ class ContactTangent {
     const auto& block = kinematics_.block_geometry(b);
     const Vec p = lane(block.position);
     const Vec u = from.v + cross(from.omega, p) + lane(m.moving.at(block.at));
-    std::array<Vec, dofs> slope, turned;  // of the place and of u by an unknown
+    std::array<Vec, dofs> slope, turned;  // derivatives of position and u by an unknown
     for (std::size_t k = 0; k < dofs; ++k) {
       const Vec e = K::unit(static_cast<int>(k));
       slope[k] = lane(block.slope[k]);

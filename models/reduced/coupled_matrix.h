@@ -9,9 +9,9 @@
 
 namespace tress::models {
 
-/// The couplings of a tangent in terms of all unknowns: what each y owes to them, and
-/// what it puts on their equations, by one walk from the far end of each to the root,
-/// O(N) a coupling. Their product is O(N^2) a coupling.
+/// The couplings of a tangent in terms of all unknowns: the dependence of each y on them,
+/// and the contribution of y to their equations, by one walk from the far end of each to
+/// the root, O(N) per coupling. The product of the two is O(N^2) per coupling.
 template <class Shape>
 class CoupledMatrix {
  public:
@@ -33,7 +33,7 @@ class CoupledMatrix {
   static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
   static constexpr int rank = TreeCoupling<Shape>::rank;
 
-  /// Each end once, with those on its way to the root.
+  /// Visits each end once, with the segments on its way to the root.
   void walk(const TreeTangent<Shape>& tangent, const TreeCoupling<Shape>& coupling,
             int row) {
     std::array<const typename TreeCoupling<Shape>::End*, 4> left;
@@ -42,7 +42,7 @@ class CoupledMatrix {
                       [](const auto* end) { return end->segment; });
     for (std::size_t a = 0; a < 4; ++a) {
       if (left[a] == nullptr) continue;
-      Eigen::Matrix<double, rank, states> of_tip;  // y by the state of the tip
+      Eigen::Matrix<double, rank, states> of_tip;  // dy/d(state of the tip)
       Eigen::Matrix<double, wrench, rank> load;    // on the tip by y
       of_tip.setZero();
       load.setZero();

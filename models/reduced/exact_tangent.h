@@ -6,22 +6,22 @@
 
 namespace tress::models {
 
-/// Every derivative of the residual of one segment (InverseDynamics), at the motion that
-/// Kinematics holds. States are variations of a frame in its own components: displacement
+/// All derivatives of the residual of one segment (InverseDynamics), at the motion held
+/// by Kinematics. States are variations of a frame in its own components: displacement
 /// (d, phi), then of its velocity (v, omega) and acceleration (a, alpha). With C the
-/// rotation to the tip, theta the turn of the tip by the unknowns, c a point's
+/// rotation to the tip, theta the rotation of the tip due to the unknowns, c a point's
 /// acceleration and f its load,
 ///
 ///     d(C^T y) = C^T (dy + y x theta),    dF = m dc + phi x f - df
 ///
-/// and derivatives of shapes are those of Kernel. O(1) per segment.
+/// The Kernel provides the derivatives of shapes. O(1) per segment.
 template <class Kernel, int dofs>
 class ExactTangent {
  public:
   using Shape = ExactShape<dofs>;
 
-  /// df/dx, df/dv and df/dtangent of the effects at the points, (9) row-major each;
-  /// empty: no effect has any.
+  /// df/dx, df/dv and df/dtangent of the effects at the points, (9) row-major each; empty
+  /// if no effect has derivatives.
   struct EffectBlocks {
     In position, velocity, direction;
   };
@@ -30,7 +30,7 @@ class ExactTangent {
                const InverseDynamics<Kernel, dofs>& dynamics)
       : kinematics_(kinematics), dynamics_(dynamics) {}
 
-  /// Expects zeros in tip and where transfer has its zero blocks (see SegmentTangent).
+  /// Expects zeros in tip and in the zero blocks of transfer (see SegmentTangent).
   void segment(std::size_t i, Weights w, const EffectBlocks& effects,
                SegmentTangent<Shape>& tangent) const {
     const ReducedSegment& segment = kinematics_.segments()[i];
@@ -116,7 +116,7 @@ class ExactTangent {
     Frames::put(translation, rotation, &column[level * size]);
   }
 
-  /// Of the positions in a segment, with respect to its unknowns.
+  /// Derivatives of the positions in a segment with respect to its unknowns.
   struct Derivatives {
     Derivatives(const Kernel& kernel, const typename K::SegmentMotion& m) {
       for (std::size_t k = 0; k < dofs; ++k) {
@@ -136,8 +136,7 @@ class ExactTangent {
     std::array<std::array<Second, dofs>, dofs> curvature;  // d2P/dq_k dq_l
   };
 
-  /// Variation of omega in the components of a frame that turns by `axis`, omega itself
-  /// staying as it is.
+  /// Variation of a fixed omega in the components of a frame that turns by `axis`.
   static Vec in_plane(const Vec& omega, const Vec& axis) { return cross(omega, axis); }
 
   void points(std::size_t i, Weights w, const EffectBlocks& effects,
@@ -165,8 +164,8 @@ class ExactTangent {
         u = Vec3<Pack>(from.v) + turning + velocity;
         by_start = by_x;
         if constexpr (dofs == 1) {
-          // Velocity across the plane is not among the states: where the start moves by
-          // dx it is omega x dx.
+          // Velocity across the plane is not among the states: if the start moves by dx,
+          // it is omega x dx.
           by_start.column[0] = by_start.column[0] + omega.z * by_v.column[1];
           by_start.column[2] = by_start.column[2] - omega.x * by_v.column[1];
         }
@@ -227,7 +226,7 @@ class ExactTangent {
           dF = dF - Pack(w.pos) * (by_t * cross(turn, along));
         }
         add(3 * size + k, dF);
-        // The lever arms move under the force that is there already.
+        // Lever arms change under the existing force.
         const Vec3<Pack> lever = cross(slope, force);
         add_moment(Vec{sum(lever.x), sum(lever.y), sum(lever.z)}, w.pos, 3 * size + k,
                    tangent);
@@ -263,7 +262,7 @@ class ExactTangent {
     }
   }
 
-  /// State of the tip, and what the wrench on the tip does at the start.
+  /// State of the tip, and the effect of the tip's wrench at the start.
   void tip(std::size_t i, Weights w, const Derivatives& derivatives,
            SegmentTangent<Shape>& tangent) const {
     const auto& g = kinematics_.geometry(i);
@@ -326,7 +325,7 @@ class ExactTangent {
                w.acc * turn,
            column, 2);
 
-      // The tip's wrench turns with the tip and acts on a lever that bends.
+      // The tip's wrench turns with the tip and acts on a changing lever.
       const Vec d_force = cross(turn, force), d_moment = cross(turn, moment);
       const Vec at_start = cross(g.position, d_force) + cross(slope, force) + d_moment;
       auto local = column_of(tangent.local, 3 * size + k);

@@ -67,8 +67,8 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
     return Base::finite(a);
   }
 
-  /// With the whole inertia M a - f = (M - M_ft) a is what the joints would have to bear:
-  /// a load that is not there, so its power is that of the inertia left out.
+  /// With the full inertia, M a - f = (M - M_ft) a would be an additional load on the
+  /// joints; as it is absent, its power is that of the omitted inertia.
   double power(double t, In q, In v) override {
     double sum = Base::power(t, q, v);
     if (!Base::regular_mass_) return sum;

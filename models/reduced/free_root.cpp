@@ -5,7 +5,7 @@
 namespace tress::models {
 namespace {
 
-// Where the rotation vector is moved back to zero: well inside its 2 pi.
+// Angle at which the rotation vector is reset to zero, well below 2 pi.
 constexpr double largest_angle = 1.5;
 
 Vec position(In q) { return {q[0], q[1], q[2]}; }
@@ -49,7 +49,7 @@ bool FreeRootFrame::rebase(InOut q, InOut v) {
   const Helix joint(theta, 1);
   const Helix::At<double> at = joint.tip();
   reference_ = reference_ * joint.rotation(at);
-  // The columns lose orthogonality by a rounding error a turn: made orthonormal again.
+  // Columns lose orthogonality by a rounding error per reset: orthonormalise them again.
   Frame& f = reference_;
   f.e0 = (1 / std::sqrt(dot(f.e0, f.e0))) * f.e0;
   f.e1 = f.e1 - dot(f.e0, f.e1) * f.e0;

@@ -9,7 +9,7 @@ namespace tress::models {
 /// Motion of a frame: in its own components, relative to the world.
 template <class T>
 struct FrameMotionOf {
-  FrameOf<T> frame;  // seen from the world
+  FrameOf<T> frame;  // relative to the world
   Vec3<T> x;         // world components, m
   Vec3<T> v, omega, a, alpha;
 };
@@ -17,19 +17,19 @@ using FrameMotion = FrameMotionOf<double>;
 
 /// A root that moves freely, by 6 unknowns: its position (world components) and a
 /// rotation vector theta relative to a reference frame, frame = reference exp([theta]x).
-/// The reference follows the motion (rebase), so that theta stays far from 2 pi.
+/// The reference follows the motion (rebase), so theta stays far from 2 pi.
 class FreeRootFrame {
  public:
   explicit FreeRootFrame(const FreeRoot& start)
       : start_(start), reference_(start.frame) {}
 
   void initial_state(Out q, Out v) const;  // (6), (6)
-  /// Takes the place that all calls below but rebase() are about.
+  /// Sets the position used by all calls below except rebase().
   void place(In q);  // (6)
   FrameMotion motion(In q, In v, In a) const;
   /// Generalised forces of a wrench at the root, in the root's components.
   void residual(const Vec& force, const Vec& moment, Out r) const;
-  /// Moves the reference when theta has grown; true: q and v have changed.
+  /// Moves the reference if theta has grown; true if q and v have changed.
   bool rebase(InOut q, InOut v);
   void reset() { reference_ = start_.frame; }
   const Frame& reference() const { return reference_; }

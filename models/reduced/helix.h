@@ -16,9 +16,9 @@ namespace tress::models {
 ///
 /// Derivatives with respect to kappa are directional and multilinear: dW[x] y is the
 /// derivative of W y along x, d2W[x1, x2] y the second one; those of P follow with y =
-/// e0. Each is a few constant vectors weighted by the functions, so it is prepared once
-/// for an element and evaluated at any s (a number or a pack of them). Straight elements
-/// are no special case. T = double, or Pack: four elements, and s is a pack then.
+/// e0. Each is a sum of a few constant vectors weighted by the functions, prepared once
+/// per element and evaluated at any s (a number or a pack). Straight elements need no
+/// special case. T = double, or Pack for four elements; s is then a pack.
 template <class T>
 class HelixOf {
  public:
@@ -134,7 +134,7 @@ class HelixOf {
   Frame rotation(const At<T>& p) const {
     return {rotated(p, {1, 0, 0}), rotated(p, {0, 1, 0}), rotated(p, {0, 0, 1})};
   }
-  /// The transposes W^T y and (dW[x])^T y: kappa changes sign in K.
+  /// The transposes W^T y and (dW[x])^T y: K with the opposite sign of kappa.
   Vec W_transposed(const At<T>& p, const Vec& y) const {
     const Vec u = cross(kappa_, y);
     return p.s * y - p.f.A * u + p.f.B * cross(kappa_, u);
@@ -191,7 +191,7 @@ class HelixOf {
   Vec kappa_;
   T length_{};
   T x2_{};
-  Terms along_;  // of positions: y = e0
+  Terms along_;  // terms of positions: y = e0
 };
 
 using Helix = HelixOf<double>;

@@ -17,7 +17,7 @@ using Wrench = WrenchOf<double>;
 /// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme: motion
 /// from the root to the tips (Kinematics), d'Alembert forces m p'' - f at the quadrature
 /// points (gravity as an acceleration of the root [Luh, Walker, Paul 1980]), wrenches
-/// from the tips to the root. O(N). Of as many strands as Kinematics.
+/// from the tips to the root. O(N). For as many strands as Kinematics.
 template <class Kernel, int dofs>
 class InverseDynamics {
  public:
@@ -27,7 +27,7 @@ class InverseDynamics {
   using Out = std::span<Real>;
   using Wrench = WrenchOf<Real>;
 
-  /// Effects of each strand; lanes beyond them feel none.
+  /// Effects of each strand; further lanes have none.
   InverseDynamics(K& kinematics, std::vector<Effects> effects_of_strands)
       : kinematics_(kinematics),
         count_(kinematics.points()),
@@ -91,8 +91,8 @@ class InverseDynamics {
     }
   }
 
-  /// Computes of the points that effects act on what is asked for, at the motion that
-  /// Kinematics holds.
+  /// Computes the wanted quantities of the points on which effects act, at the motion
+  /// held by Kinematics.
   void place(Needs wanted) {
     if (wanted.position) x_.resize(mass_.size() * 3);
     if (wanted.velocity) v_.resize(mass_.size() * 3);
@@ -105,7 +105,7 @@ class InverseDynamics {
       }
     }
   }
-  /// Those of one strand, as placed.
+  /// Points of one strand, as placed.
   Points points(std::size_t strand, Needs wanted) const {
     const auto part = [&](const std::vector<double>& of_all, std::size_t size,
                           bool filled) {
@@ -120,16 +120,16 @@ class InverseDynamics {
             .length = part(length_, 1, true)};
   }
 
-  /// blocks (9 a point) = pos df/dx + vel df/dv, of the points as placed.
+  /// blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
   }
-  /// The same of effects without couplings.
+  /// The same for effects without couplings.
   void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks,
                 [](const Effect& effect) { return !effect.needs().couplings; });
   }
-  /// blocks = df/dt, t the tangents, of all effects that look at them.
+  /// blocks = df/dt, t the tangents, summed over all effects that depend on them.
   void direction_derivatives(double t, InOut blocks) const {
     std::ranges::fill(blocks, 0.0);
     const Points p = points(0, needs_of_[0]);
@@ -137,15 +137,15 @@ class InverseDynamics {
       effect->add_direction_derivatives(t, p, 1, blocks);
     }
   }
-  /// Couplings of those effects of the first strand that have any.
+  /// Couplings of the effects of the first strand.
   void couplings(double t, std::vector<Coupling>& all) const {
     all.clear();
     const Points p = points(0, needs_of_[0]);
     for (const auto& effect : effects_[0]) effect->add_couplings(t, p, all);
   }
 
-  // Of the last residual(): the force on each point's inertia in the components of the
-  // segment's start, the loads alone in the same, and what hangs on each tip.
+  // From the last residual(): the inertial force at each point and the loads alone, in
+  // the components of the segment's start, and the wrench on each tip.
   const Vec3<Pack>& load(std::size_t block) const { return force_[block].load; }
   const Vec3<Pack>& force(std::size_t block) const { return force_[block].total; }
   const Wrench& at_tip(std::size_t i) const { return at_tip_[i]; }
@@ -251,12 +251,12 @@ class InverseDynamics {
   }
 
   K& kinematics_;
-  std::size_t count_;                                // points of one strand
-  std::vector<Effects> effects_;                     // of each
-  std::vector<std::vector<const Effect*>> loading_;  // those of them that are not uniform
+  std::size_t count_;                                // points per strand
+  std::vector<Effects> effects_;                     // per strand
+  std::vector<std::vector<const Effect*>> loading_;  // per strand, not uniform
   bool loaded_ = false;
   Needs needs_;
-  std::vector<Needs> needs_of_;  // each strand
+  std::vector<Needs> needs_of_;  // per strand
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;

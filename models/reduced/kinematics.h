@@ -13,10 +13,10 @@
 
 namespace tress::models {
 
-/// Where everything is and how it moves, for unknowns q, v, a: one sweep from the root to
-/// the free ends. What depends on q alone is kept and used again at the same q. Of one
-/// strand, or of four where the kernel's numbers are packs: unknowns, geometry and motion
-/// are packs then.
+/// Positions and motion of all frames for unknowns q, v, a: one sweep from the root to
+/// the free ends. Quantities that depend on q only are kept and reused at the same q. For
+/// one strand, or four if the kernel's scalar is a pack; unknowns, geometry and motion
+/// are then packs.
 template <class Kernel, int dofs>
 class Kinematics {
  public:
@@ -48,7 +48,7 @@ class Kinematics {
     decltype(Kernel().acceleration(Vec(), Vec())) accelerating;  // P''
     Vec velocity;                                                // P' at the tip
     Vec turning;                                                 // W kappa' at the tip
-    Vec tip_v, tip_a, tip_alpha;  // of the tip, in the components of the start
+    Vec tip_v, tip_a, tip_alpha;  // tip, in the components of the start
   };
 
   /// One root motion per strand: lanes<Real> of them.
@@ -83,13 +83,13 @@ class Kinematics {
   bool free() const { return free_root_.has_value(); }
   FreeRootFrame& free_root() { return *free_root_; }
   const FreeRootFrame& free_root() const { return *free_root_; }
-  double root_rotor() const { return root_rotor_; }  // of a free root, kg m^2
+  double root_rotor() const { return root_rotor_; }  // free root, kg m^2
   bool moving_root() const {
     return !free_root_ && !std::ranges::all_of(root_motions_, &RootMotion::fixed);
   }
 
-  // Arrays over points hold strand after strand: how many points a strand has, and where
-  // those of a block are.
+  // Arrays over points hold strand after strand: number of points per strand, and indices
+  // of a block's points.
   std::size_t points() const { return Pack::lanes / lanes<Real> * blocks_.size(); }
   static std::size_t first_point(std::size_t block) {
     return Pack::lanes / lanes<Real> * block;
@@ -106,7 +106,7 @@ class Kinematics {
   }
   static Vec unit(int k) { return Space<dofs>::axis(Space<dofs>::component(k)); }
 
-  /// Shapes of all segments at q, and the place of a free root.
+  /// Shapes of all segments at q, and the position of a free root.
   void shape(In q) {
     if constexpr (may_be_free) {
       if (free_root_) free_root_->place(q.last(6));
@@ -122,7 +122,7 @@ class Kinematics {
     }
   }
 
-  /// The frame at the tip of the last segment, without anything else of move().
+  /// The frame at the tip of the last segment, without the rest of move().
   Frame last_frame(double t, In q) {
     static_assert(may_be_free);
     shape(q);
@@ -136,8 +136,8 @@ class Kinematics {
     return (free_root_ ? free_root_->frame() : root_motions_.front().at(t).frame) * frame;
   }
 
-  /// Accelerations are from now on relative to a frame that falls with this one (m/s^2):
-  /// inertial forces then hold the uniform load, at no cost.
+  /// Measures accelerations relative to a frame that falls with this one (m/s^2) from now
+  /// on: inertial forces then include the uniform load at no cost.
   void fall(const Vec& acceleration) { falling_ = acceleration; }
 
   /// Frames and their motion; calls shape().
@@ -261,7 +261,7 @@ class Kinematics {
   std::vector<FrameMotion> mounted_;  // starts of mounted segments
   FrameMotion root_;
   Vec falling_;
-  std::vector<Real> shaped_;  // the q of geometry_
+  std::vector<Real> shaped_;  // q of geometry_
 };
 
 }  // namespace tress::models

@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// What tangents of both kinds do with a segment's frames.
+/// Frame operations shared by both kinds of tangents.
 template <class Shape>
 class SegmentFrames {
  public:
@@ -15,8 +15,8 @@ class SegmentFrames {
   using Vec = Vec3<Real>;
   using Frame = FrameOf<Real>;
 
-  /// State of `states` 3-vectors seen from the mount instead: columns of transfer and
-  /// local, rows of local and lift.
+  /// Transforms a state of `states` 3-vectors to the mount's frame: columns of transfer
+  /// and local, rows of local and lift.
   static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
     mount_states(mount, tangent.transfer);
     mount_states(mount, tangent.local);
@@ -74,8 +74,8 @@ Vec3<Real> restoring(const ReducedSegmentOf<Real>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
-/// local += sum J^T B J over the points of a segment, B the symmetric matrices that
-/// effects have there.
+/// local += sum J^T B J over the points of a segment, with B the symmetric matrices of
+/// the effects.
 template <class Kernel, int dofs>
 void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i,
                         In matrices,
@@ -117,11 +117,11 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
 }
 
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
-/// tangent of the seed papers' semi-implicit step. Motion of its points and of its tip is
-/// linear in the acceleration of its start and its unknowns, J = [I, -[P]x, dP/dq]; the
-/// matrix is sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times
-/// minus the derivatives of the loads, (9) a point, or empty. Expects zeros in tip, or
-/// what an earlier call left there.
+/// tangent of the semi-implicit step. The motion of its points and tip is linear in the
+/// acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]; the matrix is
+/// sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times minus the
+/// derivatives of the loads, (9) per point, or empty. Expects tip to be zero or the
+/// result of an earlier call.
 template <class Kernel, int dofs>
 void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
                   SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent,
@@ -222,7 +222,7 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
   copy(part(transfer).transpose(), tangent.lift);
 }
 
-/// The same of the free root of one strand.
+/// The same for the free root of one strand.
 template <class Kernel, int dofs>
 void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
                        RootTangent<MassShape<dofs>>& root) {
@@ -236,7 +236,7 @@ void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
                   column_of(root.transfer, 3 + c));
     }
     copy(part(root.transfer).transpose(), root.lift);
-    // The rotor at the root answers to the turning about its e0.
+    // The rotor at the root resists rotation about its e0.
     for (int c = 0; c < 6; ++c) {
       for (int r = 0; r < 6; ++r) {
         root.local(r, c) =

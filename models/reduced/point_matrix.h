@@ -6,11 +6,11 @@
 
 namespace tress::models {
 
-/// A 3x3 matrix of each of four points, in the components of a segment's start.
+/// A 3x3 matrix for each of four points, in the components of a segment's start.
 struct PointMatrix {
   PointMatrix() = default;
-  /// Of row-major matrices (9 a point) in world components, `step` points apart; f: of
-  /// the start.
+  /// From row-major matrices (9 per point) in world components, `step` points apart; f is
+  /// the frame of the start.
   template <class Real>
   PointMatrix(const double* matrices, std::size_t step, const FrameOf<Real>& f) {
     const Vec3<Pack> axes[3] = {Vec3<Pack>(f.e0), Vec3<Pack>(f.e1), Vec3<Pack>(f.e2)};

@@ -10,24 +10,24 @@
 namespace tress::models {
 
 /// Two sweeps, O(N) [Featherstone 1983; Bertails 2009]. From the free ends to the root
-/// every segment eliminates its unknowns, x = u - Z s, and hands on what hangs below it
+/// every segment eliminates its unknowns, x = u - Z s, and passes on everything below it
 /// as an articulated matrix: w = L s + beta. From the root to the free ends x follows.
 ///
 /// Symmetric problems update L by the Joseph form, with V = [I; -Z]:
 ///     L = V^T local V + (transfer V)^T L_tip (transfer V),
 /// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T, with H, Y and
-/// P the blocks of local + lift L_tip transfer, reads one half of that matrix for the
-/// other. Rounding makes L unsymmetric, and near a straight rod, where turning about the
-/// own axis moves almost no mass, every segment amplifies that: after some twenty
+/// P the blocks of local + lift L_tip transfer, reads only one half of that matrix.
+/// Rounding makes L unsymmetric, and near a straight rod, where rotation about its own
+/// axis moves almost no mass, every segment amplifies the asymmetry: after some twenty
 /// segments no digit is left (tests/models/reduced/test_solvers.cpp measures it).
-/// Averaging L with L^T, or eliminating without regard to symmetry as exact tangents are,
-/// prevents it too.
+/// Averaging L with L^T, or eliminating without using symmetry as for exact tangents,
+/// also prevents it.
 ///
-/// Pivots of exact tangents are not definite: contact, wind and drag may leave next to
-/// nothing of one where the whole matrix is far from singular, and without exchange of
-/// rows as many digits are lost, in 300 random states up to five. solve() then takes what
-/// x leaves of b and sweeps again [Higham 2002, Accuracy and Stability of Numerical
-/// Algorithms, chapter 12]: a difference of some eps cond(S) is left.
+/// Pivots of exact tangents are not definite: contact, wind and drag may make one nearly
+/// zero although the whole matrix is far from singular, and without row exchange the
+/// corresponding digits are lost, up to five in 300 random states. solve() then applies
+/// iterative refinement [Higham 2002, Accuracy and Stability of Numerical
+/// Algorithms, chapter 12], which leaves a difference of some eps cond(S).
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -80,9 +80,10 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
  private:
   using Real = typename Shape::Real;
-  // Pivots of symmetric problems are definite, those of exact tangents may come near zero
-  // where the matrix is far from singular. Up to two digits are left lost: a third to two
-  // thirds of the states of hard cases cost that, and Newton's iteration does not see it.
+  // Pivots of symmetric problems are definite; those of exact tangents may be nearly zero
+  // although the matrix is far from singular. A loss of up to two digits is accepted: it
+  // occurs in a third to two thirds of the states of hard cases, and does not affect
+  // Newton's iteration.
   static constexpr bool refines = !Shape::symmetric;
   static constexpr double most_growth = 100, most_of_one_sweep = 1e6;
   static constexpr bool may_be_free = lanes<Real> == 1;
@@ -96,11 +97,11 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   struct Eliminated {
     Square inverse;                           // of the pivot H
     Eigen::Matrix<Real, n, states> z;         // x = u - z s
-    Eigen::Matrix<Real, wrench, n> response;  // of the wrench handed on to rest
+    Eigen::Matrix<Real, wrench, n> response;  // of the wrench passed on to rest
     Dofs u;
   };
   struct Hanging {
-    Articulated matrix;  // what hangs on the tip: w = matrix s + load
+    Articulated matrix;  // everything beyond the tip: w = matrix s + load
     Wrench load;
     State state;  // of the tip
   };
@@ -150,8 +151,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
   }
 
-  /// x, and the answer to what it leaves of b, which counts by as much less as the sweeps
-  /// are exact.
+  /// Solves S x = b with one or two steps of iterative refinement.
   void refine(In b, Out x) noexcept {
     std::ranges::copy(b, b_.begin());
     sweep(b_, x);
@@ -211,7 +211,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return is_finite(inverse.sum());
   }
 
-  /// Adds to `onto` what the segment hands on.
+  /// Adds to `onto` the articulated matrix that the segment passes on.
   bool eliminate(const SegmentTangent<Shape>& segment, const Articulated& hanging,
                  Eliminated& e, Articulated& onto) {
     if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
@@ -229,8 +229,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const auto tip_of_x = part<n, wrench>(segment.lift, states, 0);
     const auto own_of_x = part<states, n>(segment.local, 0, states);
     const auto inner = part<n, n>(segment.local, states, states);
-    // The pivot and what couples it to s: columns x of local + transfer^T hanging
-    // transfer.
+    // The pivot and its coupling to s: columns x of local + transfer^T hanging transfer.
     Eigen::Matrix<Real, Shape::rows, n> of_x;
     copy(part<Shape::rows, n>(segment.local, 0, states), of_x);
     add_product(segment.lift, product(hanging, tip_of_x.transpose()), of_x);
@@ -248,7 +247,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     subtract_product(own_of_x, part(e.response).transpose(), onto);
     subtract_product(e.response, part(own).transpose(), onto);
     add_product(tip_motion, product(hanging, part(tip_motion).transpose()), onto);
-    for (int j = 0; j < states; ++j) {  // symmetric but for rounding: made so
+    for (int j = 0; j < states; ++j) {  // symmetric up to rounding; enforced here
       for (int i = 0; i < j; ++i) onto(j, i) = onto(i, j);
     }
     return true;
@@ -278,7 +277,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     multiply<1, false>(e.inverse, r_of_s, e.z);
     Square used = e.inverse;
     if constexpr (method == TreeMethod::less_implicit) {
-      // Friction and stiffness of distal segments stay out of what is handed on.
+      // Friction and stiffness of distal segments are not passed on.
       Square bare;
       copy(pivot, bare);
       for (int k = 0; k < n; ++k) bare(k, k) -= segment.stiffness[k];
@@ -293,8 +292,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Eliminated> eliminated_;
   std::vector<Hanging> hanging_;
   Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> root_;
-  double growth_ = 1;  // of a pivot's inverse times what the pivot is the sum of, largest
-  std::vector<double> b_, left_, correction_;  // of refine()
+  double growth_ = 1;  // largest product of a pivot's inverse and the terms it sums
+  std::vector<double> b_, left_, correction_;  // scratch of refine()
 };
 
 }  // namespace tress::models

@@ -40,7 +40,7 @@ Vec unknowns(int dofs) { return {dofs == 3 ? 1.0 : 0, 1, dofs == 1 ? 0.0 : 1}; }
 
 bool identity(const Frame& f) { return f.e0.x == 1 && f.e1.y == 1 && f.e2.z == 1; }
 
-/// Arc length that a joint stands for: half of the segments beside it.
+/// Arc length represented by a joint: half of each adjacent segment.
 double joint_length(const Strand& strand, std::size_t i) {
   const Segment& segment = strand.segments[i];
   const double before =
@@ -86,7 +86,7 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
   for (int first = 0; first < points; first += Pack::lanes) {
     PointBlock block;
     for (int lane = 0; lane < Pack::lanes; ++lane) {
-      QuadraturePoint point{segment.length / 2, 0};  // lanes without one carry no mass
+      QuadraturePoint point{segment.length / 2, 0};  // unused lanes carry no mass
       if (first + lane < points) point = rule[static_cast<std::size_t>(first + lane)];
       block.s.set(lane, point.at);
       block.length.set(lane, point.weight);
@@ -97,8 +97,8 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
   segment.last_block = reduced.blocks.size();
 }
 
-/// Each segment's inertia about its tangent. A helix has half of it at its start, where
-/// its parent's tip turns, a rigid link all of it.
+/// Each segment's inertia about its tangent. For a helix, half of it is lumped at its
+/// start, where its parent's tip turns; for a rigid link all of it.
 void add_rotors(ReducedStrand& reduced, const Strand& strand, bool rigid) {
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
@@ -151,10 +151,10 @@ ReducedOptions reduced_options(const Parameters& p) {
 //         5         3e-01   9e-02   2e-04   1e-08   8e-14
 //         6         7e-01   2e-01   4e-03   2e-06   5e-11
 //
-// Constant curvature costs an element of that angle far more, angle^2/12 or so; 1e-8
-// keeps quadrature out of sight when models are compared at other element counts. It is
-// reached at 0.29, 4.7, 9.8, 15.6, 21.8, 28.3, 35.3 rad by 4, 8 ... 28 points, steps of a
-// pack; the last line follows these.
+// The constant-curvature error of an element of that angle is far larger, about
+// angle^2/12; 1e-8 makes quadrature negligible when models are compared at different
+// element counts. It is reached at 0.29, 4.7, 9.8, 15.6, 21.8, 28.3, 35.3 rad with 4, 8
+// ... 28 points, in steps of a pack; the last line of quadrature_points() fits these.
 int quadrature_points(double angle) {
   constexpr double widest = 6500;  // rad, for some 4100 points
   if (!(angle <= widest)) {

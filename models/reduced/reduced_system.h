@@ -16,8 +16,8 @@ namespace tress::models {
 /// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
 /// BallLink), behind the contract of contract/system.h. residual: Newton-Euler, O(N).
 /// linearize and solve: the mass tangent, or the exact one, by the chosen method, or by
-/// `composite` where the strand touches itself. The acceleration of the explicit form
-/// comes from the recursion whatever the method.
+/// `composite` if the strand touches itself. The acceleration of the explicit form always
+/// comes from the recursion.
 template <class Kernel, int dofs>
 class ReducedSystem : public System,
                       protected ExplicitForm,
@@ -93,7 +93,7 @@ class ReducedSystem : public System,
   }
 
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    // With neither velocity nor position weight there is nothing but mass.
+    // Without velocity and position weights, only the mass remains.
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
     if (!full_in_use_) return factored_ = mass_solver_->factor(mass_.at(t, q, v, w));
     take_exact_tangent(t, q, v, a, w);
@@ -152,7 +152,7 @@ class ReducedSystem : public System,
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
 
- protected:  // ForceTransport changes how accelerations enter
+ protected:  // for ForceTransport, which changes how accelerations enter
   using K = Kinematics<Kernel, dofs>;
   using Mass = MassShape<dofs>;
   using Exact = ExactShape<dofs>;
@@ -177,7 +177,7 @@ class ReducedSystem : public System,
     if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
   }
 
-  /// Strands that touch themselves need all of their unknowns at once.
+  /// Strands that touch themselves need a solver for all unknowns at once.
   TreeSolver<Exact>& exact_solver() {
     return full_.couplings.empty() ? *full_solver_ : *coupled_solver_;
   }
@@ -209,7 +209,7 @@ class ReducedSystem : public System,
     return (inertia * m.omega.x) * m.frame.e0;
   }
 
-  /// The points of effects, with all that potential() and power() read.
+  /// The points of effects, with everything that potential() and power() read.
   Points placed() {
     const Needs wanted =
         dynamics_.effect_needs() | Needs{.position = true, .velocity = true};
@@ -254,7 +254,7 @@ class ReducedSystem : public System,
     return sum + root_power(t, q, v);
   }
 
-  /// Work of the clamp: what it takes to hold the root on its path.
+  /// Power of the clamp that holds the root on its path.
   double root_power(double t, In q, In v) {
     if (!kinematics_.moving_root() || !regular_mass_) return 0;
     std::vector<double> a(zero_.size());
@@ -308,7 +308,7 @@ class ReducedSystem : public System,
   /// Lengths are no unknowns.
   std::optional<double> stretch(double, In) override { return 0; }
 
-  /// With several free ends, of the last segment's.
+  /// With several free ends, that of the last segment.
   std::optional<std::array<double, 9>> end_frame(double t, In q) override {
     std::array<double, 9> axes;
     store9(kinematics_.last_frame(t, q) * to_tip_, axes.data());
@@ -331,7 +331,7 @@ class ReducedSystem : public System,
   std::vector<Coupling> contacts_;
 };
 
-/// `PlanarKernel` is that of one unknown a segment.
+/// `PlanarKernel` is the kernel for one unknown per segment.
 template <class Kernel, class PlanarKernel>
 std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
   switch (dofs) {

@@ -9,16 +9,15 @@
 
 namespace tress::models {
 
-/// The equations of TreeTangent as they stand, nothing eliminated: per segment its
-/// unknowns x, the state of its tip and the wrench at its start, in one sparse matrix for
-/// KLU.
+/// The equations of TreeTangent without elimination: per segment its unknowns x, the
+/// state of its tip and the wrench at its start, in one sparse matrix for KLU.
 template <class Shape>
 class SparseTreeSolver final : public TreeSolver<Shape> {
  public:
   explicit SparseTreeSolver(const TreeTangent<Shape>& structure)
       : pattern_(make_pattern(structure)),
-        // Turning a nearly straight strand about its axis moves next to nothing: small
-        // pivots are its physics. Only a zero is singular.
+        // Turning a nearly straight strand about its axis moves almost no mass, so small
+        // pivots are physical. Only a zero is singular.
         klu_(pattern_, 0) {
     values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
     rhs_.resize(static_cast<std::size_t>(pattern_.rows));
@@ -56,8 +55,8 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
   }
 
  private:
-  /// KLU chooses pivots for sparsity, down to a thousandth of the largest: up to five
-  /// digits go. One step of iterative refinement brings them back.
+  /// KLU chooses pivots for sparsity, down to a thousandth of the largest, which loses up
+  /// to five digits. One step of iterative refinement restores them.
   Status refined_solve() noexcept {
     left_ = rhs_;
     Status status = klu_.solve(rhs_);
@@ -111,7 +110,7 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
       put(sink, at + of_wrench, at, -1, part<wrench, n>(segment.local, 0, states));
       put(sink, at + of_wrench, at + of_state, -1, product(lift_w, segment.tip));
 
-      // What the state at the start adds: of the parent's tip, or of a free root.
+      // Contribution of the state at the start: the parent's tip, or a free root.
       const auto r_of_s = part<n, states>(segment.local, wrench, 0);
       const auto s_of_s = part<states, states>(segment.transfer, 0, 0);
       const auto w_of_s = part<wrench, states>(segment.local, 0, 0);
@@ -135,7 +134,7 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
     if (tangent.free_root) put(sink, root, root, 1, tangent.root.local);
   }
 
-  /// Also fills place_: where each emitted entry goes among the pattern's values.
+  /// Also fills place_, the index of each emitted entry among the pattern's values.
   Pattern make_pattern(const TreeTangent<Shape>& structure) {
     std::vector<std::pair<int, int>> entries;  // column, row
     emit(structure,

@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// A tangent of the right size for the segments of Kinematics; its zero blocks stay.
+/// A tangent for the segments of Kinematics, with transfer, local and tip set to zero.
 template <class Shape, class K>
 TreeTangent<Shape> empty_tangent(const K& kinematics) {
   TreeTangent<Shape> tangent;
@@ -24,10 +24,10 @@ TreeTangent<Shape> empty_tangent(const K& kinematics) {
 }
 
 /// Mass, friction and elastic stiffness of all segments, w.acc M + w.vel C + w.pos K,
-/// with the derivatives of effects by the place and velocity of each point, made
-/// symmetric and semidefinite so that the sum stays definite: a repulsion resists along
-/// its gap and helps across it, by force/gap, more than mass and elasticity bear. What
-/// turning the strand's tangent does to loads is left out.
+/// plus the derivatives of effects by the position and velocity of each point, made
+/// symmetric and semidefinite so that the sum stays definite: a repulsion is stiff along
+/// its gap but has negative stiffness force/gap across it, more than mass and elasticity
+/// can balance. The dependence of loads on the strand's tangent is omitted.
 template <class Kernel, int dofs>
 class StiffTangent {
  public:
@@ -55,7 +55,7 @@ class StiffTangent {
     make_semidefinite(of_effects_);
     return here(w, of_effects_);
   }
-  /// Without effects, where Kinematics is.
+  /// Without effects, at the state of Kinematics.
   const TreeTangent<Shape>& here(Weights w) { return here(w, {}); }
 
   const TreeTangent<Shape>& last() const { return tangent_; }
@@ -75,7 +75,7 @@ class StiffTangent {
   InverseDynamics<Kernel, dofs>& dynamics_;
   TreeTangent<Shape> tangent_;
   std::vector<typename K::Real> zero_;
-  std::vector<double> of_effects_;  // 9 a point
+  std::vector<double> of_effects_;  // 9 per point
 };
 
 }  // namespace tress::models

@@ -15,17 +15,18 @@ namespace tress::models {
 ///
 ///     M(q) q'' + gamma l q' + K (q - q_rest) + gyroscopic terms = sum J^T f
 ///
-/// with K = l diag(GJ, EI1, EI2) and mass integrals by Gauss-Legendre points. Second
-/// order in the segment length. Solving by `recursive` is O(N) [Bertails 2009]. Trees are
-/// the same with branching parents. Throws InputError (see reduced_strand).
+/// with K = l diag(GJ, EI1, EI2) and mass integrals by Gauss-Legendre quadrature. Second
+/// order in the segment length. Solving by `recursive` is O(N) [Bertails 2009]. Trees
+/// only differ in branching parents. Throws InputError (see reduced_strand).
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects);
 
-/// One to four strands as one system, one in each lane of the processor's vectors: what
-/// super_helix says of each, coordinates and points one strand after the other, to
-/// rounding and at the cost of one or little more. Effects of each strand see its own
-/// points alone. Quadrature is that of the strand that needs most. Throws InputError
-/// unless all are clamped and cut alike, and options say stiff tangent and recursive.
+/// One to four strands as one system, one per SIMD lane: the results of super_helix for
+/// each to rounding, at little more than the cost of one strand. Coordinates and points
+/// are ordered strand after strand; effects of a strand see only its own points. All use
+/// the largest number of quadrature points that any strand needs. Throws InputError
+/// unless all strands are clamped and of equal discretisation, and options select the
+/// stiff tangent and `recursive`.
 std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
                                           const ReducedOptions& options,
                                           std::vector<Effects> effects);

@@ -10,14 +10,14 @@
 namespace tress::models {
 
 /// M_ft of ForceTransport: the block lower triangle, diagonal included, of the mass
-/// matrix of a chain of rigid links behind ball joints. With I_j the composite inertia of
-/// link j and all beyond it, held rigid, and S_j the axes of joint j, both in the frame
-/// at the start of link j,
+/// matrix of a chain of rigid links with ball joints. With I_j the composite inertia of
+/// link j and all beyond it as one rigid body, and S_j the axes of joint j, both in the
+/// frame at the start of link j,
 ///
 ///     (M_ft a)_j = S_j^T I_j (c_j + S_j a_j),
 ///
-/// c_j the acceleration of that frame by the joints before it. Frames, wrenches and
-/// blocks as in TreeTangent. Products and solves are sweeps from the root, O(N).
+/// with c_j the acceleration of that frame due to the joints before it. Frames, wrenches
+/// and blocks are as in TreeTangent. Products and solves are sweeps from the root, O(N).
 template <class Kernel, int dofs>
 class TransportMatrix {
  public:
@@ -30,7 +30,7 @@ class TransportMatrix {
   explicit TransportMatrix(std::size_t segments)
       : full_(segments), inverse_(segments), start_(segments + 1) {}
 
-  /// Sums up composite bodies from the mass tangent at weights {1, 0, 0}.
+  /// Sums composite bodies from the mass tangent at weights {1, 0, 0}.
   void compose(const TreeTangent<Shape>& mass) {
     mass_ = &mass;
     Inertia hanging;
@@ -52,7 +52,7 @@ class TransportMatrix {
     }
   }
 
-  /// Readies solve() with acc M_ft + diagonal; `retry` when a pivot is not usable.
+  /// Factors acc M_ft + diagonal for solve(); `retry` if a pivot is not usable.
   Status factor(double acc, In diagonal) {
     acc_ = acc;
     for (std::size_t i = 0; i < full_.size(); ++i) {
@@ -88,14 +88,14 @@ class TransportMatrix {
     }
   }
 
-  /// dense += factor d(M_ft a)/dq. A turn of joint m moves all beyond it as one body: by
-  /// the twist xi = S_m e its motions change by xi x, its wrenches by xi x*, so that for
-  /// j < m the composite inertia I_j changes by that of I_m,
+  /// dense += factor d(M_ft a)/dq. A rotation of joint m moves everything beyond it as
+  /// one body: for the twist xi = S_m e its motions change by xi x, its wrenches by xi
+  /// x*, so for j < m the composite inertia I_j changes by that of I_m,
   ///
   ///     dI_m b = xi x* (I_m b) - I_m (xi x b).
   ///
-  /// The links before m stay where they are, so that c_j changes for j > m only: at the
-  /// start of link m by -xi x (c_m + S_m a_m) + dS_m a_m, handed on rigidly.
+  /// The links before m do not move, so c_j changes for j > m only: at the start of link
+  /// m by -xi x (c_m + S_m a_m) + dS_m a_m, passed on rigidly.
   void add_slope(const Kinematics<Kernel, dofs>& kinematics, double factor, In a,
                  Eigen::MatrixXd& dense) {
     sweep(a);
@@ -159,8 +159,8 @@ class TransportMatrix {
                             dofs * static_cast<int>(column));
   }
 
-  // Of joint i: its composite inertia, what links the start's motion to its equation, and
-  // its own term; the motion its unknowns give to the tip, and the start's handed on.
+  // For joint i: composite inertia, coupling of the start's motion to its equation, and
+  // its own term; motion of the tip due to its unknowns, and due to the start.
   auto inertia(std::size_t i) const { return part<size, size>(full_[i], 0, 0); }
   auto coupling(std::size_t i) const { return part<dofs, size>(full_[i], size, 0); }
   auto own(std::size_t i) const { return part<dofs, dofs>(full_[i], size, size); }
@@ -171,7 +171,7 @@ class TransportMatrix {
     return part<size, size>(mass_->segments[i].transfer, 0, 0);
   }
 
-  /// The motion of link i's tip from that of its start.
+  /// The motion of link i's tip, given that of its start.
   template <class X>
   void move(std::size_t i, const State& start, const X& x, State& tip) const {
     multiply<1, false>(rigid(i), start, tip);
@@ -202,7 +202,7 @@ class TransportMatrix {
     return turned;
   }
 
-  /// Block column m below the diagonal, of motions of the tip of link m.
+  /// Block column m below the diagonal, due to motions of the tip of link m.
   void add_below(std::size_t m, Axes motion, Eigen::MatrixXd& dense) const {
     for (std::size_t j = m + 1; j < full_.size(); ++j) {
       models::add_product(coupling(j), motion, block(dense, j, m));

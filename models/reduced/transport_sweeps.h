@@ -34,7 +34,7 @@ class TransportSweeps {
   }
   void solve(In b, Out x) { matrix_.solve(b, x); }
 
-  /// Composite bodies at q, where Kinematics is; kept for the next call.
+  /// Composite bodies at q, the state of Kinematics; kept for the next call.
   void compose(In q) {
     if (std::ranges::equal(q, composed_)) return;
     matrix_.compose(mass_.here({1, 0, 0}));

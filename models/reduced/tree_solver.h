@@ -7,11 +7,11 @@
 
 namespace tress::models {
 
-/// How the linear problem of a tree is solved; all but `less_implicit` give the same x.
+/// Solver for the linear problem of a tree; all but `less_implicit` give the same x.
 enum class TreeMethod {
-  recursive,        // two sweeps, O(N); symmetric problems in a form that stays definite
+  recursive,        // two sweeps, O(N); stays definite for symmetric problems
   composite,        // dense matrix in O(N^2), Cholesky or LU in O(N^3)
-  sparse,           // states, unknowns and wrenches side by side, KLU
+  sparse,           // states, unknowns and wrenches in one system, KLU
   recursive_plain,  // two sweeps by the textbook update, which loses digits (a pitfall)
   less_implicit,    // our reconstruction of a recursion that leaves the friction and
                     // stiffness of distal segments out of the elimination
@@ -26,7 +26,7 @@ class TreeSolver {
   using Out = std::span<typename Shape::Real>;
 
   virtual ~TreeSolver() = default;
-  /// `retry` when a pivot is not usable. The tangent must outlive the solves.
+  /// `retry` if a pivot is not usable. The tangent must outlive the solves.
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // b and x may be the same
 };

@@ -9,7 +9,7 @@
 namespace tress::models {
 
 /// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers
-/// from its start to its tip, answers with a wrench of `wrench` numbers, and has `dofs`
+/// from its start to its tip, returns a wrench of `wrench` numbers, and has `dofs`
 /// unknowns of its own. Symmetric problems (mass, friction and stiffness only) have
 /// states == wrench: the acceleration of the frame. The exact tangent carries
 /// displacement, velocity and acceleration: states == 3 wrench. Real = Pack: four
@@ -29,17 +29,17 @@ struct TreeShape {
 };
 
 /// Linearised equations of one segment: with s the state at its start, x its unknowns and
-/// w_tip the wrench that hangs on its tip,
+/// w_tip the wrench on its tip,
 ///
 ///     s_tip = transfer [s; x]
-///     [w; r] = local [s; x] + lift w_tip,     w_tip = tip s_tip + sum of the children's
-///     w
+///     [w; r] = local [s; x] + lift w_tip
+///     w_tip = tip s_tip + sum of the children's w
 ///
 /// and the equations to solve are r = b. Symmetric: lift = transfer^T, local and tip are
-/// symmetric. Exact: transfer takes displacement to displacement, velocity to velocity
-/// and acceleration, acceleration to acceleration; in the plane, where a turn changes the
-/// components of the clamp's omega, displacement to acceleration too. `stiffness` is the
-/// diagonal part of local that comes from friction and elasticity.
+/// symmetric. Exact: transfer maps displacement to displacement, velocity to velocity and
+/// acceleration, acceleration to acceleration; in the plane, where a rotation changes the
+/// components of the clamp's omega, also displacement to acceleration. `stiffness` is the
+/// diagonal part of local from friction and elasticity.
 template <class Shape>
 struct SegmentTangent {
   template <int r, int c>
@@ -72,7 +72,7 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
       Shape::states, c.data() + rows * Shape::states, rows);
 }
 
-/// [s; x] of a segment to its [w; r], with `hanging` s_tip on its tip:
+/// Maps [s; x] of a segment to its [w; r], with the wrench `hanging` s_tip on its tip:
 /// local + lift hanging transfer.
 template <class Shape>
 auto with_hanging(
@@ -86,8 +86,8 @@ auto with_hanging(
   return full;
 }
 
-/// The same of a root that moves freely: its 6 unknowns y give the state s = transfer y
-/// at the start of the first segments, and local y + lift (sum of their w) = b.
+/// Tangent of a free root: its 6 unknowns y give the state s = transfer y at the start of
+/// the first segments, and local y + lift (sum of their w) = b.
 template <class Shape>
 struct RootTangent {
   template <int r, int c>
@@ -98,8 +98,8 @@ struct RootTangent {
   Matrix<6, Shape::wrench> lift;
 };
 
-/// What one contact adds between segments (Coupling): with y = sum by_a [s_a; x_a] over
-/// its ends, [w_a; r_a] += onto_a y.
+/// Contribution of one contact between segments (Coupling): with y = sum by_a [s_a; x_a]
+/// over its ends, [w_a; r_a] += onto_a y.
 template <class Shape>
 struct TreeCoupling {
   static constexpr int rank = 4;
@@ -111,11 +111,10 @@ struct TreeCoupling {
   std::array<End, 4> ends;
 };
 
-/// Everything that a tree solver factors. Unknowns are ordered by segment, the root's
-/// last.
+/// Input of a tree solver. Unknowns are ordered by segment, the root's last.
 template <class Shape>
 struct TreeTangent {
-  std::vector<int> parent;  // of each segment, earlier than it; -1: the root
+  std::vector<int> parent;  // per segment, an earlier one; -1: the root
   std::vector<SegmentTangent<Shape>> segments;
   RootTangent<Shape> root;  // read when free_root
   bool free_root = false;

@@ -40,8 +40,7 @@ Frame least_rotation(const Vec& to) {
   return sine == 0 ? Frame{} : turned_by(std::atan2(sine, dot(e0, to)) / sine * axis);
 }
 
-/// A run of equal elements. Directions are those of the world, for a root that is
-/// upright.
+/// A run of equal elements. Directions are world directions for an upright root.
 struct Limb {
   int elements = 1;
   double length = 0;   // m, of all elements together
@@ -83,7 +82,8 @@ class Grower {
 
   std::vector<Segment> with_given_radii() && { return std::move(segments_); }
 
-  /// Every section gets the area that `area` (m^2 per m) gives for all that grows beyond.
+  /// Sets the area of every section to `area` (m^2 per m) times the length grown beyond
+  /// it.
   std::vector<Segment> with_pipe_radii(double area) && {
     std::vector<double> beyond(segments_.size(), 0);
     for (std::size_t i = segments_.size(); i-- > 0;) {

@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// The five trees of [Bertails-Descoubes 2010, "Performance results"]. The source gives
+/// The five trees of [Bertails-Descoubes 2010, "Performance results"]. The paper gives
 /// names and element counts; the geometry is ours.
 ///
 /// - palm_tree, 8 elements, highest tip 3.4 m above the root: bent trunk of 2, 6 drooping
@@ -23,24 +23,22 @@ namespace tress::models {
 ///
 /// Sections are circles. Those of the plants follow the pipe model [Shinozaki et al.
 /// 1964; da Vinci's rule]: the area is proportional to the length of all that grows
-/// beyond, so areas add up at a fork. Arcs are in the natural shape; limbs that droop or
-/// rise do so by the tropism of [Prusinkiewicz & Lindenmayer 1990, section 1.10].
-/// `initial` is the natural shape: at t = 0 gravity has not bent anything yet.
+/// beyond, so areas add up at a fork. Arcs are in the natural shape; limbs droop or rise
+/// by the tropism of [Prusinkiewicz & Lindenmayer 1990, section 1.10]. `initial` is the
+/// natural shape, not bent by gravity at t = 0.
 ///
-/// The geometry is meant for a root of frame `upright()`. More than one segment may start
-/// at the root: the man's spine and both hips do.
+/// The geometry is meant for a root with frame `upright()`. Several segments may start at
+/// the root, as do the man's spine and both hips.
 inline constexpr std::string_view tree_choices =
     "palm_tree|algae|complex_tree|man|willow";
 
-/// Parents before children, all lengths and radii in m. Throws InputError on another
-/// name.
+/// Parents before children, all lengths and radii in m. Throws InputError on other names.
 std::vector<Segment> tree_segments(std::string_view name);
 
-/// A material with which the tree stands under gravity, isotropic, of plausible size:
-/// green wood (E = 6 GPa, nu = 0.3), kelp (20 MPa, 0.5) and soft rubber for the man
-/// (10 MPa, 0.5). Internal friction gamma is one number for all sections: about 10 ms EI
-/// of the thinnest one; thick ones relax faster and are damped less. Throws InputError on
-/// another name.
+/// A plausible isotropic material with which the tree stands under gravity: green wood
+/// (E = 6 GPa, nu = 0.3), kelp (20 MPa, 0.5) and soft rubber for the man (10 MPa, 0.5).
+/// Internal friction gamma is the same for all sections: about 10 ms EI of the thinnest
+/// one; thick ones relax faster and are damped less. Throws InputError on other names.
 Material tree_material(std::string_view name);
 
 /// The root frame: tangent up (e0 = z), e1 = y, e2 = -x. The man faces x.

@@ -7,10 +7,9 @@
 
 namespace tress::models {
 
-/// A cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, the arc length at
-/// rest), ends included in the knots four times: n spans and n + 3 control points, r and
-/// r' at an end from its first two control points alone. Span i uses control points i to
-/// i + 3.
+/// A cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, arc length at
+/// rest) with fourfold end knots: n spans and n + 3 control points; r and r' at an end
+/// depend only on its first two control points. Span i uses control points i to i + 3.
 class CubicSpline {
  public:
   explicit CubicSpline(const std::vector<double>& spans);
@@ -30,7 +29,7 @@ class CubicSpline {
   std::vector<Vec> through(const std::vector<StrandPlace>& places) const;
 
  private:
-  std::vector<double> knots_;  // each once
+  std::vector<double> knots_;  // without multiplicity
 };
 
 }  // namespace tress::models

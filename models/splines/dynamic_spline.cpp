@@ -15,13 +15,13 @@ namespace {
 
 constexpr int mass_points = 4, bend_points = 2;
 
-/// n + 2 over all n spans, one for each motion along a straight strand that stretches it.
+/// n + 2 over all n spans, one per stretching mode of a straight strand.
 int stretch_points(std::size_t span, std::size_t spans) {
   if (spans == 1) return 3;
   return span == 0 || span + 1 == spans ? 2 : 1;
 }
 
-/// What is left out without twist.
+/// Rejects strands that need the terms omitted without twist.
 void check_frameless(const Strand& strand) {
   const auto refuse = [](bool wrong, const std::string& what, const std::string& remedy) {
     if (wrong) throw InputError(what, "dynamic_spline", remedy);

@@ -6,8 +6,8 @@
 namespace tress::models {
 
 /// Stretching, bending and twisting of a cubic spline with material frames at its knots
-/// (dynamic_spline.h), coordinates z = (control points, theta at the knots; with
-/// `clamped` the first knot has the clamp's frame and no angle).
+/// (dynamic_spline.h), coordinates z = (control points, theta at the knots). If
+/// `clamped`, the first knot has the clamp's frame and no angle.
 class FramedSpline final : public Elasticity {
  public:
   struct Span {
@@ -24,8 +24,8 @@ class FramedSpline final : public Elasticity {
     std::vector<double> controls;
     std::vector<Frame> frames;
   };
-  /// The strains' `rest` becomes what they are in the natural shape; frames of the
-  /// initial one are the first references.
+  /// Sets `rest` of the strains to their values in the natural shape; the first
+  /// references are the frames of the initial shape.
   FramedSpline(std::vector<Span> spans, std::vector<SplineElasticity::Point> stretching,
                const Shape& natural, std::vector<Frame> initial, bool clamped);
   FramedSpline(const FramedSpline&) = delete;  // spans point to the references
@@ -47,7 +47,7 @@ class FramedSpline final : public Elasticity {
 
  private:
   static constexpr std::size_t most = 14;  // coordinates of a span, and of SplineBend
-  /// Of a span: coordinates of its strains and their rates.
+  /// Coordinates of the strains of a span, and their rates.
   struct Local {
     double x[most], rate[most];
   };
@@ -64,7 +64,7 @@ class FramedSpline final : public Elasticity {
     return of_controls(knot > 0 ? spans_[span].end : spans_[span].start, &z[3 * span]);
   }
   std::size_t size(std::size_t span) const { return held(span) ? most - 1 : most; }
-  /// Values at a span's knots, with those of the clamp where it holds the first.
+  /// Values at a span's knots, those of the clamp for a held knot.
   void at_knots(const Placement& p, std::size_t span, Local& local) const noexcept;
   static void at_point(const Placement& p, std::size_t span, const Span::Point& point,
                        Local& local) noexcept;
@@ -73,7 +73,7 @@ class FramedSpline final : public Elasticity {
 
   std::vector<Span> spans_;
   SplineElasticity stretching_;
-  std::vector<Frame> references_at_start_, references_;  // of the knots; held: the clamp
+  std::vector<Frame> references_at_start_, references_;  // per knot; held: the clamp's
   bool clamped_;
 };
 

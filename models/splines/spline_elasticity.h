@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// Energy (J) of one point of quadrature of dynamic_spline.h: a = r', b = r'',
+/// Energy (J) of one quadrature point of dynamic_spline.h: a = r', b = r'',
 ///
 ///     stretch (|a| - length)^2/2 + bend |a x b|^2/(2 |a|^4).
 template <class T>
@@ -27,7 +27,7 @@ inline Vec of_controls(const std::array<double, 4>& weight, const double* x) {
   return total;
 }
 
-/// Stretching and bending of a cubic spline, summed over points of quadrature.
+/// Stretching and bending of a cubic spline, summed over quadrature points.
 class SplineElasticity final : public Elasticity {
  public:
   struct Point {

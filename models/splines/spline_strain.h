@@ -4,8 +4,8 @@
 #include "models/maximal/rod_edge.h"
 
 /// Strains of a span of a spline with material frames at its knots (framed_spline.h),
-/// parts in the sense of strained.h. With - the knot before and + the one behind, the
-/// frames are edge_frame (rod_edge.h) of r' and the angle theta at the knot.
+/// each a Part of strained.h. With - the knot before and + the one behind, the frames are
+/// edge_frame (rod_edge.h) of r' and the angle theta at the knot.
 namespace tress::models {
 
 /// Twist over the span (rad): that of joint_strain.h between the frames of its knots.
@@ -26,18 +26,18 @@ struct SplineTwist {
   void add_second(const double* x, const double* stress, double (&h)[8][8]) const;
 };
 
-/// Curvatures (1/m) at a point of the span about the axes e1 and e2, mixed of those of
-/// the knots: with kappa = r' x r''/|r'|^2,
+/// Curvatures (1/m) at a point of the span about the axes e1 and e2, interpolated between
+/// those of the knots: with kappa = r' x r''/|r'|^2,
 ///
 ///     kappa_j = kappa . ((1 - part) e_j- + part e_j+).
 ///
-/// Turning about a normal to the curve's plane goes unnoticed: exact for plane bending,
-/// with an error of the squared turn between the frames for others. x = (r'-, theta-,
-/// r'+, theta+, r', r'').
+/// Rotation about a normal to the curve's plane has no effect, so this is exact for plane
+/// bending; otherwise the error is the squared rotation between the frames. x = (r'-,
+/// theta-, r'+, theta+, r', r'').
 struct SplineBend {
   static constexpr int strains = 2, coordinates = 14;
   const Frame* reference = nullptr;  // of the knots, two
-  double part = 0;                   // of the span that lies before the point
+  double part = 0;                   // fraction of the span before the point
   double stiffness[2] = {}, friction[2] = {}, rest[2] = {};
 
   template <class T>

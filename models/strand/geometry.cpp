@@ -6,7 +6,7 @@
 namespace tress::models {
 namespace {
 
-/// y -> (along_y y + along_u darboux x y + along_z darboux x (darboux x y)).
+/// y -> along_y y + along_u darboux x y + along_z darboux x (darboux x y).
 struct Turned {
   const Vec& darboux;
   Vec operator()(double along_y, double along_u, double along_z, const Vec& y) const {

@@ -6,22 +6,22 @@
 
 namespace tress::models {
 
-/// The frame at `s` (m) of a helix of constant Darboux vector (1/m), in the components of
-/// the one at 0.
+/// The frame at `s` (m) of a helix of constant Darboux vector (1/m), relative to the
+/// frame at 0.
 Frame helix_turn(const Vec& darboux, double s);
 
 /// Which of a strand's two shapes: Segment::natural or Segment::initial.
 enum class ShapeOf { natural, initial };
 
-/// Where the root and the tips of all segments of an unbranched strand are, n + 1 places,
-/// from helix to helix; the root stands at `root`.
+/// The n + 1 sections at the root (located at `root`) and at the tips of all segments of
+/// an unbranched strand, computed from helix to helix.
 std::vector<StrandPlace> joints(const Strand& strand, ShapeOf shape,
                                 const StrandPlace& root);
-/// Where the middles of its segments are, n places.
+/// The n sections at the middles of its segments.
 std::vector<StrandPlace> middles(const Strand& strand, ShapeOf shape,
                                  const StrandPlace& root);
 
-/// Throws InputError naming `model` unless the strand is a chain: segment i hangs on the
+/// Throws InputError naming `model` unless the strand is a chain: segment i starts at the
 /// tip of segment i - 1, in its direction.
 void check_unbranched(const Strand& strand, const std::string& model);
 

@@ -7,8 +7,7 @@
 
 namespace tress::models {
 
-/// What a strand is made of. Linear elastic, with Kelvin-Voigt friction in bending and
-/// twisting.
+/// Linear elastic material with Kelvin-Voigt friction in bending and twisting.
 struct Material {
   double density = 1300;         // kg/m^3
   double youngs_modulus = 3e9;   // Pa
@@ -36,11 +35,11 @@ struct CrossSection {
   double polar() const;     // I1 + I2: rotational inertia about the tangent per density
 };
 
-/// GJ, EI1 and EI2: against twist and the two curvatures, N m^2.
+/// GJ, EI1 and EI2: stiffness of twist and the two curvatures, N m^2.
 Vec stiffness(const Material& material, const CrossSection& section);
 
-/// Throw InputError naming `where` unless every number makes sense (positive density,
-/// moduli and half-axes, friction >= 0, all finite).
+/// Throw InputError naming `where` unless density, moduli and half-axes are positive,
+/// friction >= 0 and all numbers finite.
 void check(const Material& material, const std::string& where);
 void check(const CrossSection& section, const std::string& where);
 

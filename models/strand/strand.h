@@ -11,14 +11,14 @@
 
 namespace tress::models {
 
-/// One piece of a strand: starts at the tip of `parent`, or at the root.
+/// One segment of a strand, which starts at the tip of `parent`, or at the root.
 struct Segment {
   int parent = -1;    // index of an earlier segment, -1: the root
   double length = 0;  // m
-  Frame mount;        // of this segment's start, seen from the tip of the parent
+  Frame mount;        // frame of this segment's start relative to the parent's tip
   CrossSection section;
   Vec natural;  // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
-  Vec initial;  // the same at t = 0
+  Vec initial;  // twist and curvatures at t = 0, 1/m
 };
 
 /// The root is clamped to a prescribed motion, or free to move from an initial state.
@@ -29,8 +29,8 @@ struct FreeRoot {
   Vec spin;      // rad/s, world components
 };
 
-/// A strand, or a tree of them, as every strand model takes it: what it is made of, how
-/// it is cut into segments, its shape at rest, and what its root does.
+/// A strand, or a tree of strands, the input of every strand model: material, segments,
+/// rest shape, and motion of the root.
 struct Strand {
   Material material;
   std::vector<Segment> segments;  // parents before children
@@ -53,8 +53,8 @@ Shape helix_shape(double radius, double pitch);
 /// Throws InputError unless both are finite and wavelength > 0.
 Shape wavy_shape(double amplitude, double wavelength);
 
-/// How an unbranched strand is cut: n segments, the last `grading` times as long as the
-/// first (geometric series).
+/// Discretisation of an unbranched strand: n segments, the last `grading` times as long
+/// as the first (geometric series).
 struct Discretisation {
   int elements = 20;
   double length = 0.1;  // m
@@ -63,14 +63,14 @@ struct Discretisation {
 
 /// A chain of segments; natural shapes are averaged over each segment (Gauss-Legendre, 8
 /// points: exact for polynomials of degree 15, 1e-9 of the amplitude for a wave as long
-/// as the segment); `initial` is the natural shape unless given. Throws InputError on no
-/// elements, lengths that are not positive, and numbers that are not finite.
+/// as the segment); `initial` is the natural shape unless given. Throws InputError unless
+/// there are elements, lengths are positive and numbers finite.
 Strand make_strand(const Material& material, const CrossSection& section,
                    const Discretisation& cut, const Shape& natural,
                    const Shape& initial = {});
 
 /// Throws InputError naming the segment unless parents precede children, lengths are
-/// positive, mounts are rotations and all numbers finite; the same for material and root.
+/// positive, mounts are rotations and all numbers finite; also checks material and root.
 void check(const Strand& strand);
 
 }  // namespace tress::models
