@@ -206,7 +206,7 @@ bool Guard::stretched(double t, In q) {
   }
   broken(Breach::Kind::stretch,
          fmt::format("unstable: a piece is off its length by {:.3g} of it (at most {:g})",
-                     most, most_stretch),
+                     *most, most_stretch),
          worst > 0 ? place(worst, "element") : "", t);
   return true;
 }
