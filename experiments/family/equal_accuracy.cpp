@@ -24,7 +24,7 @@ constexpr int samples = 12;
 constexpr double target = 0.01;
 constexpr std::array ladder{5, 10, 20, 40, 80};
 constexpr double coarsest = 1 / 60.0, finest = 1 / 480.0;  // s
-constexpr std::string_view integrator = "bdf2";  // solves most of these hairs
+constexpr std::string_view integrator = "bdf2";            // solves most of these hairs
 constexpr int pairs = 5;  // timed runs, one of each model in turn
 constexpr int least_finest_elements = 60;
 constexpr double finest_step = 1 / 960.0;  // s

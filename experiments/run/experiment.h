@@ -58,11 +58,10 @@ struct Experiment {
   /// s, per row with --quick unless --timeout overrides it. Only against hangs: no result
   /// may depend on the machine's load. Options::max_work bounds the work of a row.
   double quick_timeout_s = 60;
-  std::span<const Column> columns;  // status, reason and run_id are appended
-  std::span<const Parameter> settings =
-      {};                                   // the experiment's own --set keys
-  std::span<const OwnOption> options = {};  // short forms of --set
-  std::span<const Unused> unused = {};      // shared options that are refused
+  std::span<const Column> columns;           // status, reason and run_id are appended
+  std::span<const Parameter> settings = {};  // the experiment's own --set keys
+  std::span<const OwnOption> options = {};   // short forms of --set
+  std::span<const Unused> unused = {};       // shared options that are refused
   std::function<std::vector<Case>(const CommandLine&)> cases;
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};

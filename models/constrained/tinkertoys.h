@@ -26,8 +26,8 @@ enum class Structure { chain, ring, net, tree, truss };
 struct ToyShape {
   Structure structure = Structure::chain;
   int size = 4;
-  double mass = 1;    // kg, all particles together, equal shares
-  double length = 1;  // m: chain, ring's perimeter, net's side, tree's height, truss
+  double mass = 1;        // kg, all particles together, equal shares
+  double length = 1;      // m: chain, ring's perimeter, net's side, tree's height, truss
   double gravity = 9.81;  // m/s^2, along -z
   double drag = 0;        // kg/(m s), on length shared equally between the particles
   double spin = 0;        // rad/s, not for the net

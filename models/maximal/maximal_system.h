@@ -41,8 +41,7 @@ struct MaximalStrand {
   /// other coordinates.
   std::unique_ptr<ConstraintSet> constraints;
   LinearKind solver = LinearKind::automatic;
-  Tangent tangent =
-      Tangent::exact;  // stiff: loads as if the strand's tangent were fixed
+  Tangent tangent = Tangent::exact;  // stiff: loads as if the strand's tangent were fixed
 };
 
 /// A strand of redundant coordinates behind the contract of contract/system.h:

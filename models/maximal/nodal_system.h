@@ -71,7 +71,7 @@ class NodalSystem final : public System,
   StaggeredMotion<double> motion_;
   StaggeredMotion<Number> moved_;
   std::vector<Number> q_, v_, a_;
-  std::vector<double> x_, u_, tangent_, load_;  // per node, as seen by effects
+  std::vector<double> x_, u_, tangent_, load_;             // per node, as seen by effects
   std::vector<double> load_by_x_, load_by_v_, load_by_t_;  // (9 nodes)
   std::vector<double> zero_;
   Pattern pattern_;

@@ -35,8 +35,7 @@ class PointDirections {
   std::vector<std::vector<int>> groups() const;
 
   std::vector<NodeMean> points_;
-  Groups
-      groups_;  // per point, from the first node of `before` to the last of `behind`
+  Groups groups_;  // per point, from the first node of `before` to the last of `behind`
 };
 
 }  // namespace tress::models
