@@ -9,7 +9,6 @@
 #include "contract/input_error.h"
 #include "experiments/hard_cases/grid.h"
 #include "experiments/problems/scene_files.h"
-#include "experiments/problems/strand_models.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/changes.h"
@@ -17,15 +16,12 @@
 namespace tress::experiments::hard_cases {
 namespace {
 
-/// The tangents to try; for the scene's own model the scene's, and the usual one for the
-/// method that solves only once a step.
+/// The tangents to try.
 std::vector<std::string_view> tangents(const CommandLine& line, const Scene& scene,
                                        const ModelEntry& model,
                                        std::string_view integrator) {
   if (&model != scene.model) return tried_tangents(line, model, integrator);
-  if (first_word(model, "tangent").empty()) return {""};
-  std::set<std::string_view> all{scene.model_options.word("tangent")};
-  if (integrator == "semi_implicit_euler") all.insert(usual_tangent(model));
+  const std::set<std::string_view> all = scene_tangents(scene, integrator);
   return {all.begin(), all.end()};
 }
 

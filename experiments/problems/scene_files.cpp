@@ -6,6 +6,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/problems/formulations.h"
+#include "experiments/problems/strand_models.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
@@ -41,6 +42,14 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
   }
   scene.options.formulation = usable.front();
   return scene;
+}
+
+std::set<std::string_view> scene_tangents(const Scene& scene,
+                                          std::string_view integrator) {
+  if (first_word(*scene.model, "tangent").empty()) return {""};
+  std::set<std::string_view> all{scene.model_options.word("tangent")};
+  if (integrator == "semi_implicit_euler") all.insert(usual_tangent(*scene.model));
+  return all;
 }
 
 std::size_t most_elements(const Scene& scene) {

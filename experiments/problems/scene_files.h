@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "integrators/catalogue.h"
@@ -24,6 +26,12 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 /// by its best. Throws InputError where the model cannot do the scene or the integrator
 /// cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
+
+/// The tangents to try on the scene's own model: the scene's, and the usual one for the
+/// method that solves only once a step; {""} if the model has no choice. They are views
+/// into the scene and the catalogue.
+std::set<std::string_view> scene_tangents(const Scene& scene,
+                                          std::string_view integrator);
 
 /// Element count of the strand with the most elements.
 std::size_t most_elements(const Scene& scene);

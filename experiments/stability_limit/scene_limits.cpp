@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "contract/input_error.h"
 #include "experiments/numerics/step_cost.h"
 #include "experiments/problems/scene_files.h"
-#include "experiments/problems/strand_models.h"
 #include "experiments/stability_limit/limit_row.h"
 #include "experiments/stability_limit/stability_grid.h"
 #include "integrators/catalogue.h"
@@ -30,17 +28,6 @@ Broken broken_by(const Breach& breach) {
       break;
   }
   return Broken::energy;
-}
-
-/// The scene's own tangent, and the usual one for the method that solves only once a
-/// step.
-std::set<std::string> tangents_of(const Scene& scene, std::string_view integrator) {
-  if (first_word(*scene.model, "tangent").empty()) return {""};
-  std::set<std::string> all{std::string(scene.model_options.word("tangent"))};
-  if (integrator == "semi_implicit_euler") {
-    all.emplace(usual_tangent(*scene.model));
-  }
-  return all;
 }
 
 /// One step length of one search: stable, broken, or empty when the work is used up.
@@ -100,7 +87,7 @@ std::vector<Case> scene_cases(const CommandLine& line,
     const Scene scene = thinned(given, how.strands);
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!considered(line, entry)) continue;
-      for (const std::string& tangent : tangents_of(scene, entry.id)) {
+      for (const std::string_view tangent : scene_tangents(scene, entry.id)) {
         Scene own = scene;
         own.integrator = entry.id;
         if (!tangent.empty()) own.model_options.set("tangent", tangent);
