@@ -39,7 +39,7 @@ std::vector<Scene> scenes(const Settings& user) {
           scene("truss", "tinkertoys", user, {{"structure", "truss"}, {"size", "1"}})};
 }
 
-constexpr double quick_work = 1e7;  // per run
+constexpr double quick_work = 4e6;  // per run
 
 // Baumgarte's gains for the table: a slow and a fast critically damped pair.
 constexpr double feedback_rates[] = {10, 100};  // omega, 1/s

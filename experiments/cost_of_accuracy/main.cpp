@@ -69,7 +69,7 @@ constexpr Parameter own_settings[] = {
      .max = 1e4,
      .whole = true},
     {.name = "search_work",
-     .help = "of one scene's search, million elements x steps of all runs; 0: 2 with "
+     .help = "of one scene's search, million elements x steps of all runs; 0: 1.5 with "
              "--quick, else 30",
      .number = 0,
      .min = 0,
@@ -140,7 +140,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.horizon = own.number("horizon_s");
   plan.strands = static_cast<std::size_t>(own.whole("strands"));
   plan.search_work = 1e6 * own.number("search_work");
-  if (plan.search_work == 0) plan.search_work = line.quick ? 2e6 : 3e7;
+  if (plan.search_work == 0) plan.search_work = line.quick ? 1.5e6 : 3e7;
   plan.longest_run = line.quick ? 2048 : 8192;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;

@@ -42,16 +42,20 @@ TipRun run_of(const Hair& hair, std::string_view model, int elements, double dt)
   return run_tip(integrator, *system, options_at(*system, dt), t_end, samples);
 }
 
-TipRun watched_run_of(const Hair& hair, std::string_view model, int elements, double dt) {
+TipRun watched_run_of(const Hair& hair, std::string_view model, int elements, double dt,
+                      double most_work) {
   const auto system = make_system(hair, model, elements);
   Guard guard = make_guard(hair, model, elements, *system);
-  return run_tip(integrator, *system, options_at(*system, dt), t_end, samples, 0, &guard);
+  Options options = options_at(*system, dt);
+  options.max_work = std::min(options.max_work, most_work);
+  return run_tip(integrator, *system, options, t_end, samples, 0, &guard);
 }
 
 std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In limit) {
   return cheapest_run({target, ladder, coarsest, finest},
-                      [&](int elements, double dt) -> CheapRun {
-                        const TipRun run = watched_run_of(hair, model, elements, dt);
+                      [&](int elements, double dt, double most_work) -> CheapRun {
+                        const TipRun run =
+                            watched_run_of(hair, model, elements, dt, most_work);
                         const double error =
                             run.status == Status::ok
                                 ? tip_error(run.tip, limit, hair.length)

@@ -1,5 +1,6 @@
 #include "experiments/numerics/cheapest_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,25 +15,28 @@ constexpr double far = 10;
 
 }  // namespace
 
-Cheapest cheapest_run(const CheapSearch& search,
-                      const std::function<CheapRun(int elements, double dt)>& run) {
+Cheapest cheapest_run(
+    const CheapSearch& search,
+    const std::function<CheapRun(int elements, double dt, double most_work)>& run) {
   std::optional<CheapRun> best;
   double spent = 0;
   for (const int elements : search.elements) {
     double last = std::numeric_limits<double>::infinity();
     for (double dt = search.coarsest; dt >= search.finest; dt /= 2) {
-      if (spent >= search.most_work) return {best, false};
-      const CheapRun found = run(elements, dt);
+      const double left = search.most_work - spent;
+      if (left <= 0) return {best, false};
+      const CheapRun found = run(elements, dt, best ? std::min(best->work, left) : left);
       spent += found.work;
+      const bool too_dear = best && found.work >= best->work;
+      if (too_dear) break;
       if (!std::isfinite(found.error)) continue;  // too long a step
       if (found.error <= search.target) {
-        if (!best || found.work < best->work) best = found;
+        best = found;
         break;
       }
-      const bool too_dear = best && found.work > best->work;
       const bool of_space =
           found.error > little_gain * last && found.error < far * search.target;
-      if (too_dear || of_space) break;
+      if (of_space) break;
       last = found.error;
     }
   }

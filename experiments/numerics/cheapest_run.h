@@ -37,8 +37,10 @@ struct Cheapest {
 /// elements the longest step that meets it. A number of elements is abandoned when
 /// halving the step reduces an error near the target by less than a fifth (the remaining
 /// error is not temporal), or takes more work than the best run so far. Work decides
-/// rather than time, so that the answer is the same on every machine.
-Cheapest cheapest_run(const CheapSearch& search,
-                      const std::function<CheapRun(int elements, double dt)>& run);
+/// rather than time, so that the answer is the same on every machine. `run` may stop at
+/// most_work: beyond it the run cannot be the best, or the search is over.
+Cheapest cheapest_run(
+    const CheapSearch& search,
+    const std::function<CheapRun(int elements, double dt, double most_work)>& run);
 
 }  // namespace tress::experiments

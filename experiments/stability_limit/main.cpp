@@ -105,7 +105,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const Parameters& rows = settings.experiment();
   const StepSearch search = step_search(rows, 1e-6, line.quick ? 10 : 30);
   const double row_work = set_or(rows, "row_work",
-                                 line.quick  ? 4e6
+                                 line.quick  ? 3e6
                                  : line.full ? 1e8
                                              : 2e7);
   if (!rows.word("scenes").empty()) {

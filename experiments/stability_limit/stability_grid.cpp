@@ -58,7 +58,7 @@ constexpr Parameter settings_of_rows[] = {
      .max = 1e4,
      .whole = true},
     {.name = "row_work",
-     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 4e6, "
+     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 3e6, "
              "with --full 1e8, of study nodal 1e9, with --quick 1.5e8",
      .number = 0,
      .min = 0},
