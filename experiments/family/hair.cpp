@@ -58,8 +58,8 @@ Parameters wind_of(const Hair& hair) {
   Parameters wind(wind_parameters(), "effect wind");
   wind.set("velocity_m_s", fmt::format("0,{},0", wind_speed(hair)));
   wind.set("profile", "sine");
-  wind.set("frequency_1_s", text(hair.frequency));
-  wind.set("nu_kg_m_s", text(wind_drag));
+  wind.set("frequency_hz", text(hair.frequency));
+  wind.set("drag_kg_m_s", text(wind_drag));
   return wind;
 }
 

@@ -168,7 +168,8 @@ class Writer {
     const double along = draw_.uniform(-1, 1), up = draw_.uniform(-1, 1);
     for (int k = 0; k < count; ++k) {
       line(
-          "[[strand]]\nposition_m = [0, {:.17g}, 0]\ntangent = [{:.3g}, 0.1, {:.3g}]\n{}",
+          "[[strand]]\nposition_m = [0, {:.17g}, 0]\nroot_tangent = [{:.3g}, 0.1, "
+          "{:.3g}]\n{}",
           k * draw_.spread(1e-4, 0.01), along, up, shape);
     }
     scene_.lightest = density_ * std::numbers::pi * radius_ * radius_ * length_;
@@ -265,7 +266,7 @@ class Writer {
       weight_ = true;
     }
     if (draw_.chance(0.3))
-      line("[effects.linear_drag]\nnu_kg_m_s = {:.3g}", draw_.spread(1e-7, 1e-2));
+      line("[effects.linear_drag]\ndrag_kg_m_s = {:.3g}", draw_.spread(1e-7, 1e-2));
     if (draw_.chance(0.1)) line("[effects.quadratic_drag]");
     if (draw_.chance(0.15)) {
       const double speed = draw_.spread(0.1, 30);
