@@ -17,7 +17,11 @@ struct Renamed {
 constexpr Renamed renamed[] = {{"acceleration_m_s2", "gravity_m_s2"},
                                {"frequency_1_s", "frequency_hz"},
                                {"gravity", "gravity_m_s2"},
+                               {"head_angle_rad", "angle_rad"},
                                {"nu_kg_m_s", "drag_kg_m_s"},
+                               {"root", "motion"},
+                               {"stop_speed_m_s", "speed_m_s"},
+                               {"stop_time_s", "time_s"},
                                {"tangent", "root_tangent"}};
 
 std::string join(std::span<const std::string_view> words) {

@@ -10,7 +10,6 @@
 
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::testing_support {
 
@@ -97,7 +96,7 @@ class Writer {
     const ModelEntry& entry = *draw_.of(strands);
     line("[model]\nid = \"{}\"", entry.id);
     for (const Parameter& p : entry.parameters) {
-      if (shared_by_strands(p.name) || p.choices.empty() || !draw_.chance(0.3)) continue;
+      if (p.choices.empty() || !draw_.chance(0.3)) continue;
       std::vector<std::string_view> words;
       for (std::size_t from = 0; from <= p.choices.size();) {
         const std::size_t to = std::min(p.choices.find('|', from), p.choices.size());

@@ -69,6 +69,8 @@ const Wrong wrong_scenes[] = {
      "it is called 'frequency_hz' now"},
     {"RenamedGravity", strand + "[effects.gravity]\nacceleration_m_s2 = [0, 0, -1]\n",
      "4:1", "it is called 'gravity_m_s2' now"},
+    {"RenamedMotion", "[model]\nid = \"super_helix_tree\"\nroot = \"shake\"\n", "4:1",
+     "it is called 'motion' now"},
     {"RenamedOption", "[model]\nid = \"double_pendulum\"\ngravity = 1\n", "4:1",
      "it is called 'gravity_m_s2' now"},
     {"FarKey", "[strand]\nxyzzyplugh = 1\n", "3:1", "use one of: material, position_m"},
