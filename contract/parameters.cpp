@@ -9,6 +9,21 @@
 namespace tress {
 namespace {
 
+/// Keys that once had another name than the same thing elsewhere. Whoever gives the old
+/// one learns the new one, where that one is declared.
+struct Renamed {
+  std::string_view before, now;
+};
+constexpr Renamed renamed[] = {{"acceleration_m_s2", "gravity_m_s2"},
+                               {"frequency_1_s", "frequency_hz"},
+                               {"gravity", "gravity_m_s2"},
+                               {"head_angle_rad", "angle_rad"},
+                               {"nu_kg_m_s", "drag_kg_m_s"},
+                               {"root", "motion"},
+                               {"stop_speed_m_s", "speed_m_s"},
+                               {"stop_time_s", "time_s"},
+                               {"tangent", "root_tangent"}};
+
 std::string join(std::span<const std::string_view> words) {
   std::string text;
   for (const std::string_view word : words) {
@@ -116,6 +131,11 @@ std::string_view nearest(std::string_view word,
 std::string suggestion(std::string_view word,
                        std::span<const std::string_view> candidates,
                        const std::string& otherwise) {
+  for (const auto& [before, now] : renamed) {
+    if (before == word && std::ranges::count(candidates, now) > 0) {
+      return "it is called '" + std::string(now) + "' now";
+    }
+  }
   const std::string_view near = nearest(word, candidates);
   return near.empty() ? otherwise : "did you mean '" + std::string(near) + "'?";
 }

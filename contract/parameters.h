@@ -79,7 +79,7 @@ std::vector<std::string_view> words_of(std::string_view choices);
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates);
 
-/// Remedy for an unknown name: "did you mean" the nearest candidate, or `otherwise`.
+/// Remedy for an unknown name: its new name, or the nearest candidate, or `otherwise`.
 std::string suggestion(std::string_view word,
                        std::span<const std::string_view> candidates,
                        const std::string& otherwise);

@@ -94,7 +94,7 @@ void register_functions() {
 // ---- elements and sweeps ------------------------------------------------------------
 
 Parameters parameters_of(const Choice& choice, int elements) {
-  Parameters p(find_model("super_helix").parameters, "benchmark");
+  Parameters p(setup_parameters(find_model("super_helix")), "benchmark");
   for (const auto& [key, value] : released(choice, elements)) p.set(key, value);
   return p;
 }

@@ -29,7 +29,8 @@ void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   const std::size_t before = verdicts.all().size();
   for (const Row& row : rows) {
     if (!is_shipped(row.text("data"))) continue;
-    if (!row.has("gamma_true_kg_m3_s") || row.text("model") != "super_helix") continue;
+    if (!row.has("internal_friction_true_kg_m3_s") || row.text("model") != "super_helix")
+      continue;
     const std::string what =
         std::string(row.text("data")) + ", fit of " + std::string(row.text("fit")) + ": ";
     if (row.text("integrator") != fitting) {
@@ -45,7 +46,8 @@ void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
       verdicts.check(
           what + "the truth is inside the interval",
           row.ok() && holds(row, "gamma", "_kg_m3_s") && holds(row, "nu", "_kg_m_s"),
-          row.number("gamma_kg_m3_s") / row.number("gamma_true_kg_m3_s"));
+          row.number("internal_friction_kg_m3_s") /
+              row.number("internal_friction_true_kg_m3_s"));
     }
   }
   if (verdicts.all().size() == before) {

@@ -216,7 +216,7 @@ class Cases {
     throw InputError("the scene has nothing of what is to be found",
                      "scene " + scene.name,
                      "give internal_friction_kg_m3_s, [effects.linear_drag] with "
-                     "nu_kg_m_s, or another fit");
+                     "drag_kg_m_s, or another fit");
   }
 
   void add_measured() {

@@ -53,8 +53,8 @@ void FitRow::measure(Row& row) const {
     return;
   }
   if (truth) {
-    row.set("gamma_true_kg_m3_s", truth->gamma);
-    row.set("nu_true_kg_m_s", truth->nu);
+    row.set("internal_friction_true_kg_m3_s", truth->gamma);
+    row.set("drag_true_kg_m_s", truth->nu);
   }
   const Records fitted = simulate ? record_of(*this) : *records;
   if (fitted.all.empty()) {
@@ -63,8 +63,8 @@ void FitRow::measure(Row& row) const {
   }
   const FrictionFit fit = fit_friction(fitted, strands, how);
   row.set("records", fitted.all.size()).set("points", fitted.points());
-  set(row, fit.gamma, "gamma", "_kg_m3_s");
-  set(row, fit.nu, "nu", "_kg_m_s");
+  set(row, fit.gamma, "internal_friction", "_kg_m3_s");
+  set(row, fit.nu, "drag", "_kg_m_s");
   row.set("correlation", fit.correlation).set("condition", fit.condition);
   row.set("residual_rms_m", fit.rms).set("reduced_chi2", fit.reduced_chi2);
   row.set("autocorrelation", fit.autocorrelation).set("step_shift", fit.step_shift);

@@ -262,7 +262,7 @@ std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model
     Parameters strand = parameters;
     for (const auto& [key, value, where] : record.of_strand) {
       if ((key == gamma_key && fitted != Fitted::nu) ||
-          (key == nu_key && fitted != Fitted::gamma)) {
+          (key == drag_key && fitted != Fitted::gamma)) {
         throw InputError("'" + key + "' is what is fitted", where,
                          "leave out the column, or fit the other one alone");
       }

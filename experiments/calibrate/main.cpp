@@ -22,14 +22,15 @@ constexpr Column columns[] = {
     {"confidence", "of the intervals"},
     {"records", "oscillations fitted at once"},
     {"points", "of all records"},
-    {"gamma_kg_m3_s", "internal friction"},
-    {"gamma_low_kg_m3_s", "lower end of its interval; empty: known, not fitted"},
-    {"gamma_high_kg_m3_s", "upper end"},
-    {"gamma_true_kg_m3_s", "with which simulated records were made"},
-    {"nu_kg_m_s", "air drag per length"},
-    {"nu_low_kg_m_s", "lower end of its interval; empty: known, not fitted"},
-    {"nu_high_kg_m_s", "upper end"},
-    {"nu_true_kg_m_s", "with which simulated records were made"},
+    {"internal_friction_kg_m3_s", "internal friction"},
+    {"internal_friction_low_kg_m3_s",
+     "lower end of its interval; empty: known, not fitted"},
+    {"internal_friction_high_kg_m3_s", "upper end"},
+    {"internal_friction_true_kg_m3_s", "with which simulated records were made"},
+    {"drag_kg_m_s", "air drag per length"},
+    {"drag_low_kg_m_s", "lower end of its interval; empty: known, not fitted"},
+    {"drag_high_kg_m_s", "upper end"},
+    {"drag_true_kg_m_s", "with which simulated records were made"},
     {"correlation", "of ln gamma and ln nu"},
     {"condition", "of the derivatives of the signal with respect to these"},
     {"residual_rms_m", "root mean square of measured less fitted"},
@@ -43,7 +44,7 @@ constexpr Column columns[] = {
 
 /// For simulated records, non-ok rows are expected results.
 bool finding(const Row& row) {
-  return row.has("gamma_true_kg_m3_s") &&
+  return row.has("internal_friction_true_kg_m3_s") &&
          (row.status() == "not_identified" || row.status() == "time_error" ||
           row.status() == "space_error");
 }

@@ -20,7 +20,7 @@ constexpr int z = 2;
 std::vector<ShippedRecords> make_list() {
   const ModelSettings curl{{"natural_curvature_1_m", "100"},
                            {"natural_twist_1_m", "30"},
-                           {"root", "drop_pull"},
+                           {"motion", "drop_pull"},
                            {"root_tangent", "down"},
                            {"frequency_hz", "5"}};
   return {{.name = "two_lengths",
@@ -130,7 +130,7 @@ ModelSettings settings_of(const ShippedRecords& shipped, int count) {
 
 Records synthetic(const ShippedRecords& shipped, std::uint64_t seed) {
   const ModelEntry& entry = find_model(model);
-  Parameters parameters(entry.parameters, "model super_helix");
+  Parameters parameters(setup_parameters(entry), "model super_helix");
   set_known(parameters, settings_of(shipped, shipped.made_with));
   Watch watch;
   watch.options.step = step;

@@ -13,7 +13,6 @@ namespace tress::experiments::calibrate {
 namespace {
 
 constexpr const char* drag_id = "linear_drag";
-constexpr const char* drag_key = "nu_kg_m_s";
 
 auto drag_of(auto& scene) {
   return std::ranges::find(scene.effects, drag_id,
@@ -40,11 +39,11 @@ Specimen specimen(const ModelEntry& model, const Parameters& parameters) {
   const auto build = [&model, parameters](const Friction& friction, int finer) {
     Parameters p = parameters;
     p.set(gamma_key, fmt::format("{}", friction.gamma));
-    p.set(nu_key, fmt::format("{}", friction.nu));
+    p.set(drag_key, fmt::format("{}", friction.nu));
     p.set("elements", fmt::format("{}", finer * p.whole("elements")));
     return BuiltStrand{model.make(p), guarded_strands(model, p)};
   };
-  return {{parameters.number(gamma_key), parameters.number(nu_key)},
+  return {{parameters.number(gamma_key), parameters.number(drag_key)},
           made.length(),
           made.mass(),
           build};

@@ -12,7 +12,7 @@ namespace tress::experiments::calibrate {
 
 // Parameter names in strand models.
 inline constexpr const char* gamma_key = "internal_friction_kg_m3_s";
-inline constexpr const char* nu_key = "drag_kg_m_s";
+inline constexpr const char* drag_key = "drag_kg_m_s";
 
 struct Friction {
   double gamma;  // internal friction, kg m^3/s

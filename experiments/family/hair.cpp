@@ -58,8 +58,8 @@ Parameters wind_of(const Hair& hair) {
   Parameters wind(wind_parameters(), "effect wind");
   wind.set("velocity_m_s", fmt::format("0,{},0", wind_speed(hair)));
   wind.set("profile", "sine");
-  wind.set("frequency_1_s", text(hair.frequency));
-  wind.set("nu_kg_m_s", text(wind_drag));
+  wind.set("frequency_hz", text(hair.frequency));
+  wind.set("drag_kg_m_s", text(wind_drag));
   return wind;
 }
 
@@ -140,7 +140,7 @@ Hair straightened(Hair hair) {
 double wind_speed(const Hair& hair) { return winds.at(hair.level); }
 
 Parameters parameters_of(const Hair& hair, std::string_view model, int elements) {
-  Parameters p(find_model(model).parameters, "model " + std::string(model));
+  Parameters p(setup_parameters(find_model(model)), "model " + std::string(model));
   p.set("elements", std::to_string(elements));
   p.set("length_m", text(hair.length));
   p.set("radius_m", text(hair.radius));
@@ -155,11 +155,11 @@ Parameters parameters_of(const Hair& hair, std::string_view model, int elements)
   p.set("initial", "natural");
   p.set("frequency_hz", text(hair.frequency));
   if (hair.drive == Drive::shake) {
-    p.set("root", "shake");
+    p.set("motion", "shake");
     p.set("amplitude_m", text(amplitudes.at(hair.level)));
   } else if (hair.drive == Drive::turning_head) {
-    p.set("root", "rotate");
-    p.set("head_angle_rad", text(angles.at(hair.level)));
+    p.set("motion", "rotate");
+    p.set("angle_rad", text(angles.at(hair.level)));
   }
   return p;
 }

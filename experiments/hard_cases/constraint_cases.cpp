@@ -50,7 +50,7 @@ std::vector<HardCase> constraint_cases() {
        .criterion = "no length changes by more than 1e-4, hundreds of times what "
                     "100 weights of the strand do; energy as for all that falls",
        .limit = 1e-4,
-       .settings = {{"root", "fixed"},
+       .settings = {{"motion", "fixed"},
                     {"root_tangent", "x"},
                     {"youngs_modulus_pa", "3e13"},
                     {"radius_m", "4e-6"},
@@ -65,7 +65,7 @@ std::vector<HardCase> constraint_cases() {
        .measure = "left_over_bound",
        .criterion = "at the end constraints hold to 1e-3 of their scale, and no "
                     "more energy was made than lifting the strand by its length",
-       .settings = {{"root", "fixed"}, {"root_tangent", "x"}},
+       .settings = {{"motion", "fixed"}, {"root_tangent", "x"}},
        .t_end = 0.3,
        .horizon = 0,
        .particles = {{"inextensible_chain", hair_of_links},

@@ -74,7 +74,7 @@ std::vector<HardCase> contact_cases() {
                      "turns overlap by less than their radius, half of the "
                      "distance at which they touch: they have not passed through "
                      "each other; the tip stays within reach",
-                 .settings = {{"root", "fixed"},
+                 .settings = {{"motion", "fixed"},
                               {"root_tangent", "x"},
                               {"elements", "20"},
                               {"gravity_m_s2", "0"},
@@ -97,7 +97,7 @@ std::vector<HardCase> contact_cases() {
                  .criterion = "no point is deeper than the strand's radius and what the "
                               "last quadrature point leaves of the tip: its axis stays "
                               "outside; reach and speed as for driven roots",
-                 .settings = {{"root", "swing"},
+                 .settings = {{"motion", "swing"},
                               {"root_tangent", "x"},
                               {"gravity_m_s2", "0"},
                               {"amplitude_m", "0.025"},
@@ -116,7 +116,7 @@ std::vector<HardCase> contact_cases() {
        .criterion = "no point is deeper than the strand's radius and what the "
                     "last quadrature point leaves of the tip; energy grows by "
                     "less than 1 % of the fall to the apex",
-       .settings = {{"root", "free"}, {"root_tangent", "x"}, {"spin_rad_s", "0"}},
+       .settings = {{"motion", "free"}, {"root_tangent", "x"}, {"spin_rad_s", "0"}},
        .t_end = 0.2,
        .horizon = 0.08,
        .bounds = cone_bounds,

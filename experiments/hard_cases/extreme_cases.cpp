@@ -16,7 +16,7 @@ HardCase falling(std::string_view name, std::string_view why, ModelSettings sett
                 .why = why,
                 .measure = "energy_gain_over_bound",
                 .criterion = no_energy,
-                .settings = {{"root", "fixed"}, {"root_tangent", "x"}},
+                .settings = {{"motion", "fixed"}, {"root_tangent", "x"}},
                 .bounds = passive_bounds};
   hard.settings.insert(hard.settings.end(), settings.begin(), settings.end());
   return hard;

@@ -44,11 +44,7 @@ Situation situation(const HardCase& hard, const Subject& subject,
   Situation s{defaults, {}, {}, 0, 0, nullptr, {}};
   set_known(s.parameters, subject.settings);
   if (subject.model->on_strand != nullptr) {
-    for (const auto& [key, value] : hard.settings) {
-      // Keys that only some models have apply to those only.
-      if (shared_by_strands(key) || s.parameters.knows(key)) s.parameters.set(key, value);
-    }
-
+    set_known(s.parameters, hard.settings);
     s.strand = strand(s.parameters);
     if (hard.shape != nullptr) hard.shape(s.strand);
     s.effects = strand_effects(s.parameters);

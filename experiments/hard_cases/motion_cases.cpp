@@ -79,10 +79,10 @@ std::vector<HardCase> motion_cases() {
                         "of it or all; the strand has energy to coil up many times",
                  .measure = "bound_used",
                  .criterion = within_reach,
-                 .settings = {{"root", "stop"},
+                 .settings = {{"motion", "stop"},
                               {"root_tangent", "down"},
-                              {"stop_speed_m_s", "5"},
-                              {"stop_time_s", "1e-3"}},
+                              {"speed_m_s", "5"},
+                              {"time_s", "1e-3"}},
                  .t_end = 0.2,
                  .horizon = 0.01,
                  .reference_step = 2e-5,
@@ -93,7 +93,7 @@ std::vector<HardCase> motion_cases() {
                      "straight shape becomes unstable on the way",
                  .measure = "bound_used",
                  .criterion = within_reach,
-                 .settings = {{"root", "fixed"},
+                 .settings = {{"motion", "fixed"},
                               {"root_tangent", "up"},
                               {"gravity_m_s2", "0"},
                               {"initial", "bent"},
@@ -109,7 +109,7 @@ std::vector<HardCase> motion_cases() {
                  .measure = "energy_gain_over_bound",
                  .criterion = "energy over the start's stays below 1 % of what the fold "
                               "and falling can turn into motion",
-                 .settings = {{"root", "fixed"}, {"root_tangent", "x"}},
+                 .settings = {{"motion", "fixed"}, {"root_tangent", "x"}},
                  .t_end = 0.1,
                  .horizon = 0.005,
                  .reference_step = 1e-5,
@@ -124,7 +124,7 @@ std::vector<HardCase> motion_cases() {
                     "accurate: both momenta keep their vectors to 5 %, the "
                     "linear one over the angular one per length",
        .limit = 0.01,
-       .settings = {{"root", "free"}, {"elements", "2"}, {"gravity_m_s2", "0"}},
+       .settings = {{"motion", "free"}, {"elements", "2"}, {"gravity_m_s2", "0"}},
        .count = 1'000'000,
        .horizon = 0,
        .bounds = no_bounds,
@@ -137,7 +137,7 @@ std::vector<HardCase> motion_cases() {
        .measure = "energy_gain_over_bound",
        .criterion = "energy over the start's stays below 1 % of what falling can "
                     "turn into motion: nothing feeds it",
-       .settings = {{"root", "fixed"}, {"root_tangent", "x"}},
+       .settings = {{"motion", "fixed"}, {"root_tangent", "x"}},
        .bounds = passive_bounds,
        .stops = jumping});
   return all;

@@ -162,7 +162,7 @@ Reference reference(const HardCase& hard, const Subject& subject,
   Parameters parameters = defaults;
   if (hard.rod_elements > 0) {
     whose = rod();
-    parameters = Parameters(whose.model->parameters, "reference");
+    parameters = Parameters(setup_parameters(*whose.model), "reference");
     finer.settings.emplace_back("elements", std::to_string(hard.rod_elements));
   }
   Reference found;

@@ -6,8 +6,9 @@ namespace tress::experiments {
 namespace {
 
 const Parameter* parameter(const ModelEntry& model, std::string_view key) {
-  const auto found = std::ranges::find(model.parameters, key, &Parameter::name);
-  return found == model.parameters.end() ? nullptr : &*found;
+  const std::span<const Parameter> all = setup_parameters(model);
+  const auto found = std::ranges::find(all, key, &Parameter::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -15,8 +16,7 @@ const Parameter* parameter(const ModelEntry& model, std::string_view key) {
 std::vector<const ModelEntry*> strand_models() {
   std::vector<const ModelEntry*> all;
   for (const ModelEntry& model : model_catalogue()) {
-    if (parameter(model, "elements") != nullptr && parameter(model, "root") != nullptr)
-      all.push_back(&model);
+    if (model.on_strand != nullptr) all.push_back(&model);
   }
   return all;
 }

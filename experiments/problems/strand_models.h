@@ -10,8 +10,7 @@
 
 namespace tress::experiments {
 
-/// The models of the catalogue that take a strand as models/strand/strand_parameters.h
-/// describes it: every strand scene runs on each of them.
+/// The models of the catalogue that take any strand: every strand scene runs on each.
 std::vector<const ModelEntry*> strand_models();
 
 /// The default of an option, empty if the model has no such parameter.

@@ -21,7 +21,7 @@ std::vector<StrandScene> make_scenes() {
   std::vector<StrandScene> all;
   all.push_back({"release",
                  "horizontal clamp, released straight under gravity",
-                 {{"root", "fixed"}, {"root_tangent", "x"}, {"initial", "natural"}},
+                 {{"motion", "fixed"}, {"root_tangent", "x"}, {"initial", "natural"}},
                  1,
                  any_step,
                  false});
@@ -29,7 +29,7 @@ std::vector<StrandScene> make_scenes() {
   // 0.5/m is a tip 3.6 mm off the vertical.
   all.push_back({"compress",
                  "upright, a third longer than Greenhill's length: buckles",
-                 {{"root", "fixed"},
+                 {{"motion", "fixed"},
                   {"root_tangent", "up"},
                   {"length_m", "0.12"},
                   {"initial", "bent"},
@@ -39,7 +39,7 @@ std::vector<StrandScene> make_scenes() {
                  false});
   all.push_back({"shake",
                  "as release, root shaken by 5 cm at 3 Hz",
-                 {{"root", "shake"},
+                 {{"motion", "shake"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
                   {"amplitude_m", "0.05"},
@@ -49,12 +49,12 @@ std::vector<StrandScene> make_scenes() {
                  true});
   all.push_back({"shake_rotate",
                  "as shake, on a head that turns by 0.5 rad",
-                 {{"root", "shake_rotate"},
+                 {{"motion", "shake_rotate"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
                   {"amplitude_m", "0.05"},
                   {"frequency_hz", "3"},
-                  {"head_angle_rad", "0.5"},
+                  {"angle_rad", "0.5"},
                   {"head_radius_m", "0.1"}},
                  1,
                  any_step,
@@ -63,7 +63,7 @@ std::vector<StrandScene> make_scenes() {
   // each 0.1 s: a third of that resolves both.
   all.push_back({"curl_drop",
                  "curly strand, dropped by 5 cm and pulled up again",
-                 {{"root", "drop_pull"},
+                 {{"motion", "drop_pull"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
                   {"amplitude_m", "0.05"},
@@ -77,17 +77,17 @@ std::vector<StrandScene> make_scenes() {
   // several times. A step of half the stop ends where the clamp brakes most.
   all.push_back({"whip",
                  "hanging, the root stops from 2 m/s within 10 ms",
-                 {{"root", "stop"},
+                 {{"motion", "stop"},
                   {"root_tangent", "down"},
                   {"initial", "natural"},
-                  {"stop_speed_m_s", "2"},
-                  {"stop_time_s", "0.01"}},
+                  {"speed_m_s", "2"},
+                  {"time_s", "0.01"}},
                  0.5,
                  0.005,
                  true});
   all.push_back({"swing",
                  "the strand on which other simulators were measured",
-                 {{"root", "swing"},
+                 {{"motion", "swing"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
                   {"length_m", "0.2"},

@@ -9,7 +9,7 @@
 
 namespace tress::experiments {
 
-/// One strand in one situation, as parameters common to all strand models; unset ones
+/// One strand in one situation, as strand_parameters(); unset ones
 /// keep their default, a hair of 10 cm and 40 um radius (EI = 6e-9 N m^2, 6.5e-7 kg).
 struct StrandScene {
   std::string_view name;

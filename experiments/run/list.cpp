@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "integrators/integrator_options.h"
+#include "models/strand/strand_parameters.h"
 
 namespace tress::experiments {
 namespace {
@@ -114,8 +115,8 @@ std::string matrix(std::span<const ModelEntry> models,
   for (const ModelEntry& model : models) {
     std::vector<std::string>& column = columns.emplace_back(1, std::string(model.id));
     try {
-      const std::unique_ptr<System> system =
-          model.make(Parameters(model.parameters, fmt::format("model {}", model.id)));
+      const std::unique_ptr<System> system = model.make(
+          Parameters(setup_parameters(model), fmt::format("model {}", model.id)));
       for (const IntegratorEntry& integrator : integrators) {
         column.push_back(cell(integrator, *system, notes));
       }
@@ -148,6 +149,8 @@ std::string catalogue_text(std::span<const ModelEntry> models,
     text += fmt::format("  {:<20} {} ({})\n", model.id, model.summary, model.source);
     text += parameter_lines(model.parameters);
   }
+  text += "\nKEYS OF ALL MODELS OF A STRAND (the strand, its clamp, gravity and drag)\n";
+  text += parameter_lines(strand_parameters());
   text += "\nINTEGRATORS (options of one alone by --set key=value, [default])\n";
   for (const IntegratorEntry& entry : integrators) {
     text += fmt::format("  {:<20} order {}{}, {} [{}] ({})\n", entry.id, entry.order(),

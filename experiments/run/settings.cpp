@@ -65,11 +65,12 @@ Options Settings::options(Options start) const {
 }
 
 Parameters Settings::parameters(const ModelEntry& model) const {
-  Parameters result(model.parameters, fmt::format("model {}", model.id));
+  Parameters result(setup_parameters(model), fmt::format("model {}", model.id));
   for (const auto& [key, value] : line_.set) {
     const std::string where = line_.place("set:" + key);
     if (owner(key, where) != Owner::models || !result.knows(key)) continue;
-    Parameters checked(model.parameters, fmt::format("{}, model {}", where, model.id));
+    Parameters checked(setup_parameters(model),
+                       fmt::format("{}, model {}", where, model.id));
     checked.set(key, value);
     result.set(key, value);
   }
@@ -98,10 +99,10 @@ void Settings::refuse_foreign(std::string_view key, const std::string& where) co
 }
 
 bool Settings::some_model_knows(std::string_view key) const {
-  return std::any_of(model_catalogue().begin(), model_catalogue().end(),
-                     [&](const ModelEntry& model) {
-                       return selected(line_, model) && declares(model.parameters, key);
-                     });
+  return std::any_of(
+      model_catalogue().begin(), model_catalogue().end(), [&](const ModelEntry& model) {
+        return selected(line_, model) && declares(setup_parameters(model), key);
+      });
 }
 
 Settings::Owner Settings::owner(std::string_view key, const std::string& where) const {
@@ -113,7 +114,7 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
   for (const Parameter& p : integrator_options()) known.push_back(p.name);
   for (const ModelEntry& model : model_catalogue()) {
     if (!selected(line_, model)) continue;
-    for (const Parameter& p : model.parameters) known.push_back(p.name);
+    for (const Parameter& p : setup_parameters(model)) known.push_back(p.name);
   }
   throw InputError(fmt::format("unknown key '{}'", key), where,
                    suggestion(key, known, "--list shows the keys"));

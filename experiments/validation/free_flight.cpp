@@ -20,7 +20,7 @@ constexpr double most_work = 6e7;    // per row
 
 Parameters thrown(const Settings& settings, const ModelEntry& model, int elements) {
   Parameters p = settings.parameters(model);
-  p.set("root", "free");
+  p.set("motion", "free");
   p.set("gravity_m_s2", "0");
   p.set("elements", std::to_string(elements));
   return p;
@@ -120,7 +120,7 @@ std::vector<Case> free_flight_cases(const CommandLine& line, const Settings& set
       line.elements.empty() ? std::vector<int>{10} : line.elements;
   std::vector<Case> all;
   for (const ModelEntry* model : strand_models()) {
-    if (!has_word(*model, "root", "free") || !wanted(line.models, model->id)) continue;
+    if (!has_word(*model, "motion", "free") || !wanted(line.models, model->id)) continue;
     for (const int elements : counts) {
       const Parameters p = thrown(settings, *model, elements);
       const auto system = model->make(p);

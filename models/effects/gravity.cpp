@@ -7,7 +7,7 @@
 namespace tress::models {
 namespace {
 
-constexpr Parameter parameters_of_gravity[] = {{.name = "acceleration_m_s2",
+constexpr Parameter parameters_of_gravity[] = {{.name = "gravity_m_s2",
                                                 .help = "acceleration x, y, z (m/s^2)",
                                                 .min = -1e6,
                                                 .max = 1e6,
@@ -20,7 +20,7 @@ std::span<const Parameter> gravity_parameters() { return parameters_of_gravity; 
 
 std::unique_ptr<const Effect> make_gravity(const Parameters& parameters,
                                            const RootMotion&) {
-  return std::make_unique<Gravity>(parameters.vec("acceleration_m_s2"));
+  return std::make_unique<Gravity>(parameters.vec("gravity_m_s2"));
 }
 
 Gravity::Gravity(Vec acceleration) : g_(acceleration) {

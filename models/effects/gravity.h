@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// Parameter for its strength in every model's catalogue entry.
+/// Its strength, for models that bring their own loads and for strands without a scene.
 inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
                                              .help = "gravity along -z (m/s^2)",
                                              .number = 9.81,

@@ -9,7 +9,7 @@ namespace tress::models {
 namespace {
 
 constexpr Parameter parameters_of_drag[] = {
-    {.name = "nu_kg_m_s",
+    {.name = "drag_kg_m_s",
      .help = "force per length and velocity, of a hair in air 1e-6 to 1e-4 (kg/(m s))",
      .number = 2e-5,
      .min = 0,
@@ -28,7 +28,7 @@ std::span<const Parameter> linear_drag_parameters() { return parameters_of_drag;
 
 std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
                                                const RootMotion&) {
-  return std::make_unique<LinearDrag>(parameters.number("nu_kg_m_s"),
+  return std::make_unique<LinearDrag>(parameters.number("drag_kg_m_s"),
                                       parameters.number("mass_damping_1_s"));
 }
 

@@ -17,7 +17,7 @@ constexpr Parameter parameters_of_wind[] = {
      .help = "the wind in time and space; sine: velocity sin(2 pi frequency t); gusts: "
              "velocity and a random part without divergence",
      .choices = "constant|sine|gusts"},
-    {.name = "frequency_1_s",
+    {.name = "frequency_hz",
      .help = "profile = sine: frequency (1/s)",
      .number = 1,
      .min = 0,
@@ -47,7 +47,7 @@ constexpr Parameter parameters_of_wind[] = {
      .help = "force per length: nu (wind - v), quadratic drag at wind - v, or force_n_m "
              "where the wind is velocity_m_s and in proportion elsewhere",
      .choices = "linear|quadratic|force"},
-    {.name = "nu_kg_m_s",
+    {.name = "drag_kg_m_s",
      .help = "law = linear: force per length and velocity (kg/(m s))",
      .number = 2e-5,
      .min = 0,
@@ -72,7 +72,7 @@ std::unique_ptr<const Effect> in_wind(const Law& law, const Parameters& paramete
   const Vec velocity = parameters.vec("velocity_m_s");
   const std::string_view profile = parameters.word("profile");
   if (profile == "sine") {
-    return blow(SineWind{velocity, parameters.number("frequency_1_s")});
+    return blow(SineWind{velocity, parameters.number("frequency_hz")});
   }
   if (profile == "gusts") {
     return blow(Gusts(velocity, parameters.number("gust_speed_m_s"),
@@ -105,7 +105,7 @@ std::unique_ptr<const Effect> make_wind(const Parameters& parameters, const Root
     return with_anisotropic_law(
         parameters, [&](const auto& drag) { return in_wind(drag, parameters); });
   }
-  return in_wind(LinearAirLaw{parameters.number("nu_kg_m_s")}, parameters);
+  return in_wind(LinearAirLaw{parameters.number("drag_kg_m_s")}, parameters);
 }
 
 }  // namespace tress::models

@@ -3,7 +3,6 @@
 #include "contract/tangent_choice.h"
 #include "models/maximal/der_elasticity.h"
 #include "models/maximal/nodal_strand.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 
@@ -45,14 +44,14 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
 }
 
 std::span<const Parameter> der_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(
-      std::array{Parameter{.name = "stretch",
-                           .help = "springs of stiffness EA, or edges of constant length",
-                           .choices = "extensible|inextensible"},
-                 Parameter{.name = "twist",
-                           .help = "angles with the section's inertia, or without",
-                           .choices = "dynamic|quasi_static"},
-                 tangent_parameter, maximal_solver_parameter});
+  static constexpr std::array all{
+      Parameter{.name = "stretch",
+                .help = "springs of stiffness EA, or edges of constant length",
+                .choices = "extensible|inextensible"},
+      Parameter{.name = "twist",
+                .help = "angles with the section's inertia, or without",
+                .choices = "dynamic|quasi_static"},
+      tangent_parameter, maximal_solver_parameter};
   return all;
 }
 

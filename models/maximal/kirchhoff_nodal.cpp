@@ -5,7 +5,6 @@
 #include "math/quaternion.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/maximal/nodal_system.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -64,14 +63,7 @@ std::unique_ptr<System> kirchhoff_nodal(const Strand& strand,
 }
 
 std::span<const Parameter> kirchhoff_nodal_parameters() {
-  static const std::vector<Parameter> all = [] {
-    std::vector<Parameter> shared = with_strand_parameters(std::array{tangent_parameter});
-    for (Parameter& p : shared) {
-      if (p.name == "root") p.choices = bound_root_choices;
-    }
-    return shared;
-  }();
-  return all;
+  return {&tangent_parameter, 1};
 }
 
 std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,

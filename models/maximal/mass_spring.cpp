@@ -4,7 +4,6 @@
 
 #include "models/maximal/nodal_strand.h"
 #include "models/maximal/rod_joint.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -133,15 +132,15 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
 }
 
 std::span<const Parameter> mass_spring_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(
-      std::array{Parameter{.name = "bending",
-                           .help = "springs on angles, or to the next node but one",
-                           .choices = "angular|second_neighbour"},
-                 torsion_parameter,
-                 Parameter{.name = "tangent",
-                           .help = "of springs: exact, or positive semidefinite",
-                           .choices = "exact|filtered"},
-                 maximal_solver_parameter});
+  static constexpr std::array all{
+      Parameter{.name = "bending",
+                .help = "springs on angles, or to the next node but one",
+                .choices = "angular|second_neighbour"},
+      torsion_parameter,
+      Parameter{.name = "tangent",
+                .help = "of springs: exact, or positive semidefinite",
+                .choices = "exact|filtered"},
+      maximal_solver_parameter};
   return all;
 }
 
@@ -158,12 +157,12 @@ std::unique_ptr<System> make_mass_spring(const Strand& strand,
 }
 
 std::span<const Parameter> inextensible_strand_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(std::array{
+  static constexpr std::array all{
       torsion_parameter,
       Parameter{.name = "stretch_springs",
                 .help = "along the links, for integrators that correct lengths",
                 .choices = "none|linear"},
-      maximal_solver_parameter});
+      maximal_solver_parameter};
   return all;
 }
 

@@ -113,7 +113,7 @@ constexpr std::array<Parameter, 7> double_pendulum_table = {{
     {.name = "mass_2", .help = "lower mass (kg)", .number = 1, .min = tiny},
     {.name = "length_1", .help = "upper rod (m)", .number = 1, .min = tiny},
     {.name = "length_2", .help = "lower rod (m)", .number = 1, .min = tiny},
-    {.name = "gravity", .help = "gravity (m/s^2)", .number = 9.81, .min = 0},
+    {.name = "gravity_m_s2", .help = "gravity (m/s^2)", .number = 9.81, .min = 0},
     {.name = "angle_1", .help = "upper angle at the start (rad)", .number = right_angle},
     {.name = "angle_2", .help = "lower angle at the start (rad)", .number = right_angle},
 }};
@@ -125,7 +125,7 @@ std::span<const Parameter> double_pendulum_parameters() { return double_pendulum
 std::unique_ptr<System> make_double_pendulum(const Parameters& p) {
   return std::make_unique<DoublePendulum>(
       Pendulum{p.number("mass_1"), p.number("mass_2"), p.number("length_1"),
-               p.number("length_2"), p.number("gravity")},
+               p.number("length_2"), p.number("gravity_m_s2")},
       std::array<double, 2>{p.number("angle_1"), p.number("angle_2")});
 }
 

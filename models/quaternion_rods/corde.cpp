@@ -5,7 +5,6 @@
 #include "models/maximal/nodal_strand.h"
 #include "models/quaternion_rods/corde_edge.h"
 #include "models/quaternion_rods/quaternion_rod.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -34,19 +33,19 @@ std::unique_ptr<System> corde(const Strand& strand, const CordeOptions& options,
 }
 
 std::span<const Parameter> corde_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(
-      std::array{Parameter{.name = "coupling",
-                           .help = "stiffness between frames and edges over EI/l^2",
-                           .number = CordeOptions{}.coupling,
-                           .min = 1},
-                 Parameter{.name = "norm",
-                           .help = "stiffness of the quaternions' norms over EI/l^2",
-                           .number = CordeOptions{}.norm,
-                           .min = 1},
-                 Parameter{.name = "stretch_friction_n_s",
-                           .help = "force per rate of stretch, N s",
-                           .min = 0},
-                 maximal_solver_parameter});
+  static constexpr std::array all{
+      Parameter{.name = "coupling",
+                .help = "stiffness between frames and edges over EI/l^2",
+                .number = CordeOptions{}.coupling,
+                .min = 1},
+      Parameter{.name = "norm",
+                .help = "stiffness of the quaternions' norms over EI/l^2",
+                .number = CordeOptions{}.norm,
+                .min = 1},
+      Parameter{.name = "stretch_friction_n_s",
+                .help = "force per rate of stretch, N s",
+                .min = 0},
+      maximal_solver_parameter};
   return all;
 }
 

@@ -5,7 +5,6 @@
 #include "models/maximal/nodal_strand.h"
 #include "models/quaternion_rods/cosserat_edge.h"
 #include "models/quaternion_rods/quaternion_rod.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -35,7 +34,7 @@ std::unique_ptr<System> xpbd_cosserat(const Strand& strand,
 }
 
 std::span<const Parameter> xpbd_cosserat_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(std::array{
+  static constexpr std::array all{
       Parameter{.name = "shear_factor",
                 .help = "stiffness against shear over GA",
                 .number = XpbdCosseratOptions{}.shear_factor,
@@ -48,7 +47,7 @@ std::span<const Parameter> xpbd_cosserat_parameters() {
                 .help = "of quaternions beside the section's own, over rho A l^3",
                 .number = XpbdCosseratOptions{}.edge_inertia,
                 .min = 0},
-      maximal_solver_parameter});
+      maximal_solver_parameter};
   return all;
 }
 

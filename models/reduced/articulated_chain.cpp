@@ -1,7 +1,6 @@
 #include "models/reduced/articulated_chain.h"
 
 #include "models/reduced/ball_chain.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 
@@ -20,17 +19,7 @@ std::unique_ptr<System> articulated_chain(const Strand& strand,
       options.dofs);
 }
 
-std::span<const Parameter> articulated_chain_parameters() {
-  static const std::vector<Parameter> all = [] {
-    std::vector<Parameter> shared = with_strand_parameters(reduced_parameters());
-    // The joint at a free root would have no mass on its other side.
-    for (Parameter& p : shared) {
-      if (p.name == "root") p.choices = bound_root_choices;
-    }
-    return shared;
-  }();
-  return all;
-}
+std::span<const Parameter> articulated_chain_parameters() { return reduced_parameters(); }
 
 std::unique_ptr<System> make_articulated_chain(const Strand& strand,
                                                const Parameters& parameters,

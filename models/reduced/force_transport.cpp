@@ -5,7 +5,6 @@
 #include "models/reduced/dense_factor.h"
 #include "models/reduced/transport_sweeps.h"
 #include "models/strand/geometry.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -118,12 +117,7 @@ std::span<const Parameter> force_transport_parameters() {
       }
       own.push_back(p);
     }
-    std::vector<Parameter> shared = with_strand_parameters(own);
-    // The joint at a free root would have no mass on its other side.
-    for (Parameter& p : shared) {
-      if (p.name == "root") p.choices = bound_root_choices;
-    }
-    return shared;
+    return own;
   }();
   return all;
 }

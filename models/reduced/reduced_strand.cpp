@@ -67,7 +67,7 @@ void refuse(bool refused, const char* what, const char* remedy) {
 
 void check_plane(const Strand& strand) {
   refuse(strand.free_root.has_value(), "a free root does not stay in a plane",
-         "use modes = bend or bend_twist with root = free");
+         "use modes = bend or bend_twist with motion = free");
   for (const Segment& segment : strand.segments) {
     refuse(!identity(segment.mount), "branches leave the plane",
            "use modes = bend or bend_twist for trees");
@@ -174,8 +174,8 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   const bool joints = unknown == Unknown::joint_angle;
   if (options.dofs == 1) check_plane(strand);
   if (joints && strand.free_root) {
-    throw InputError("a ball joint at a free root moves nothing", "model option root",
-                     "use root = free with super_helix");
+    throw InputError("a ball joint at a free root moves nothing", "model option motion",
+                     "use motion = free with super_helix");
   }
   const Material& material = strand.material;
   const Vec free = unknowns(options.dofs), held = Vec{1, 1, 1} - free;

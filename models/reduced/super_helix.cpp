@@ -14,10 +14,7 @@ std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& 
       options.dofs);
 }
 
-std::span<const Parameter> super_helix_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(reduced_parameters());
-  return all;
-}
+std::span<const Parameter> super_helix_parameters() { return reduced_parameters(); }
 
 std::unique_ptr<System> make_super_helix(const Strand& strand,
                                          const Parameters& parameters, Effects effects) {
@@ -26,17 +23,17 @@ std::unique_ptr<System> make_super_helix(const Strand& strand,
 
 std::span<const Parameter> super_helix_tree_parameters() {
   static const std::vector<Parameter> all = [] {
-    const std::span<const Parameter> solving = reduced_parameters();
-    std::vector<Parameter> own{
-        {.name = "tree", .help = "which", .choices = tree_choices}};
+    const std::span<const Parameter> material = material_parameters();
+    std::vector<Parameter> own(material.begin(), material.end());
+    own.push_back({.name = "tree", .help = "which", .choices = tree_choices});
     // Branches leave the plane.
     own.push_back({.name = "modes",
                    .help = "unknowns a segment: two curvatures and twist, two curvatures",
                    .choices = "bend_twist|bend"});
-    for (const Parameter& p : solving) {
+    for (const Parameter& p : reduced_parameters()) {
       if (p.name != "modes") own.push_back(p);
     }
-    return with_material_parameters(own);
+    return own;
   }();
   return all;
 }

@@ -8,7 +8,6 @@
 #include "models/maximal/nodal_strand.h"
 #include "models/splines/cubic_spline.h"
 #include "models/splines/framed_spline.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::models {
 namespace {
@@ -218,12 +217,12 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
 }
 
 std::span<const Parameter> dynamic_spline_parameters() {
-  static const std::vector<Parameter> all = with_strand_parameters(
-      std::array{Parameter{.name = "twist",
-                           .help = "angles with the section's inertia, or no material "
-                                   "frame at all",
-                           .choices = "dynamic|none"},
-                 maximal_solver_parameter});
+  static constexpr std::array all{
+      Parameter{.name = "twist",
+                .help = "angles with the section's inertia, or no material "
+                        "frame at all",
+                .choices = "dynamic|none"},
+      maximal_solver_parameter};
   return all;
 }
 

@@ -1,7 +1,8 @@
 #include "models/strand/strand_parameters.h"
 
-#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "models/effects/gravity.h"
@@ -11,7 +12,7 @@
 namespace tress::models {
 namespace {
 
-constexpr Parameter geometry_parameters[] = {
+constexpr Parameter geometry_table[] = {
     {.name = "elements",
      .help = "number of elements n",
      .number = 20,
@@ -63,7 +64,7 @@ constexpr Parameter geometry_parameters[] = {
      .max = 1e6},
 };
 
-constexpr Parameter material_parameters[] = {
+constexpr Parameter material_table[] = {
     {.name = "youngs_modulus_pa",
      .help = "Young's modulus E (Pa)",
      .number = 3e9,
@@ -98,7 +99,7 @@ constexpr Parameter material_parameters[] = {
     {.name = "root_tangent",
      .help = "tangent at the clamp: x, -z (down) or z (up)",
      .choices = "x|down|up"},
-    {.name = "root",
+    {.name = "motion",
      .help = "what the root does",
      .choices = "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull|free"},
     {.name = "amplitude_m",
@@ -111,7 +112,7 @@ constexpr Parameter material_parameters[] = {
      .number = 3,
      .min = 1e-6,
      .max = 1e6},
-    {.name = "head_angle_rad",
+    {.name = "angle_rad",
      .help = "rotate: amplitude of the rotation about the vertical (rad)",
      .number = 0.5,
      .min = -1e3,
@@ -121,12 +122,12 @@ constexpr Parameter material_parameters[] = {
      .number = 0.1,
      .min = 0,
      .max = 1e6},
-    {.name = "stop_speed_m_s",
+    {.name = "speed_m_s",
      .help = "stop: speed of the root until t = 0 (m/s)",
      .number = 5,
      .min = -1e6,
      .max = 1e6},
-    {.name = "stop_time_s",
+    {.name = "time_s",
      .help = "stop: time to come to rest (s)",
      .number = 0.01,
      .min = 1e-9,
@@ -139,12 +140,6 @@ constexpr Parameter material_parameters[] = {
 };
 
 constexpr Vec x_axis{1, 0, 0}, y_axis{0, 1, 0}, z_axis{0, 0, 1}, down{0, 0, -1};
-
-std::vector<Parameter> joined(std::initializer_list<std::span<const Parameter>> tables) {
-  std::vector<Parameter> all;
-  for (const auto table : tables) all.insert(all.end(), table.begin(), table.end());
-  return all;
-}
 
 Frame root_frame(std::string_view tangent) {
   const Vec e0 = tangent == "x" ? x_axis : tangent == "down" ? down : z_axis;
@@ -172,19 +167,16 @@ Vec initial_darboux(const Parameters& p) {
 
 }  // namespace
 
-std::vector<Parameter> with_strand_parameters(std::span<const Parameter> own) {
-  return joined({geometry_parameters, material_parameters, own});
+std::span<const Parameter> strand_parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list(std::begin(geometry_table), std::end(geometry_table));
+    list.insert(list.end(), std::begin(material_table), std::end(material_table));
+    return list;
+  }();
+  return all;
 }
 
-bool shared_by_strands(std::string_view parameter) {
-  const auto is_it = [parameter](const Parameter& p) { return p.name == parameter; };
-  return std::ranges::any_of(geometry_parameters, is_it) ||
-         std::ranges::any_of(material_parameters, is_it);
-}
-
-std::vector<Parameter> with_material_parameters(std::span<const Parameter> own) {
-  return joined({material_parameters, own});
-}
+std::span<const Parameter> material_parameters() { return material_table; }
 
 Material material(const Parameters& parameters) {
   const double poisson_ratio = parameters.number("poisson_ratio");
@@ -203,7 +195,7 @@ Material material(const Parameters& parameters) {
 
 RootMotion root_motion(const Parameters& parameters) {
   const std::string_view tangent = parameters.word("root_tangent");
-  const std::string_view root = parameters.word("root");
+  const std::string_view root = parameters.word("motion");
   const Vec sideways = tangent == "x" ? y_axis : x_axis;
   const double amplitude = parameters.number("amplitude_m");
   const double frequency = parameters.number("frequency_hz");
@@ -218,13 +210,12 @@ RootMotion root_motion(const Parameters& parameters) {
   }
   if (root == "rotate" || root == "shake_rotate") {
     motion.centre = -parameters.number("head_radius_m") * x_axis;
-    motion.rotations.push_back(
-        {z_axis, sine(parameters.number("head_angle_rad"), frequency)});
+    motion.rotations.push_back({z_axis, sine(parameters.number("angle_rad"), frequency)});
   }
   if (root == "swing") translate(y_axis, one_minus_cosine(amplitude, frequency));
   if (root == "stop") {
-    translate(sideways, stop(parameters.number("stop_speed_m_s"), 0,
-                             parameters.number("stop_time_s")));
+    translate(sideways,
+              stop(parameters.number("speed_m_s"), 0, parameters.number("time_s")));
   }
   if (root == "drop_pull") {
     translate(down, there_and_back(amplitude, 1 / (2 * frequency)));
@@ -233,7 +224,7 @@ RootMotion root_motion(const Parameters& parameters) {
 }
 
 std::optional<FreeRoot> free_root(const Parameters& parameters) {
-  if (parameters.word("root") != "free") return std::nullopt;
+  if (parameters.word("motion") != "free") return std::nullopt;
   FreeRoot root;
   root.frame = root_frame(parameters.word("root_tangent"));
   root.spin = parameters.number("spin_rad_s") / std::sqrt(3.0) * Vec{1, 1, 1};

@@ -8,7 +8,7 @@ namespace tress::simulation {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
   const ModelEntry& entry = find_model(id);
-  Parameters parameters(entry.parameters, "model " + std::string(id));
+  Parameters parameters(setup_parameters(entry), "model " + std::string(id));
   for (const auto& [key, value] : settings) parameters.set(key, value);
   return entry.make(parameters);
 }

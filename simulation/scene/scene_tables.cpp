@@ -8,7 +8,6 @@
 #include "integrators/integrator_options.h"
 #include "models/effects/catalogue.h"
 #include "models/effects/strand_interaction.h"
-#include "models/strand/strand_parameters.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/root_table.h"
@@ -61,10 +60,7 @@ std::string choices_of(const Entries& entries, std::string_view first) {
 
 std::vector<Parameter> options_of(const ModelEntry& model, std::string_view ids) {
   std::vector<Parameter> list{{.name = "id", .help = "which model", .choices = ids}};
-  for (const Parameter& p : model.parameters) {
-    const bool elsewhere = model.on_strand != nullptr && shared_by_strands(p.name);
-    if (!elsewhere) list.push_back(p);
-  }
+  list.insert(list.end(), model.parameters.begin(), model.parameters.end());
   return list;
 }
 

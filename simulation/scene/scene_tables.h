@@ -16,8 +16,7 @@ namespace tress::simulation {
 /// The keys before the first table.
 std::span<const Parameter> top_parameters();
 
-/// `id`, and the model's parameters that no other table sets: its own options, or all of
-/// them when it has its own geometry.
+/// `id` and the model's options.
 std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 
 /// `id`, `dt_s` and the integrators' options.

@@ -125,9 +125,9 @@ struct Shown {
 };
 constexpr Shown shown[] = {{"integrator", "id|dt_s"},
                            {"material", "name"},
-                           {"strand", "length_m|elements|tangent"},
+                           {"strand", "length_m|elements|root_tangent"},
                            {"root", "motion"},
-                           {"effects.gravity", "acceleration_m_s2"}};
+                           {"effects.gravity", "gravity_m_s2"}};
 
 /// key = value with help and range above; `keys` as "a|b".
 void add_values(std::string& scene, std::span<const Parameter> parameters,

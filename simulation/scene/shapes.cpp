@@ -15,7 +15,9 @@ constexpr Parameter shape_table[] = {
      .help = "at rest; material: the curl of the material",
      .choices = "straight|material|helix|wavy|fuzzy"},
     {.name = "curl_radius_m",
-     .help = "helix: radius (m)",
+     .help =
+         "helix: radius r (m); with pitch 2 pi b, curvature is r/(r^2 + b^2) and twist "
+         "b/(r^2 + b^2)",
      .number = 0.01,
      .min = 1e-9,
      .max = 1e3},

@@ -9,7 +9,7 @@
 namespace tress::simulation {
 
 Parameter shared_parameter(std::string_view name) {
-  for (const Parameter& p : with_strand_parameters({})) {
+  for (const Parameter& p : strand_parameters()) {
     if (p.name == name) return p;
   }
   throw std::logic_error("no shared parameter " + std::string(name));

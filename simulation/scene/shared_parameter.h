@@ -7,7 +7,7 @@
 
 namespace tress::simulation {
 
-/// The parameter that every strand model has under this name, with its range and help.
+/// The one of strand_parameters() with this name, with its range and help.
 Parameter shared_parameter(std::string_view name);
 
 }  // namespace tress::simulation

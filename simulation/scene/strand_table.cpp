@@ -23,7 +23,7 @@ constexpr Parameter own_parameters[] = {
      .max = most,
      .components = 3,
      .fallback = "0,0,0"},
-    {.name = "tangent",
+    {.name = "root_tangent",
      .help = "at the root, away from it; any length",
      .min = -most,
      .max = most,
@@ -38,7 +38,7 @@ constexpr Parameter own_parameters[] = {
      .fallback = "0,1,0"},
     {.name = "points",
      .help = "rows of x, y, z (m): the natural shape as a smooth curve through at least "
-             "three points; they stand for length_m, position_m, tangent and shape",
+             "three points; they stand for length_m, position_m, root_tangent and shape",
      .min = -1e3,
      .max = 1e3,
      .components = 3,
@@ -46,7 +46,7 @@ constexpr Parameter own_parameters[] = {
 };
 
 void refuse_beside_points(const Table& table) {
-  for (const char* key : {"length_m", "position_m", "tangent", "shape"}) {
+  for (const char* key : {"length_m", "position_m", "root_tangent", "shape"}) {
     if (!table.given(key)) continue;
     throw InputError(std::string(key) + " beside points", table.place(key),
                      "leave one of them out");
@@ -118,7 +118,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   }
   Strand strand = cut_strand(table, material, p.number("length_m"),
                              natural_shape(table, material, common.seed, stream));
-  const Vec tangent = direction(table, "tangent");
+  const Vec tangent = direction(table, "root_tangent");
   set_root(strand, common.head, common.free_root, p.vec("position_m"),
            frame_of(tangent, normal(table, tangent)));
   return strand;

@@ -134,7 +134,7 @@ shape = "straight"
 length_m = 0.1
 elements = 3
 position_m = [0, 0, 0]
-tangent = [1, 0, 0]
+root_tangent = [1, 0, 0]
 [groom]
 count = 3
 length_m = 0.1
@@ -144,7 +144,7 @@ motion = "shake"
 amplitude_m = 0.02
 frequency_hz = 2
 [effects.gravity]
-acceleration_m_s2 = [0, 0, -9.81]
+gravity_m_s2 = [0, 0, -9.81]
 [effects.linear_drag]
 [[effects.body]]
 shape = "sphere"

@@ -24,7 +24,7 @@ id = "der"
 elements = 5
 [effects.gravity]
 [effects.linear_drag]
-nu_kg_m_s = 5e-5
+drag_kg_m_s = 5e-5
 )";
 
 constexpr ReferenceCut coarse{8, 4};
@@ -188,7 +188,7 @@ elements = 5
 length_m = {}
 [effects.gravity]
 [effects.linear_drag]
-nu_kg_m_s = 5e-5
+drag_kg_m_s = 5e-5
 )";
 
 // The change of a fine run stands for that of the rod: against a reference of a scene

@@ -31,7 +31,7 @@ dt_s = 0.001
 elements = 12
 [effects.gravity]
 [effects.linear_drag]
-nu_kg_m_s = 5e-5
+drag_kg_m_s = 5e-5
 )";
 
 /// A small study: two models, two integrators, seconds.

@@ -10,7 +10,6 @@
 
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
-#include "models/strand/strand_parameters.h"
 
 namespace tress::testing_support {
 
@@ -97,7 +96,7 @@ class Writer {
     const ModelEntry& entry = *draw_.of(strands);
     line("[model]\nid = \"{}\"", entry.id);
     for (const Parameter& p : entry.parameters) {
-      if (shared_by_strands(p.name) || p.choices.empty() || !draw_.chance(0.3)) continue;
+      if (p.choices.empty() || !draw_.chance(0.3)) continue;
       std::vector<std::string_view> words;
       for (std::size_t from = 0; from <= p.choices.size();) {
         const std::size_t to = std::min(p.choices.find('|', from), p.choices.size());
@@ -168,7 +167,8 @@ class Writer {
     const double along = draw_.uniform(-1, 1), up = draw_.uniform(-1, 1);
     for (int k = 0; k < count; ++k) {
       line(
-          "[[strand]]\nposition_m = [0, {:.17g}, 0]\ntangent = [{:.3g}, 0.1, {:.3g}]\n{}",
+          "[[strand]]\nposition_m = [0, {:.17g}, 0]\nroot_tangent = [{:.3g}, 0.1, "
+          "{:.3g}]\n{}",
           k * draw_.spread(1e-4, 0.01), along, up, shape);
     }
     scene_.lightest = density_ * std::numbers::pi * radius_ * radius_ * length_;
@@ -265,7 +265,7 @@ class Writer {
       weight_ = true;
     }
     if (draw_.chance(0.3))
-      line("[effects.linear_drag]\nnu_kg_m_s = {:.3g}", draw_.spread(1e-7, 1e-2));
+      line("[effects.linear_drag]\ndrag_kg_m_s = {:.3g}", draw_.spread(1e-7, 1e-2));
     if (draw_.chance(0.1)) line("[effects.quadratic_drag]");
     if (draw_.chance(0.15)) {
       const double speed = draw_.spread(0.1, 30);

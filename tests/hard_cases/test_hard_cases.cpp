@@ -26,7 +26,7 @@ const HardCase& named(std::string_view name) {
 }
 
 Parameters defaults(std::string_view model) {
-  return {find_model(model).parameters, "test"};
+  return {setup_parameters(find_model(model)), "test"};
 }
 
 Subject subject(std::string_view model, ModelSettings settings = {}) {

@@ -37,7 +37,7 @@ name = "hair.caucasian"
 [strand]
 elements = 20
 length_m = 0.1
-tangent = [0, 0, -1]
+root_tangent = [0, 0, -1]
 shape = "helix"
 curl_radius_m = 0.005
 
@@ -75,7 +75,7 @@ density_kg_m3 = 1000
 [strand]
 elements = 10
 length_m = 0.2
-tangent = [1, 0, 0]
+root_tangent = [1, 0, 0]
 
 [effects.gravity]
 )";

@@ -56,7 +56,7 @@ class BadRecordsTest : public testing::TestWithParam<BadRecords> {};
 void read(const BadRecords& bad) {
   const Records records = parse_records(bad.text, "x.csv", bad.observed);
   const ModelEntry& model = find_model("super_helix");
-  const Parameters parameters(model.parameters, "model super_helix");
+  const Parameters parameters(setup_parameters(model), "model super_helix");
   static_cast<void>(strands_of(records, model, parameters, Fitted::both));
 }
 

@@ -40,7 +40,7 @@ length_m = 0.08
 [effects.gravity]
 
 [effects.linear_drag]
-nu_kg_m_s = 2e-5
+drag_kg_m_s = 2e-5
 )";
 }
 
@@ -73,10 +73,10 @@ TEST(CalibrateScene, ATruthIsInsideTheIntervalOfItsOwnRecord) {
   EXPECT_TRUE(row.ok()) << row.text("reason");
   EXPECT_EQ(row.text("data"), "hair");
   EXPECT_EQ(row.text("model"), "super_helix");
-  EXPECT_EQ(row.number("gamma_true_kg_m3_s"), 1e-10);
-  EXPECT_LT(row.number("gamma_low_kg_m3_s"), 1e-10);
-  EXPECT_GT(row.number("gamma_high_kg_m3_s"), 1e-10);
-  EXPECT_EQ(row.number("nu_kg_m_s"), 2e-5);  // known
+  EXPECT_EQ(row.number("internal_friction_true_kg_m3_s"), 1e-10);
+  EXPECT_LT(row.number("internal_friction_low_kg_m3_s"), 1e-10);
+  EXPECT_GT(row.number("internal_friction_high_kg_m3_s"), 1e-10);
+  EXPECT_EQ(row.number("drag_kg_m_s"), 2e-5);  // known
 }
 
 // Standard errors of a fit are in proportion to those of its points.
@@ -84,7 +84,7 @@ TEST(CalibrateScene, TenTimesTheNoiseIsTenTimesTheInterval) {
   const std::string file = file_of("noisy.toml", hair());
   const auto width = [&](const char* noise) {
     const Row row = row_of(cases(file, {{"fit", "nu"}, {"noise_m", noise}}).front());
-    return std::log(row.number("nu_high_kg_m_s") / row.number("nu_low_kg_m_s"));
+    return std::log(row.number("drag_high_kg_m_s") / row.number("drag_low_kg_m_s"));
   };
   // The same errors, times ten, but for how the fit bends: a tenth of it.
   EXPECT_NEAR(width("5e-3") / width("5e-4"), 10, 1.5);
@@ -113,7 +113,7 @@ TEST(CalibrateScene, RecordsOfTheUserAreOfTheScenesStrand) {
   EXPECT_EQ(all.front().identity.text("data"), data);
   const Row row = row_of(all.front());
   EXPECT_FALSE(row.ok());
-  EXPECT_EQ(row.text("gamma_true_kg_m3_s"), "");
+  EXPECT_EQ(row.text("internal_friction_true_kg_m3_s"), "");
 
   const std::string labelled = file_of("labelled.csv", [&] {
     std::string text = "t_s,amplitude_m,length_m\n";

@@ -34,7 +34,7 @@ FitOptions quick_fit(Fitted fitted) {
 }
 
 Parameters planar(int elements = 8) {
-  Parameters p(model().parameters, "model super_helix");
+  Parameters p(setup_parameters(model()), "model super_helix");
   p.set("modes", "bend_planar");
   p.set("elements", std::to_string(elements));
   return p;
@@ -346,7 +346,7 @@ TEST(ShippedRecords, AreWhatTheirRecipeMakes) {
 /// four values one would be outside in 0.4 % of all choices of seeds.
 TEST(ShippedRecords, TheTruthIsInsideTheIntervalOfOtherSamples) {
   const ShippedRecords& shipped = shipped_records()[0];
-  Parameters p(model().parameters, "model super_helix");
+  Parameters p(setup_parameters(model()), "model super_helix");
   set_known(p, settings_of(shipped, shipped.elements));
   FitOptions how = quick_fit(Fitted::both);
   how.confidence = 0.999;

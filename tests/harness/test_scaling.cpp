@@ -215,7 +215,7 @@ TEST(ScalingFigures, WhatWasNotMeasuredIsNotTold) { EXPECT_TRUE(figures({}).empt
 // of that to bending itself.
 TEST(ReleaseBounds, AreOfTheKineticEnergyOfTheFall) {
   const StrandScene& scene = find_strand_scene("release");
-  Parameters p(find_model("super_helix").parameters, "test");
+  Parameters p(setup_parameters(find_model("super_helix")), "test");
   for (const auto& [key, value] : scene.settings) p.set(key, value);
   const auto system = find_model("super_helix").make(p);
   const double most = stability_bounds(scene, p, *system).energy;
@@ -226,7 +226,7 @@ TEST(ReleaseBounds, AreOfTheKineticEnergyOfTheFall) {
 
 // Fast enough for steps of 1 ms to gain energy by the explicit gyroscopic terms.
 TEST(ReleaseBounds, RefuseWhatTheirStepsDoNotResolve) {
-  Parameters p(find_model("super_helix").parameters, "test");
+  Parameters p(setup_parameters(find_model("super_helix")), "test");
   const auto system = find_model("super_helix").make(p);
   State start = initial_state(*system);
   for (double& rate : start.v) rate = 1e5;

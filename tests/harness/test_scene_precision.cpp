@@ -50,7 +50,7 @@ dt_s = 0.001
 [strand]
 elements = 5
 length_m = 0.1
-tangent = [1, 0, 0]
+root_tangent = [1, 0, 0]
 )" + strand;
 }
 

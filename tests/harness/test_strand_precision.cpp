@@ -180,7 +180,7 @@ TEST(ConvergedModel, ThrowsWhenItsRunFails) {
 TEST(SwingScene, IsTheOneOfThePeers) {
   using peers::Swing;
   const ModelEntry& model = find_model("super_helix");
-  Parameters p(model.parameters, "super_helix");
+  Parameters p(setup_parameters(model), "super_helix");
   for (const auto& [key, value] : find_strand_scene("swing").settings) p.set(key, value);
   const Strand made = strand(p);
   // Peers count in mm, mg and s.
@@ -277,7 +277,7 @@ TEST(StrandGrid, ParametersAreThoseOfTheRow) {
     EXPECT_EQ(p.word("tangent"), c.tangent);
     EXPECT_EQ(p.whole("elements"), c.elements);
     EXPECT_EQ(p.whole("quadrature"), 8);
-    EXPECT_EQ(p.word("root"), "swing");
+    EXPECT_EQ(p.word("motion"), "swing");
   }
 }
 

@@ -14,7 +14,7 @@ using namespace experiments;
 
 Parameters scene_parameters(const StrandScene& scene, std::string_view model,
                             int elements) {
-  Parameters p(find_model(model).parameters, "test");
+  Parameters p(setup_parameters(find_model(model)), "test");
   for (const auto& [key, value] : scene.settings) p.set(key, value);
   p.set("elements", std::to_string(elements));
   return p;

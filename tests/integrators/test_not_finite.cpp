@@ -48,7 +48,7 @@ class NotFinite : public testing::TestWithParam<const ModelEntry*> {
  protected:
   /// Falls under gravity.
   std::unique_ptr<System> make(double poisoned_from) const {
-    Parameters parameters(GetParam()->parameters, "test");
+    Parameters parameters(setup_parameters(*GetParam()), "test");
     parameters.set("elements", "5");
     Effects effects = strand_effects(parameters);
     effects.push_back(std::make_shared<Poison>(3, poisoned_from));
@@ -110,7 +110,7 @@ TEST_P(NotFinite, OfAnEffectIsInTheFailureOfTheLibraries) {
 
 TEST(NotFiniteByGsl, OfAnEffectIsInTheFailure) {
   Strand hair = make_strand({}, {}, {.elements = 2}, uniform_shape({}));
-  Parameters parameters(find_model("der").parameters, "test");
+  Parameters parameters(setup_parameters(find_model("der")), "test");
   const auto system = find_model("der").on_strand(
       hair, parameters, {std::make_shared<Poison>(2, poisoned)});
   const Simulation run = simulate("gsl_rkf45", *system, {}, initial_state(*system), 0.05);

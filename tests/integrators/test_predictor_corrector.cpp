@@ -17,7 +17,7 @@ using namespace experiments;
 constexpr double length = 0.1;  // m
 
 ModelSettings shaken(std::string_view springs) {
-  return {{"root", "shake"},
+  return {{"motion", "shake"},
           {"root_tangent", "x"},
           {"initial", "natural"},
           {"amplitude_m", "0.05"},
@@ -70,7 +70,7 @@ TEST(PredictorCorrector, MovesTheCentreOfMassAsTheForcesDo) {
   // keeps its linear momentum, of which it has none here but by rounding.
   const auto strand =
       make_model("inextensible_strand",
-                 {{"root", "free"}, {"gravity_m_s2", "0"}, {"elements", "8"}});
+                 {{"motion", "free"}, {"gravity_m_s2", "0"}, {"elements", "8"}});
   Energetics& energetics = *strand->energetics();
   const State start = initial_state(*strand);
   const Momentum before = energetics.momentum(0, start.q, start.v).value();
@@ -90,7 +90,7 @@ TEST(PredictorCorrector, MovesTheCentreOfMassAsTheForcesDo) {
 TEST(PredictorCorrector, ConvergesToTheConstrainedMotion) {
   const auto strand =
       make_model("inextensible_strand",
-                 {{"elements", "4"}, {"root", "shake"}, {"youngs_modulus_pa", "1e8"}});
+                 {{"elements", "4"}, {"motion", "shake"}, {"youngs_modulus_pa", "1e8"}});
   constexpr double t_end = 0.1;
   Options exact;
   exact.formulation = Formulation::rattle;

@@ -33,7 +33,7 @@ void PrintTo(const Method& method, std::ostream* out) {
 
 std::unique_ptr<System> strand(std::string_view model) {
   const ModelEntry& entry = find_model(model);
-  Parameters p(entry.parameters, "model " + std::string(model));
+  Parameters p(setup_parameters(entry), "model " + std::string(model));
   if (p.knows("elements")) {
     p.set("elements", "3");
     p.set("radius_m", "1e-3");
@@ -46,7 +46,7 @@ std::unique_ptr<System> strand(std::string_view model) {
   // Penalties and quaternions as slow as the rest.
   set_known(p, {{"coupling", "1"}, {"norm", "1"}, {"edge_inertia", "0.5"}});
   p.set("mass_damping_1_s", "2");
-  p.set("root", "shake_rotate");
+  p.set("motion", "shake_rotate");
   return entry.make(p);
 }
 

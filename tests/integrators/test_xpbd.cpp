@@ -217,7 +217,7 @@ std::unique_ptr<System> soft_strand(std::string_view model) {
                             {"natural_curvature_1_m", "8"},
                             {"youngs_modulus_pa", "1e6"},
                             {"internal_friction_kg_m3_s", "1e-8"},
-                            {"root", "shake_rotate"}};
+                            {"motion", "shake_rotate"}};
   if (model != "mass_spring") settings.emplace_back("norm", "1");
   if (model == "corde") settings.emplace_back("coupling", "1");
   if (model == "xpbd_cosserat") settings.emplace_back("edge_inertia", "0.5");

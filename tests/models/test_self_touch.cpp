@@ -115,19 +115,19 @@ TEST_P(SelfTouch, ContactsComeAndGo) {
 INSTANTIATE_TEST_SUITE_P(
     Models, SelfTouch,
     testing::Values(
-        Spiral{"super_helix", {{"root", "shake_rotate"}}, 10},
-        Spiral{"super_helix", {{"root", "free"}}, 10},
-        Spiral{"super_helix", {{"root", "shake_rotate"}}, 10, true},
-        Spiral{"super_helix", {{"modes", "bend"}, {"root", "shake_rotate"}}, 10},
+        Spiral{"super_helix", {{"motion", "shake_rotate"}}, 10},
+        Spiral{"super_helix", {{"motion", "free"}}, 10},
+        Spiral{"super_helix", {{"motion", "shake_rotate"}}, 10, true},
+        Spiral{"super_helix", {{"modes", "bend"}, {"motion", "shake_rotate"}}, 10},
         Spiral{"super_helix", {{"modes", "bend_planar"}}, 10},
-        Spiral{"super_helix", {{"modes", "bend_planar"}, {"root", "shake_rotate"}}, 10},
-        Spiral{"articulated_chain", {{"root", "shake_rotate"}}, 10},
-        Spiral{"force_transport", {{"root", "shake_rotate"}}, 10},
-        Spiral{"der", {{"root", "shake_rotate"}}, 1e6},
-        Spiral{"der", {{"root", "free"}}, 1e6},
-        Spiral{"corde", {{"root", "shake_rotate"}}, 1e6},
-        Spiral{"xpbd_cosserat", {{"root", "shake_rotate"}}, 1e6},
-        Spiral{"dynamic_spline", {{"root", "shake_rotate"}}, 1e6},
-        Spiral{"mass_spring", {{"root", "shake_rotate"}}, 1e6}));
+        Spiral{"super_helix", {{"modes", "bend_planar"}, {"motion", "shake_rotate"}}, 10},
+        Spiral{"articulated_chain", {{"motion", "shake_rotate"}}, 10},
+        Spiral{"force_transport", {{"motion", "shake_rotate"}}, 10},
+        Spiral{"der", {{"motion", "shake_rotate"}}, 1e6},
+        Spiral{"der", {{"motion", "free"}}, 1e6},
+        Spiral{"corde", {{"motion", "shake_rotate"}}, 1e6},
+        Spiral{"xpbd_cosserat", {{"motion", "shake_rotate"}}, 1e6},
+        Spiral{"dynamic_spline", {{"motion", "shake_rotate"}}, 1e6},
+        Spiral{"mass_spring", {{"motion", "shake_rotate"}}, 1e6}));
 
 }  // namespace tress::test_self_touch

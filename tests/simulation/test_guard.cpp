@@ -140,7 +140,7 @@ TEST_F(GuardTest, FindsWhatIsNoNumber) {
 /// The tip of 40 elements has an 80th of the mass: at 15 m/s 1.4 m g L, which a hair
 /// released upright may have, but not all of it in so small a part of itself.
 TEST_F(GuardTest, FindsAPointThatIsTooFast) {
-  make({"mass_spring", "xpbd", "0.001", "elements = 40\ntangent = [0, 0, 1]\n"});
+  make({"mass_spring", "xpbd", "0.001", "elements = 40\nroot_tangent = [0, 0, 1]\n"});
   const double energy = 9.81 * 0.1;  // J/kg, m g L
   // 0.99 of the energy that may come to be, while the tip of a whip has a third of that.
   state_.v.back() = std::sqrt(0.99 * energy * 2 * 80);
@@ -191,7 +191,7 @@ TEST(Guard, LeavesHonestScenesAlone) {
        "centre_m = [0.05, 0, -0.06]\nradius_m = 0.05\n"},
       {"super_helix", "backward_euler", "0.002", "elements = 10\n", turned,
        "[effects.gravity]\n[effects.tether]\nstiffness_n_m = 0.01\n"
-       "target_m = [0, 0.1, 0]\namplitude_m = [0.1, 0, 0]\nfrequency_1_s = 2\n"},
+       "target_m = [0, 0.1, 0]\namplitude_m = [0.1, 0, 0]\nfrequency_hz = 2\n"},
   };
   for (const Said& said : honest) {
     EXPECT_EQ(ending(scene(said)), "") << said.model << " by " << said.integrator;

@@ -31,7 +31,7 @@ TEST(SceneDefaults, AreAShortSceneInWhichSomethingMoves) {
   // Rest at an angle under gravity: it begins to fall, and nothing else drives it.
   EXPECT_EQ(scene.effects[0].entry->id, "gravity");
   EXPECT_EQ(dot(scene.strands[0].root.frame.e0,
-                scene.effects[0].parameters.vec("acceleration_m_s2")),
+                scene.effects[0].parameters.vec("gravity_m_s2")),
             0);
 }
 

@@ -114,7 +114,7 @@ TEST(Roots, AreWhereTheSceneSaysAndMoveWithTheHead) {
   const Scene scene = parse_scene(R"(title = "t"
 [strand]
 position_m = [0.1, 0, 0.2]
-tangent = [0, 0, -2]
+root_tangent = [0, 0, -2]
 normal = [1, 0, 5]
 [root]
 motion = "rotate"

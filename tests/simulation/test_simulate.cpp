@@ -199,9 +199,10 @@ TEST_P(SimulateBadInput, IsOneLineExitCode2AndNothingWritten) {
   Toy toy;
   toy.write("good.toml", falling("super_helix"));
   toy.write("typo.toml", falling("super_helix", "[effects.linear_drga]\n"));
-  toy.write("key.toml", falling("super_helix") + "acceleration = [0, 0, -1]\n");
+  toy.write("old_key.toml", falling("super_helix") + "acceleration_m_s2 = [0, 0, -1]\n");
+  toy.write("key.toml", falling("super_helix") + "gravty_m_s2 = [0, 0, -1]\n");
   toy.write("nan.toml",
-            falling("super_helix", "[effects.linear_drag]\nnu_kg_m_s = nan\n"));
+            falling("super_helix", "[effects.linear_drag]\ndrag_kg_m_s = nan\n"));
   const auto before = toy.files();
   const Toy::Result run = toy.run(GetParam().arguments);
   EXPECT_EQ(run.code, 2);
@@ -212,18 +213,19 @@ TEST_P(SimulateBadInput, IsOneLineExitCode2AndNothingWritten) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SimulateBadInput,
-    testing::Values(Wrong{"missing", "nowhere.toml --out out", "nowhere.toml"},
-                    Wrong{"folder", ". --out out", "directory"},
-                    Wrong{"effect", "typo.toml --out out", "linear_drag"},
-                    Wrong{"key", "key.toml --out out", "acceleration_m_s2"},
-                    Wrong{"nan", "nan.toml --out out", "nan.toml:"},
-                    Wrong{"option", "good.toml --treads 2", "--help"},
-                    Wrong{"threads", "good.toml --threads 0", "threads"},
-                    Wrong{"no_scenes", "--out out", "scene"},
-                    Wrong{"second_is_bad", "good.toml typo.toml --out out",
-                          "linear_drag"},
-                    Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
-                    Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
+    testing::Values(
+        Wrong{"missing", "nowhere.toml --out out", "nowhere.toml"},
+        Wrong{"folder", ". --out out", "directory"},
+        Wrong{"effect", "typo.toml --out out", "linear_drag"},
+        Wrong{"key", "key.toml --out out", "did you mean 'gravity_m_s2'"},
+        Wrong{"old_key", "old_key.toml --out out", "it is called 'gravity_m_s2' now"},
+        Wrong{"nan", "nan.toml --out out", "nan.toml:"},
+        Wrong{"option", "good.toml --treads 2", "--help"},
+        Wrong{"threads", "good.toml --threads 0", "threads"},
+        Wrong{"no_scenes", "--out out", "scene"},
+        Wrong{"second_is_bad", "good.toml typo.toml --out out", "linear_drag"},
+        Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
+        Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace tress::test_simulate

@@ -114,7 +114,7 @@ TEST(World, AStepThatShorterOnesDoNotHelpEndsTheRun) {
       "tangent = \"filtered\"\n"
       "[integrator]\nid = \"generalized_alpha\"\ndt_s = 3e-4\n[material]\n"
       "name = \"hair.african\"\nradius_m = 2e-5\nyoungs_modulus_pa = 2e7\n[[strand]]\n"
-      "tangent = [0.1, 0.1, 0.5]\nlength_m = 0.015\nelements = 9\n"
+      "root_tangent = [0.1, 0.1, 0.5]\nlength_m = 0.015\nelements = 9\n"
       "[root]\nmotion = \"rotate\"\nfrequency_hz = 17\nangle_rad = 0.4\ncentre_m = "
       "[-0.05, 0, 0]\n",
       "hinges.toml");

@@ -29,7 +29,7 @@ struct CatalogueCase {
   }
 
   std::unique_ptr<System> make() const {
-    Parameters parameters(entry->parameters, "model " + std::string(entry->id));
+    Parameters parameters(setup_parameters(*entry), "model " + std::string(entry->id));
     if (!key.empty()) parameters.set(key, word);
     return entry->make(parameters);
   }
@@ -39,7 +39,7 @@ inline std::vector<CatalogueCase> catalogue_cases() {
   std::vector<CatalogueCase> cases;
   for (const ModelEntry& entry : model_catalogue()) {
     cases.push_back({&entry, "", ""});
-    for (const Parameter& parameter : entry.parameters) {
+    for (const Parameter& parameter : setup_parameters(entry)) {
       const auto words = words_of(parameter.choices);
       for (std::size_t i = 1; i < words.size(); ++i) {  // the first is the default
         cases.push_back({&entry, std::string(parameter.name), std::string(words[i])});

@@ -51,7 +51,7 @@ Vec terminal(const Effect& drag, double speed) {
 
 TEST(Drag, TerminalVelocityUnderTheLinearLawIsWeightOverNu) {
   const auto drag =
-      wind({{"velocity_m_s", "0.7,0,0"}, {"law", "linear"}, {"nu_kg_m_s", "2e-5"}});
+      wind({{"velocity_m_s", "0.7,0,0"}, {"law", "linear"}, {"drag_kg_m_s", "2e-5"}});
   const double speed = per_length * g / 2e-5;
   const Vec v = terminal(*drag, speed);
   EXPECT_NEAR(v.z, -speed, 1e-13 * speed);
@@ -136,7 +136,7 @@ TEST(Wind, IsStillQuadraticDragWhenItDoesNotBlow) {
 TEST(Wind, OfGivenForceSwingsAsASineWhateverTheVelocity) {
   const auto effect = wind({{"velocity_m_s", "0,3,4"},
                             {"profile", "sine"},
-                            {"frequency_1_s", "0.5"},
+                            {"frequency_hz", "0.5"},
                             {"law", "force"},
                             {"force_n_m", "1e-4"}});
   const Cloud cloud(5);

@@ -30,28 +30,20 @@ using Settings = std::map<std::string, std::string>;
 Settings lively(std::string_view id) {
   if (id == "constant_force")
     return {{"force_n_m", "1,-2,0.5"}, {"force_n_kg", "2,1,-3"}};
-  if (id == "linear_drag") return {{"nu_kg_m_s", "0.7"}, {"mass_damping_1_s", "0.4"}};
+  if (id == "linear_drag") return {{"drag_kg_m_s", "0.7"}, {"mass_damping_1_s", "0.4"}};
   if (id == "quadratic_drag") return {{"strand_radius_m", "0.1"}};
   if (id == "wind") {
-    return {{"velocity_m_s", "1.5,-0.4,0.7"},
-            {"frequency_1_s", "0.6"},
-            {"gust_speed_m_s", "1.1"},
-            {"gust_length_m", "1.3"},
-            {"nu_kg_m_s", "0.7"},
-            {"force_n_m", "1.7"},
+    return {{"velocity_m_s", "1.5,-0.4,0.7"}, {"frequency_hz", "0.6"},
+            {"gust_speed_m_s", "1.1"},        {"gust_length_m", "1.3"},
+            {"drag_kg_m_s", "0.7"},           {"force_n_m", "1.7"},
             {"strand_radius_m", "0.1"}};
   }
   if (id == "tether") {
-    return {{"at", "0.4"},
-            {"stiffness_n_m", "30"},
-            {"damping_n_s_m", "2"},
-            {"pull_n", "3"},
-            {"soft_m", "0.1"},
-            {"target_m", "1,0.5,-0.2"},
-            {"t_on_s", "0.1"},
-            {"amplitude_m", "0.3,0,0.1"},
-            {"frequency_1_s", "0.7"},
-            {"ramp_s", "0.5"}};
+    return {{"at", "0.4"},           {"stiffness_n_m", "30"},
+            {"damping_n_s_m", "2"},  {"pull_n", "3"},
+            {"soft_m", "0.1"},       {"target_m", "1,0.5,-0.2"},
+            {"t_on_s", "0.1"},       {"amplitude_m", "0.3,0,0.1"},
+            {"frequency_hz", "0.7"}, {"ramp_s", "0.5"}};
   }
   if (id == "body") {
     return {{"centre_m", "0.1,-0.05,0.08"},

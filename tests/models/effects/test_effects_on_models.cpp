@@ -50,7 +50,7 @@ std::vector<const ModelEntry*> strand_models() {
 
 /// Soft, so that elastic forces do not drown those of the effects.
 Parameters soft(const ModelEntry& model) {
-  Parameters parameters(model.parameters, "test");
+  Parameters parameters(setup_parameters(model), "test");
   parameters.set("elements", "5");
   parameters.set("youngs_modulus_pa", "1e4");
   return parameters;
@@ -188,18 +188,18 @@ TEST_P(EffectsOnModels, TheTangentIsExactForEveryEffect) {
 // twist: every choice of unknowns with every motion of the root.
 TEST_P(EffectsOnModels, TheTangentIsExactForAllUnknownsAndMotionsOfTheRoot) {
   const auto choices = [&](std::string_view key) {
-    for (const Parameter& p : GetParam()->parameters) {
+    for (const Parameter& p : setup_parameters(*GetParam())) {
       if (p.name == key) return words_of(p.choices);
     }
     return std::vector<std::string_view>{};
   };
   for (const std::string_view modes : choices("modes")) {
-    for (const std::string_view root : choices("root")) {
+    for (const std::string_view root : choices("motion")) {
       if (root == "free" && modes == "bend_planar") continue;  // refused: it is spatial
       SCOPED_TRACE(std::string(modes) + " " + std::string(root));
       Parameters parameters = soft(*GetParam());
       parameters.set("modes", std::string(modes));
-      parameters.set("root", std::string(root));
+      parameters.set("motion", std::string(root));
       // All of the head's motion is on at t0, and about no axis of the strand.
       expect_exact_effects(*GetParam(), parameters);
     }

@@ -25,7 +25,7 @@ inline std::unique_ptr<System> make_strand_of(std::string_view model,
                                               const FreeStrand& free,
                                               Effects effects = {}) {
   const ModelEntry& entry = find_model(model);
-  Parameters parameters(entry.parameters, "model " + std::string(model));
+  Parameters parameters(setup_parameters(entry), "model " + std::string(model));
   const auto set = [&](const char* key, double value) {
     parameters.set(key, std::to_string(value));
   };
@@ -33,7 +33,7 @@ inline std::unique_ptr<System> make_strand_of(std::string_view model,
   set("elements", 5);
   set("radius_m", free.radius);
   set("youngs_modulus_pa", free.modulus);
-  if (free.root == "free") parameters.set("root", free.root);
+  if (free.root == "free") parameters.set("motion", free.root);
   Strand strand = models::strand(parameters);
   if (strand.free_root) {
     strand.free_root = FreeRoot{free.at, free.frame, free.velocity, {}};

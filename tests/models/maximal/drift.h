@@ -14,7 +14,7 @@ using namespace experiments;
 
 /// A bent strand of six elements thrown into space with a spin of 10 rad/s.
 inline const ModelSettings bent_throw = {{"elements", "6"},
-                                         {"root", "free"},
+                                         {"motion", "free"},
                                          {"gravity_m_s2", "0"},
                                          {"youngs_modulus_pa", "1e6"},
                                          {"radius_m", "1e-3"},

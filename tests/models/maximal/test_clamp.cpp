@@ -23,7 +23,7 @@ class MovingClamp : public testing::TestWithParam<StrandCase> {};
 TEST_P(MovingClamp, GivesItsWorkToTheStrand) {
   std::vector<double> steps, errors;
   for (const double step : {0.2e-3, 0.1e-3, 0.05e-3}) {
-    const auto system = GetParam().make({{"root", "shake_rotate"},
+    const auto system = GetParam().make({{"motion", "shake_rotate"},
                                          {"elements", "5"},
                                          {"radius_m", "1e-3"},
                                          {"youngs_modulus_pa", "1e6"}});
@@ -90,7 +90,7 @@ std::vector<std::size_t> angles_of(System& system, const State& state) {
   return all;
 }
 
-const ModelSettings turning = {{"root", "rotate"},
+const ModelSettings turning = {{"motion", "rotate"},
                                {"root_tangent", "up"},
                                {"head_radius_m", "0"},
                                {"gravity_m_s2", "0"},

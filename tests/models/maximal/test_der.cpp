@@ -81,7 +81,7 @@ class ReferenceFrames
 TEST_P(ReferenceFrames, NewOnesLeaveTheMotionAsItIs) {
   const auto [model, nodes] = GetParam();
   const auto system = make_model(model, {{"elements", "6"},
-                                         {"root", "free"},
+                                         {"motion", "free"},
                                          {"natural_curvature_1_m", "40"},
                                          {"natural_twist_1_m", "30"},
                                          {"gravity_m_s2", "0"}});
@@ -150,7 +150,7 @@ TEST(Der, TangentIsExactForCurlsWithFriction) {
   for (const char* root : {"shake_rotate", "free"}) {
     for (const char* stretch : {"extensible", "inextensible"}) {
       const auto system = make_model("der", {{"elements", "6"},
-                                             {"root", root},
+                                             {"motion", root},
                                              {"stretch", stretch},
                                              {"natural_curvature_1_m", "40"},
                                              {"natural_curvature2_1_m", "10"},

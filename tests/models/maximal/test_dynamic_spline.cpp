@@ -148,7 +148,7 @@ TEST(DynamicSpline, MidpointKeepsMomentumAndEnergyToOrder2) {
 // The clamp turns and shakes: the end of the spline is where it is and looks where it
 // looks, and the tip goes where that of an independent model goes.
 TEST(DynamicSpline, FollowsATurningClamp) {
-  const ModelSettings shaken = {{"root", "shake_rotate"},
+  const ModelSettings shaken = {{"motion", "shake_rotate"},
                                 {"elements", "10"},
                                 {"radius_m", "1e-3"},
                                 {"youngs_modulus_pa", "1e8"}};

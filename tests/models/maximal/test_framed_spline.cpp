@@ -77,7 +77,7 @@ TEST(FramedSpline, TangentIsExactForCurlsWithFriction) {
   for (const char* root : {"shake_rotate", "free"}) {
     const auto system = make_model(
         "dynamic_spline",
-        with(curly_hair, {{"root", root}, {"internal_friction_kg_m3_s", "1e-7"}}));
+        with(curly_hair, {{"motion", root}, {"internal_friction_kg_m3_s", "1e-7"}}));
     States s(*system);
     for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}}) {
       s.shake(0.05);
@@ -182,7 +182,7 @@ TEST(FramedSpline, CurlsOnAShakenRootMoveAsDiscreteRodsDo) {
     const auto tip = [model](const char* elements) {
       std::vector<double> q;
       const std::vector<double> x = points_after(model,
-                                                 {{"root", "shake_rotate"},
+                                                 {{"motion", "shake_rotate"},
                                                   {"elements", elements},
                                                   {"radius_m", "1e-3"},
                                                   {"youngs_modulus_pa", "1e7"},
@@ -251,7 +251,7 @@ TEST(DiscreteRod, DriftsByTheInertiaOfItsAnglesAlone) {
 // A straight strand whose sections spin about it and whose nodes stand still.
 TEST(FramedStrands, CountTheSpinOfSectionsInTheMomentum) {
   for (const char* model : {"der", "dynamic_spline"}) {
-    const ModelSettings settings{{"elements", "6"}, {"root", "free"}};
+    const ModelSettings settings{{"elements", "6"}, {"motion", "free"}};
     const auto system = make_model(model, settings);
     const Strand rod = strand(parameters_of(model, settings));
     State state = initial_state(*system);

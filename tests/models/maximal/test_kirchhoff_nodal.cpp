@@ -118,7 +118,7 @@ TEST(KirchhoffNodal, ClampedFrequenciesApproachTheBeamAtOrder2) {
 }
 
 const ModelSettings everything = {{"elements", "9"},
-                                  {"root", "shake_rotate"},
+                                  {"motion", "shake_rotate"},
                                   {"natural_curvature_1_m", "60"},
                                   {"natural_curvature2_1_m", "-20"},
                                   {"natural_twist_1_m", "30"},
@@ -269,8 +269,8 @@ TEST(KirchhoffNodal, FallsInThePlaneAsDerDoesOnTheSameGrid) {
 }
 
 TEST(KirchhoffNodal, RefusesWhatIsNoClampedChain) {
-  EXPECT_THROW((void)make_model("kirchhoff_nodal", {{"root", "free"}}), InputError);
-  const Parameters p = parameters_of("super_helix", {{"root", "free"}});
+  EXPECT_THROW((void)make_model("kirchhoff_nodal", {{"motion", "free"}}), InputError);
+  const Parameters p = parameters_of("super_helix", {{"motion", "free"}});
   EXPECT_THROW((void)kirchhoff_nodal(strand(p), {}, {}), InputError);
   Strand branched = strand(parameters_of("super_helix", {{"elements", "3"}}));
   branched.segments[2].parent = 0;

@@ -44,8 +44,8 @@ TEST_P(CurledSprings, ForcesAreTheGradientOfTheEnergy) {
 }
 
 TEST_P(CurledSprings, TangentIsExactWithFrictionOnATurningRoot) {
-  const auto system =
-      GetParam().make({{"root", "shake_rotate"}, {"internal_friction_kg_m3_s", "1e-9"}});
+  const auto system = GetParam().make(
+      {{"motion", "shake_rotate"}, {"internal_friction_kg_m3_s", "1e-9"}});
   States s(*system);
   for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}}) {
     s.shake(0.05);
@@ -54,8 +54,8 @@ TEST_P(CurledSprings, TangentIsExactWithFrictionOnATurningRoot) {
 }
 
 TEST_P(CurledSprings, EnergyChangesByThePowerOfFrictionAndTheRoot) {
-  const auto system =
-      GetParam().make({{"root", "shake_rotate"}, {"internal_friction_kg_m3_s", "1e-9"}});
+  const auto system = GetParam().make(
+      {{"motion", "shake_rotate"}, {"internal_friction_kg_m3_s", "1e-9"}});
   ExplicitForm* form = system->explicit_form();
   if (form == nullptr) GTEST_SKIP() << "with constraints: as the contract has it";
   Energetics& energetics = *system->energetics();
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(MassSpring, Springs,
 // A soft curl released straight, thrown into space with a spin of 10 rad/s.
 TEST(MassSpring, MidpointKeepsMomentumAndEnergyToOrder2) {
   const ModelSettings thrown = {
-      {"elements", "10"},           {"root", "free"},     {"gravity_m_s2", "0"},
+      {"elements", "10"},           {"motion", "free"},   {"gravity_m_s2", "0"},
       {"youngs_modulus_pa", "1e6"}, {"radius_m", "1e-3"}, {"natural_curvature_1_m", "20"},
       {"natural_twist_1_m", "10"},  {"initial", "bent"},  {"initial_curvature_1_m", "-5"},
       {"torsion", "altitude"}};

@@ -30,7 +30,7 @@ constexpr double growth = 1.1;
 
 TEST_P(QuaternionRods, TangentIsExactWithFrictionOnATurningRoot) {
   const auto system = make_model(GetParam().model, {{"elements", "6"},
-                                                    {"root", "shake_rotate"},
+                                                    {"motion", "shake_rotate"},
                                                     {"internal_friction_kg_m3_s", "1e-7"},
                                                     {"natural_curvature_1_m", "40"},
                                                     {"natural_twist_1_m", "20"},
@@ -113,7 +113,7 @@ TEST_P(QuaternionRods, ClampedFrequenciesApproachTheBeamAtOrder2) {
 // to 2 sqrt(G/rho)/l = 3.4e3 rad/s: h omega <= 0.34, so that the next order is 1 % or so.
 TEST_P(QuaternionRods, MidpointKeepsMomentumAndEnergyToOrder2) {
   const ModelSettings thrown = {
-      {"elements", "10"},          {"root", "free"},
+      {"elements", "10"},          {"motion", "free"},
       {"gravity_m_s2", "0"},       {"youngs_modulus_pa", "1e6"},
       {"radius_m", "1e-3"},        {"natural_curvature_1_m", "20"},
       {"natural_twist_1_m", "10"}, {"initial", "straight"}};

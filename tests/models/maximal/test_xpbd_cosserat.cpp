@@ -56,7 +56,7 @@ TEST(XpbdCosserat, ShearLowersTheTip) {
 // The form that xpbd takes holds friction and a turning root, too.
 TEST(XpbdCosserat, ComplianceFormIsTheResidualWithFrictionOnATurningRoot) {
   const ModelSettings moving = {{"elements", "6"},
-                                {"root", "shake_rotate"},
+                                {"motion", "shake_rotate"},
                                 {"mass_damping_1_s", "2"},
                                 {"internal_friction_kg_m3_s", "1e-7"},
                                 {"natural_curvature_1_m", "40"},

@@ -31,7 +31,7 @@ inline std::unique_ptr<System> make_model(
     std::string_view id,
     std::initializer_list<std::pair<std::string_view, std::string_view>> settings = {}) {
   const ModelEntry& entry = find_model(id);
-  Parameters parameters(entry.parameters, "model " + std::string(id));
+  Parameters parameters(setup_parameters(entry), "model " + std::string(id));
   for (const auto& [key, value] : settings) parameters.set(key, value);
   return entry.make(parameters);
 }

@@ -27,7 +27,8 @@ inline ModelSettings with(ModelSettings base, const ModelSettings& more) {
 
 /// The parameters behind a model of the catalogue.
 inline Parameters parameters_of(std::string_view model, const ModelSettings& settings) {
-  Parameters parameters(find_model(model).parameters, "model " + std::string(model));
+  Parameters parameters(setup_parameters(find_model(model)),
+                        "model " + std::string(model));
   for (const auto& [key, value] : settings) parameters.set(key, value);
   return parameters;
 }

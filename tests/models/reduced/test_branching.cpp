@@ -157,7 +157,7 @@ std::vector<ModelSettings> variants(const std::vector<std::string>& roots) {
       for (const std::string tangent : {"exact", "stiff"}) {
         for (const std::string solver : {"recursive", "composite", "sparse"}) {
           all.push_back({{"modes", modes},
-                         {"root", root},
+                         {"motion", root},
                          {"tangent", tangent},
                          {"solver", solver}});
         }
@@ -212,7 +212,7 @@ std::vector<double> fork(const std::vector<double>& planar, std::size_t from,
 TEST(ForkOfHalves, MovesAsTheWholeInItsPlane) {
   constexpr std::size_t from = 5;
   const ModelSettings planar = {{"elements", "12"},
-                                {"root", "shake"},
+                                {"motion", "shake"},
                                 {"root_tangent", "down"},
                                 {"natural_curvature_1_m", "40"}};
   for (const std::string tangent : {"exact", "stiff"}) {

@@ -143,7 +143,7 @@ double momentum_error(const std::string& integrator, System& system,
 
 // In space without gravity, thrown with a spin of 10 rad/s about the root: the middle of
 // the strand flies off.
-const ModelSettings thrown = {{"root", "free"}, {"gravity_m_s2", "0"}};
+const ModelSettings thrown = {{"motion", "free"}, {"gravity_m_s2", "0"}};
 const ModelSettings algae = with({{"tree", "algae"}}, thrown);
 
 class MomentumOfAThrow : public testing::TestWithParam<Way> {};

@@ -23,7 +23,7 @@ std::vector<double> solved(System& system, const States& s, const std::vector<do
 class ZeroCurvature : public testing::TestWithParam<StrandCase> {};
 
 TEST_P(ZeroCurvature, IsPassedThroughSmoothly) {
-  const auto system = GetParam().make({{"elements", "6"}, {"root", "shake"}});
+  const auto system = GetParam().make({{"elements", "6"}, {"motion", "shake"}});
   States s(*system, 17);
   s.shake(0);  // q = 0, v and a random: gyroscopic terms are alive
   const std::vector<double> zero = zeros(*system);

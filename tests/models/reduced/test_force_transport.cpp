@@ -55,7 +55,7 @@ void expect_equal(const std::vector<double>& x, const std::vector<double>& y) {
 TEST(ForceTransport, OfOneSegmentIsTheChain) {
   for (const Modes& modes : all_modes) {
     const Pair models =
-        pair(modes, 1, {{"root", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}});
+        pair(modes, 1, {{"motion", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}});
     States s(*models.chain);
     s.shake(0.5);
     expect_equal(residual(*models.transport, s.q, s.v, s.a),
@@ -73,7 +73,7 @@ TEST(ForceTransport, OfOneSegmentIsTheChain) {
 TEST(ForceTransport, HasTheForcesOfTheChain) {
   for (const Modes& modes : all_modes) {
     const Pair models =
-        pair(modes, 7, {{"root", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}});
+        pair(modes, 7, {{"motion", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}});
     States s(*models.chain);
     s.shake(0.5);
     const std::vector<double> zero = zeros(*models.chain);
@@ -168,7 +168,7 @@ TEST(ForceTransport, IsTheFirstGaussSeidelSweepOfTheChain) {
 // of unequal segments, in drag, on a root that turns. Errors of 0 are below rounding.
 TEST(ForceTransport, TangentIsExactOnCurls) {
   for (const Modes& modes : all_modes) {
-    const ModelSettings setting = {{"root", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}};
+    const ModelSettings setting = {{"motion", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}};
     const Pair models = pair(modes, 6, setting);
     const Pair stiff = pair(modes, 6, with(setting, {{"tangent", "stiff"}}));
     double most = 0, without = std::numeric_limits<double>::infinity();
@@ -259,7 +259,7 @@ TEST(ForceTransport, OfStiffHangingStrandsFluttersToo) {
 // As in test_solvers.cpp: rounding on a condition of up to 1e5 from steps of 0.1 ms on.
 TEST(ForceTransport, SweepSolvesTheDenseMatrix) {
   for (const Modes& modes : all_modes) {
-    const ModelSettings stiff = {{"tangent", "stiff"}, {"root", "shake_rotate"}};
+    const ModelSettings stiff = {{"tangent", "stiff"}, {"motion", "shake_rotate"}};
     const Pair sweep = pair(modes, 20, stiff);
     const Pair dense = pair(modes, 20, with(stiff, {{"solver", "composite"}}));
     for (const double h : {1e-4, 1e-3, 1e-2, 1e-1}) {
@@ -278,7 +278,7 @@ TEST(ForceTransport, SweepSolvesTheDenseMatrix) {
 }
 
 TEST(ForceTransport, RefusesAFreeRoot) {
-  EXPECT_THROW(make_model("force_transport", {{"root", "free"}}), InputError);
+  EXPECT_THROW(make_model("force_transport", {{"motion", "free"}}), InputError);
 }
 
 }  // namespace tress::test_force_transport

@@ -71,7 +71,7 @@ std::vector<Plane> planes() {
   // starts upwards or downwards.
   const ModelSettings release = {{"root_tangent", "x"}, {"natural_curvature_1_m", "30"}};
   const ModelSettings shake = {{"root_tangent", "down"},
-                               {"root", "shake"},
+                               {"motion", "shake"},
                                {"initial", "bent"},
                                {"initial_curvature_1_m", "10"},
                                {"drag_kg_m_s", "1e-5"}};

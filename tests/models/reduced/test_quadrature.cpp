@@ -28,7 +28,7 @@ Eigen::MatrixXd mass_matrix(const Vec& kappa, int points) {
                                  {"natural_curvature_1_m", text(kappa.y)},
                                  {"natural_curvature2_1_m", text(kappa.z)},
                                  {"quadrature", std::to_string(points)},
-                                 {"root", "free"},
+                                 {"motion", "free"},
                                  {"gravity_m_s2", "0"},
                                  {"rotary_inertia", "off"}});
   const State at = initial_state(*system);

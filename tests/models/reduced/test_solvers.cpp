@@ -32,20 +32,20 @@ std::vector<StrandCase> solver_cases() {
     for (const std::string root : {"fixed", "shake_rotate"}) {
       for (const std::string model : {"super_helix", "articulated_chain"}) {
         all.push_back({model + "_" + modes + "_" + root, find_model(model).id,
-                       with(shape, {{"modes", modes}, {"root", root}})});
+                       with(shape, {{"modes", modes}, {"motion", root}})});
       }
     }
     if (modes == "bend_planar") continue;
     all.push_back({"super_helix_" + modes + "_free", "super_helix",
-                   with(shape, {{"modes", modes}, {"root", "free"}})});
+                   with(shape, {{"modes", modes}, {"motion", "free"}})});
     for (const std::string tree : {"algae", "complex_tree"}) {
       all.push_back({"tree_" + tree + "_" + modes,
                      "super_helix_tree",
-                     {{"tree", tree}, {"modes", modes}, {"root", "shake_rotate"}}});
+                     {{"tree", tree}, {"modes", modes}, {"motion", "shake_rotate"}}});
     }
   }
   all.push_back(
-      {"tree_algae_free", "super_helix_tree", {{"tree", "algae"}, {"root", "free"}}});
+      {"tree_algae_free", "super_helix_tree", {{"tree", "algae"}, {"motion", "free"}}});
   return all;
 }
 
@@ -182,7 +182,7 @@ TEST(ExactRecursion, KeepsTheDigitsThatSmallPivotsCost) {
       if (root == "free" && model == "articulated_chain") continue;
       for (const std::string elements : {"10", "40"}) {
         const ModelSettings settings = {
-            {"elements", elements},      {"root", root},
+            {"elements", elements},      {"motion", root},
             {"root_tangent", "x"},       {"natural_curvature_1_m", "300"},
             {"natural_twist_1_m", "60"}, {"drag_kg_m_s", "1e-4"},
             {"tangent", "exact"}};

@@ -13,8 +13,7 @@ using namespace models;
 using Settings = std::vector<std::pair<std::string_view, std::string_view>>;
 
 inline Parameters strand_parameters(const Settings& settings) {
-  static const std::vector<Parameter> declared = with_strand_parameters({});
-  Parameters parameters(declared, "model test");
+  Parameters parameters(models::strand_parameters(), "model test");
   for (const auto& [key, value] : settings) parameters.set(key, value);
   return parameters;
 }

@@ -87,7 +87,7 @@ TEST(RootMotion, DerivativesAreThoseOfThePoseForEveryChoice) {
     for (const auto tangent : tangent_choices) {
       SCOPED_TRACE(std::string(root) + " " + std::string(tangent));
       const RootMotion motion =
-          root_motion(strand_parameters({{"root", root}, {"root_tangent", tangent}}));
+          root_motion(strand_parameters({{"motion", root}, {"root_tangent", tangent}}));
       check(motion, "root motion");
       // Off the instants where the third derivative jumps: 0, 0.01, 1/6 and 1/3 s.
       for (const double t : {-0.3, 0.003, 0.0085, 0.04, 0.13, 0.21, 0.32, 0.9}) {

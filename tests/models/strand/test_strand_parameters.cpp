@@ -54,7 +54,7 @@ TEST(StrandParameters, EveryChoiceBuilds) {
     for (const auto tangent : tangent_choices) {
       for (const auto initial : {"natural", "straight", "bent"}) {
         const Strand s = strand(strand_parameters(
-            {{"root", root}, {"root_tangent", tangent}, {"initial", initial}}));
+            {{"motion", root}, {"root_tangent", tangent}, {"initial", initial}}));
         EXPECT_NO_THROW(check(s));
         EXPECT_EQ(s.free_root.has_value(), root == "free");
         EXPECT_EQ(s.root.fixed(), root == "free" || root == "fixed");
@@ -63,19 +63,26 @@ TEST(StrandParameters, EveryChoiceBuilds) {
   }
 }
 
-TEST(StrandParameters, OwnParametersFollowTheSharedOnes) {
-  constexpr Parameter own[] = {{.name = "solver", .help = "", .choices = "a|b"}};
-  const std::vector<Parameter> all = with_strand_parameters(own);
-  const std::vector<Parameter> tree = with_material_parameters(own);
-  EXPECT_EQ(all.back().name, "solver");
-  EXPECT_EQ(tree.back().name, "solver");
-  const Parameters p(tree, "model tree");
+TEST(StrandParameters, AreNoModelsOwn) {
+  for (const ModelEntry& model : model_catalogue()) {
+    if (model.on_strand == nullptr) continue;
+    const Parameters own(model.parameters, "own"), all(setup_parameters(model), "all");
+    for (const Parameter& p : models::strand_parameters()) {
+      EXPECT_FALSE(own.knows(p.name)) << model.id << ' ' << p.name;
+      EXPECT_TRUE(all.knows(p.name)) << model.id << ' ' << p.name;
+    }
+    for (const Parameter& p : model.parameters) EXPECT_TRUE(all.knows(p.name)) << p.name;
+  }
+}
+
+TEST(StrandParameters, MaterialComesWithoutGeometry) {
+  const Parameters p(material_parameters(), "model tree");
   for (const auto geometry :
        {"elements", "length_m", "grading", "radius_m", "ellipticity",
         "natural_curvature_1_m", "natural_curvature2_1_m", "natural_twist_1_m", "initial",
         "initial_curvature_1_m"}) {
     EXPECT_FALSE(p.knows(geometry)) << geometry;
-    EXPECT_TRUE(Parameters(all, "model").knows(geometry)) << geometry;
+    EXPECT_TRUE(strand_parameters({}).knows(geometry)) << geometry;
   }
   EXPECT_NO_THROW(check(material(p), "material"));
   EXPECT_NO_THROW(check(root_motion(p), "root"));
@@ -140,42 +147,42 @@ TEST(StrandParameters, CurvatureAboutE1BendsInTheVerticalPlane) {
 TEST(StrandParameters, ShakeIsASineSideways) {
   const double quarter = 1.0 / 12;  // of the period at 3 Hz
   for (const auto root : {"shake", "shake_rotate"}) {
-    const Settings still = {{"root", root}, {"head_angle_rad", "0"}};
+    const Settings still = {{"motion", root}, {"angle_rad", "0"}};
     // one rounding of the centre: 0.1 eps
     expect_near(pose_of(still, quarter).x, {0, 0.05, 0}, eps);
     expect_near(pose_of(still, 0).v, {0, 0.05 * 6 * pi, 0}, 4 * eps);
   }
-  expect_near(pose_of({{"root", "shake"}, {"root_tangent", "down"}}, quarter).x,
+  expect_near(pose_of({{"motion", "shake"}, {"root_tangent", "down"}}, quarter).x,
               {0.05, 0, 0}, eps);
-  expect_near(pose_of({{"root", "shake"}, {"root_tangent", "up"}}, quarter).x,
+  expect_near(pose_of({{"motion", "shake"}, {"root_tangent", "up"}}, quarter).x,
               {0.05, 0, 0}, eps);
 }
 
 TEST(StrandParameters, HeadTurnsTheRootOnACircleAboutTheVertical) {
-  const RootPose pose = pose_of({{"root", "rotate"}}, 1.0 / 12);  // angle 0.5
+  const RootPose pose = pose_of({{"motion", "rotate"}}, 1.0 / 12);  // angle 0.5
   expect_near(pose.x, {0.1 * (std::cos(0.5) - 1), 0.1 * std::sin(0.5), 0}, eps);
   expect_near(pose.frame.e0, {std::cos(0.5), std::sin(0.5), 0}, 4 * eps);
-  const RootPose both = pose_of({{"root", "shake_rotate"}}, 1.0 / 12);
+  const RootPose both = pose_of({{"motion", "shake_rotate"}}, 1.0 / 12);
   expect_near(both.x - pose.x, {0, 0.05, 0}, eps);
   expect_near(both.frame.e0, pose.frame.e0, 0);
 }
 
 TEST(StrandParameters, SwingStartsFromRestAlongY) {
-  const Settings swing = {{"root", "swing"}, {"frequency_hz", "1"}};
+  const Settings swing = {{"motion", "swing"}, {"frequency_hz", "1"}};
   expect_near(pose_of(swing, 0).x, {}, 0);
   expect_near(pose_of(swing, 0).v, {}, 0);
   expect_near(pose_of(swing, 0.5).x, {0, 0.1, 0}, eps);
 }
 
 TEST(StrandParameters, StopComesToRestInItsTime) {
-  expect_near(pose_of({{"root", "stop"}}, 0).v, {0, 5, 0}, 0);
-  expect_near(pose_of({{"root", "stop"}}, 0.01).v, {}, 0);
-  expect_near(pose_of({{"root", "stop"}}, 1).x, {0, 5 * 0.01 / 2, 0}, eps);
-  expect_near(pose_of({{"root", "stop"}, {"root_tangent", "down"}}, 0).v, {5, 0, 0}, 0);
+  expect_near(pose_of({{"motion", "stop"}}, 0).v, {0, 5, 0}, 0);
+  expect_near(pose_of({{"motion", "stop"}}, 0.01).v, {}, 0);
+  expect_near(pose_of({{"motion", "stop"}}, 1).x, {0, 5 * 0.01 / 2, 0}, eps);
+  expect_near(pose_of({{"motion", "stop"}, {"root_tangent", "down"}}, 0).v, {5, 0, 0}, 0);
 }
 
 TEST(StrandParameters, DropPullFallsRisesAndRests) {
-  const Settings drop = {{"root", "drop_pull"}, {"frequency_hz", "2"}};
+  const Settings drop = {{"motion", "drop_pull"}, {"frequency_hz", "2"}};
   expect_near(pose_of(drop, 0).x, {}, 0);
   expect_near(pose_of(drop, 0.125).x, {0, 0, -0.025}, eps);
   expect_near(pose_of(drop, 0.25).x, {0, 0, -0.05}, eps);
@@ -188,7 +195,7 @@ TEST(StrandParameters, DropPullFallsRisesAndRests) {
 
 TEST(StrandParameters, FreeRootSpinsAboutTheDiagonal) {
   const FreeRoot root =
-      *free_root(strand_parameters({{"root", "free"}, {"root_tangent", "down"}}));
+      *free_root(strand_parameters({{"motion", "free"}, {"root_tangent", "down"}}));
   expect_near(root.position, {}, 0);
   expect_near(root.velocity, {}, 0);
   EXPECT_DOUBLE_EQ(dot(root.spin, root.spin), 100);
@@ -225,9 +232,9 @@ TEST(StrandParameters, RefuseNumbersOutsideTheirMeaning) {
                         {"grading", "0"},         {"radius_m", "0"},
                         {"ellipticity", "-1"},    {"youngs_modulus_pa", "0"},
                         {"poisson_ratio", "0.6"}, {"density_kg_m3", "0"},
-                        {"frequency_hz", "0"},    {"stop_time_s", "0"},
+                        {"frequency_hz", "0"},    {"time_s", "0"},
                         {"drag_kg_m_s", "-1"},    {"mass_damping_1_s", "-1"},
-                        {"root", "wobble"},       {"root_tangent", "y"},
+                        {"motion", "wobble"},     {"root_tangent", "y"},
                         {"initial", "curly"},     {"internal_friction_kg_m3_s", "-1"}};
   for (const auto& setting : bad) {
     EXPECT_THROW(strand_parameters({setting}), InputError) << setting.first;

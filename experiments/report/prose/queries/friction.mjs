@@ -2,7 +2,7 @@
 import { number, rows_of, table } from '../markdown.mjs';
 
 const interval = (row, name, unit) =>
-  [name, name.replace('_', '_low_'), name.replace('_', '_high_')]
+  [name, name.replace('_kg', '_low_kg'), name.replace('_kg', '_high_kg')]
     .map((column) => number(row[column] / unit, 3))
     .join(' | ');
 
@@ -18,8 +18,8 @@ export const fits_table = (tables) =>
       `${row.data.replaceAll('_', ' ')}, ${row.signal}`,
       row.fit,
       `\`${row.integrator}\``,
-      estimate(row, 'gamma_kg_m3_s', 1e-10),
-      estimate(row, 'nu_kg_m_s', 1e-5),
+      estimate(row, 'internal_friction_kg_m3_s', 1e-10),
+      estimate(row, 'drag_kg_m_s', 1e-5),
       row.status === 'ok' ? '' : `flagged: ${row.reason}`,
     ]),
   );
