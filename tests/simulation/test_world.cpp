@@ -33,9 +33,9 @@ Scene pair(const std::string& model, const std::string& coupling) {
 /// By systems of its own for every strand, without effects and with one alone.
 Energies by_twins(const Scene& scene, World& world) {
   Energies sum;
-  sum.effects.resize(scene.effects.size());
   const Snapshot now = world.snapshot();
   const Effects effects = make_effects(scene);
+  sum.effects.resize(effects.size());
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     const Snapshot::OfStrand& state = now.strands[k];
     const auto energy = [&](const Effects& with) {
