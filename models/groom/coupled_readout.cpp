@@ -1,5 +1,6 @@
 // Readouts of strands that form one system: energy, momentum, positions.
 #include <algorithm>
+#include <iterator>
 
 #include "models/groom/coupled_strands.h"
 
@@ -73,6 +74,14 @@ double CoupledStrands::power(double t, In q, In v) {
     }
   });
   return sum;
+}
+
+int CoupledStrands::before(int i) const {
+  const auto next = std::ranges::upper_bound(first_point_, i);
+  const int first = *std::prev(next);
+  const auto k = static_cast<std::size_t>(next - first_point_.begin() - 1);
+  const int own = strands_[k]->material_points()->before(i - first);
+  return own < 0 ? -1 : first + own;
 }
 
 void CoupledStrands::positions(double t, In q, Out x) {

@@ -62,6 +62,7 @@ class CoupledStrands final : public System, private Energetics, private Material
   std::optional<Momentum> momentum(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   int count() const override { return static_cast<int>(means_.size()); }
+  int before(int i) const override;
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
   std::optional<double> stretch(double t, In q) override;

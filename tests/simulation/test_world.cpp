@@ -86,6 +86,14 @@ TEST(World, StrandsThatAreOneSystemGoOnFromASnapshot) {
   EXPECT_EQ(world.positions(), other.positions());
 }
 
+/// As one system they were drawn as one line.
+TEST(World, StrandsAreAttachedAlikeWhateverTheirCoupling) {
+  const World apart(pair("mass_spring", "lagged")),
+      one(pair("mass_spring", "monolithic"));
+  EXPECT_EQ(apart.points(), one.points());
+  EXPECT_EQ(apart.before(), one.before());
+}
+
 /// At 50 ms the whirling of soft, long hair takes Newton's iteration more than 2 rounds,
 /// and a few damped ones, now and then.
 TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
