@@ -11,6 +11,10 @@ namespace tress::models {
 
 /// Numbers of the four points of a contact.
 using FourPoints = std::array<std::size_t, 4>;
+inline FourPoints points_of(const Coupling& contact) {
+  const auto& e = contact.ends;
+  return {e[0].point, e[1].point, e[2].point, e[3].point};
+}
 
 /// Pattern of the derivatives of contacts between points that are means of coordinates
 /// (each P q).
