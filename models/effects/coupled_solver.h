@@ -1,13 +1,23 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
+#include "contract/system.h"
 #include "linear/block_matrix.h"
 #include "linear/linear_solver.h"
-#include "models/effects/coupling_pattern.h"
+#include "models/effects/coupling.h"
 
 namespace tress::models {
+
+/// Numbers of the four points of a contact.
+using FourPoints = std::array<std::size_t, 4>;
+inline FourPoints points_of(const Coupling& contact) {
+  const auto& e = contact.ends;
+  return {e[0].point, e[1].point, e[2].point, e[3].point};
+}
 
 /// Solves with matrices of fixed pattern, one after the other on the diagonal, plus the
 /// contacts between distant points, by KLU. The pattern follows the contacts.
