@@ -16,7 +16,7 @@ Scene read_open_scene(const std::string& file) {
         "the model brings its own geometry: no other model can do this scene", file,
         "give a scene with [strand] or [groom]");
   }
-  if (scene.interaction) {
+  if (scene.interaction() != nullptr) {
     throw InputError(
         "strands that touch each other: no two models agree on them for long", file,
         "leave out [effects.strand_interaction]");

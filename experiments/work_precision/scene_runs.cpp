@@ -50,7 +50,7 @@ class Study {
     scene_.duration = std::min(p.number("horizon_s"), scene_.duration);
     scene_.frame_rate = rate;
     const auto most = static_cast<std::size_t>(p.whole("strands"));
-    if (!scene_.interaction && scene_.strands.size() > most) {
+    if (scene_.interaction() == nullptr && scene_.strands.size() > most) {
       chosen_ = typical_strands(scene_.strands, most);
     }
     const Scene used = cut(0);
@@ -60,7 +60,7 @@ class Study {
 
   const std::string& name() const { return name_; }
   double length() const { return length_; }  // mean, m
-  bool touching() const { return scene_.interaction.has_value(); }
+  bool touching() const { return scene_.interaction() != nullptr; }
   double duration() const { return scene_.duration; }
 
   /// Strands with this many elements, 0: the file's discretisation. The choice of strands

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "models/batch/packed_strands.h"
-#include "models/batch/strand_block.h"
+#include "models/groom/strand_block.h"
 #include "models/reduced/recursive_solver.h"
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/transport_sweeps.h"
@@ -59,7 +59,7 @@ class TransportMechanics {
 /// those of single strands to rounding (points are summed in another order), at little
 /// more than the cost of one strand. The Kernel is over packs.
 template <template <class, int> class Mechanics, class Kernel, int dofs>
-class ReducedBatch final : public StrandBlock {
+class ReducedBatch final : public StrandBlock, private ExplicitForm {
  public:
   /// `strands`: the packed strands as single systems, used for everything but steps.
   ReducedBatch(PackedStrands packed, std::vector<std::unique_ptr<System>> strands)
@@ -95,7 +95,25 @@ class ReducedBatch final : public StrandBlock {
     return s == Status::ok ? scatter(r_, x) : s;
   }
 
+  ExplicitForm* explicit_form() override {
+    for (std::size_t k = 0; k < strands(); ++k) {
+      if (strand(k).explicit_form() == nullptr) return nullptr;
+    }
+    return this;
+  }
+
  private:
+  std::size_t unknowns() const { return static_cast<std::size_t>(first(1)); }  // each
+
+  Status acceleration(double t, In q, In v, Out a) noexcept override {
+    for (std::size_t k = 0; k < strands(); ++k) {
+      const Status s =
+          strand(k).explicit_form()->acceleration(t, part(q, k), part(v, k), part(a, k));
+      if (s != Status::ok) return s;
+    }
+    return Status::ok;
+  }
+
   void gather(In x, std::vector<Pack>& packed) const {
     const std::size_t n = unknowns();
     const double* from[Pack::lanes];

@@ -10,7 +10,7 @@
 namespace tress::models {
 namespace {
 
-constexpr Parameter declared[] = {
+constexpr Parameter parameters_of_bead[] = {
     {.name = "curve",
      .help = "shape of the wire",
      .choices = "circle|ellipse|helix|trefoil"},
@@ -105,7 +105,7 @@ ParticleScene implicit_scene(const Parameters& p, const Wire& wire) {
 
 }  // namespace
 
-std::span<const Parameter> bead_on_wire_parameters() { return declared; }
+std::span<const Parameter> bead_on_wire_parameters() { return parameters_of_bead; }
 
 std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters) {
   const Wire wire = wire_of(parameters);

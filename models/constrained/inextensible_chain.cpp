@@ -11,7 +11,7 @@
 namespace tress::models {
 namespace {
 
-constexpr Parameter declared[] = {
+constexpr Parameter parameters_of_chain[] = {
     {.name = "links",
      .help = "number of links n",
      .number = 10,
@@ -104,7 +104,7 @@ ParticleScene inextensible_chain(const ChainShape& shape) {
   return scene;
 }
 
-std::span<const Parameter> inextensible_chain_parameters() { return declared; }
+std::span<const Parameter> inextensible_chain_parameters() { return parameters_of_chain; }
 
 std::unique_ptr<System> make_inextensible_chain(const Parameters& parameters) {
   ChainShape shape;

@@ -11,6 +11,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/effects/quadratic_drag.h"
 #include "models/effects/self_contact.h"
+#include "models/effects/strand_interaction.h"
 #include "models/effects/tether.h"
 #include "models/effects/wind.h"
 
@@ -27,6 +28,7 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
       EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15", body_parameters(), make_body, true},
       EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact},
+      EffectEntry{"strand_interaction", "strands repel and drag each other", "Wang, thesis, NCTU", strand_interaction_parameters(), nullptr},
   };
   return entries;
 }

@@ -18,7 +18,8 @@ struct EffectEntry {
   std::string_view summary;  // one line
   std::string_view source;
   std::span<const Parameter> parameters;
-  /// `head`: the rigid motion of all roots, for bodies that follow it.
+  /// `head`: the rigid motion of all roots, for bodies that follow it. Null for the
+  /// effect between strands, which is made for all of them at once (StrandInteraction).
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
   bool many = false;  // a scene may name several: [[effects.id]]
 };

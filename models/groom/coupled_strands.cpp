@@ -6,7 +6,6 @@
 
 #include "contract/input_error.h"
 #include "linear/finite.h"
-#include "models/effects/coupling_pattern.h"
 
 namespace tress::models {
 namespace {
@@ -27,27 +26,31 @@ CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
 
 CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
                                const ContactLaw& law)
-    : strands_(std::move(strands)) {
-  for (std::size_t k = 0; k < strands_.size(); ++k) check_and_join(*strands_[k], k);
+    : StrandBlock(std::move(strands)) {
+  std::vector<const Pattern*> tangents;
   std::vector<int> points;
-  for (std::size_t k = 0; k < strands_.size(); ++k) {
-    points.push_back(first_point_[k + 1] - first_point_[k]);
+  for (std::size_t k = 0; k < this->strands(); ++k) {
+    check_and_join(k);
+    tangents.push_back(&strand(k).sparse_form()->pattern());
+    strand_values_.emplace_back(static_cast<std::size_t>(tangents.back()->nonzeros()));
+    points.push_back(strand(k).material_points()->count());
   }
+  solver_ = std::make_unique<CoupledSolver>(std::move(tangents), means_);
   x_.resize(3 * means_.size());
   u_.resize(x_.size());
-  std::vector<double> q(static_cast<std::size_t>(first_.back())), v(q.size());
-  initial_state(q, v);
-  positions(0, q, x_);
+  place_at_start();
   contacts_ = std::make_unique<StrandContacts>(law, std::move(points), x_);
-  build_matrix();
+  couple();
 }
 
-void CoupledStrands::check_and_join(System& strand, std::size_t k) {
-  const Layout layout = strand.layout();
-  if (layout.constraints > 0) refuse(k, "has constraints, whose solver is its own");
-  SparseForm* sparse = strand.sparse_form();
-  if (sparse == nullptr) refuse(k, "has no sparse tangent to put among the others");
-  MaterialPoints* points = strand.material_points();
+void CoupledStrands::check_and_join(std::size_t k) {
+  if (strand(k).layout().constraints > 0) {
+    refuse(k, "has constraints, whose solver is its own");
+  }
+  if (strand(k).sparse_form() == nullptr) {
+    refuse(k, "has no sparse tangent to put among the others");
+  }
+  MaterialPoints* points = strand(k).material_points();
   if (points == nullptr || points->count() < 2) refuse(k, "has fewer than two points");
   for (int i = 0; i < points->count(); ++i) {
     std::optional<Mean> mean = points->mean(i);
@@ -57,58 +60,31 @@ void CoupledStrands::check_and_join(System& strand, std::size_t k) {
              "between strands have no sparse tangent");
     }
     for (int n = 0; n < mean->count; ++n) {
-      mean->coordinate[static_cast<std::size_t>(n)] += first_.back();
+      mean->coordinate[static_cast<std::size_t>(n)] += first(k);
     }
     means_.push_back(*mean);
   }
-  first_.push_back(first_.back() + layout.coordinates);
-  first_point_.push_back(static_cast<int>(means_.size()));
-  strand_values_.emplace_back(static_cast<std::size_t>(sparse->pattern().nonzeros()));
 }
 
 /// Couples the coordinates of all segments that may touch.
-void CoupledStrands::build_matrix() {
-  const int n = first_.back();
-  CouplingColumns columns(n, means_);
+void CoupledStrands::couple() {
+  std::vector<FourPoints> touching;
   for (std::size_t i = 0; i < contacts_->segments(); ++i) {
     const std::size_t own = contacts_->point(static_cast<int>(i));
     for (const int partner : contacts_->partners(i)) {
       const std::size_t other = contacts_->point(partner);
-      columns.add({own, own + 1, other, other + 1});
+      touching.push_back({own, own + 1, other, other + 1});
     }
   }
-  coupling_ = std::move(columns).pattern();
-  coupling_values_.resize(static_cast<std::size_t>(coupling_.nonzeros()));
-  matrix_ = std::make_unique<BlockMatrix>(n, n);
-  for (std::size_t k = 0; k < strands(); ++k) {
-    matrix_->add_block(strands_[k]->sparse_form()->pattern(), first_[k], first_[k]);
-  }
-  matrix_->add_block(coupling_, 0, 0);
-  matrix_->finish();
-  solver_ = make_linear_solver(LinearKind::klu, matrix_->pattern());
+  solver_->touch(touching);
   factored_ = Status::retry;
 }
 
-Traits CoupledStrands::traits() const {
-  Traits all{.constant_mass = true, .regular_mass = true};
-  for (const auto& strand : strands_) {
-    const Traits traits = strand->traits();
-    all.constant_mass = all.constant_mass && traits.constant_mass;
-    all.regular_mass = all.regular_mass && traits.regular_mass;
-  }
-  return all;
-}
-
-void CoupledStrands::initial_state(Out q, Out v) const {
-  for (std::size_t k = 0; k < strands(); ++k) {
-    strands_[k]->initial_state(part(q, k), part(v, k));
-  }
-}
-
-void CoupledStrands::scale(Out q_typ, Out v_typ) const {
-  for (std::size_t k = 0; k < strands(); ++k) {
-    strands_[k]->scale(part(q_typ, k), part(v_typ, k));
-  }
+/// x_ = positions in the initial state.
+void CoupledStrands::place_at_start() {
+  std::vector<double> q(static_cast<std::size_t>(layout().coordinates)), v(q.size());
+  initial_state(q, v);
+  positions(0, q, x_);
 }
 
 void CoupledStrands::place(double t, In q, In v) noexcept {
@@ -119,7 +95,7 @@ void CoupledStrands::place(double t, In q, In v) noexcept {
 Status CoupledStrands::residual(double t, In q, In v, In a, Out r) noexcept {
   for (std::size_t k = 0; k < strands(); ++k) {
     const Status s =
-        strands_[k]->residual(t, part(q, k), part(v, k), part(a, k), part(r, k));
+        strand(k).residual(t, part(q, k), part(v, k), part(a, k), part(r, k));
     if (s != Status::ok) return s;
   }
   place(t, q, v);
@@ -136,43 +112,34 @@ Status CoupledStrands::residual(double t, In q, In v, In a, Out r) noexcept {
   return all_finite(r) ? Status::ok : Status::retry;
 }
 
-/// coupling_values_ = -w.pos P^T df/dx P - w.vel P^T df/dv P, at x_ and u_.
-void CoupledStrands::add_contacts(Weights w) noexcept {
-  std::ranges::fill(coupling_values_, 0.0);
-  contacts_->each_contact(x_, u_, [&](const auto& points, const PieceContact& contact) {
-    add_coupling(coupling_, means_, contact.coupling(contacts_->law(), points), -w.pos,
-                 -w.vel, coupling_values_);
-  });
-}
-
 Status CoupledStrands::linearize(double t, In q, In v, In a, Weights w) noexcept {
   uncoupled_ = w.vel == 0 && w.pos == 0;
   if (uncoupled_) {
     factored_ = Status::ok;
     for (std::size_t k = 0; k < strands() && factored_ == Status::ok; ++k) {
-      factored_ = strands_[k]->linearize(t, part(q, k), part(v, k), part(a, k), w);
+      factored_ = strand(k).linearize(t, part(q, k), part(v, k), part(a, k), w);
     }
     return factored_;
   }
-  matrix_->clear();
+  solver_->clear();
   for (std::size_t k = 0; k < strands(); ++k) {
-    const Status s = strands_[k]->sparse_form()->values(t, part(q, k), part(v, k),
-                                                        part(a, k), w, strand_values_[k]);
+    const Status s = strand(k).sparse_form()->values(t, part(q, k), part(v, k),
+                                                     part(a, k), w, strand_values_[k]);
     if (s != Status::ok) return factored_ = s;
-    matrix_->add(static_cast<int>(k), 1, strand_values_[k]);
+    solver_->add(k, strand_values_[k]);
   }
   place(t, q, v);
-  add_contacts(w);
-  matrix_->add(static_cast<int>(strands()), 1, coupling_values_);
-  if (!all_finite(matrix_->values())) return factored_ = Status::retry;
-  return factored_ = solver_->factor(matrix_->values());
+  contacts_->each_contact(x_, u_, [&](const auto& points, const PieceContact& contact) {
+    solver_->add(contact.coupling(contacts_->law(), points), w);
+  });
+  return factored_ = solver_->factor();
 }
 
 Status CoupledStrands::solve(In b, Out x) noexcept {
   if (factored_ != Status::ok) return factored_;
   if (uncoupled_) {
     for (std::size_t k = 0; k < strands(); ++k) {
-      const Status s = strands_[k]->solve(part(b, k), part(x, k));
+      const Status s = strand(k).solve(part(b, k), part(x, k));
       if (s != Status::ok) return s;
     }
     return Status::ok;
@@ -184,28 +151,26 @@ Status CoupledStrands::solve(In b, Out x) noexcept {
 bool CoupledStrands::accept(double t, InOut q, InOut v) {
   bool changed = false;
   for (std::size_t k = 0; k < strands(); ++k) {
-    if (strands_[k]->accept(t, part(q, k), part(v, k))) changed = true;
+    if (strand(k).accept(t, part(q, k), part(v, k))) changed = true;
   }
   positions(t, q, x_);
   if (!contacts_->update(x_)) return changed;
-  build_matrix();
+  couple();
   return true;
 }
 
 void CoupledStrands::reset() {
-  for (const auto& strand : strands_) strand->reset();
-  std::vector<double> q(static_cast<std::size_t>(first_.back())), v(q.size());
-  initial_state(q, v);
-  positions(0, q, x_);
-  if (contacts_->renew(x_)) build_matrix();
+  for (std::size_t k = 0; k < strands(); ++k) strand(k).reset();
+  place_at_start();
+  if (contacts_->renew(x_)) couple();
 }
 
 /// Positions at which the pairs were found, then per strand the size and data of its
 /// memory.
 std::vector<double> CoupledStrands::memory() const {
   std::vector<double> all = contacts_->made_at();
-  for (const auto& strand : strands_) {
-    const std::vector<double> own = strand->memory();
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const std::vector<double> own = strand(k).memory();
     all.push_back(static_cast<double>(own.size()));
     all.insert(all.end(), own.begin(), own.end());
   }
@@ -213,13 +178,52 @@ std::vector<double> CoupledStrands::memory() const {
 }
 
 void CoupledStrands::recall(In memory) {
-  if (contacts_->renew(memory.first(x_.size()))) build_matrix();
+  if (contacts_->renew(memory.first(x_.size()))) couple();
   std::size_t at = x_.size();
-  for (const auto& strand : strands_) {
+  for (std::size_t k = 0; k < strands(); ++k) {
     const auto size = static_cast<std::size_t>(memory[at]);
-    strand->recall(memory.subspan(at + 1, size));
+    strand(k).recall(memory.subspan(at + 1, size));
     at += 1 + size;
   }
+}
+
+Energy CoupledStrands::energy(double t, In q, In v) {
+  Energy sum = StrandBlock::energy(t, q, v);
+  sum.potential += contact_potential(t, q, v);
+  return sum;
+}
+
+double CoupledStrands::contact_potential(double t, In q, In v) {
+  double sum = 0;
+  place(t, q, v);
+  contacts_->each_contact(x_, u_, [&](const auto&, const PieceContact& contact) {
+    sum += contact.potential(contacts_->law());
+  });
+  return sum;
+}
+
+/// A clamp also holds its point against the contacts.
+double CoupledStrands::power(double t, In q, In v) {
+  double sum = StrandBlock::power(t, q, v);
+  place(t, q, v);
+  contacts_->each_contact(x_, u_, [&](const auto& points, const PieceContact& contact) {
+    sum += contact.power(contacts_->law());
+    const Vec force = contact.force(contacts_->law());
+    for (std::size_t i = 0; i < 4; ++i) {
+      Vec prescribed = load3(&u_[3 * points[i]]);
+      const Mean& mean = means_[points[i]];
+      for (std::size_t n = 0; n < static_cast<std::size_t>(mean.count); ++n) {
+        const auto c = static_cast<std::size_t>(mean.coordinate[n]);
+        prescribed = prescribed - mean.weight[n] * load3(&v[c]);
+      }
+      sum -= contact.weight(i) * dot(force, prescribed);
+    }
+  });
+  return sum;
+}
+
+std::optional<MaterialPoints::Mean> CoupledStrands::mean(int point) {
+  return means_[static_cast<std::size_t>(point)];
 }
 
 }  // namespace tress::models

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 
 #include "linear/finite.h"
 #include "linear/sparse_pattern.h"
@@ -70,7 +71,8 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   if (!needs_.couplings) return;
   std::vector<Mean> means;
   for (const auto& point : strand_.mass) means.push_back(mean_of(point.at));
-  coupled_solver_ = std::make_unique<CoupledSolver>(pattern_, std::move(means));
+  coupled_solver_ = std::make_unique<CoupledSolver>(
+      std::vector<const Pattern*>{&pattern_}, std::move(means));
 }
 
 void MaximalSystem::build_pattern() {
@@ -242,8 +244,12 @@ Status MaximalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
     const Points p = points(needs_);
     for (const auto& effect : strand_.effects) effect->add_couplings(t, p, contacts_);
   }
-  return contacts_.empty() ? solver_->factor(values_)
-                           : coupled_solver_->factor(values_, contacts_, w);
+  if (contacts_.empty()) return solver_->factor(values_);
+  coupled_solver_->touch(std::views::transform(contacts_, points_of));
+  coupled_solver_->clear();
+  coupled_solver_->add(0, values_);
+  for (const Coupling& contact : contacts_) coupled_solver_->add(contact, w);
+  return coupled_solver_->factor();
 }
 
 Status MaximalSystem::solve(In b, Out x) noexcept {

@@ -8,8 +8,8 @@
 #include "linear/kkt.h"
 #include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
+#include "models/effects/coupled_solver.h"
 #include "models/effects/effect.h"
-#include "models/maximal/coupled_solver.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/point_directions.h"
 

@@ -33,7 +33,9 @@ Readout::Readout(const Scene& scene, const World& world)
     add("potential_j", "potential energy");
   } else {
     add("elastic_j", "elastic energy of all strands");
-    for (const std::string& name : names) add(name + "_j", "its potential energy");
+    for (std::size_t i = 0; i < effects_.size(); ++i) {
+      add(names[i] + "_j", "its potential energy");
+    }
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
   add("penetration_m", "largest depth of a strand in a body");
@@ -44,7 +46,6 @@ Readout::Readout(const Scene& scene, const World& world)
   add("rejected_steps", "steps tried again with shorter ones since the last frame");
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
-  if (scene.interaction) channels_.push_back({"load strand_interaction", "N/m"});
 
   for (const Strand& strand : scene.strands) {
     lumps_.push_back(lumps(strand));

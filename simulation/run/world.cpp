@@ -62,16 +62,17 @@ Effects metered(const Effects& effects,
 World::World(const Scene& scene, int threads)
     : integrator_(find_integrator(scene.integrator)),
       options_(scene.options),
-      effects_(scene.effects.size()),
+      effects_(make_effects(scene)),
       crew_(threads) {
   refuse_too_large(scene);
   if (scene.strands.empty()) {
     add(scene.model->make(scene.model_options), 1);
     if (scene.guard) guard(guarded_strands(*scene.model, scene.model_options));
-  } else if (scene.interaction && scene.interaction->word("coupling") == "monolithic") {
-    build_coupled(scene);
+  } else if (const Parameters* between = scene.interaction();
+             between != nullptr && between->word("coupling") == "monolithic") {
+    build_coupled(scene, *between);
   } else {
-    build_strands(scene);
+    build_strands(scene, between);
   }
   ready(scene);
 }
@@ -105,11 +106,10 @@ void World::guard(std::vector<GuardedStrand> strands) {
 
 /// Empty if the scene has no guard.
 std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
-                                          std::size_t count,
-                                          const Effects& shared) const {
+                                          std::size_t count) const {
   std::vector<GuardedStrand> all;
   for (std::size_t k = first; k < first + count; ++k) {
-    Effects effects = shared;
+    Effects effects = effects_;
     if (interaction_) effects.push_back(interaction_->effect(k));
     all.push_back(guarded_strand(scene.strands[k], std::move(effects)));
   }
@@ -117,16 +117,14 @@ std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
 }
 
 /// Each strand separately, or up to four of equal discretisation together.
-void World::build_strands(const Scene& scene) {
+void World::build_strands(const Scene& scene, const Parameters* between) {
   const std::vector<Strand>& strands = scene.strands;
-  if (scene.interaction) {
-    interaction_ =
-        std::make_unique<StrandInteraction>(*scene.interaction, material_points(scene));
+  if (between != nullptr) {
+    interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
-  const Effects shared = make_effects(scene);
   std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
   const auto effects_of = [&](std::size_t k) {
-    Effects effects = metered(shared, meters);
+    Effects effects = metered(effects_, meters);
     if (interaction_) effects.push_back(interaction_->effect(k));
     return effects;
   };
@@ -144,7 +142,7 @@ void World::build_strands(const Scene& scene) {
       if (system != nullptr) {
         add(std::move(system), end - k);
         bodies_.back().meters = std::exchange(meters, {});
-        if (scene.guard) guard(guarded(scene, k, end - k, shared));
+        if (scene.guard) guard(guarded(scene, k, end - k));
         k = end;
         continue;
       }
@@ -152,23 +150,22 @@ void World::build_strands(const Scene& scene) {
     }
     add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
     bodies_.back().meters = std::exchange(meters, {});
-    if (scene.guard) guard(guarded(scene, k, 1, shared));
+    if (scene.guard) guard(guarded(scene, k, 1));
     ++k;
   }
 }
 
 /// All strands as one system.
-void World::build_coupled(const Scene& scene) {
-  const Effects shared = make_effects(scene);
+void World::build_coupled(const Scene& scene, const Parameters& between) {
   std::vector<std::unique_ptr<System>> systems;
   std::vector<std::size_t> coordinates;
   std::vector<std::shared_ptr<const Metered>> meters;
   for (const Strand& strand : scene.strands) {
     systems.push_back(
-        scene.model->on_strand(strand, scene.model_options, metered(shared, meters)));
+        scene.model->on_strand(strand, scene.model_options, metered(effects_, meters)));
     coordinates.push_back(static_cast<std::size_t>(systems.back()->layout().coordinates));
   }
-  auto coupled = std::make_unique<CoupledStrands>(std::move(systems), *scene.interaction);
+  auto coupled = std::make_unique<CoupledStrands>(std::move(systems), between);
   CoupledStrands* const whole = coupled.get();
   add(std::move(coupled), scene.strands.size());
   Body& body = bodies_.front();
@@ -179,7 +176,7 @@ void World::build_coupled(const Scene& scene) {
   body.memory.assign(scene.strands.size(), 0);
   body.memory.front() = body.system->memory().size();
   points_ = material_points(scene);
-  if (scene.guard) guard(guarded(scene, 0, scene.strands.size(), shared));
+  if (scene.guard) guard(guarded(scene, 0, scene.strands.size()));
 }
 
 /// Integrators at the initial state.
@@ -252,7 +249,7 @@ double World::error_indicator() const {
 
 Energies World::energies() {
   Energies sum;
-  sum.effects.resize(effects_);
+  sum.effects.resize(effects_.size());
   for (const Body& body : bodies_) {
     Energetics* energetics = body.system->energetics();
     if (energetics == nullptr) continue;
@@ -260,7 +257,7 @@ Energies World::energies() {
     const Energy one = energetics->energy(t_, q, v);
     double of_effects = 0;
     for (std::size_t i = 0; i < body.meters.size(); ++i) {
-      sum.effects[i % effects_] += body.meters[i]->last();
+      sum.effects[i % effects_.size()] += body.meters[i]->last();
       of_effects += body.meters[i]->last();
     }
     if (body.coupled != nullptr) of_effects += body.coupled->contact_potential(t_, q, v);

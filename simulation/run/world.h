@@ -28,7 +28,7 @@ struct Snapshot {
 /// J, of all strands; `elastic` is the potential not due to effects, for a mechanism all.
 struct Energies {
   double kinetic = 0, elastic = 0;
-  std::vector<double> effects;  // in the scene's order
+  std::vector<double> effects;  // of make_effects(), in the scene's order
 };
 
 /// A constructed scene: systems and integrators of its strands, its effects, and the
@@ -110,9 +110,9 @@ class World {
   void add(std::unique_ptr<System> system, std::size_t strands);
   void guard(std::vector<GuardedStrand> strands);
   std::vector<GuardedStrand> guarded(const Scene& scene, std::size_t first,
-                                     std::size_t count, const Effects& shared) const;
-  void build_strands(const Scene& scene);
-  void build_coupled(const Scene& scene);
+                                     std::size_t count) const;
+  void build_strands(const Scene& scene, const Parameters* between);
+  void build_coupled(const Scene& scene, const Parameters& between);
   void ready(const Scene& scene);
   void advance(Body& body, double t, bool last);
   Status shorter_steps(Body& body, double end);
@@ -127,7 +127,7 @@ class World {
 
   const IntegratorEntry& integrator_;
   Options options_;
-  std::size_t effects_;
+  const Effects effects_;  // on each strand
   std::unique_ptr<StrandInteraction> interaction_;
   std::vector<Body> bodies_;
   std::vector<int> points_, before_;

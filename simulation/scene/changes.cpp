@@ -97,19 +97,6 @@ std::vector<Ingredient> ingredients(const Scene& scene) {
                      return changed;
                    }});
   }
-  if (scene.interaction) {
-    all.push_back({"strand_interaction",
-                   [](const Scene& from) {
-                     Scene changed = from;
-                     changed.interaction.reset();
-                     return changed;
-                   },
-                   [](const Scene& from) {
-                     Scene changed = bare(from);
-                     changed.interaction = from.interaction;
-                     return changed;
-                   }});
-  }
   if (scene.model_options.knows("modes")) {
     const std::string_view modes = scene.model_options.word("modes");
     if (modes == "bend_twist") all.push_back(mode("mode twist", "bend"));
@@ -121,12 +108,11 @@ std::vector<Ingredient> ingredients(const Scene& scene) {
 
 Scene bare(Scene scene) {
   scene.effects.clear();
-  scene.interaction.reset();
   return scene;
 }
 
 Scene thinned(Scene scene, std::size_t most) {
-  if (scene.interaction) return scene;
+  if (scene.interaction() != nullptr) return scene;
   if (scene.strands.size() <= most) return scene;
   const auto typical = typical_strands(scene.strands, most);
   return only(std::move(scene), typical);

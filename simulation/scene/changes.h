@@ -34,7 +34,7 @@ Scene with_elements(Scene scene, int elements);
 /// The scene with other strands, which no table describes.
 Scene with_strands(Scene scene, std::vector<Strand> strands);
 
-/// The scene without any effect and interaction.
+/// The scene without any effect.
 Scene bare(Scene scene);
 
 /// At most `most` typical strands; all if strands touch each other.
@@ -46,8 +46,7 @@ Scene only(Scene scene, const std::vector<std::size_t>& strands);
 /// scene itself measures its discretisation error.
 Scene refined(Scene scene);
 
-/// A removable part of a scene: an effect it names, its strand-strand interaction, or a
-/// mode of its model.
+/// A removable part of a scene: an effect it names, or a mode of its model.
 struct Ingredient {
   std::string name;
   std::function<Scene(const Scene&)> without;

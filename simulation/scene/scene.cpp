@@ -9,7 +9,6 @@
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 #include "integrators/integrator_options.h"
-#include "models/effects/strand_interaction.h"
 #include "simulation/files/parse.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/read_table.h"
@@ -176,23 +175,17 @@ class Reader {
   void read_effects() {
     const toml::table* all = table("effects");
     if (all == nullptr) return;
-    for (const auto& [key, node] : *all) {
-      if (key.str() == interaction_id) {
-        read_interaction(node);
-      } else {
-        read_effect(key, node);
+    // The keys are in alphabetical order, in which tether and wind would follow it.
+    for (const bool between : {false, true}) {
+      for (const auto& [key, node] : *all) {
+        const EffectEntry& entry =
+            find_effect(one_line(key.str()), place_of(key.source(), file_));
+        if ((entry.make == nullptr) == between) read_effect(entry, node);
       }
     }
   }
 
-  void read_effect(const toml::key& key, const toml::node& node) {
-    const std::string where = place_of(key.source(), file_);
-    const std::string_view others[] = {interaction_id};
-    if (!nearest(key.str(), others).empty()) {
-      throw InputError(fmt::format("unknown effect '{}'", one_line(key.str())), where,
-                       fmt::format("did you mean '{}'?", interaction_id));
-    }
-    const EffectEntry& entry = find_effect(one_line(key.str()), where);
+  void read_effect(const EffectEntry& entry, const toml::node& node) {
     const std::string name = fmt::format("effects.{}", entry.id);
     for (const toml::table* one : each(node, name, entry.many)) {
       const Table read =
@@ -206,14 +199,6 @@ class Reader {
     }
   }
 
-  void read_interaction(const toml::node& node) {
-    const std::string name = fmt::format("effects.{}", interaction_id);
-    const Table read = read_table(as_table(node, name, file_),
-                                  strand_interaction_parameters(), name, file_);
-    scene_.interaction = read.values();
-    places_.interaction = read.place();
-  }
-
   const std::string& file_;
   const toml::table root_;
   Scene scene_;
@@ -225,6 +210,7 @@ class Reader {
 Effects make_effects(const Scene& scene) {
   Effects all;
   for (const EffectChoice& choice : scene.effects) {
+    if (choice.entry->make == nullptr) continue;
     all.push_back(choice.entry->make(choice.parameters, scene.head));
   }
   return all;
@@ -242,6 +228,12 @@ std::vector<std::string> effect_names(const Scene& scene) {
     names.push_back(std::move(name));
   }
   return names;
+}
+
+const Parameters* Scene::interaction() const {
+  const auto between = std::ranges::find_if(
+      effects, [](const EffectChoice& choice) { return choice.entry->make == nullptr; });
+  return between == effects.end() ? nullptr : &between->parameters;
 }
 
 std::size_t Scene::last_frame() const {

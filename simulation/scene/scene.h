@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,14 +42,17 @@ struct Scene {
   std::shared_ptr<const StrandTables> tables;
   RootMotion head;  // the rigid motion of roots and of bodies that follow them
 
+  /// Those on each strand, then the one between strands.
   std::vector<EffectChoice> effects;
-  std::optional<Parameters> interaction;  // [effects.strand_interaction]
 
   double duration = 0;    // s
   double frame_rate = 0;  // 1/s, of the series and the geometry
   double checkpoint = 0;  // s between saved states; 0: none
   std::uint64_t seed = 1;
   bool guard = true;  // impossible states end the run (simulation/run/guard.h)
+
+  /// Of the effect between strands; null if the scene names none.
+  const Parameters* interaction() const;
 
   /// The first frame is 0, at t = 0; the last is at the end, which may cut the last
   /// interval short.
@@ -68,9 +70,10 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
 
-/// The effects of a scene, constructed for one strand.
+/// The effects on each strand, constructed for one.
 Effects make_effects(const Scene& scene);
-/// Their ids, the second body being body_2, the third body_3.
+/// Their ids, the second body being body_2, the third body_3; then that of the effect
+/// between strands.
 std::vector<std::string> effect_names(const Scene& scene);
 
 }  // namespace tress::simulation

@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
-#include "models/effects/contact_law.h"
+#include "models/effects/strand_interaction.h"
 
 namespace tress::simulation {
 namespace {
@@ -27,9 +27,13 @@ Effects effects_of(const Scene& scene, const ScenePlaces& places) {
   Effects all;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectChoice& choice = scene.effects[i];
-    all.push_back(at_place(places.effects[i], [&] {
-      return choice.entry->make(choice.parameters, scene.head);
-    }));
+    at_place(places.effects[i], [&] {
+      if (choice.entry->make == nullptr) {
+        StrandInteraction(choice.parameters, {});
+      } else {
+        all.push_back(choice.entry->make(choice.parameters, scene.head));
+      }
+    });
   }
   return all;
 }
@@ -62,11 +66,6 @@ void check(const Scene& scene, const ScenePlaces& places) {
         at_place(places.model, [&] { return scene.model->make(scene.model_options); });
     check_integrator(scene, *system, places);
     return;
-  }
-  if (scene.interaction) {
-    at_place(places.interaction, [&] {
-      return ContactLaw(*scene.interaction, "effects.strand_interaction");
-    });
   }
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {

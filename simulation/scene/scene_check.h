@@ -12,7 +12,6 @@ struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
   std::vector<std::string> strands;  // of each strand's table
   std::vector<std::string> effects;
-  std::string interaction;
 };
 
 /// Constructs once what a run will construct: effects, the model on one strand of each

@@ -7,7 +7,6 @@
 #include "integrators/catalogue.h"
 #include "integrators/integrator_options.h"
 #include "models/effects/catalogue.h"
-#include "models/effects/strand_interaction.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/root_table.h"
@@ -152,9 +151,6 @@ std::vector<TableEntry> table_entries() {
     entry.many = effect.many;
     all.push_back(std::move(entry));
   }
-  all.push_back({.name = fmt::format("effects.{}", interaction_id),
-                 .summary = "strands repel and drag each other (Wang, thesis, NCTU)",
-                 .parameters = strand_interaction_parameters()});
   return all;
 }
 

@@ -24,9 +24,6 @@ std::span<const Parameter> integrator_table_parameters();
 /// The keys that apply to only one integrator.
 std::span<const Use> integrator_uses();
 
-/// The only effect that does not act on a single strand.
-inline constexpr std::string_view interaction_id = "strand_interaction";
-
 /// Description of one table of a scene.
 struct TableEntry {
   std::string name;     // "strand"

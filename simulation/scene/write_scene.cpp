@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "integrators/integrator_options.h"
-#include "models/effects/strand_interaction.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -122,9 +121,6 @@ void add_effects(std::string& text, const Scene& scene) {
                            entry.id));
     add_parameters(text, entry.parameters, effect.parameters);
   }
-  if (!scene.interaction) return;
-  add_header(text, fmt::format("[effects.{}]", interaction_id));
-  add_parameters(text, strand_interaction_parameters(), *scene.interaction);
 }
 
 }  // namespace

@@ -71,8 +71,7 @@ TEST(SceneTables, TakeEveryKeyAtItsDefault) {
     const std::string text = with_table(entry);
     SCOPED_TRACE(text);
     const Scene scene = parse_scene(text, "defaults.toml");
-    const bool one_effect = scene.effects.size() == 1 || scene.interaction.has_value();
-    EXPECT_EQ(one_effect, entry.name.starts_with("effects."));
+    EXPECT_EQ(scene.effects.size() == 1, entry.name.starts_with("effects."));
     EXPECT_EQ(scene.strands.size(), entry.name == "groom" ? 100u : 1u);
   }
 }

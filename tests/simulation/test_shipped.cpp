@@ -21,14 +21,6 @@ std::vector<std::string> shipped() {
   return files;
 }
 
-Effects effects_of(const Scene& scene) {
-  Effects all;
-  for (const EffectChoice& effect : scene.effects) {
-    all.push_back(effect.entry->make(effect.parameters, scene.head));
-  }
-  return all;
-}
-
 class ShippedSceneTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedSceneTest, IsReadBuiltAndTakesAStep) {
@@ -38,7 +30,7 @@ TEST_P(ShippedSceneTest, IsReadBuiltAndTakesAStep) {
       scene.model->on_strand == nullptr
           ? scene.model->make(scene.model_options)
           : scene.model->on_strand(scene.strands.front(), scene.model_options,
-                                   effects_of(scene));
+                                   make_effects(scene));
   const State start = initial_state(*system);
   const auto method = make_integrator(scene.integrator, *system, scene.options);
   ASSERT_EQ(method->start(0, start.q, start.v), Status::ok) << method->failure();

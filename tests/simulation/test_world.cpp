@@ -33,9 +33,9 @@ Scene pair(const std::string& model, const std::string& coupling) {
 /// By systems of its own for every strand, without effects and with one alone.
 Energies by_twins(const Scene& scene, World& world) {
   Energies sum;
-  sum.effects.resize(scene.effects.size());
   const Snapshot now = world.snapshot();
   const Effects effects = make_effects(scene);
+  sum.effects.resize(effects.size());
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     const Snapshot::OfStrand& state = now.strands[k];
     const auto energy = [&](const Effects& with) {
@@ -84,6 +84,14 @@ TEST(World, StrandsThatAreOneSystemGoOnFromASnapshot) {
   ASSERT_EQ(world.advance(0.04), Status::ok) << world.failure();
   ASSERT_EQ(other.advance(0.04), Status::ok) << other.failure();
   EXPECT_EQ(world.positions(), other.positions());
+}
+
+/// As one system they were drawn as one line.
+TEST(World, StrandsAreAttachedAlikeWhateverTheirCoupling) {
+  const World apart(pair("mass_spring", "lagged")),
+      one(pair("mass_spring", "monolithic"));
+  EXPECT_EQ(apart.points(), one.points());
+  EXPECT_EQ(apart.before(), one.before());
 }
 
 /// At 50 ms the whirling of soft, long hair takes Newton's iteration more than 2 rounds,

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "contract/system.h"
+#include "linear/block_matrix.h"
+#include "linear/linear_solver.h"
+#include "models/effects/coupling.h"
+
+namespace tress::models {
+
+/// Numbers of the four points of a contact.
+using FourPoints = std::array<std::size_t, 4>;
+inline FourPoints points_of(const Coupling& contact) {
+  const auto& e = contact.ends;
+  return {e[0].point, e[1].point, e[2].point, e[3].point};
+}
+
+/// Solves with matrices of fixed pattern, one after the other on the diagonal, plus the
+/// contacts between distant points, by KLU. The pattern follows the contacts.
+class CoupledSolver {
+ public:
+  using Mean = MaterialPoints::Mean;
+
+  /// `uncoupled` must outlive this; `means` are the contact points, over all coordinates.
+  CoupledSolver(std::vector<const Pattern*> uncoupled, std::vector<Mean> means);
+
+  /// A range of FourPoints, whose contacts may be added. If they are not the points of
+  /// before, allocates and analyses again.
+  template <class Range>
+  void touch(const Range& points) {
+    touching_.assign(points.begin(), points.end());
+    follow();
+  }
+
+  // The matrix as a sum, then its factors.
+  void clear() noexcept;
+  void add(std::size_t uncoupled, In values) noexcept;
+  /// Less w.pos and w.vel times the contact's derivatives.
+  void add(const Coupling& contact, Weights w) noexcept;
+  Status factor() noexcept;
+  Status solve(InOut b) noexcept { return solver_->solve(b); }
+
+ private:
+  void follow();
+
+  std::vector<const Pattern*> uncoupled_;
+  std::vector<Mean> means_;
+  std::vector<FourPoints> touching_, touched_;  // current, and in the pattern
+  Pattern coupling_;
+  std::vector<double> coupling_values_;
+  std::unique_ptr<BlockMatrix> matrix_;  // the uncoupled ones, then the coupling
+  std::unique_ptr<LinearSolver> solver_;
+};
+
+}  // namespace tress::models

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "contract/system.h"
+
+namespace tress::models {
+
+/// Strands as one system: coordinates and material points are those of the strands, one
+/// after the other; energy and power are their sums. Derived classes provide the
+/// equations of motion.
+class StrandBlock : public System, protected Energetics, protected MaterialPoints {
+ public:
+  /// Strands without constraints, at least one.
+  explicit StrandBlock(std::vector<std::unique_ptr<System>> strands);
+
+  Layout layout() const override { return {first_.back(), 0}; }
+  Traits traits() const override;
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override;
+  std::string not_finite(double t, In q, In v) override;
+  /// Null unless all strands have Energetics.
+  Energetics* energetics() override;
+  MaterialPoints* material_points() override { return this; }
+
+ protected:
+  std::size_t strands() const { return strands_.size(); }
+  System& strand(std::size_t k) const { return *strands_[k]; }
+  /// Number of coordinates before strand k.
+  int first(std::size_t k) const { return first_[k]; }
+  /// The entries of strand k.
+  template <class Span>
+  Span part(Span all, std::size_t k) const {
+    const auto from = static_cast<std::size_t>(first_[k]);
+    return all.subspan(from, static_cast<std::size_t>(first_[k + 1]) - from);
+  }
+
+  Energy energy(double t, In q, In v) override;
+  std::optional<Momentum> momentum(double t, In q, In v) override;
+  double power(double t, In q, In v) override;
+  int count() const override { return first_point_.back(); }
+  int before(int i) const override;
+  void positions(double t, In q, Out x) override;
+  void velocities(double t, In q, In v, Out u) override;
+  std::optional<double> stretch(double t, In q) override;
+
+ private:
+  Out points_of(std::size_t k, Out x) const {
+    const auto from = 3 * static_cast<std::size_t>(first_point_[k]);
+    return x.subspan(from, 3 * static_cast<std::size_t>(first_point_[k + 1]) - from);
+  }
+
+  std::vector<std::unique_ptr<System>> strands_;
+  std::vector<int> first_{0};        // coordinates before each strand; all
+  std::vector<int> first_point_{0};  // material points before each strand; all
+};
+
+}  // namespace tress::models
