@@ -1,8 +1,7 @@
-#include "experiments/constraint_drift/drift_studies.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/constraint_drift/constraint_drift.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/model_variants.h"
 #include "experiments/problems/strand_scenes.h"

@@ -1,12 +1,10 @@
-#include "experiments/cost_of_accuracy/each_method.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/trial.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/numerics/cheapest_run.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/strand_scenes.h"
 

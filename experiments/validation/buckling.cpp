@@ -1,5 +1,3 @@
-#include "experiments/validation/buckling.h"
-
 #include <array>
 #include <cmath>
 #include <complex>
@@ -10,6 +8,7 @@
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 #include "models/effects/tether.h"
 
 namespace tress::experiments::validation {
@@ -233,6 +232,8 @@ double measure_beck(const ModelTrial& trial) {
 
 }  // namespace
 
+/// Loads at which a straight or circular equilibrium loses stability: where the least
+/// omega^2 of small motions about it crosses 0.
 std::vector<ValidationTest> buckling_tests() {
   const std::vector<std::string_view> rods{"super_helix", "der", "corde",
                                            "dynamic_spline"};

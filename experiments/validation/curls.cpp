@@ -1,5 +1,3 @@
-#include "experiments/validation/curls.h"
-
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -9,6 +7,7 @@
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -126,6 +125,7 @@ double measure_bathe(const ModelTrial& trial) {
 
 }  // namespace
 
+/// Strands with a natural curvature or twist.
 std::vector<ValidationTest> curl_tests() {
   const std::vector<std::string_view> rods{"super_helix", "der", "corde",
                                            "dynamic_spline"};

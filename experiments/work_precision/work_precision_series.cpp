@@ -1,5 +1,3 @@
-#include "experiments/work_precision/work_precision_series.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,7 +5,7 @@
 
 #include "experiments/numerics/fit.h"
 #include "experiments/numerics/pareto.h"
-#include "experiments/work_precision/strand_grid.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {

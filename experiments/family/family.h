@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -68,5 +70,66 @@ Guard make_guard(const Hair& hair, std::string_view model, int elements, System&
 /// Peak of the wind (m/s) at this level.
 double wind_speed(const Hair& hair);
 inline constexpr double wind_drag = 2e-5;  // kg/(m s), linear drag per length
+
+/// A statement of the README about one hair, to be tested on all.
+struct Claim {
+  std::string_view id;
+  std::string_view statement;  // a sentence, true of a hair where the claim holds
+  std::string_view value;      // meaning of the column `value`, with unit
+};
+
+/// One computation on one hair that answers one or more claims. Bounded by numbers of
+/// steps, never by time.
+struct Study {
+  std::string_view id;
+  std::span<const Claim> claims;
+  /// Rows in the order of `claims`. `row`: identity and hair are set.
+  std::vector<Row> (*run)(const Hair& hair, const Row& row);
+};
+
+std::span<const Study> studies();
+
+/// Options::max_work of a run: ten times the work of Newton's method with five iterations
+/// in every step. A run beyond it counts as without an answer.
+double enough_work(System& system, double t_end, double dt);
+
+/// A row that answers `claim`: its value, and whether the claim holds for this hair.
+Row answer(Row row, const Claim& claim, double value, bool holds);
+
+/// A row without an answer, with the reason.
+Row no_answer(Row row, const Claim& claim, std::string_view status,
+              std::string_view reason);
+
+extern const Study stable_steps, twist, bdf_order, equal_accuracy;
+
+/// Linear interpolation between order statistics [Hyndman & Fan 1996, type 7];
+/// `share` in [0, 1], `values` not empty.
+double quantile(std::vector<double> values, double share);
+
+/// Spearman's rank correlation; ties share the mean of their ranks. 0 when all entries of
+/// either are equal.
+double rank_correlation(std::span<const double> x, std::span<const double> y);
+
+/// A rule with one threshold: the claim holds above it, or below it.
+struct Stump {
+  bool found = false;  // false: no threshold predicts better than a constant
+  double threshold = 0;
+  double share_below = 0, share_above = 0;  // of the claim among hairs on either side
+  double right = 0;                         // share of all hairs that the rule classifies
+                                            // correctly
+};
+
+/// The threshold on x that best predicts `holds`, with at least `least` hairs on either
+/// side.
+Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
+                 std::size_t least);
+
+/// One row per claim over the hairs that answered it: their number, the share for which
+/// it holds, quantiles of the value, the hair parameter with the strongest rank
+/// correlation with the value, and the one that best predicts by one threshold whether
+/// the claim holds.
+std::vector<Row> summarize(std::span<const Row> rows);
+
+std::span<const Column> summary_columns();
 
 }  // namespace tress::experiments::family

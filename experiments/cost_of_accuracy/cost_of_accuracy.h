@@ -1,13 +1,28 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/run/experiment.h"
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
 
 namespace tress::experiments::cost_of_accuracy {
+
+std::span<const Column> study_columns();
+
+/// Writes a method into its columns.
+void set_method(const Method& method, Row& row);
+
+/// The configuration that a row describes, at `rate` frames per second.
+struct Configuration {
+  Method method;
+  int elements = 0, substeps = 0;
+};
+Configuration configuration(const Row& row, double rate);
 
 /// Parameters of the study, common to all scenes.
 struct StudyPlan {
@@ -55,5 +70,40 @@ constexpr double parted = 0.01 / believed;
 /// not_met.
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
                              const Row& identity, const Deadline& deadline);
+
+/// The cheapest run of every model by every usual integrator, one row of kind `method`
+/// each: complements the search for the overall best (study_scene) with the cost of each
+/// model and the errors of that run in lengths, momentum and energy. Counted work
+/// decides, so that the table is the same on every machine (cheapest_run).
+///
+/// For scenes of one strand; options of the scene's own model apply to every model that
+/// has them. Models that cannot represent the scene are left out. Throws InputError where
+/// the scene has another number of strands.
+std::vector<Case> method_cases(const CommandLine& line, const std::string& file);
+
+/// The midpoint rule conserves the angular momentum of a thrown body better than its tip.
+void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// The claims about every scene of the table: its winners keep their error against a once
+/// more refined reference; their neighbours confirm that they are not accidental; and no
+/// run listed beside a winner, for the same target or in the front, beats it.
+void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// Practical advice from the rows of one scene for one target (or one budget): the
+/// configuration to take, the next best, and what to avoid, one line each, and one more
+/// if the search was stopped early. If nothing meets the target, or nothing did so far,
+/// the first line says so and the second has the best run known. If nothing is known the
+/// only line says why.
+std::vector<std::string> advice(const std::vector<Row>& rows);
+
+/// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms: 0.82 % of the
+/// length in 3.2 ms per simulated second (0.053 ms a frame)"
+std::string configuration_and_price(const Row& row);
+
+/// The recommended row, or the best known; null if there is none.
+const Row* advised(const std::vector<Row>& rows);
+
+/// The scene file as advised, for `simulate`.
+std::string advised_text(const Scene& given, const Row& row, double rate);
 
 }  // namespace tress::experiments::cost_of_accuracy
