@@ -4,7 +4,6 @@
 
 #include "contract/input_error.h"
 #include "experiments/hard_cases/hard_cases.h"
-#include "experiments/problems/model_variants.h"
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
 

@@ -2,8 +2,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/curl_threshold.h"
-#include "experiments/validation/helical_spring.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"

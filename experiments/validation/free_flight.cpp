@@ -6,7 +6,7 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/momentum_drift.h"
+#include "experiments/numerics/drift_monitor.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiments/validation/pinned_elastica.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/motion.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/test.h"

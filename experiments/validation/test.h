@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/run/experiment.h"
 
 namespace tress::experiments::validation {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -93,6 +94,11 @@ std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings
 /// on scenes without strands and on two of one name.
 std::vector<Case> scene_runs(const CommandLine& line, const Settings& settings,
                              const std::vector<std::string>& files);
+
+/// Fills `pareto` of every ok row: true if no other ok row of its group has both less
+/// wall_s and less of the column `error`.
+void add_pareto(std::vector<Row>& rows, std::string_view error,
+                const std::function<std::string(const Row&)>& group);
 
 /// Fills the columns that depend on the whole table: `order_fit` of every fixed-step
 /// series, the least-squares slope over its finest trusted points (same scene,

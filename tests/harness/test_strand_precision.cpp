@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/numerics/pareto.h"
 #include "experiments/numerics/tip_track.h"
 #include "experiments/peers/peer.h"
 #include "experiments/problems/strand_models.h"

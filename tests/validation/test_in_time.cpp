@@ -5,8 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/pendulum.h"
-#include "experiments/validation/pinned_elastica.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/spring.h"
 #include "experiments/validation/test.h"

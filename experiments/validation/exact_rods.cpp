@@ -1,4 +1,4 @@
-#include "experiments/validation/curl_threshold.h"
+#include "experiments/validation/exact_rods.h"
 
 #include <cmath>
 #include <numbers>
@@ -78,6 +78,57 @@ double curl_threshold(double phi, double poisson_ratio) {
   }
   throw InputError("a strand of this phi stays in its plane at any weight", "phi",
                    "give an angle of 1.8 pi or more (nu = 0.5)");
+}
+
+PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force) {
+  const double c0 = std::cos(natural_pitch_angle), s0 = std::sin(natural_pitch_angle);
+  const double twisting = 1 / (1 + poisson_ratio);
+  // No couple about the axis: linear in 1/r.
+  const auto turns = [=](double a) {
+    const double c = std::cos(a), s = std::sin(a);
+    return (c0 * c0 * c + twisting * s0 * c0 * s) / (c * c * c + twisting * s * s * c);
+  };
+  const auto pull = [=](double a) {
+    const double c = std::cos(a), s = std::sin(a), k = turns(a);
+    const double bend = c * c * k - c0 * c0, twist = twisting * (s * c * k - s0 * c0);
+    return (twist * c - bend * s) * k - force;
+  };
+  const double a = find_root(pull, natural_pitch_angle, std::numbers::pi / 2 - 1e-6);
+  return {1 / turns(a), a};
+}
+
+PinnedElastica pinned_elastica(double eps) {
+  struct End {
+    double turn, along, across;  // u at the clamp; X, Y in the frame of the force
+  };
+  const auto shape = [](double tip, double size) {
+    const auto y = integrate(
+        [](double, const double* z, double* dz) {
+          dz[0] = z[1];
+          dz[1] = -std::sin(z[0]);
+          dz[2] = std::cos(z[0]);
+          dz[3] = std::sin(z[0]);
+        },
+        0, size, {-tip, 0, 0, 0});
+    return End{y[0], y[2], y[3]};
+  };
+  const auto off_line = [&](double tip, double size) {
+    const End s = shape(tip, size);
+    return std::cos(s.turn) * s.across - std::sin(s.turn) * s.along;
+  };
+  const auto size_of = [&](double tip) {
+    return find_root([&](double size) { return off_line(tip, size); }, 4.2, 6);
+  };
+  const auto shortening = [&](double tip) {
+    const double size = size_of(tip);
+    const End s = shape(tip, size);
+    return 1 - (std::cos(s.turn) * s.along + std::sin(s.turn) * s.across) / size;
+  };
+  const double tip = find_root([&](double u) { return shortening(u) - eps; }, 1e-3, 2.2);
+  const double size = size_of(tip);
+  const double turn = shape(tip, size).turn;
+  return {size * size * std::cos(turn), std::abs(size * size * std::sin(turn)),
+          tip + turn};
 }
 
 }  // namespace tress::experiments::validation

@@ -28,4 +28,29 @@ namespace tress::experiments::validation {
 /// 1.8 pi at nu = 0.5).
 double curl_threshold(double phi, double poisson_ratio);
 
+/// A uniform helix of round section pulled along its axis by a force F, free to turn
+/// about it [Love 1927, section 271]: radius r, pitch angle a (natural 1 and a_0, lengths
+/// in natural radii, forces in EI/r_0^2), GJ/EI = 1/(1 + nu):
+///
+///     M_b = cos^2 a/r - cos^2 a_0,   M_t = (sin a cos a/r - sin a_0 cos a_0)/(1 + nu),
+///     0 = M_t sin a + M_b cos a,     F = (M_t cos a - M_b sin a)/r.
+struct PulledHelix {
+  double radius, pitch_angle;  // r, a (rad)
+};
+PulledHelix pulled_helix(double natural_pitch_angle, double poisson_ratio, double force);
+
+/// A clamped strand whose pinned tip stays on the line of the clamp's tangent, at (1 -
+/// eps) L from it: theta'' = -(H cos theta + P sin theta)/EI, theta(0) = 0, theta'(L) =
+/// 0, in the first buckled shape, eps in [1e-4, 0.8]. Throws std::runtime_error
+/// otherwise.
+///
+/// In the frame of the force R, u = theta + atan(H/P), it is a pendulum, u'' = -q^2 sin u
+/// with q^2 = R/EI, at rest at the tip: solved by integration from the tip; q L follows
+/// from the tip being on the line, the tip's u from eps.
+struct PinnedElastica {
+  double axial, lateral;  // P, |H| over EI/L^2
+  double tip;             // |theta(L)|, rad
+};
+PinnedElastica pinned_elastica(double eps);
+
 }  // namespace tress::experiments::validation
