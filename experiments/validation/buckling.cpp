@@ -175,7 +175,7 @@ double measure_lateral(const ModelTrial& trial) {
       0.3 * lateral, 2 * lateral);
 }
 
-std::string no_twist(const ModelVariant& variant) {
+std::string no_twist_of_points(const ModelVariant& variant) {
   return variant.model->id == "mass_spring" || variant.model->id == "inextensible_strand"
              ? "points do not twist"
              : std::string();
@@ -306,7 +306,7 @@ std::vector<ValidationTest> buckling_tests() {
           .judged_from = 20,
           .claimed = rods,
           .reference = [](double) { return lateral; },
-          .refusal = no_twist,
+          .refusal = no_twist_of_points,
           .measure = measure_lateral,
       },
       {
