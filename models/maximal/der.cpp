@@ -102,13 +102,14 @@ std::unique_ptr<System> make_der(const Strand& strand, const Parameters& paramet
 }  // namespace
 
 ModelEntry der_entry() {
-  return {"der",
-          "discrete elastic rod of n edges; 3n positions and n angles, extensible or "
-          "with n multipliers",
-          "Bergou 2008, 2010",
-          der_parameters(),
-          with_parameters<make_der>,
-          make_der};
+  return {.id = "der",
+          .summary =
+              "discrete elastic rod of n edges; 3n positions and n angles, extensible or "
+              "with n multipliers",
+          .source = "Bergou 2008, 2010",
+          .parameters = der_parameters(),
+          .make = with_parameters<make_der>,
+          .on_strand = make_der};
 }
 
 }  // namespace tress::models

@@ -136,13 +136,14 @@ std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
 }  // namespace
 
 ModelEntry kirchhoff_nodal_entry() {
-  return {"kirchhoff_nodal",
-          "Kirchhoff's equations by finite differences; 3n curvatures and twists of "
-          "inextensible edges",
-          "Hou, Klapper & Si 1998",
-          kirchhoff_nodal_parameters(),
-          with_parameters<make_kirchhoff_nodal>,
-          make_kirchhoff_nodal};
+  return {.id = "kirchhoff_nodal",
+          .summary =
+              "Kirchhoff's equations by finite differences; 3n curvatures and twists of "
+              "inextensible edges",
+          .source = "Hou, Klapper & Si 1998",
+          .parameters = kirchhoff_nodal_parameters(),
+          .make = with_parameters<make_kirchhoff_nodal>,
+          .on_strand = make_kirchhoff_nodal};
 }
 
 }  // namespace tress::models

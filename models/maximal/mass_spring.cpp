@@ -232,21 +232,22 @@ std::unique_ptr<System> make_inextensible_strand(const Strand& strand,
 }  // namespace
 
 ModelEntry mass_spring_entry() {
-  return {"mass_spring",
-          "point masses with springs for stretch, bending and torsion; 3n",
-          "Rosenblum 1991; Selle 2008",
-          mass_spring_parameters(),
-          with_parameters<make_mass_spring>,
-          make_mass_spring};
+  return {.id = "mass_spring",
+          .summary = "point masses with springs for stretch, bending and torsion; 3n",
+          .source = "Rosenblum 1991; Selle 2008",
+          .parameters = mass_spring_parameters(),
+          .make = with_parameters<make_mass_spring>,
+          .on_strand = make_mass_spring};
 }
 
 ModelEntry inextensible_strand_entry() {
-  return {"inextensible_strand",
-          "n rigid links with bending springs and rest angles; 3n with n multipliers",
-          "Baraff 1996; Rosenblum 1991",
-          inextensible_strand_parameters(),
-          with_parameters<make_inextensible_strand>,
-          make_inextensible_strand};
+  return {.id = "inextensible_strand",
+          .summary =
+              "n rigid links with bending springs and rest angles; 3n with n multipliers",
+          .source = "Baraff 1996; Rosenblum 1991",
+          .parameters = inextensible_strand_parameters(),
+          .make = with_parameters<make_inextensible_strand>,
+          .on_strand = make_inextensible_strand};
 }
 
 }  // namespace tress::models

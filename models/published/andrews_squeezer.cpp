@@ -185,10 +185,11 @@ std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters) {
 }  // namespace
 
 ModelEntry andrews_squeezer_entry() {
-  return {"andrews_squeezer",
-          "7 angles, 6 loop closures; planar mechanism with one spring",
-          "Test Set for IVP Solvers 2.4, andrews", andrews_squeezer_table,
-          make_andrews_squeezer};
+  return {.id = "andrews_squeezer",
+          .summary = "7 angles, 6 loop closures; planar mechanism with one spring",
+          .source = "Test Set for IVP Solvers 2.4, andrews",
+          .parameters = andrews_squeezer_table,
+          .make = make_andrews_squeezer};
 }
 
 }  // namespace tress::models

@@ -262,9 +262,11 @@ std::unique_ptr<System> make_beam(const Parameters& p) {
 }  // namespace
 
 ModelEntry beam_entry() {
-  return {"beam", "n angles of inextensible segments, clamped, pushed at the tip",
-          "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam", beam_table,
-          make_beam};
+  return {.id = "beam",
+          .summary = "n angles of inextensible segments, clamped, pushed at the tip",
+          .source = "Hairer & Wanner 1996, IV.1; Test Set for IVP Solvers 2.4, beam",
+          .parameters = beam_table,
+          .make = make_beam};
 }
 
 }  // namespace tress::models

@@ -136,9 +136,11 @@ std::unique_ptr<System> make_double_pendulum(const Parameters& p) {
 }  // namespace
 
 ModelEntry double_pendulum_entry() {
-  return {"double_pendulum", "2 angles, point masses, chaotic",
-          "Landau & Lifshitz 1976, section 5", double_pendulum_table,
-          make_double_pendulum};
+  return {.id = "double_pendulum",
+          .summary = "2 angles, point masses, chaotic",
+          .source = "Landau & Lifshitz 1976, section 5",
+          .parameters = double_pendulum_table,
+          .make = make_double_pendulum};
 }
 
 }  // namespace tress::models

@@ -272,10 +272,11 @@ std::unique_ptr<System> make_slider_crank(const Parameters& p) {
 }  // namespace
 
 ModelEntry slider_crank_entry() {
-  return {"slider_crank",
-          "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)",
-          "Simeon 1996; Test Set for IVP Solvers 2.4, crank", slider_crank_table,
-          make_slider_crank};
+  return {.id = "slider_crank",
+          .summary = "2 angles, 1 slide, 4 elastic modes, 3 constraints (one driven)",
+          .source = "Simeon 1996; Test Set for IVP Solvers 2.4, crank",
+          .parameters = slider_crank_table,
+          .make = make_slider_crank};
 }
 
 }  // namespace tress::models

@@ -96,13 +96,14 @@ std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& param
 }  // namespace
 
 ModelEntry corde_entry() {
-  return {"corde",
-          "Cosserat rod of n edges; 3n positions and n quaternions held together by "
-          "penalties",
-          "Spillmann & Teschner 2007",
-          corde_parameters(),
-          with_parameters<make_corde>,
-          make_corde};
+  return {.id = "corde",
+          .summary =
+              "Cosserat rod of n edges; 3n positions and n quaternions held together by "
+              "penalties",
+          .source = "Spillmann & Teschner 2007",
+          .parameters = corde_parameters(),
+          .make = with_parameters<make_corde>,
+          .on_strand = make_corde};
 }
 
 }  // namespace tress::models

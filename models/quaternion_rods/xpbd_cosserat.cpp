@@ -107,13 +107,14 @@ std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
 }  // namespace
 
 ModelEntry xpbd_cosserat_entry() {
-  return {
-      "xpbd_cosserat",
-      "Cosserat rod of n edges as compliant constraints; 3n positions and n quaternions",
-      "Kugelstadt & Schoemer 2016; Deul 2018",
-      xpbd_cosserat_parameters(),
-      with_parameters<make_xpbd_cosserat>,
-      make_xpbd_cosserat};
+  return {.id = "xpbd_cosserat",
+          .summary =
+              "Cosserat rod of n edges as compliant constraints; 3n positions and n "
+              "quaternions",
+          .source = "Kugelstadt & Schoemer 2016; Deul 2018",
+          .parameters = xpbd_cosserat_parameters(),
+          .make = with_parameters<make_xpbd_cosserat>,
+          .on_strand = make_xpbd_cosserat};
 }
 
 }  // namespace tress::models

@@ -277,13 +277,14 @@ std::unique_ptr<System> make_dynamic_spline(const Strand& strand,
 }  // namespace
 
 ModelEntry dynamic_spline_entry() {
-  return {"dynamic_spline",
-          "cubic B-spline of n spans with material angles at its knots; 3(n + 3) control "
-          "points, clamped by 5 multipliers",
-          "Lenoir 2004; Theetten 2008",
-          dynamic_spline_parameters(),
-          with_parameters<make_dynamic_spline>,
-          make_dynamic_spline};
+  return {.id = "dynamic_spline",
+          .summary =
+              "cubic B-spline of n spans with material angles at its knots; 3(n + 3) "
+              "control points, clamped by 5 multipliers",
+          .source = "Lenoir 2004; Theetten 2008",
+          .parameters = dynamic_spline_parameters(),
+          .make = with_parameters<make_dynamic_spline>,
+          .on_strand = make_dynamic_spline};
 }
 
 }  // namespace tress::models
