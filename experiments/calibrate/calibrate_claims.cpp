@@ -1,8 +1,7 @@
-#include "experiments/calibrate/calibrate_claims.h"
-
 #include <algorithm>
 #include <string>
 
+#include "experiments/calibrate/calibrate.h"
 #include "experiments/calibrate/shipped_records.h"
 
 namespace tress::experiments::calibrate {

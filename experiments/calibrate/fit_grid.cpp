@@ -1,12 +1,9 @@
-#include "experiments/calibrate/fit_grid.h"
-
 #include <algorithm>
 #include <memory>
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/calibrate/calibrate_claims.h"
-#include "experiments/calibrate/fit_row.h"
+#include "experiments/calibrate/calibrate.h"
 #include "experiments/calibrate/shipped_records.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/settings.h"

@@ -1,5 +1,4 @@
-#include "experiments/calibrate/fit_row.h"
-
+#include "experiments/calibrate/calibrate.h"
 #include "integrators/catalogue.h"
 
 namespace tress::experiments::calibrate {

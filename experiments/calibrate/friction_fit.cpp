@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "contract/input_error.h"
-#include "experiments/calibrate/friction_start.h"
 
 namespace tress::experiments::calibrate {
 namespace {

@@ -1,10 +1,10 @@
-#include "experiments/calibrate/friction_start.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
+
+#include "experiments/calibrate/friction_fit.h"
 
 namespace tress::experiments::calibrate {
 namespace {

@@ -1,8 +1,7 @@
 // Which internal friction and which air drag follow from a measured oscillation of a
 // strand, and how accurately? Without measured data: does a fit recover the true values
 // of simulated records?
-#include "experiments/calibrate/calibrate_claims.h"
-#include "experiments/calibrate/fit_grid.h"
+#include "experiments/calibrate/calibrate.h"
 #include "experiments/run/experiment.h"
 
 namespace tress::experiments::calibrate {

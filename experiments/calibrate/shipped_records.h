@@ -17,17 +17,17 @@ namespace tress::experiments::calibrate {
 struct ShippedRecords {
   std::string_view name;  // experiments/calibrate/data/<name>.csv
   std::string_view what;
-  Observed observed;
+  Observed observed = Observed::displacement;
   std::vector<double> lengths;  // m, one record each
-  ModelSettings strand;
-  bool planar;   // the motion stays in a plane
-  double t_end;  // s
-  int points;    // per record; for an envelope its first swings
-  double sigma;  // m, Gaussian errors of zero mean, independent
+  ModelSettings strand = {};
+  bool planar = true;   // the motion stays in a plane
+  double t_end = 1.5;   // s
+  int points = 150;     // per record; for an envelope its first swings
+  double sigma = 5e-4;  // m, Gaussian errors of zero mean, independent
   std::uint64_t seed;
-  double gamma, nu;  // the truth, kg m^3/s and kg/(m s)
-  int made_with;     // elements
-  int elements;      // enough for a fit
+  double gamma = 1e-10, nu = 2e-5;  // the truth, kg m^3/s and kg/(m s)
+  int made_with = 40;               // elements
+  int elements = 10;                // enough for a fit
 };
 
 std::span<const ShippedRecords> shipped_records();

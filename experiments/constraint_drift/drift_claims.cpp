@@ -1,10 +1,10 @@
-#include "experiments/constraint_drift/drift_claims.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
+
+#include "experiments/constraint_drift/constraint_drift.h"
 
 namespace tress::experiments::constraint_drift {
 namespace {

@@ -1,10 +1,9 @@
-#include "experiments/constraint_drift/drift_studies.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/constraint_drift/constraint_drift.h"
 #include "experiments/problems/formulations.h"
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
 #include "integrators/integrator_options.h"
 

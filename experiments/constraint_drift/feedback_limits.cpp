@@ -1,7 +1,6 @@
-#include "experiments/constraint_drift/feedback_limits.h"
-
 #include <cmath>
 
+#include "experiments/constraint_drift/constraint_drift.h"
 #include "experiments/numerics/amplification.h"
 #include "experiments/numerics/drift_monitor.h"
 #include "models/catalogue.h"

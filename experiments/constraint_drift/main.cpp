@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/constraint_drift/drift_claims.h"
-#include "experiments/constraint_drift/drift_studies.h"
-#include "experiments/constraint_drift/feedback_limits.h"
+#include "experiments/constraint_drift/constraint_drift.h"
 #include "experiments/numerics/drift_monitor.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"

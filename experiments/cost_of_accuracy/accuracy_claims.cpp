@@ -1,10 +1,9 @@
-#include "experiments/cost_of_accuracy/accuracy_claims.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 
 namespace tress::experiments::cost_of_accuracy {

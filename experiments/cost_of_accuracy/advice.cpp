@@ -1,10 +1,8 @@
-#include "experiments/cost_of_accuracy/advice.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/problems/strand_models.h"
 #include "simulation/scene/write_scene.h"
 

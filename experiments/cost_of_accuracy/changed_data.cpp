@@ -1,8 +1,7 @@
-#include "experiments/cost_of_accuracy/changed_data.h"
-
 #include <algorithm>
 #include <functional>
 
+#include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/numerics/tip_track.h"
 #include "simulation/run/tip_paths.h"
 

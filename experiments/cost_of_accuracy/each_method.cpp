@@ -1,19 +1,16 @@
-#include "experiments/cost_of_accuracy/each_method.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/trial.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/numerics/cheapest_run.h"
 #include "experiments/numerics/drift_monitor.h"
-#include "experiments/numerics/momentum_drift.h"
 #include "experiments/problems/formulations.h"
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_reference.h"
 #include "simulation/run/guard.h"
 #include "simulation/run/simulation.h"

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/search.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 
 namespace tress::experiments::cost_of_accuracy {
 

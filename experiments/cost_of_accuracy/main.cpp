@@ -10,11 +10,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/accuracy_claims.h"
-#include "experiments/cost_of_accuracy/advice.h"
-#include "experiments/cost_of_accuracy/each_method.h"
-#include "experiments/cost_of_accuracy/scene_study.h"
-#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/message.h"
 #include "experiments/run/settings.h"

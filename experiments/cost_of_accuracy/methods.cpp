@@ -1,8 +1,7 @@
-#include "experiments/cost_of_accuracy/methods.h"
-
 #include <algorithm>
 
 #include "contract/input_error.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/command_line.h"

@@ -1,5 +1,3 @@
-#include "experiments/cost_of_accuracy/scene_study.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,11 +7,11 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/advice.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
-#include "experiments/cost_of_accuracy/methods.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_rows.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/run/message.h"
 #include "simulation/scene/scene_tables.h"
 

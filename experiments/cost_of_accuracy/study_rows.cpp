@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/cost_of_accuracy/study_table.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "simulation/scene/scene_tables.h"
 
 namespace tress::experiments::cost_of_accuracy {

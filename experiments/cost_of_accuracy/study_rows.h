@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/scene_measure.h"
-#include "experiments/cost_of_accuracy/scene_study.h"
 
 namespace tress::experiments::cost_of_accuracy {
 

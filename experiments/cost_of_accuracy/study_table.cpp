@@ -1,10 +1,9 @@
-#include "experiments/cost_of_accuracy/study_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/problems/strand_models.h"
 #include "simulation/files/parse.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 #include "experiments/numerics/tip_track.h"
 
 namespace tress::experiments::family {

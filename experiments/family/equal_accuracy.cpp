@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 #include "experiments/numerics/cheapest_run.h"
 #include "experiments/problems/strand_reference.h"
 #include "simulation/run/timing.h"

@@ -1,5 +1,3 @@
-#include "experiments/family/hair.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "experiments/family/family.h"
 #include "experiments/problems/strand_models.h"
 #include "models/catalogue.h"
 #include "models/effects/wind.h"

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/family/study.h"
-#include "experiments/family/summary.h"
+#include "experiments/family/family.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 #include "simulation/files/csv.h"

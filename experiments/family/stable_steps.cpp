@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/strand_scenes.h"
 

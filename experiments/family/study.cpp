@@ -1,7 +1,7 @@
-#include "experiments/family/study.h"
-
 #include <array>
 #include <cmath>
+
+#include "experiments/family/family.h"
 
 namespace tress::experiments::family {
 

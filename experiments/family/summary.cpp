@@ -1,10 +1,8 @@
-#include "experiments/family/summary.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 
 namespace tress::experiments::family {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/family/study.h"
+#include "experiments/family/family.h"
 #include "experiments/numerics/tip_track.h"
 
 namespace tress::experiments::family {

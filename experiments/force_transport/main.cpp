@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "experiments/force_transport/transport_claims.h"
-#include "experiments/numerics/at_rest.h"
-#include "experiments/numerics/linear_modes.h"
+#include "experiments/numerics/equilibrium.h"
 #include "experiments/numerics/tip_track.h"
 #include "experiments/problems/problems.h"
 #include "experiments/problems/strand_models.h"

@@ -1,9 +1,8 @@
-#include "experiments/hard_cases/claims.h"
-
 #include <algorithm>
 #include <string>
 
 #include "experiments/hard_cases/hard_case.h"
+#include "experiments/hard_cases/hard_cases.h"
 
 namespace tress::experiments::hard_cases {
 namespace {

@@ -1,11 +1,9 @@
-#include "experiments/hard_cases/grid.h"
-
 #include <algorithm>
 #include <map>
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/problems/model_variants.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
 

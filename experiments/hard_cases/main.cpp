@@ -3,9 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "experiments/hard_cases/claims.h"
-#include "experiments/hard_cases/grid.h"
-#include "experiments/hard_cases/scene_case.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "experiments/run/experiment.h"
 
 namespace tress::experiments::hard_cases {

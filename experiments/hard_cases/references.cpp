@@ -1,5 +1,3 @@
-#include "experiments/hard_cases/references.h"
-
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -9,6 +7,8 @@
 #include <new>
 #include <stdexcept>
 #include <thread>
+
+#include "experiments/hard_cases/survival.h"
 
 namespace tress::experiments::hard_cases {
 namespace {

@@ -1,5 +1,3 @@
-#include "experiments/hard_cases/scene_case.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <set>
 
 #include "contract/input_error.h"
-#include "experiments/hard_cases/grid.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "experiments/problems/scene_files.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"

@@ -8,7 +8,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/tip_track.h"
 #include "experiments/problems/formulations.h"
-#include "simulation/run/method_run.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::experiments::hard_cases {
 namespace {

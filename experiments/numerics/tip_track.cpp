@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "integrators/catalogue.h"
-#include "simulation/run/method_run.h"
+#include "simulation/run/simulation.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments {

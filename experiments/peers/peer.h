@@ -5,9 +5,53 @@
 #include <string_view>
 
 #include "contract/layers.h"
-#include "experiments/peers/swing.h"
+#include "math/vec3.h"
 
 namespace tress::experiments::peers {
+
+/// Scene `swing`: one strand clamped at its root, released horizontally along +x from
+/// rest, straight when unloaded, clamp moved y_c(t) = 0.05 (1 - cos 2 pi t) m, gravity
+/// along -z, mass-proportional damping. Cut into N rigid links of length l = L / N.
+///
+/// Units: mm, mg, s, so that a link's mass and moment are near one: some engines hold
+/// absolute limits (MuJoCo refuses moments of inertia below 1e-15).
+///
+/// Hinges: bending springs of EI / l between links. The hinge at the clamp stands for
+/// half an element only (from the clamp to the first link's middle), hence 2 EI / l; with
+/// EI / l there the chain would converge to the rod at first order in l instead of
+/// second. Ball joints get the same stiffness about the tangent. A link's moment about
+/// its axis is raised to that about its diameter: a straight strand of circular section
+/// does not twist, and the true moment, 1e-4 of it, would only set a time step that
+/// nothing needs.
+///
+/// The clamp's motion: bodies are seen from the clamp, so that its acceleration and the
+/// damping of its velocity join gravity (d'Alembert). The clamp does not turn, so this is
+/// exact, and every engine takes a gravity that varies in time.
+struct Swing {
+  int links = 20;
+
+  static constexpr double length = 200;       // mm
+  static constexpr double radius = 0.04;      // mm
+  static constexpr double density = 1.3;      // mg/mm^3
+  static constexpr double young = 2e12;       // mg/(mm s^2), 2 GPa
+  static constexpr double damping = 2;        // 1/s: force per mass and speed
+  static constexpr double t_end = 2;          // s
+  static constexpr double gravity_z = -9810;  // mm/s^2
+
+  double link_length() const { return length / links; }
+  double mass() const;                // of a link, mg
+  double moment() const;              // of a link about its centre, any axis, mg mm^2
+  double stiffness(int hinge) const;  // of hinge 0 (the clamp) to N - 1, mg mm^2/s^2
+
+  /// What the links feel seen from the clamp, mm/s^2: gravity, minus the clamp's
+  /// acceleration, minus damping times its velocity.
+  static Vec gravity(double t);
+  static double clamp(double t);  // y_c, mm
+};
+
+/// The rotation of a unit quaternion as axis times angle (|angle| <= pi), accurate at
+/// zero.
+Vec rotation_vector(double w, const Vec& xyz);
 
 /// What is looked at between steps, seen from the clamp (mm, mg, s). An engine that gave
 /// up returns a tip that is not finite.

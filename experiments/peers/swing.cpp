@@ -1,7 +1,7 @@
-#include "experiments/peers/swing.h"
-
 #include <cmath>
 #include <numbers>
+
+#include "experiments/peers/peer.h"
 
 namespace tress::experiments::peers {
 namespace {

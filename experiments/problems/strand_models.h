@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -30,5 +31,16 @@ void set_known(Parameters& parameters, const ModelSettings& settings);
 
 /// The settings whose keys the model knows.
 ModelSettings known_to(const ModelEntry& model, const ModelSettings& settings);
+
+/// A strand model with its options for keeping lengths.
+struct ModelVariant {
+  const ModelEntry* model;
+  ModelSettings settings;
+  std::string words;  // "stretch=inextensible"; empty: model defaults
+};
+
+/// Every strand model with its defaults and with every other value of its options
+/// `stretch` and `stretch_springs`.
+std::vector<ModelVariant> length_variants();
 
 }  // namespace tress::experiments

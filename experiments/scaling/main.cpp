@@ -11,9 +11,7 @@
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
 #include "experiments/run/experiment.h"
-#include "experiments/scaling/scaling_claims.h"
-#include "experiments/scaling/scaling_grid.h"
-#include "experiments/scaling/scene_costs.h"
+#include "experiments/scaling/scaling.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 

@@ -1,12 +1,10 @@
-#include "experiments/scaling/scaling_claims.h"
-
 #include <algorithm>
 #include <map>
 #include <string>
 #include <string_view>
 
 #include "experiments/numerics/fit.h"
-#include "experiments/scaling/scaling_grid.h"
+#include "experiments/scaling/scaling.h"
 
 namespace tress::experiments::scaling {
 namespace {

@@ -1,11 +1,10 @@
-#include "experiments/scaling/scaling_grid.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
+#include "experiments/scaling/scaling.h"
 #include "models/catalogue.h"
 #include "models/reduced/trees.h"
 

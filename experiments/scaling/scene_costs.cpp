@@ -1,11 +1,10 @@
-#include "experiments/scaling/scene_costs.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "contract/input_error.h"
 #include "experiments/numerics/step_cost.h"
 #include "experiments/problems/scene_files.h"
+#include "experiments/scaling/scaling.h"
 #include "models/catalogue.h"
 #include "simulation/run/tip_paths.h"
 #include "simulation/scene/changes.h"

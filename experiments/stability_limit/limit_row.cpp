@@ -1,9 +1,9 @@
-#include "experiments/stability_limit/limit_row.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
+
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::experiments::stability_limit {
 namespace {

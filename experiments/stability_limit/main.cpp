@@ -8,11 +8,7 @@
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/run/experiment.h"
-#include "experiments/stability_limit/limit_row.h"
-#include "experiments/stability_limit/nodal_limits.h"
-#include "experiments/stability_limit/scene_limits.h"
-#include "experiments/stability_limit/stability_claims.h"
-#include "experiments/stability_limit/stability_grid.h"
+#include "experiments/stability_limit/stability_limit.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
 
@@ -126,7 +122,7 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   check_stability_claims(rows, verdicts);
   check_nodal_claims(rows, verdicts);
 }
@@ -160,7 +156,7 @@ int main(int argc, char** argv) {
       .options = command_options,
       .unused = unused,
       .cases = cases,
-      .checks = check,
+      .checks = check_claims,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }

@@ -1,13 +1,10 @@
-#include "experiments/stability_limit/nodal_limits.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "experiments/numerics/amplification.h"
 #include "experiments/numerics/fit.h"
-#include "experiments/stability_limit/limit_row.h"
-#include "experiments/stability_limit/stability_grid.h"
+#include "experiments/stability_limit/stability_limit.h"
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 

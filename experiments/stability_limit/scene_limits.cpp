@@ -1,5 +1,3 @@
-#include "experiments/stability_limit/scene_limits.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,8 +5,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/step_cost.h"
 #include "experiments/problems/scene_files.h"
-#include "experiments/stability_limit/limit_row.h"
-#include "experiments/stability_limit/stability_grid.h"
+#include "experiments/stability_limit/stability_limit.h"
 #include "integrators/catalogue.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"

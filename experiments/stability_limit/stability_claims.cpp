@@ -1,10 +1,10 @@
-#include "experiments/stability_limit/stability_claims.h"
-
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::experiments::stability_limit {
 namespace {

@@ -1,5 +1,3 @@
-#include "experiments/stability_limit/stability_grid.h"
-
 #include <algorithm>
 #include <span>
 #include <string>
@@ -7,6 +5,7 @@
 #include "contract/input_error.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::experiments::stability_limit {
 namespace {

@@ -1,5 +1,3 @@
-#include "experiments/validation/buckling.h"
-
 #include <array>
 #include <cmath>
 #include <complex>
@@ -10,6 +8,7 @@
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 #include "models/effects/tether.h"
 
 namespace tress::experiments::validation {
@@ -176,7 +175,7 @@ double measure_lateral(const ModelTrial& trial) {
       0.3 * lateral, 2 * lateral);
 }
 
-std::string no_twist(const ModelVariant& variant) {
+std::string no_twist_of_points(const ModelVariant& variant) {
   return variant.model->id == "mass_spring" || variant.model->id == "inextensible_strand"
              ? "points do not twist"
              : std::string();
@@ -233,6 +232,8 @@ double measure_beck(const ModelTrial& trial) {
 
 }  // namespace
 
+/// Loads at which a straight or circular equilibrium loses stability: where the least
+/// omega^2 of small motions about it crosses 0.
 std::vector<ValidationTest> buckling_tests() {
   const std::vector<std::string_view> rods{"super_helix", "der", "corde",
                                            "dynamic_spline"};
@@ -305,7 +306,7 @@ std::vector<ValidationTest> buckling_tests() {
           .judged_from = 20,
           .claimed = rods,
           .reference = [](double) { return lateral; },
-          .refusal = no_twist,
+          .refusal = no_twist_of_points,
           .measure = measure_lateral,
       },
       {

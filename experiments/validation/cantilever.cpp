@@ -1,11 +1,10 @@
-#include "experiments/validation/cantilever.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "experiments/validation/rods/master_curve.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -49,6 +48,7 @@ double bent_by_force(const ModelTrial& trial) {
 
 }  // namespace
 
+/// A clamped strand bent by its weight or by a tip force.
 std::vector<ValidationTest> cantilever_tests() {
   return {
       {

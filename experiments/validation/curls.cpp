@@ -1,14 +1,12 @@
-#include "experiments/validation/curls.h"
-
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/curl_threshold.h"
-#include "experiments/validation/helical_spring.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -126,6 +124,7 @@ double measure_bathe(const ModelTrial& trial) {
 
 }  // namespace
 
+/// Strands with a natural curvature or twist.
 std::vector<ValidationTest> curl_tests() {
   const std::vector<std::string_view> rods{"super_helix", "der", "corde",
                                            "dynamic_spline"};

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/momentum_drift.h"
+#include "experiments/numerics/drift_monitor.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "integrators/catalogue.h"
@@ -155,7 +155,7 @@ void check_free_flight(const std::vector<Row>& rows, Verdicts& verdicts) {
         return row.number("dt_s") > 5e-3 && row.text("integrator") == "backward_euler";
       },
       [](double least) { return least > 0.01; }, std::greater{}, verdicts);
-  // For particles only: der's kinetic energy omits the spin of sections (der.h).
+  // For particles only: der's kinetic energy omits the spin of sections (der.cpp).
   check_change(
       "implicit_midpoint keeps that of mass_spring to 1e-9", rows,
       [](const Row& row) {

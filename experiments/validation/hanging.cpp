@@ -1,5 +1,3 @@
-#include "experiments/validation/hanging.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +5,7 @@
 #include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -69,6 +68,7 @@ double measure_sag(const ModelTrial& trial) {
 
 }  // namespace
 
+/// A strand whose weight dominates its stiffness, held at both ends.
 std::vector<ValidationTest> hanging_tests() {
   return {{
       .name = "catenary",

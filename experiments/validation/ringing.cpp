@@ -1,5 +1,12 @@
-#include "experiments/validation/ringing.h"
-
+// A straight, weightless hair that rings in one of its modes, observed in time.
+//
+// friction: released from the shape of its first bending mode. With Kelvin-Voigt
+//   friction gamma in bending that mode decays by the rate (gamma/EI) omega^2/2, omega =
+//   1.8751^2 sqrt(EI/(rho S L^4)): the basis of the calibration of gamma.
+//
+// torsion: released from the shape of a torsional mode: omega_n = (2 n - 1) pi/2
+//   sqrt(G/rho)/L, a twist wave running to and fro. Observed in the kinetic energy,
+//   which oscillates as sin^2(omega t): not every model reports the rotation of its tip.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -8,6 +15,7 @@
 #include "experiments/validation/rods/motion.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/signals.h"
+#include "experiments/validation/test.h"
 #include "simulation/run/simulation.h"
 
 namespace tress::experiments::validation {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/run/experiment.h"
 
 namespace tress::experiments::validation {
@@ -67,5 +67,16 @@ const std::vector<ValidationTest>& validation_tests();
 
 /// Throws InputError naming the nearest test when there is no such test.
 const ValidationTest& find_validation_test(std::string_view name);
+
+// The families of tests, each in its file.
+std::vector<ValidationTest> buckling_tests();
+std::vector<ValidationTest> cantilever_tests();
+std::vector<ValidationTest> chain_tests();
+std::vector<ValidationTest> curl_tests();
+std::vector<ValidationTest> hanging_tests();
+std::vector<ValidationTest> ringing_tests();
+std::vector<ValidationTest> stick_slip_tests();
+std::vector<ValidationTest> vibration_tests();
+std::vector<ValidationTest> wisp_tests();
 
 }  // namespace tress::experiments::validation

@@ -2,21 +2,12 @@
 
 #include "contract/input_error.h"
 #include "contract/parameters.h"
-#include "experiments/validation/buckling.h"
-#include "experiments/validation/cantilever.h"
-#include "experiments/validation/chain.h"
-#include "experiments/validation/curls.h"
 #include "experiments/validation/free_flight.h"
-#include "experiments/validation/hanging.h"
 #include "experiments/validation/localised_buckling.h"
 #include "experiments/validation/pendulum.h"
 #include "experiments/validation/plectoneme.h"
-#include "experiments/validation/ringing.h"
 #include "experiments/validation/spring.h"
-#include "experiments/validation/stick_slip.h"
 #include "experiments/validation/test.h"
-#include "experiments/validation/vibration.h"
-#include "experiments/validation/wisp.h"
 
 namespace tress::experiments::validation {
 

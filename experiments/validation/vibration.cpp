@@ -1,11 +1,10 @@
-#include "experiments/validation/vibration.h"
-
 #include <cmath>
 #include <stdexcept>
 
 #include "experiments/validation/rods/beam_modes.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
+#include "experiments/validation/test.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -72,6 +71,7 @@ double measure_curved_beam(const ModelTrial& trial) {
 
 }  // namespace
 
+/// Frequencies of small free vibrations about an equilibrium.
 std::vector<ValidationTest> vibration_tests() {
   const std::vector<std::string_view> rods{"super_helix", "der", "corde",
                                            "dynamic_spline"};

@@ -1,13 +1,22 @@
-#include "experiments/validation/wisp.h"
-
+// The buckling of a wisp held between two approaching hands: a clamped strand whose tip
+// is held in place, free to turn, while the clamp goes down by eps L. First it bends,
+// under Euler's load P = 20.19 EI/L^2 for one clamped and one pinned end, then it coils
+// up.
+//
+// wisp_bends: P from the work of the clamp, the change of the potential energy from 0.8
+//   to 1.2 eps L, against the elastica's P(eps).
+//
+// wisp_coils: the turns of the tip, against the plane elastica. The test begins in the
+//   plane and nothing leads out of it.
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <string>
 
-#include "experiments/validation/pinned_elastica.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/motion.h"
 #include "experiments/validation/rods/rod.h"
+#include "experiments/validation/test.h"
 #include "models/effects/linear_drag.h"
 #include "models/effects/tether.h"
 

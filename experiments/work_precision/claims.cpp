@@ -1,12 +1,10 @@
-#include "experiments/work_precision/claims.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "experiments/work_precision/strand_claims.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {

@@ -6,12 +6,7 @@
 #include <vector>
 
 #include "experiments/run/experiment.h"
-#include "experiments/work_precision/claims.h"
-#include "experiments/work_precision/problem_runs.h"
-#include "experiments/work_precision/row_settings.h"
-#include "experiments/work_precision/scene_runs.h"
-#include "experiments/work_precision/strand_runs.h"
-#include "experiments/work_precision/work_precision_series.h"
+#include "experiments/work_precision/work_precision.h"
 #include "simulation/files/parse.h"
 
 namespace tress::experiments::work_precision {

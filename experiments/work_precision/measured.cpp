@@ -1,6 +1,5 @@
-#include "experiments/work_precision/measured.h"
-
 #include "experiments/problems/reference.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 

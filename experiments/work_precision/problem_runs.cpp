@@ -1,5 +1,3 @@
-#include "experiments/work_precision/problem_runs.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,8 +5,7 @@
 
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/problems.h"
-#include "experiments/work_precision/measured.h"
-#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/work_precision.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::work_precision {

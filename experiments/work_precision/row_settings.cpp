@@ -1,4 +1,4 @@
-#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {

@@ -1,5 +1,3 @@
-#include "experiments/work_precision/scene_runs.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,8 +8,7 @@
 #include "experiments/problems/scene_files.h"
 #include "experiments/problems/strand_reference.h"
 #include "experiments/run/message.h"
-#include "experiments/work_precision/measured.h"
-#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/work_precision.h"
 #include "integrators/catalogue.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/tip_paths.h"

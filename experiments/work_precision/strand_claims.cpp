@@ -1,5 +1,3 @@
-#include "experiments/work_precision/strand_claims.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,7 +7,7 @@
 #include <string_view>
 
 #include "experiments/problems/reference.h"
-#include "experiments/work_precision/strand_grid.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {

@@ -1,5 +1,3 @@
-#include "experiments/work_precision/strand_grid.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -8,7 +6,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
-#include "experiments/work_precision/row_settings.h"
+#include "experiments/work_precision/work_precision.h"
 #include "integrators/catalogue.h"
 
 namespace tress::experiments::work_precision {

@@ -1,5 +1,3 @@
-#include "experiments/work_precision/strand_runs.h"
-
 #include <map>
 #include <memory>
 #include <string>
@@ -9,7 +7,7 @@
 #include "experiments/problems/reference.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/message.h"
-#include "experiments/work_precision/measured.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {

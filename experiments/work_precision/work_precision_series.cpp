@@ -1,13 +1,10 @@
-#include "experiments/work_precision/work_precision_series.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 
 #include "experiments/numerics/fit.h"
-#include "experiments/numerics/pareto.h"
-#include "experiments/work_precision/strand_grid.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::experiments::work_precision {
 namespace {
@@ -85,6 +82,27 @@ void add_orders(std::vector<Row>& rows) {
 }
 
 }  // namespace
+
+void add_pareto(std::vector<Row>& rows, std::string_view error,
+                const std::function<std::string(const Row&)>& group) {
+  struct Run {
+    Row* row;
+    double wall, error;
+  };
+  std::map<std::string, std::vector<Run>> groups;
+  for (Row& row : rows) {
+    if (!row.ok()) continue;
+    groups[group(row)].push_back({&row, row.number("wall_s"), row.number(error)});
+  }
+  for (const auto& [key, runs] : groups) {
+    for (const Run& run : runs) {
+      const bool dominated = std::ranges::any_of(runs, [&run](const Run& other) {
+        return other.wall < run.wall && other.error < run.error;
+      });
+      run.row->set("pareto", !dominated);
+    }
+  }
+}
 
 void add_series_columns(std::vector<Row>& rows) {
   add_orders(rows);

@@ -30,16 +30,8 @@ constexpr Parameter parameters_of_chain[] = {
      .min = 1e-6,
      .max = 1e6},
     gravity_parameter,
-    {.name = "drag_kg_m_s",
-     .help = "air drag per length nu (kg/(m s))",
-     .number = 0,
-     .min = 0,
-     .max = 1e6},
-    {.name = "spin_rad_s",
-     .help = "initial rotation about the vertical (rad/s)",
-     .number = 0,
-     .min = -1e6,
-     .max = 1e6},
+    hanging_drag_parameter,
+    hanging_spin_parameter,
 };
 
 ParticleScene open_chain(const ChainShape& shape, double mass, double link) {
@@ -76,6 +68,14 @@ ParticleScene closed_chain(const ChainShape& shape, double mass, double link) {
 
 }  // namespace
 
+HangingShape hanging_shape(const Parameters& parameters) {
+  return {.mass = parameters.number("mass_kg"),
+          .length = parameters.number("length_m"),
+          .gravity = parameters.number("gravity_m_s2"),
+          .drag = parameters.number("drag_kg_m_s"),
+          .spin = parameters.number("spin_rad_s")};
+}
+
 void add_gravity_and_drag(ParticleScene& scene, double gravity, double drag,
                           double height) {
   if (gravity != 0) {
@@ -107,14 +107,8 @@ ParticleScene inextensible_chain(const ChainShape& shape) {
 std::span<const Parameter> inextensible_chain_parameters() { return parameters_of_chain; }
 
 std::unique_ptr<System> make_inextensible_chain(const Parameters& parameters) {
-  ChainShape shape;
-  shape.links = parameters.whole("links");
-  shape.closed = parameters.word("closed") == "yes";
-  shape.mass = parameters.number("mass_kg");
-  shape.length = parameters.number("length_m");
-  shape.gravity = parameters.number("gravity_m_s2");
-  shape.drag = parameters.number("drag_kg_m_s");
-  shape.spin = parameters.number("spin_rad_s");
+  const ChainShape shape{hanging_shape(parameters), parameters.whole("links"),
+                         parameters.word("closed") == "yes"};
   return std::make_unique<ParticleSystem>(inextensible_chain(shape));
 }
 

@@ -8,6 +8,30 @@
 
 namespace tress::models {
 
+/// What all structures of hanging particles have in common.
+struct HangingShape {
+  double mass = 1;        // kg, all particles together, equal shares
+  double length = 1;      // m: L of a strand, a structure's own measure
+  double gravity = 9.81;  // m/s^2, along -z
+  double drag = 0;        // nu, kg/(m s), on length shared equally between particles
+  double spin = 0;        // rad/s, about the vertical through the origin
+};
+
+inline constexpr Parameter hanging_drag_parameter{
+    .name = "drag_kg_m_s",
+    .help = "air drag per length nu (kg/(m s))",
+    .number = 0,
+    .min = 0,
+    .max = 1e6};
+inline constexpr Parameter hanging_spin_parameter{
+    .name = "spin_rad_s",
+    .help = "initial rotation about the vertical (rad/s)",
+    .number = 0,
+    .min = -1e6,
+    .max = 1e6};
+
+HangingShape hanging_shape(const Parameters& parameters);
+
 /// A hanging strand of n rigid massless links of length L/n with point masses m/n at
 /// their ends, as particles and distance constraints.
 ///
@@ -15,14 +39,9 @@ namespace tress::models {
 /// horizontally. Closed: a regular polygon of perimeter L in the x-z plane beside its
 /// first particle, which is fixed at the origin: n particles, n + 3 rows. Both may spin
 /// about the vertical through the origin, a rigid and therefore consistent motion.
-struct ChainShape {
+struct ChainShape : HangingShape {
   int links = 10;  // n: >= 1 open, >= 3 closed
   bool closed = false;
-  double mass = 1;        // m, kg, whole strand
-  double length = 1;      // L, m
-  double gravity = 9.81;  // m/s^2, along -z
-  double drag = 0;        // nu, kg/(m s), per strand length
-  double spin = 0;        // rad/s
 };
 
 /// Throws InputError on sizes out of range.

@@ -8,7 +8,6 @@
 
 #include "contract/input_error.h"
 #include "models/constrained/angles.h"
-#include "models/constrained/inextensible_chain.h"
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"
 
@@ -40,16 +39,8 @@ constexpr Parameter declared_of_tinkertoys[] = {
      .min = 1e-6,
      .max = 1e6},
     gravity_parameter,
-    {.name = "drag_kg_m_s",
-     .help = "air drag per length nu (kg/(m s))",
-     .number = 0,
-     .min = 0,
-     .max = 1e6},
-    {.name = "spin_rad_s",
-     .help = "initial rotation about the vertical (rad/s)",
-     .number = 0,
-     .min = -1e6,
-     .max = 1e6},
+    hanging_drag_parameter,
+    hanging_spin_parameter,
 };
 
 /// Adds structure to a scene whose particles are all alike.
@@ -166,15 +157,7 @@ ParticleScene tinkertoys(const ToyShape& shape) {
                          std::to_string(largest_size[kind]));
   }
   if (shape.structure == Structure::chain || shape.structure == Structure::ring) {
-    ChainShape chain;
-    chain.links = shape.size;
-    chain.closed = shape.structure == Structure::ring;
-    chain.mass = shape.mass;
-    chain.length = shape.length;
-    chain.gravity = shape.gravity;
-    chain.drag = shape.drag;
-    chain.spin = shape.spin;
-    return inextensible_chain(chain);
+    return inextensible_chain({shape, shape.size, shape.structure == Structure::ring});
   }
   if (shape.structure == Structure::net && shape.spin != 0) {
     throw InputError("a net on a row of anchors cannot spin", "tinkertoys",
@@ -193,16 +176,11 @@ ParticleScene tinkertoys(const ToyShape& shape) {
 std::span<const Parameter> tinkertoys_parameters() { return declared_of_tinkertoys; }
 
 std::unique_ptr<System> make_tinkertoys(const Parameters& parameters) {
-  ToyShape shape;
   const auto name = std::find(std::begin(structure_names), std::end(structure_names),
                               parameters.word("structure"));
-  shape.structure = static_cast<Structure>(name - std::begin(structure_names));
-  shape.size = parameters.whole("size");
-  shape.mass = parameters.number("mass_kg");
-  shape.length = parameters.number("length_m");
-  shape.gravity = parameters.number("gravity_m_s2");
-  shape.drag = parameters.number("drag_kg_m_s");
-  shape.spin = parameters.number("spin_rad_s");
+  const ToyShape shape{hanging_shape(parameters),
+                       static_cast<Structure>(name - std::begin(structure_names)),
+                       parameters.whole("size")};
   return std::make_unique<ParticleSystem>(tinkertoys(shape));
 }
 

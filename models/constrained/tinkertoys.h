@@ -4,7 +4,7 @@
 #include <span>
 
 #include "contract/parameters.h"
-#include "models/constrained/particles.h"
+#include "models/constrained/inextensible_chain.h"
 
 namespace tress::models {
 
@@ -23,14 +23,11 @@ namespace tress::models {
 /// about the origin.
 enum class Structure { chain, ring, net, tree, truss };
 
-struct ToyShape {
+/// `length` is that of the chain, the ring's perimeter, the net's side, the tree's height
+/// or the truss; a net has no spin.
+struct ToyShape : HangingShape {
   Structure structure = Structure::chain;
   int size = 4;
-  double mass = 1;        // kg, all particles together, equal shares
-  double length = 1;      // m: chain, ring's perimeter, net's side, tree's height, truss
-  double gravity = 9.81;  // m/s^2, along -z
-  double drag = 0;        // kg/(m s), on length shared equally between the particles
-  double spin = 0;        // rad/s, not for the net
 };
 
 /// Throws InputError on a size that the structure does not have.

@@ -9,7 +9,6 @@
 #include "models/effects/constant_force.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/effects/quadratic_drag.h"
 #include "models/effects/self_contact.h"
 #include "models/effects/strand_interaction.h"
 #include "models/effects/tether.h"

@@ -6,6 +6,27 @@
 namespace tress::models {
 namespace {
 
+constexpr Parameter parameters_of_quadratic_drag[] = {
+    strand_radius_parameter, air_density_parameter, air_viscosity_parameter,
+    coefficients_parameter,  c_normal_parameter,    c_tangential_parameter};
+
+}  // namespace
+
+std::span<const Parameter> quadratic_drag_parameters() {
+  return parameters_of_quadratic_drag;
+}
+
+std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
+                                                  const RootMotion&) {
+  return with_anisotropic_law(
+      parameters, []<class Law>(const Law& law) -> std::unique_ptr<const Effect> {
+        return std::make_unique<AirDrag<Law, StillAir>>("quadratic_drag", law,
+                                                        StillAir{});
+      });
+}
+
+namespace {
+
 constexpr Parameter parameters_of_wind[] = {
     {.name = "velocity_m_s",
      .help = "velocity of the wind x, y, z; profile = sine: at its peak (m/s)",

@@ -9,6 +9,13 @@
 
 namespace tress::models {
 
+std::span<const Parameter> quadratic_drag_parameters();
+
+/// Quadratic drag of still air, different across and along the strand
+/// (AnisotropicAirLaw, effects/air_law.h). In moving air use the effect `wind` instead.
+std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
+                                                  const RootMotion& head);
+
 std::span<const Parameter> wind_parameters();
 
 /// Load of moving air: a field of effects/wind_field.h (`profile`) and a law of

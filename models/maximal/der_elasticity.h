@@ -8,8 +8,8 @@
 
 namespace tress::models {
 
-/// Stretching, bending and twisting of a discrete rod (der.h), coordinates z = (x_0, ...,
-/// x_n, theta_0, ..., theta_{n-1}).
+/// Stretching, bending and twisting of a discrete rod (der.cpp), coordinates z = (x_0,
+/// ..., x_n, theta_0, ..., theta_{n-1}).
 class DerElasticity final : public Elasticity {
  public:
   struct EdgeData {

@@ -10,7 +10,7 @@
 
 namespace tress::models {
 
-/// The parts of the system of kirchhoff_nodal.h.
+/// The parts of the system of kirchhoff_nodal.cpp.
 struct NodalParts {
   StaggeredRod rod;
   RootMotion root;

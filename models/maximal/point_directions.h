@@ -1,11 +1,29 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "contract/system.h"
+#include "math/vec3.h"
 #include "models/maximal/groups.h"
-#include "models/maximal/node_mean.h"
 
 namespace tress::models {
+
+/// A point of the strand as the weighted mean of up to four consecutive nodes.
+struct NodeMean {
+  int first = 0;  // node
+  int nodes = 1;
+  std::array<double, 4> weight{1};
+
+  Vec of(In values) const {  // (3 nodes)
+    Vec sum;
+    for (int k = 0; k < nodes; ++k) {
+      sum = sum + weight[static_cast<std::size_t>(k)] *
+                      load3(&values[3 * static_cast<std::size_t>(first + k)]);
+    }
+    return sum;
+  }
+};
 
 /// Unit tangents of a strand at its mass points, t_i = d/|d| with d from the point before
 /// to the one behind (at the ends from or to the point itself), and the contribution of

@@ -17,8 +17,16 @@ struct RodJoint {
 
 /// The joint that represents half of each neighbour; for a clamp (`before` null), half of
 /// the first segment.
-RodJoint rod_joint(const Material& material, const Segment* before, const Segment& after,
-                   const Vec& rest);
+inline RodJoint rod_joint(const Material& material, const Segment* before,
+                          const Segment& after, const Vec& rest) {
+  const double l = (after.length + (before != nullptr ? before->length : 0)) / 2;
+  Vec weighted = after.length / 2 * stiffness(material, after.section);
+  if (before != nullptr) {
+    weighted = weighted + before->length / 2 * stiffness(material, before->section);
+  }
+  const double friction = material.internal_friction / l;
+  return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
+}
 
 /// Converts h over the edge between two nodes and `others` more coordinates to a matrix
 /// over the two nodes and the others.

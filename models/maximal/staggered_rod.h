@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// A clamped rod discretised for kirchhoff_nodal.h: n edges between nodes 0 (at the
+/// A clamped rod discretised for kirchhoff_nodal.cpp: n edges between nodes 0 (at the
 /// clamp) to n; joint j turns edge j relative to edge j - 1, joint 0 relative to the
 /// clamp.
 struct StaggeredRod {
@@ -26,7 +26,7 @@ Vec3<T> scaled(double s, const Vec3<T>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 
-/// cay(phi) in the components of the frame that it turns, with c of kirchhoff_nodal.h:
+/// cay(phi) in the components of the frame that it turns, with c of kirchhoff_nodal.cpp:
 /// (1 - c |phi|^2/2) + c [phi]x + c phi phi^T/2.
 template <class T>
 FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
@@ -39,7 +39,7 @@ FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
 }
 
 /// Motion of a StaggeredRod for joint curvatures q (1/m; twist, curvature about e1, about
-/// e2) and their rates; equations in kirchhoff_nodal.h. T is double or a derivative
+/// e2) and their rates; equations in kirchhoff_nodal.cpp. T is double or a derivative
 /// number. O(n).
 template <class T>
 class StaggeredMotion {

@@ -63,6 +63,10 @@ Signal sum(Signal a, Signal b) {
   };
 }
 
+Signal there_and_back(double height, double duration) {
+  return sum(smooth_step(height, 0, duration), smooth_step(-height, duration, duration));
+}
+
 RootPose RootMotion::at(double t) const {
   RootPose pose;
   pose.frame = frame;

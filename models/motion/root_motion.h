@@ -27,6 +27,8 @@ Signal smooth_step(double height, double t0, double duration);
 /// InputError) after a further speed duration/2, C^2: rate speed (1 - 3 x^2 + 2 x^3).
 Signal stop(double speed, double t0, double duration);
 Signal sum(Signal a, Signal b);
+/// To `height` and back, each in `duration`, from t = 0 on: two smooth_steps.
+Signal there_and_back(double height, double duration);
 
 /// A cross-section of a strand in space: centre (m) and material frame, e0 the tangent.
 struct StrandPlace {

@@ -6,9 +6,6 @@
 
 namespace tress::models {
 
-/// To `height` and back, each in `duration`, from t = 0 on: two smooth_steps.
-Signal there_and_back(double height, double duration);
-
 /// A body with one degree of freedom x, at rest until a force acts from t0 on:
 /// inertia x'' + damping x' + stiffness x = force sin(2 pi frequency (t - t0)).
 struct Oscillator {

@@ -1,10 +1,19 @@
-#include "models/published/andrews_squeezer.h"
-
+// Andrews' squeezing mechanism: seven planar bodies, a spring, and a drive of constant
+// torque, closed by three loops that meet in one moving joint.
+//
+//     M(q) a - f(q, v) - G(q)^T lambda = 0,   g(q) = 0,   n = 7, m = 6
+//
+// q = (beta, Theta, gamma, Phi, delta, Omega, epsilon) in rad; g in m (two components of
+// each closure); lambda in N, with the opposite sign to the Test Set's. Published end
+// values at t = 0.03 s in references.h. Tangent::stiff keeps M and the spring.
+// Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem "andrews";
+// Hairer & Wanner, Solving Ordinary Differential Equations II, section VII.7.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "contract/tangent_choice.h"
+#include "models/entry.h"
 #include "models/published/dense_system.h"
 #include "models/published/loop_closure.h"
 
@@ -169,14 +178,18 @@ class AndrewsSqueezer final : public DenseSystem<coordinates, Mechanism>,
 
 constexpr std::array<Parameter, 1> andrews_squeezer_table = {{tangent_parameter}};
 
-}  // namespace
-
-std::span<const Parameter> andrews_squeezer_parameters() {
-  return andrews_squeezer_table;
-}
-
 std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters) {
   return std::make_unique<AndrewsSqueezer>(tangent_choice(parameters));
+}
+
+}  // namespace
+
+ModelEntry andrews_squeezer_entry() {
+  return {.id = "andrews_squeezer",
+          .summary = "7 angles, 6 loop closures; planar mechanism with one spring",
+          .source = "Test Set for IVP Solvers 2.4, andrews",
+          .parameters = andrews_squeezer_table,
+          .make = make_andrews_squeezer};
 }
 
 }  // namespace tress::models

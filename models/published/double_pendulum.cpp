@@ -1,10 +1,18 @@
-#include "models/published/double_pendulum.h"
-
+// Double pendulum: two point masses on massless rods in the plane, angles q = (theta_1,
+// theta_2) in rad from the downward vertical, no constraints, no damping:
+//
+//     M = [(m1 + m2) l1^2, c; c, m2 l2^2],   c = m2 l1 l2 cos(theta_1 - theta_2)
+//     V = -(m1 + m2) g l1 cos theta_1 - m2 g l2 cos theta_2
+//
+// Material points: the two masses, z up, pivot at the origin. Chaotic at large angles:
+// judge long runs by energy, not by position.
+// Source: L. Landau, E. Lifshitz, Mechanics (3rd ed.), section 5, problem 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "models/entry.h"
 #include "models/published/dense_system.h"
 
 namespace tress::models {
@@ -118,15 +126,21 @@ constexpr std::array<Parameter, 7> double_pendulum_table = {{
     {.name = "angle_2", .help = "lower angle at the start (rad)", .number = right_angle},
 }};
 
-}  // namespace
-
-std::span<const Parameter> double_pendulum_parameters() { return double_pendulum_table; }
-
 std::unique_ptr<System> make_double_pendulum(const Parameters& p) {
   return std::make_unique<DoublePendulum>(
       Pendulum{p.number("mass_1"), p.number("mass_2"), p.number("length_1"),
                p.number("length_2"), p.number("gravity_m_s2")},
       std::array<double, 2>{p.number("angle_1"), p.number("angle_2")});
+}
+
+}  // namespace
+
+ModelEntry double_pendulum_entry() {
+  return {.id = "double_pendulum",
+          .summary = "2 angles, point masses, chaotic",
+          .source = "Landau & Lifshitz 1976, section 5",
+          .parameters = double_pendulum_table,
+          .make = make_double_pendulum};
 }
 
 }  // namespace tress::models

@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// Strains of one edge of corde.h over x = (e, q), e from node to node (m):
+/// Strains of one edge of corde.cpp over x = (e, q), e from node to node (m):
 ///
 ///     |e| - l,    e/|e| - t(q),    |q|^2 - 1:
 ///

@@ -5,7 +5,7 @@
 
 namespace tress::models {
 
-/// Strains of one edge of xpbd_cosserat.h over x = (e, q), e from node to node (m):
+/// Strains of one edge of xpbd_cosserat.cpp over x = (e, q), e from node to node (m):
 ///
 ///     R(q)^T e/l - e0,    |q|^2 - 1:
 ///

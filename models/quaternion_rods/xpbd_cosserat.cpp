@@ -1,13 +1,56 @@
-#include "models/quaternion_rods/xpbd_cosserat.h"
-
 #include <algorithm>
 
+#include "models/entry.h"
+#include "models/maximal/maximal_system.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/quaternion_rods/cosserat_edge.h"
 #include "models/quaternion_rods/quaternion_rod.h"
 
 namespace tress::models {
 namespace {
+
+/// The Cosserat rod of position-based methods [Kugelstadt & Schoemer 2016, with the
+/// compliances of Deul et al. 2018]: n edges between nodes x_i, a quaternion q_i for the
+/// material frame R of each. With e an edge and l its length at rest,
+///
+///     C_s = R^T e/l - e0                            stretch and shear
+///     C_b = 2 vec(conj(q_j) q_{j+1} - its rest)     twist and bending
+///     E = sum_edges l (C_s^T diag(EA, k GA, k GA) C_s + nu (|q|^2 - 1)^2)/2
+///       + sum_joints C_b^T diag(GJ, EI1, EI2) C_b/(2 l),
+///
+/// l of a joint is the mean of its edges. The papers measure C_s in world axes, with one
+/// stiffness, and normalise quaternions after each correction; here C_s is in the
+/// section's axes, R is the frame of q/|q|, and nu keeps the norms as in corde.cpp. The
+/// whole model thus derives from an energy: xpbd uses its ComplianceForm, every other
+/// integrator the general contract, and the two can be compared. Joints, wall at the
+/// clamp and friction (gamma/l on C_b') are those of corde.cpp; there is no friction on
+/// C_s.
+///
+/// Order 2 as corde. Stretch and shear have the material's stiffness, so a light
+/// cantilever bends lower by 4 EI/(k GA L^2) of its deflection and nothing locks. The
+/// norm softens joints as in corde.cpp, by 2 (u l)^2/norm in bending of curvature u.
+///
+/// Quaternions have the section's inertia, (r/l)^2 of a node's, plus edge_inertia rho A
+/// l^3, by default none. The papers' weights are free parameters comparable to a node's,
+/// and xpbd needs such weights: with the section's inertia all corrections of shear go
+/// into quaternions, convergence takes thousands of sweeps, and because quaternions turn
+/// far on the way, the limit is not the motion of this energy. With 1/2, nodes and
+/// quaternions of an edge have equal weights. It slows swinging and bending in the order
+/// l^2 of the scheme (the error of a release becomes 1.7 times as large) and twisting
+/// most: waves of twist run at sqrt(GJ/(rho A edge_inertia))/l instead of sqrt(G/rho).
+///
+/// The stiffest oscillations turn edges against their shear, with the section's inertia
+/// at sqrt(k GA/(2 rho I)) for any l: explicit methods need steps below the time of a
+/// shear wave across the section.
+///
+/// Rotations between neighbours stay below 180 degrees, tensions below k GA (beyond it
+/// edges turn out of their frames).
+struct XpbdCosseratOptions {
+  double shear_factor = 0.9;  // k [Cowper 1966: 6 (1 + p)/(7 + 6 p), solid circle, p 1/2]
+  double norm = 100;          // nu l^2/EI
+  double edge_inertia = 0;    // of quaternions, beyond the section's, over rho A l^3
+  LinearKind solver = LinearKind::automatic;
+};
 
 CosseratEdge edge(const Material& material, const Segment& segment,
                   const XpbdCosseratOptions& options) {
@@ -22,8 +65,7 @@ CosseratEdge edge(const Material& material, const Segment& segment,
           .friction = {}};
 }
 
-}  // namespace
-
+/// Throws InputError unless the strand is a chain.
 std::unique_ptr<System> xpbd_cosserat(const Strand& strand,
                                       const XpbdCosseratOptions& options,
                                       Effects effects) {
@@ -60,6 +102,19 @@ std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                         .edge_inertia = parameters.number("edge_inertia"),
                         .solver = maximal_solver(parameters)},
                        std::move(effects));
+}
+
+}  // namespace
+
+ModelEntry xpbd_cosserat_entry() {
+  return {.id = "xpbd_cosserat",
+          .summary =
+              "Cosserat rod of n edges as compliant constraints; 3n positions and n "
+              "quaternions",
+          .source = "Kugelstadt & Schoemer 2016; Deul 2018",
+          .parameters = xpbd_cosserat_parameters(),
+          .make = on_described_strand<make_xpbd_cosserat>,
+          .on_strand = make_xpbd_cosserat};
 }
 
 }  // namespace tress::models

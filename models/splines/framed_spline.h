@@ -6,7 +6,7 @@
 namespace tress::models {
 
 /// Stretching, bending and twisting of a cubic spline with material frames at its knots
-/// (dynamic_spline.h), coordinates z = (control points, theta at the knots). If
+/// (dynamic_spline.cpp), coordinates z = (control points, theta at the knots). If
 /// `clamped`, the first knot has the clamp's frame and no angle.
 class FramedSpline final : public Elasticity {
  public:

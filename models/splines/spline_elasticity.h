@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-/// Energy (J) of one quadrature point of dynamic_spline.h: a = r', b = r'',
+/// Energy (J) of one quadrature point of dynamic_spline.cpp: a = r', b = r'',
 ///
 ///     stretch (|a| - length)^2/2 + bend |a x b|^2/(2 |a|^4).
 template <class T>

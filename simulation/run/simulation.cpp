@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "simulation/run/method_run.h"
-
 namespace tress::simulation {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {

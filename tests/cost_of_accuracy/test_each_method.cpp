@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/each_method.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_each_method {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/changed_data.h"
+#include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/numerics/tip_track.h"
 #include "simulation/scene/typical_strands.h"

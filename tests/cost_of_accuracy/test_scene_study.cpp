@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/accuracy_claims.h"
-#include "experiments/cost_of_accuracy/advice.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
-#include "experiments/cost_of_accuracy/scene_study.h"
 #include "experiments/numerics/tip_track.h"
 #include "integrators/error_indicator.h"
 #include "simulation/run/tip_paths.h"

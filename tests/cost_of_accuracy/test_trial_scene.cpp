@@ -5,7 +5,7 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/cost_of_accuracy/methods.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_trial_scene {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/hard_cases/grid.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "experiments/run/exit_code.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"

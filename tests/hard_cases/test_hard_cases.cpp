@@ -6,9 +6,8 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/hard_cases/claims.h"
 #include "experiments/hard_cases/gauges.h"
-#include "experiments/hard_cases/grid.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "models/effects/body.h"
 
 namespace tress::test_hard_cases {

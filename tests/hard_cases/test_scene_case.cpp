@@ -6,8 +6,7 @@
 #include <fstream>
 
 #include "contract/input_error.h"
-#include "experiments/hard_cases/grid.h"
-#include "experiments/hard_cases/scene_case.h"
+#include "experiments/hard_cases/hard_cases.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::test_scene_case {

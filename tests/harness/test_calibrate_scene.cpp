@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "contract/input_error.h"
-#include "experiments/calibrate/fit_grid.h"
+#include "experiments/calibrate/calibrate.h"
 #include "experiments/calibrate/specimen.h"
 
 namespace tress::test_calibrate_scene {

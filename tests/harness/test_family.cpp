@@ -5,9 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "experiments/family/hair.h"
-#include "experiments/family/study.h"
-#include "experiments/family/summary.h"
+#include "experiments/family/family.h"
 
 namespace tress::family {
 

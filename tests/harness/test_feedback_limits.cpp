@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/constraint_drift/drift_claims.h"
-#include "experiments/constraint_drift/feedback_limits.h"
+#include "experiments/constraint_drift/constraint_drift.h"
 
 namespace tress::test_feedback_limits {
 

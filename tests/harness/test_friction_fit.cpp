@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "experiments/calibrate/friction_fit.h"
-#include "experiments/calibrate/friction_start.h"
 #include "experiments/calibrate/shipped_records.h"
 #include "experiments/numerics/tip_signal.h"
 #include "experiments/problems/strand_models.h"

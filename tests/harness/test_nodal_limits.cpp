@@ -3,8 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "experiments/stability_limit/nodal_limits.h"
-#include "experiments/stability_limit/stability_grid.h"
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::test_nodal_limits {
 

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "contract/input_error.h"
-#include "experiments/stability_limit/scene_limits.h"
-#include "experiments/stability_limit/stability_grid.h"
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::test_scene_limits {
 

@@ -9,11 +9,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/scaling/scaling_claims.h"
-#include "experiments/scaling/scene_costs.h"
-#include "experiments/work_precision/row_settings.h"
-#include "experiments/work_precision/scene_runs.h"
-#include "experiments/work_precision/work_precision_series.h"
+#include "experiments/scaling/scaling.h"
+#include "experiments/work_precision/work_precision.h"
 #include "simulation/scene/changes.h"
 
 namespace tress::test_scene_precision {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/constraint_drift/drift_claims.h"
-#include "experiments/stability_limit/stability_claims.h"
+#include "experiments/constraint_drift/constraint_drift.h"
+#include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::test_stability_claims {
 

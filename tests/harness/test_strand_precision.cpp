@@ -6,15 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/numerics/pareto.h"
 #include "experiments/numerics/tip_track.h"
-#include "experiments/peers/swing.h"
+#include "experiments/peers/peer.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_reference.h"
 #include "experiments/problems/strand_scenes.h"
-#include "experiments/work_precision/row_settings.h"
-#include "experiments/work_precision/strand_claims.h"
-#include "experiments/work_precision/strand_grid.h"
+#include "experiments/work_precision/work_precision.h"
 #include "models/strand/strand_parameters.h"
 #include "simulation/run/simulation.h"
 

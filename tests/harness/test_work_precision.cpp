@@ -6,11 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/work_precision/claims.h"
-#include "experiments/work_precision/problem_runs.h"
-#include "experiments/work_precision/row_settings.h"
-#include "experiments/work_precision/strand_runs.h"
-#include "experiments/work_precision/work_precision_series.h"
+#include "experiments/work_precision/work_precision.h"
 
 namespace tress::test_work_precision {
 

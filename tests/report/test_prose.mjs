@@ -37,7 +37,7 @@ test('every source has a line, once, with all places that cite it', () => {
   const lines = list.split('\n').filter((line) => line.startsWith('| Chung'));
   assert.equal(lines.length, 1, 'Chung-Hulbert is Chung, Hulbert');
   assert.match(lines[0], /1993 .*`integrators\/generalized_alpha.cpp`/);
-  assert.match(list, /Baraff \| 1996 .*`models\/catalogue.cpp`.*`models\/maximal\/mass_spring.h`/);
+  assert.match(list, /Baraff \| 1996 .*`models\/catalogue.cpp`.*`models\/maximal\/mass_spring.cpp`/);
   assert.match(list, /\| Swope et al\. \| 1982 \| J\. Chem\. Phys\. 76, 637 \|/);
 });
 

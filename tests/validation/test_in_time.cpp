@@ -5,14 +5,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/validation/chain.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/pendulum.h"
-#include "experiments/validation/pinned_elastica.h"
-#include "experiments/validation/ringing.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/spring.h"
-#include "experiments/validation/stick_slip.h"
-#include "experiments/validation/wisp.h"
+#include "experiments/validation/test.h"
 
 namespace tress::test_in_time {
 

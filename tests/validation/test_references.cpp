@@ -4,8 +4,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
-#include "experiments/validation/curl_threshold.h"
-#include "experiments/validation/helical_spring.h"
+#include "experiments/validation/exact_rods.h"
 #include "experiments/validation/localised_buckling.h"
 #include "experiments/validation/rods/beam_modes.h"
 #include "experiments/validation/rods/master_curve.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contract/system.h"
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
 

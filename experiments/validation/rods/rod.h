@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/validation/rods/end.h"
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "experiments/problems/model_variants.h"
+#include "experiments/problems/strand_models.h"
 #include "experiments/validation/rods/end.h"
 #include "experiments/validation/rods/loads.h"
 #include "experiments/validation/rods/small_motions.h"

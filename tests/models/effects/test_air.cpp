@@ -6,7 +6,6 @@
 #include "contract/input_error.h"
 #include "models/effects/air_drag.h"
 #include "models/effects/gravity.h"
-#include "models/effects/quadratic_drag.h"
 #include "models/effects/wind.h"
 #include "tests/models/effects/settle.h"
 

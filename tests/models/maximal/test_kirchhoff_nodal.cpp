@@ -5,7 +5,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/fit.h"
-#include "models/maximal/kirchhoff_nodal.h"
+#include "models/catalogue.h"
 #include "tests/models/maximal/clamped_modes.h"
 #include "tests/models/maximal/thin_rod.h"
 #include "tests/models/reduced/kirchhoff.h"
@@ -271,10 +271,14 @@ TEST(KirchhoffNodal, FallsInThePlaneAsDerDoesOnTheSameGrid) {
 TEST(KirchhoffNodal, RefusesWhatIsNoClampedChain) {
   EXPECT_THROW((void)make_model("kirchhoff_nodal", {{"motion", "free"}}), InputError);
   const Parameters p = parameters_of("super_helix", {{"motion", "free"}});
-  EXPECT_THROW((void)kirchhoff_nodal(strand(p), {}, {}), InputError);
+  const auto make = [](const Strand& one) {
+    return find_model("kirchhoff_nodal")
+        .on_strand(one, parameters_of("kirchhoff_nodal", {}), {});
+  };
+  EXPECT_THROW((void)make(strand(p)), InputError);
   Strand branched = strand(parameters_of("super_helix", {{"elements", "3"}}));
   branched.segments[2].parent = 0;
-  EXPECT_THROW((void)kirchhoff_nodal(branched, {}, {}), InputError);
+  EXPECT_THROW((void)make(branched), InputError);
 }
 
 }  // namespace tress::test_kirchhoff_nodal

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Momentum of particles is linear and quadratic in q and v: invariants that the midpoint
 // rule keeps. What is left: rounding, eps in every step, at worst all of one sign. The
-// spin of der's sections is not of this kind (der.h).
+// spin of der's sections is not of this kind (der.cpp).
 TEST(MomentumOfParticles, IsKeptByTheMidpointRule) {
   const auto system = make_model("mass_spring", with(soft, thrown));
   long steps = 0;

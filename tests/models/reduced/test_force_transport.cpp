@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/linear_modes.h"
+#include "experiments/numerics/equilibrium.h"
 #include "tests/models/reduced/kirchhoff.h"
 
 namespace tress::test_force_transport {

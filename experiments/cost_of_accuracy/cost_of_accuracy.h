@@ -1,0 +1,109 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/cost_of_accuracy/scene_reference.h"
+#include "experiments/cost_of_accuracy/trial_scene.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::cost_of_accuracy {
+
+std::span<const Column> study_columns();
+
+/// Writes a method into its columns.
+void set_method(const Method& method, Row& row);
+
+/// The configuration that a row describes, at `rate` frames per second.
+struct Configuration {
+  Method method;
+  int elements = 0, substeps = 0;
+};
+Configuration configuration(const Row& row, double rate);
+
+/// Parameters of the study, common to all scenes.
+struct StudyPlan {
+  std::vector<double> targets;          // errors of the tip over the length, descending
+  std::vector<int> elements, substeps;  // coarse ladders
+  MethodChoice methods;
+  ReferenceCut reference;
+  std::string references;   // folder of stored references
+  double rate = 60;         // frames per second
+  double horizon = 0.5;     // s
+  std::size_t strands = 1;  // of a groom
+  /// Work limit of one scene's search: elements x steps of all runs. A clock would make
+  /// the answer depend on the load of the machine; the deadline of a row is for
+  /// emergencies.
+  double search_work = 3e6;
+  long longest_run = 4096;  // elements x steps of a frame, per run
+  double budget_s = 0;      // wall time per frame; 0: not requested
+  int repeat = 3;           // repetitions of timed runs
+  bool refine = true;       // winners are checked against a refined reference
+  bool report = false;      // reports progress and the best so far
+};
+
+/// Errors are trusted from this multiple of the reference's gap on.
+constexpr double believed = 10;
+
+/// The horizon ends where the two sides are this far apart, over the length: beyond it
+/// not even 1 % could be resolved.
+constexpr double parted = 0.01 / believed;
+
+/// All rows of one scene, each beginning with the cells of `identity`:
+///
+///     winner     the cheapest run that meets a target
+///     runner_up  the cheapest of another model or integrator
+///     without    the cheapest with one choice of the winner replaced: another model with
+///                its best options; on the same model another integrator; the winner
+///                with another value of one option, with twice as many elements, and with
+///                half the step. Elements and step are tuned anew.
+///     budget     the most accurate run within the given time per frame
+///     front      runs that no other beats in both error and time
+///     as_given   the scene as its file has it
+///
+/// A run meets a target when it does so wherever the rod is within the gap of the two
+/// sides, error + gap <= target, and its neighbours do so for 1.5 times the target (see
+/// Neighbour). If none meets it, the winner row has the nearest run and the status
+/// not_met.
+std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
+                             const Row& identity, const Deadline& deadline);
+
+/// The cheapest run of every model by every usual integrator, one row of kind `method`
+/// each: complements the search for the overall best (study_scene) with the cost of each
+/// model and the errors of that run in lengths, momentum and energy. Counted work
+/// decides, so that the table is the same on every machine (cheapest_run).
+///
+/// For scenes of one strand; options of the scene's own model apply to every model that
+/// has them. Models that cannot represent the scene are left out. Throws InputError where
+/// the scene has another number of strands.
+std::vector<Case> method_cases(const CommandLine& line, const std::string& file);
+
+/// The midpoint rule conserves the angular momentum of a thrown body better than its tip.
+void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// The claims about every scene of the table: its winners keep their error against a once
+/// more refined reference; their neighbours confirm that they are not accidental; and no
+/// run listed beside a winner, for the same target or in the front, beats it.
+void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// Practical advice from the rows of one scene for one target (or one budget): the
+/// configuration to take, the next best, and what to avoid, one line each, and one more
+/// if the search was stopped early. If nothing meets the target, or nothing did so far,
+/// the first line says so and the second has the best run known. If nothing is known the
+/// only line says why.
+std::vector<std::string> advice(const std::vector<Row>& rows);
+
+/// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms: 0.82 % of the
+/// length in 3.2 ms per simulated second (0.053 ms a frame)"
+std::string configuration_and_price(const Row& row);
+
+/// The recommended row, or the best known; null if there is none.
+const Row* advised(const std::vector<Row>& rows);
+
+/// The scene file as advised, for `simulate`.
+std::string advised_text(const Scene& given, const Row& row, double rate);
+
+}  // namespace tress::experiments::cost_of_accuracy

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/hard_cases/scene_gauge.h"
+#include "experiments/hard_cases/survival.h"
+#include "experiments/run/command_line.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::hard_cases {
+
+/// One row: an attempt, and the reference it is compared with.
+struct Cell {
+  Attempt attempt;
+  Subject compared;       // owner of the reference: the subject with its exact tangent
+  std::size_t reference;  // index among the references of all cells
+
+  Row identity() const;
+};
+
+struct Grid {
+  std::vector<Cell> cells;
+  std::size_t references = 0;
+};
+
+/// --set keys that select rows.
+std::span<const Parameter> hard_case_settings();
+
+// The values that the command line selects from those of hard_grid().
+std::vector<std::string_view> tried_integrators(const CommandLine& line);
+/// s
+std::vector<double> tried_steps(const CommandLine& line);
+/// For this model and integrator; one empty string: the model has no such option.
+std::vector<std::string_view> tried_tangents(const CommandLine& line,
+                                             const ModelEntry& model,
+                                             std::string_view integrator);
+
+/// Every case on every strand model, and the particle systems that it names, by every
+/// integrator and at every step that the command line selects; impossible combinations
+/// are cells too.
+///
+/// --quick: semi_implicit_euler, backward_euler and implicit_midpoint, models with
+/// default options, at 1/300 and 1/30 s. Otherwise more integrators, models with every
+/// way of keeping lengths, and 1 ms; --full: every fixed-step integrator, and both
+/// tangents. semi_implicit_euler has the stiff tangent where available.
+Grid hard_grid(const CommandLine& line, const Settings& settings);
+
+/// With the violated criterion, or the one nearest to its limit; it has a name and a
+/// limit if it is one of SceneCriteria.
+struct SceneSurvival : Survival {
+  std::string_view measured;
+  double limit = std::numeric_limits<double>::quiet_NaN();
+  std::string_view criterion;
+};
+
+/// A scene as a hard case: runs it at its own step until t_end (s), or until a criterion
+/// is violated. Stable if every step has a solution, the guard finds nothing and the
+/// criteria are met; there is no reference for accuracy. `limit`: World::work().
+SceneSurvival survive(const Scene& scene, const SceneCriteria& criteria, double t_end,
+                      const WorkLimit& limit);
+
+/// Rows for scene files: every strand model and integrator that the command line selects,
+/// at the scene's step and at the standard ones; for a scene without strands its own
+/// model. The scene's model keeps the scene's options, others have their defaults, with
+/// the tangents of hard_grid(). Of many strands that do not touch each other, typical
+/// ones are run. Throws InputError on settings that a scene defines itself.
+std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
+
+/// The claims about the table of hard_cases: every cell has an outcome, and super_helix
+/// by backward_euler with the exact tangent passes every case at 1/30 s that it does not
+/// refuse, except for known limits.
+void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts);
+
+}  // namespace tress::experiments::hard_cases

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "contract/system.h"
+#include "models/catalogue.h"
+
+namespace tress::experiments {
+
+/// A strand in equilibrium under its weight.
+struct AtRest {
+  std::unique_ptr<System> system;
+  std::vector<double> q;
+};
+
+/// Newton's iteration on r(q) = 0 at v = a = 0, from the initial state, with gravity
+/// raised in steps to the value in `parameters`; for models without constraints and with
+/// an exact tangent. Throws std::runtime_error when it does not converge.
+AtRest at_rest(const ModelEntry& model, const Parameters& parameters);
+
+/// Small undamped motions about an equilibrium q, x'' = -M^-1 K x with K = dr/dq: x ~
+/// exp(s t), s^2 = -(eigenvalues of M^-1 K). The eigenvalues are positive if M and K are
+/// symmetric positive definite; in general they may be arbitrary.
+struct LinearModes {
+  double slowest_rad_s = 0;  // least |s|
+  double growth_1_s = 0;     // largest real part of s; 0: no growth
+  int complex_modes = 0;     // number of non-real eigenvalues
+};
+
+/// For models without constraints and with a regular M, symmetric or not. O(n^3).
+LinearModes linear_modes(System& system, In q);
+
+}  // namespace tress::experiments

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/run/command_line.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "experiments/run/verdicts.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::scaling {
+
+/// Name of a straight strand in the column `structure`; other names are trees.
+inline constexpr std::string_view straight = "straight";
+
+/// One row of scaling: the strand or tree, and how its model solves S x = b.
+struct ScalingCase {
+  std::string_view structure;
+  const ModelEntry* model;
+  std::string_view solver, tangent, modes;
+  int elements;
+
+  Row identity() const;
+  /// The model's: defaults, then the user's, those of the released strand or of the tree
+  /// with its material, and this row's.
+  Parameters parameters(const Settings& settings) const;
+  /// Whether frames per second are reported: sizes of the published table, all unknowns.
+  bool in_seed_table() const;
+  /// Published frames per second at 30 a second [Bertails-Descoubes 2010, "Performance
+  /// results"], on hardware of 2008; empty where not given.
+  std::optional<double> seed_fps() const;
+};
+
+/// --set keys that select rows.
+std::span<const Parameter> scaling_settings();
+
+/// The rows that the command line and its settings select: every solver, tangent and set
+/// of modes over the sizes, dense matrices up to a size limit, and the five trees.
+std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& settings);
+
+/// Rows for scene files: the cost of a semi-implicit step by every selected strand model,
+/// against the number of elements (of one typical strand; of all, where they touch each
+/// other) and against the number of strands with the file's discretisation. Throws
+/// InputError on scenes without strands and on two of one name.
+std::vector<Case> scene_costs(const CommandLine& line,
+                              const std::vector<std::string>& files);
+
+/// Fills `exponent` of every series of straight strands (same model, solver, tangent and
+/// modes) and of scene files: p of cost ~ N^p, fitted to the measurements from 20
+/// elements on, or to all numbers of strands, with at least three sizes.
+void add_exponents(std::vector<Row>& rows);
+
+/// Figures of this machine for the super-helix with the stiff tangent: growth of the
+/// recursion's cost and cost per element, cost ratio of the composite, and savings from
+/// fewer unknowns.
+void tell_scaling_figures(const std::vector<Row>& rows, Verdicts& verdicts);
+
+}  // namespace tress::experiments::scaling

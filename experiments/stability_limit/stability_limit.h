@@ -1,0 +1,111 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/numerics/stability.h"
+#include "experiments/problems/strand_scenes.h"
+#include "experiments/run/command_line.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "experiments/run/verdicts.h"
+#include "integrators/catalogue.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::stability_limit {
+
+/// Internal friction gamma (kg m^3/s) by name.
+struct Damping {
+  std::string_view name;
+  std::string_view internal_friction;
+};
+
+inline constexpr Damping undamped{"none", "0"};
+
+/// One row of stability_limit: the strand, its motion and the method.
+struct StabilityCase {
+  const StrandScene* scene;
+  const ModelEntry* model;
+  std::string_view integrator, solver, tangent, modes;
+  int elements;
+  Damping damping;
+
+  Row identity() const;
+  /// Whether the command line and the settings select this row.
+  bool selected(const CommandLine& line, const Parameters& rows) const;
+  /// The model's: defaults, then the user's, the scene's, and this row's.
+  Parameters parameters(const Settings& settings) const;
+};
+
+/// --set keys that select rows and control the search for steps.
+std::span<const Parameter> stability_settings();
+
+/// The user's value of this key; `usual` if it is 0.
+double set_or(const Parameters& rows, std::string_view key, double usual);
+
+/// Search parameters for steps; `finest` (s) and `depth` are defaults that the user may
+/// override.
+StepSearch step_search(const Parameters& rows, double finest, double depth);
+
+/// Whether a study of all integrators includes this one: it has a step, and is named, or
+/// is one that --quick keeps.
+bool considered(const CommandLine& line, const IntegratorEntry& entry);
+
+/// The rows that the command line and its settings select, without those whose model the
+/// integrator refuses.
+std::vector<StabilityCase> stability_cases(const CommandLine& line,
+                                           const Settings& settings);
+
+/// The largest stable step (s), and the run at it.
+struct FoundLimit {
+  double step;
+  StabilityRun run;
+};
+
+/// Searches for the largest step that `judge` finds stable (empty: the work is used up)
+/// and fills the columns about it. The row fails, and nothing is returned, if no stable
+/// step exists or none was found within the work limit.
+std::optional<FoundLimit> find_limit(
+    const StepSearch& search,
+    const std::function<std::optional<StabilityRun>(double dt)>& judge, Row& row);
+
+/// Sets the columns about the run at the limit and the cost (s of wall time) of one of
+/// its steps.
+void set_cost(const FoundLimit& limit, double cost, Row& row);
+
+/// Search parameters for the limits of scenes.
+struct SceneLimits {
+  StepSearch search;
+  double most_work;  // per row, total_work()
+  double horizon;    // s simulated per run, at most the scene's duration
+  std::size_t strands;
+  int repeat;
+};
+
+/// Rows for scene files: the largest step of each method such that the scene as a whole
+/// satisfies the simulation guard (Guard), and no step has to be repeated with shorter
+/// ones. Of many strands that do not touch each other, typical ones are run. Throws
+/// InputError on --models and --elements, which a scene defines itself.
+std::vector<Case> scene_cases(const CommandLine& line,
+                              const std::vector<std::string>& files,
+                              const SceneLimits& how);
+
+/// The study `nodal`: is a nodal scheme of Kirchhoff's equations with the stiffness of
+/// curvature removed unstable for a hair of 200 nodes at steps of 1e-5 s [Bertails 2006],
+/// and which steps does it need? Empty if the command line selects other rows.
+std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings);
+
+/// Checks that claim, method by method; that in a plane the limit falls as 1/N^2; and
+/// that the limits of explicit methods are those of the grid's highest frequency.
+void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// The claims about the table of stability_limit. Two limits are equal when the brackets
+/// of their bisections, from dt_max_s to dt_first_unstable_s, have a step in common; the
+/// deciding number is the ratio of the two dt_max_s of the worst pair.
+void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+}  // namespace tress::experiments::stability_limit

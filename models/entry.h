@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "models/strand/strand_parameters.h"
+
+namespace tress::models {
+
+/// The roots that a model of a strand takes.
+enum class Roots { clamped_or_free, clamped };
+
+/// One line of the list of models: what `--list` prints and how to make a model from its
+/// parameters. A model's file ends with a function `ModelEntry <id>_entry()`, which is
+/// listed in catalogue.cpp.
+struct ModelEntry {
+  std::string_view id;
+  std::string_view summary;  // unknowns and variants, one line
+  std::string_view source;   // author year, or test set
+  std::span<const Parameter> parameters;  // its own options
+  /// Reads setup_parameters() (models/catalogue.h).
+  std::unique_ptr<System> (*make)(const Parameters&);
+  /// Makes the model for a given strand and effects, with its own options. Null if the
+  /// model defines its own geometry.
+  std::unique_ptr<System> (*on_strand)(const Strand&, const Parameters&,
+                                       Effects) = nullptr;
+  /// Batches two to four strands of equal discretisation as one system, at little more
+  /// than the cost of one; returns null if these options do not support it. Null if the
+  /// model has no batched form.
+  std::unique_ptr<System> (*on_strands)(std::span<const Strand>, const Parameters&,
+                                        std::vector<Effects>) = nullptr;
+  Roots roots = Roots::clamped_or_free;
+};
+
+using OnStrand = std::unique_ptr<System>(const Strand&, const Parameters&, Effects);
+
+/// On the strand that strand_parameters() describe.
+template <OnStrand* make>
+std::unique_ptr<System> on_described_strand(const Parameters& parameters) {
+  return make(strand(parameters), parameters, strand_effects(parameters));
+}
+
+}  // namespace tress::models
