@@ -5,11 +5,11 @@
 namespace tress::integrators {
 namespace {
 
-constexpr Parameter own[] = {{.name = "rho_inf",
-                              .help = "spectral radius at infinity",
-                              .number = 0.9,
-                              .min = 0,
-                              .max = 1}};
+constexpr Parameter own_generalized_alpha[] = {{.name = "rho_inf",
+                                                .help = "spectral radius at infinity",
+                                                .number = 0.9,
+                                                .min = 0,
+                                                .max = 1}};
 struct Coefficients {
   double alpha_m, alpha_f, gamma, beta;
 };
@@ -71,7 +71,7 @@ class GeneralizedAlpha final : public FixedStep {
 
 std::unique_ptr<Integrator> make_generalized_alpha(System& system,
                                                    const Options& options) {
-  const double rho_inf = own_options(options, own).number("rho_inf");
+  const double rho_inf = own_options(options, own_generalized_alpha).number("rho_inf");
   return std::make_unique<GeneralizedAlpha>(system, options, chung_hulbert(rho_inf));
 }
 
@@ -97,7 +97,7 @@ IntegratorEntry generalized_alpha_entry() {
           .source = "Chung-Hulbert 1993",
           .tangent = true,
           .formulations = of_order(2, stage_formulations),
-          .parameters = own,
+          .parameters = own_generalized_alpha,
           .make = make_generalized_alpha};
 }
 

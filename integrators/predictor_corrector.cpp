@@ -6,7 +6,7 @@
 namespace tress::integrators {
 namespace {
 
-constexpr Parameter own[] = {
+constexpr Parameter own_predictor_corrector[] = {
     // The impulse that would have caused the correction [Bridson et al. 2002], or no
     // change of the velocity [Provot 1995].
     {.name = "correction",
@@ -43,7 +43,8 @@ constexpr Parameter own[] = {
 class PredictorCorrector final : public FixedStep {
  public:
   PredictorCorrector(System& system, const Options& options)
-      : PredictorCorrector(system, options, own_options(options, own)) {}
+      : PredictorCorrector(system, options,
+                           own_options(options, own_predictor_corrector)) {}
 
  private:
   PredictorCorrector(System& system, const Options& options, const Parameters& chosen)
@@ -101,7 +102,7 @@ IntegratorEntry predictor_corrector_entry() {
           .tangent = true,
           .formulations = {{Formulation::correction, 1}},
           .gaps = holds_constraints("has no constraint to correct"),
-          .parameters = own,
+          .parameters = own_predictor_corrector,
           .objection = weighs_coordinates,
           .make = make_method<PredictorCorrector>};
 }

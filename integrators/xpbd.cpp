@@ -8,7 +8,7 @@
 namespace tress::integrators {
 namespace {
 
-constexpr Parameter own[] = {
+constexpr Parameter own_xpbd[] = {
     {.name = "sweeps",
      .help = "Gauss-Seidel sweeps per step",
      .number = 10,
@@ -54,7 +54,7 @@ std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t coun
 class Xpbd final : public FixedStep {
  public:
   Xpbd(System& system, const Options& options)
-      : Xpbd(system, options, own_options(options, own)) {}
+      : Xpbd(system, options, own_options(options, own_xpbd)) {}
 
  private:
   static constexpr int columns = ComplianceForm::most_coordinates;
@@ -178,7 +178,7 @@ IntegratorEntry xpbd_entry() {
                    {Formulation::index3, no_multipliers},
                    {Formulation::rattle, no_multipliers},
                    {Formulation::correction, no_multipliers}},
-          .parameters = own,
+          .parameters = own_xpbd,
           .objection = compliances,
           .make = make_method<Xpbd>};
 }

@@ -8,12 +8,12 @@
 namespace tress::integrators {
 namespace {
 
-constexpr std::string_view id = "arkode_dirk";
+constexpr std::string_view dirk_id = "arkode_dirk";
 constexpr std::string_view standard = "default";
-constexpr Parameter own[] = {{.name = "table",
-                              .help = "a SUNDIALS Butcher table by name",
-                              .text = true,
-                              .fallback = standard}};
+constexpr Parameter own_dirk[] = {{.name = "table",
+                                   .help = "a SUNDIALS Butcher table by name",
+                                   .text = true,
+                                   .fallback = standard}};
 constexpr const char* standard_table = "ARKODE_ESDIRK436L2SA_6_3_4";
 constexpr const char* no_explicit_table = "ARKODE_ERK_NONE";
 
@@ -45,13 +45,14 @@ constexpr std::array<std::string_view, 23> tables{"ARKODE_SDIRK_2_1_2",
 InputError unknown_table(const std::string& table) {
   std::string known = "choose one of";
   for (const std::string_view each : tables) known += " " + std::string(each);
-  return {"unknown Butcher table '" + table + "'", std::string(id) + " table", known};
+  return {"unknown Butcher table '" + table + "'", std::string(dirk_id) + " table",
+          known};
 }
 
 }  // namespace
 
 ArkodeDirk::ArkodeDirk(System& system, const Options& options)
-    : Driver(id, system, options, ode_formulations, 0),
+    : Driver(dirk_id, system, options, ode_formulations, 0),
       equations_(system, options),
       memory_(require(ARKStepCreate(nullptr, &FirstOrder::rate_callback, time_,
                                     y_.handle(), context_.handle()),
@@ -77,10 +78,10 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
 }
 
 void ArkodeDirk::choose_table() {
-  const Parameters chosen = own_options(options_, own);
+  const Parameters chosen = own_options(options_, own_dirk);
   const std::string name(chosen.word("table"));
   if (name == standard && options_.max_order != 0) {
-    require(ARKStepSetOrder(memory_.get(), chosen_order(id, options_, 0, 2, 5)),
+    require(ARKStepSetOrder(memory_.get(), chosen_order(dirk_id, options_, 0, 2, 5)),
             "ARKStepSetOrder");
     return;
   }
@@ -127,7 +128,7 @@ IntegratorEntry arkode_dirk_entry() {
           .formulations = of_order(4, ode_formulations),
           .gaps = {{Formulation::projection,
                     "ARKODE has no projection: SUNDIALS projects in cvode_bdf only"}},
-          .parameters = own,
+          .parameters = own_dirk,
           .objection = inverts_mass,
           .make = make_method<ArkodeDirk>};
 }

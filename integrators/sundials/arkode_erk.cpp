@@ -7,7 +7,7 @@
 namespace tress::integrators {
 namespace {
 
-constexpr std::string_view id = "arkode_erk";
+constexpr std::string_view erk_id = "arkode_erk";
 constexpr int standard_order = 5;
 constexpr double shrink = 0.25;          // of a step that the model has rejected
 constexpr double shortest_step = 1e-15;  // relative to t: below it, rejection is final
@@ -15,7 +15,7 @@ constexpr double shortest_step = 1e-15;  // relative to t: below it, rejection i
 }  // namespace
 
 ArkodeErk::ArkodeErk(System& system, const Options& options)
-    : Driver(id, system, options, ode_formulations, 0),
+    : Driver(erk_id, system, options, ode_formulations, 0),
       equations_(system, options),
       memory_(require(ERKStepCreate(&FirstOrder::rate_callback, time_, y_.handle(),
                                     context_.handle()),
@@ -25,7 +25,7 @@ ArkodeErk::ArkodeErk(System& system, const Options& options)
   require(ERKStepSetUserData(memory, &equations_), "ERKStepSetUserData");
   require(ERKStepSVtolerances(memory, options.rtol, atol_.handle()),
           "ERKStepSVtolerances");
-  require(ERKStepSetOrder(memory, chosen_order(id, options, standard_order, 2, 8)),
+  require(ERKStepSetOrder(memory, chosen_order(erk_id, options, standard_order, 2, 8)),
           "ERKStepSetOrder");
   require(ERKStepSetMaxStep(memory, options.max_step), "ERKStepSetMaxStep");
   require(ERKStepSetMaxHnilWarns(memory, -1), "ERKStepSetMaxHnilWarns");

@@ -7,15 +7,15 @@
 namespace tress::integrators {
 namespace {
 
-constexpr std::string_view id = "cvode_adams";
-constexpr int highest_order = 12;
+constexpr std::string_view adams_id = "cvode_adams";
+constexpr int adams_highest_order = 12;
 constexpr int anderson_vectors = 0;  // plain fixed-point iteration
 
 }  // namespace
 
 CvodeAdams::CvodeAdams(System& system, const Options& options)
-    : Cvode(id, system, options, ode_formulations, CV_ADAMS,
-            chosen_order(id, options, highest_order, 1, highest_order)),
+    : Cvode(adams_id, system, options, ode_formulations, CV_ADAMS,
+            chosen_order(adams_id, options, adams_highest_order, 1, adams_highest_order)),
       fixed_point_(require(
           SUNNonlinSol_FixedPoint(y_.handle(), anderson_vectors, context_.handle()),
           "SUNNonlinSol_FixedPoint")) {

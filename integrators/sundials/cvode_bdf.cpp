@@ -5,9 +5,9 @@
 namespace tress::integrators {
 namespace {
 
-constexpr std::string_view id = "cvode_bdf";
+constexpr std::string_view bdf_id = "cvode_bdf";
 constexpr int standard_order = 2;
-constexpr int highest_order = 5;
+constexpr int bdf_highest_order = 5;
 
 int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vector error,
             void* self) noexcept {
@@ -18,8 +18,8 @@ int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vecto
 }  // namespace
 
 CvodeBdf::CvodeBdf(System& system, const Options& options)
-    : Cvode(id, system, options, projected_formulations, CV_BDF,
-            chosen_order(id, options, standard_order, 1, highest_order)),
+    : Cvode(bdf_id, system, options, projected_formulations, CV_BDF,
+            chosen_order(bdf_id, options, standard_order, 1, bdf_highest_order)),
       linear_(context_, equations_) {
   void* const memory = memory_.get();
   linear_.attach(memory_);

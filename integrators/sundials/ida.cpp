@@ -7,12 +7,12 @@
 namespace tress::integrators {
 namespace {
 
-constexpr std::string_view id = "ida";
-constexpr int highest_order = 5;
+constexpr std::string_view ida_id = "ida";
+constexpr int ida_highest_order = 5;
 constexpr std::array ida_formulations{Formulation::parametric, Formulation::acceleration,
                                       Formulation::baumgarte, Formulation::index2_ggl,
                                       Formulation::index3};
-constexpr Parameter own[] = {
+constexpr Parameter own_ida[] = {
     {.name = "suppress_algebraic",
      .help = "multipliers out of the error test",
      .choices = "true|false"},
@@ -36,7 +36,7 @@ std::unique_ptr<DaeNewton> make_newton(DaeForm& form, const Options& options) {
 }  // namespace
 
 Ida::Ida(System& system, const Options& options)
-    : Driver(id, system, options, ida_formulations,
+    : Driver(ida_id, system, options, ida_formulations,
              DaeForm::multipliers(system, options.formulation)),
       form_(system, options),
       newton_(make_newton(form_, options)),
@@ -51,11 +51,11 @@ Ida::Ida(System& system, const Options& options)
   require(IDASVtolerances(memory, options.rtol, atol_.handle()), "IDASVtolerances");
   form_.differential(id_.values());
   require(IDASetId(memory, id_.handle()), "IDASetId");
-  const Parameters chosen = own_options(options, own);
+  const Parameters chosen = own_options(options, own_ida);
   multiplier_atol_ = chosen.number("multiplier_atol");
   require(IDASetSuppressAlg(memory, chosen.word("suppress_algebraic") == "true"),
           "IDASetSuppressAlg");
-  require(IDASetMaxOrd(memory, chosen_order(id, options, highest_order, 1, 5)),
+  require(IDASetMaxOrd(memory, chosen_order(ida_id, options, ida_highest_order, 1, 5)),
           "IDASetMaxOrd");
   require(IDASetMaxStep(memory, options.max_step), "IDASetMaxStep");
   linear_.attach(memory_);
@@ -105,9 +105,9 @@ IntegratorEntry ida_entry() {
       .source = "SUNDIALS IDA",
       .adaptive = true,
       .tangent = true,
-      .formulations = of_order(highest_order, ida_formulations),
+      .formulations = of_order(ida_highest_order, ida_formulations),
       .gaps = {{Formulation::projection, "holds g = 0 itself: use its own formulations"}},
-      .parameters = own,
+      .parameters = own_ida,
       .make = make_method<Ida>};
 }
 
