@@ -19,6 +19,8 @@
   METHOD(implicit_midpoint)          \
   METHOD(linearly_implicit_midpoint) \
   METHOD(bdf2)                       \
+  METHOD(tr_bdf2)                    \
+  METHOD(esdirk43)                   \
   METHOD(newmark)                    \
   METHOD(generalized_alpha)          \
   METHOD(xpbd)                       \

@@ -33,8 +33,14 @@ class Stage {
  public:
   Stage(Dynamics& dynamics, const Options& options);
 
+  /// The matrix under Refresh::every_step: of this stage's own, or shared with the stage
+  /// solved before, of the same step; a shared one is rebuilt once where it converges
+  /// slowly.
+  enum class Matrix { own, shared };
+
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
-  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+               Matrix matrix = Matrix::own) noexcept;
 
   /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
   /// with the matrix at acceleration a_matrix.
@@ -56,7 +62,8 @@ class Stage {
 
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
-  Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status newton(double t, In q_bar, In v_bar, Weights w, Matrix matrix, InOut a,
+                InOut lambda) noexcept;
   /// Newton's step from q_, v_, the state that belongs to `a`, and its size.
   Status newton_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
                      double& size) noexcept;
