@@ -19,6 +19,11 @@ struct EsdirkTable {
   int embedded_order = 0;
   std::array<std::array<double, most_stages>, most_stages> a{};
   std::array<double, most_stages> embedded{};  // weights of the comparison solution
+  /// The estimate allowed in one step is share tolerance^power. In the limit of short
+  /// steps the error of a whole run is proportional to the tolerance with power =
+  /// k/order, where the estimate falls as h^k [Soederlind, Wang 2006, J. Comput. Appl.
+  /// Math. 185, 244].
+  double share = 1, power = 1;
 
   double gamma() const { return a[1][1]; }
   /// Time of stage i over the step: the sum of its row.
@@ -51,15 +56,20 @@ class EsdirkStages {
 
  private:
   std::size_t last() const { return table_.stages - 1; }
-  void guess(std::size_t i) noexcept;
+  /// Whether the last step ended, or began, where this one begins.
+  void look_back(double t) noexcept;
+  void guess(std::size_t i, double h) noexcept;
 
   const EsdirkTable& table_;
   Stage stage_;
   std::vector<std::vector<double>> v_, a_;  // of the stages
   std::vector<double> q_bar_, v_bar_, lambda_;
+  double t_ = 0, h_ = 0;          // of the last step, h_ = 0: none
+  double h_before_ = 0;           // of the step before, 0: none
+  std::vector<double> a_before_;  // at its start
 };
 
-/// The method with a fixed step. `table` must live as long as it.
+/// The method with a fixed step, or with Options::tolerance. `table` must outlive it.
 std::unique_ptr<Integrator> make_esdirk(const EsdirkTable& table, System& system,
                                         const Options& options);
 

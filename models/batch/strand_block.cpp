@@ -1,6 +1,7 @@
 #include "models/batch/strand_block.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tress::models {
 
@@ -23,6 +24,12 @@ void StrandBlock::scale(Out q_typ, Out v_typ) const {
   for (std::size_t s = 0; s < strands_.size(); ++s) {
     strands_[s]->scale(of(s, q_typ), of(s, v_typ));
   }
+}
+
+double StrandBlock::next_breakpoint(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& strand : strands_) next = std::min(next, strand->next_breakpoint(t));
+  return next;
 }
 
 std::string StrandBlock::not_finite(double t, In q, In v) {

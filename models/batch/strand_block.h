@@ -22,6 +22,7 @@ class StrandBlock : public System,
   Traits traits() const override { return strands_.front()->traits(); }
   void initial_state(Out q, Out v) const override;
   void scale(Out q_typ, Out v_typ) const override;
+  double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override;
   ExplicitForm* explicit_form() override;
   Energetics* energetics() override { return this; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 
 #include "contract/input_error.h"
@@ -179,6 +180,12 @@ Status CoupledStrands::solve(In b, Out x) noexcept {
   }
   std::ranges::copy(b, x.begin());
   return solver_->solve(x);
+}
+
+double CoupledStrands::next_breakpoint(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& strand : strands_) next = std::min(next, strand->next_breakpoint(t));
+  return next;
 }
 
 bool CoupledStrands::accept(double t, InOut q, InOut v) {

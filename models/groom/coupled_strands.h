@@ -47,6 +47,7 @@ class CoupledStrands final : public System, private Energetics, private Material
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
+  double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override;
 
   /// Null unless all strands have Energetics.
