@@ -64,6 +64,11 @@ void check(const Scene& scene, const ScenePlaces& places) {
     return;
   }
   if (scene.interaction) {
+    if (!places.tolerance.empty() &&
+        scene.interaction->word("coupling") != "monolithic") {
+      throw InputError("strands that touch exchange forces every dt_s", places.tolerance,
+                       "give dt_s and no tolerance, or coupling = \"monolithic\"");
+    }
     at_place(places.interaction, [&] {
       return ContactLaw(*scene.interaction, "effects.strand_interaction");
     });
