@@ -18,7 +18,8 @@ namespace tress::integrators {
 /// Steps do not end where advance() does: the state there is read off a quintic
 /// polynomial through (q, v, a) at both ends of the step, error O(h^6), before
 /// System::accept is called for the step's end, so that coordinates keep their meaning.
-/// So the system must not be changed from outside between two calls of advance().
+/// Constraints hold at the steps' ends, and there as far as the polynomial follows them.
+/// The system must not be changed from outside between two calls of advance().
 ///
 /// Step control: PI with gains 0.7/k and 0.4/k for an estimate that falls as h^k
 /// [Gustafsson 1991, ACM TOMS 17, 533], a dead band that leaves the step alone, and no

@@ -130,14 +130,15 @@ class Reader {
       if (!read.given(key)) return;
       throw InputError(fmt::format("{} {}", key, why), read.place(key), "leave it out");
     };
+    const bool least = scene_.options.min_step > 0;
     if (scene_.options.tolerance == 0) {
-      refuse("min_step_s", "does nothing without tolerance");
+      if (least) refuse("min_step_s", "does nothing without tolerance");
       return;
     }
     if (!entry.adaptive && !entry.error_controlled) {
       refuse("tolerance", fmt::format("is not for {}, which has a fixed step", entry.id));
     }
-    if (entry.adaptive) {
+    if (entry.adaptive && least) {
       refuse("min_step_s", fmt::format("does nothing with {}", entry.id));
     }
     const auto decided =

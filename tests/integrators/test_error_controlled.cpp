@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"
+#include "models/catalogue.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
@@ -191,6 +192,52 @@ TEST_P(ErrorControl, RepeatsTheRunBitForBit) {
   ASSERT_EQ(drive.integrator->start(0, drive.q0, drive.v0), Status::ok);
   ASSERT_EQ(drive.to(0.77), Status::ok);
   EXPECT_EQ(drive.integrator->q()[0], first);
+}
+
+/// A hanging chain of four links, let go from the side.
+std::unique_ptr<System> chain() {
+  const ModelEntry& entry = find_model("inextensible_chain");
+  Parameters p(entry.parameters, "model");
+  p.set("links", "4");
+  return entry.make(p);
+}
+
+TEST_P(ErrorControl, HoldsConstraintsWhereItsFormulationDoes) {
+  std::vector<std::vector<double>> ends;
+  double length = 0;
+  for (const double tolerance : {1e-3, 1e-7}) {
+    const auto system = chain();
+    Options options = with(tolerance);
+    options.formulation = Formulation::projection;
+    Drive drive(GetParam().id, *system, options);
+    ASSERT_EQ(drive.to(0.5), Status::ok) << drive.integrator->failure();
+    MaterialPoints& points = *system->material_points();
+    std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+    points.positions(0.5, drive.integrator->q(), x);
+    ends.push_back(x);
+    const auto m = static_cast<std::size_t>(system->layout().constraints);
+    std::vector<double> g(m), scale(m);
+    ASSERT_EQ(system->constraint_form()->value(0.5, drive.integrator->q(), g),
+              Status::ok);
+    system->constraint_form()->scale(scale);
+    for (std::size_t k = 0; k < m; ++k) {
+      EXPECT_LE(std::abs(g[k]), tolerance * scale[k]);
+      length += scale[k] / 2;  // of both runs
+    }
+  }
+  double error = 0;
+  for (std::size_t i = 0; i < ends[0].size(); ++i) {
+    error = std::max(error, std::abs(ends[0][i] - ends[1][i]));
+  }
+  EXPECT_GT(error, 0);
+  EXPECT_LE(error, 1e-3 * length);
+}
+
+TEST_P(ErrorControl, IsRefusedOnIndex3) {
+  const auto system = chain();
+  Options options = with(1e-3);
+  options.formulation = Formulation::index3;
+  EXPECT_THROW(make_integrator(GetParam().id, *system, options), InputError);
 }
 
 TEST(Tolerance, IsRefusedByMethodsWithAFixedStepOnly) {
