@@ -39,6 +39,8 @@ struct Options {
   double rtol = 1e-6;           // adaptive methods
   double atol = 1e-8;           // adaptive methods, times System::scale
   double max_step = 0;          // s, 0: unlimited
+  double tolerance = 0;         // of the length, error-controlled methods; 0: fixed step
+  double min_step = 0;          // s, with a tolerance: a run that needs less fails
   long max_steps = 10'000'000;  // per advance; beyond it the run fails
   double max_work = 0;          // since start(), as total_work() counts it; 0: unlimited
 
@@ -69,10 +71,16 @@ struct Stats {
   long linearizations = 0;
   long solves = 0;
   long newton_iterations = 0;
-  long sweeps = 0;                   // over constraints solved one at a time
-  std::string_view solver = "none";  // the linear solver in use
-  int rank_deficiency = 0;           // redundant constraints found and handled
-  double condition = 0;              // largest condition estimate; 0: not estimated
+  long sweeps = 0;  // over constraints solved one at a time
+  // Of `rejected`, by methods that tell them apart.
+  long rejected_by_error = 0;
+  long rejected_by_newton = 0;
+  double smallest_step = 0;     // s, that error control chose; 0: it chose none
+  double smallest_step_at = 0;  // s
+  std::string_view smallest_step_cause = "";  // "start", "error" or "newton"
+  std::string_view solver = "none";           // the linear solver in use
+  int rank_deficiency = 0;                    // redundant constraints found and handled
+  double condition = 0;  // largest condition estimate; 0: not estimated
 };
 
 /// Clock-independent cost of a run: every residual, matrix, solve, sweep and step counts

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -202,6 +203,13 @@ class System {
   /// Called once after every accepted step; may move frames or contact sets and adjust
   /// the state to them. True: the equations changed, multistep methods must restart.
   virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
+
+  /// The first time after t at which the equations are not smooth in time (a prescribed
+  /// motion stops, a force is switched); methods that rely on smoothness end a step
+  /// there. Infinity: none.
+  virtual double next_breakpoint(double /*t*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
 
   /// Discards the effects of every accept(): coordinates regain the meaning that they
   /// have in initial_state().

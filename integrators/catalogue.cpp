@@ -19,6 +19,8 @@
   METHOD(implicit_midpoint)          \
   METHOD(linearly_implicit_midpoint) \
   METHOD(bdf2)                       \
+  METHOD(tr_bdf2)                    \
+  METHOD(esdirk43)                   \
   METHOD(newmark)                    \
   METHOD(generalized_alpha)          \
   METHOD(xpbd)                       \
@@ -72,6 +74,24 @@ std::string refusal(const IntegratorEntry& entry, System& system,
   return entry.objection(system, formulation);
 }
 
+Options with_tolerance(const IntegratorEntry& entry, Options options) {
+  if (options.tolerance == 0 || entry.error_controlled) return options;
+  if (!entry.adaptive) {
+    std::string able;
+    for (const IntegratorEntry& other : integrator_catalogue()) {
+      if (!other.adaptive && !other.error_controlled) continue;
+      able += (able.empty() ? "" : ", ") + std::string(other.id);
+    }
+    throw InputError(std::string(entry.id) + " has a fixed step and takes no tolerance",
+                     "integrator", "give a step, or use one of: " + able);
+  }
+  // As the defaults of rtol and atol are to each other.
+  options.rtol = options.tolerance;
+  options.atol = options.tolerance * Options{}.atol / Options{}.rtol;
+  options.tolerance = 0;
+  return options;
+}
+
 std::unique_ptr<Integrator> make_integrator(std::string_view id, System& system,
                                             const Options& options) {
   const IntegratorEntry& entry = find_integrator(id);
@@ -81,7 +101,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view id, System& system,
                          std::string(name(options.formulation)),
                      reason, "--list shows what can drive what");
   }
-  return entry.make(system, options);
+  return entry.make(system, with_tolerance(entry, options));
 }
 
 }  // namespace tress::integrators

@@ -35,8 +35,9 @@ struct IntegratorEntry {
   std::string_view id;
   std::string_view summary;  // damping, cost; lists print the order before it
   std::string_view source;
-  bool adaptive = false;  // driven by rtol/atol instead of step
-  bool tangent = false;   // solves with the model's tangent
+  bool adaptive = false;          // driven by rtol/atol instead of step
+  bool error_controlled = false;  // takes Options::tolerance as well as step
+  bool tangent = false;           // solves with the model's tangent
   std::vector<Treatment> formulations;
   std::vector<Gap> gaps = {};
   /// Options that only this method reads, by own_options().

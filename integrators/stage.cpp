@@ -85,11 +85,16 @@ Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
   return std::isfinite(size) ? Status::ok : Status::retry;
 }
 
-Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
-                    InOut lambda) noexcept {
+Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                    Matrix matrix) noexcept {
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
-  Status s = newton(t, q_bar, v_bar, w, a, lambda);
+  Status s = newton(t, q_bar, v_bar, w, refresh_, matrix, a, lambda);
+  if (s == Status::retry && refresh_ != Refresh::every_iteration) {
+    std::ranges::copy(a_guess_, a.begin());
+    std::ranges::copy(lambda_guess_, lambda.begin());
+    s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
+  }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
   // From the guess, from zero acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
@@ -107,19 +112,22 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a,
   return s;
 }
 
-Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
-                     InOut lambda) noexcept {
+Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
+                     Matrix matrix, InOut a, InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
   double previous = std::numeric_limits<double>::infinity();
   double rate = rate_ = 0;
   int grown = 0;
-  const bool kept = matrix_ == dynamics_.matrix();
-  const bool same_matrix = factored_.vel == w.vel && factored_.pos == w.pos;
-  bool linearize = refresh_ != Refresh::when_slow || !kept || !same_matrix;
+  const bool usable =
+      matrix_ == dynamics_.matrix() && factored_.vel == w.vel && factored_.pos == w.pos;
+  const bool shared = refresh == Refresh::every_step && matrix == Matrix::shared;
+  bool linearize = !usable || !(refresh == Refresh::when_slow || shared);
+  bool built = false;  // for this stage
   for (int i = 0; i < iterations_; ++i) {
     double correction = 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
+    built = built || linearize;
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
     // this one. The first correction has no rate yet.
@@ -130,8 +138,9 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, InOut a,
       return Status::ok;
     }
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
-    linearize = refresh_ == Refresh::every_iteration ||
-                (refresh_ == Refresh::when_slow && i > 0 && rate > slow_rate);
+    const bool slow = i > 0 && rate > slow_rate;
+    linearize = refresh == Refresh::every_iteration ||
+                (slow && (refresh == Refresh::when_slow || (shared && !built)));
     previous = correction;
   }
   return Status::retry;

@@ -13,13 +13,14 @@ inline constexpr double stage_stagnation = 1e4;
 /// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
 /// method: find a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
-/// by Newton's method. If that does not converge (long steps of shaken strands), steps
-/// are damped by the natural monotonicity test [Deuflhard 2011, Newton Methods for
-/// Nonlinear Problems, section 3.3], from the guess, from zero acceleration and from
-/// standstill. If that fails too, a shortened step is solved and lengthened gradually
-/// [section 5.1]: first with the drift of the whole step, for soft strands that fall far
-/// in one step; then with the drift of the shortened step, for strands that turn fast,
-/// which the drift of the whole step carries out of reach of any guess.
+/// by Newton's method, with old matrices as far as `refresh` allows, then without. If
+/// that does not converge (long steps of shaken strands), steps are damped by the natural
+/// monotonicity test [Deuflhard 2011, Newton Methods for Nonlinear Problems,
+/// section 3.3], from the guess, from zero acceleration and from standstill. If that
+/// fails too, a shortened step is solved and lengthened gradually [section 5.1]: first
+/// with the drift of the whole step, for soft strands that fall far in one step; then
+/// with the drift of the shortened step, for strands that turn fast, which the drift of
+/// the whole step carries out of reach of any guess.
 ///
 /// With a discontinuous force, such as that of a contact whose location switches, there
 /// may be no solution: the step from either side of the jump leads to the other, and
@@ -33,8 +34,14 @@ class Stage {
  public:
   Stage(Dynamics& dynamics, const Options& options);
 
+  /// The matrix under Refresh::every_step: of this stage's own, or shared with the stage
+  /// solved before, of the same step; a shared one is rebuilt once where it converges
+  /// slowly.
+  enum class Matrix { own, shared };
+
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
-  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+               Matrix matrix = Matrix::own) noexcept;
 
   /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
   /// with the matrix at acceleration a_matrix.
@@ -56,7 +63,8 @@ class Stage {
 
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
-  Status newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
+  Status newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh, Matrix matrix,
+                InOut a, InOut lambda) noexcept;
   /// Newton's step from q_, v_, the state that belongs to `a`, and its size.
   Status newton_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
                      double& size) noexcept;

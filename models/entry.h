@@ -17,8 +17,8 @@ enum class Roots { clamped_or_free, clamped };
 /// listed in catalogue.cpp.
 struct ModelEntry {
   std::string_view id;
-  std::string_view summary;  // unknowns and variants, one line
-  std::string_view source;   // author year, or test set
+  std::string_view summary;               // unknowns and variants, one line
+  std::string_view source;                // author year, or test set
   std::span<const Parameter> parameters;  // its own options
   /// Reads setup_parameters() (models/catalogue.h).
   std::unique_ptr<System> (*make)(const Parameters&);

@@ -75,9 +75,8 @@ CheapRun attempt(const MethodWork& work, int elements, double dt, double most_wo
   const auto [t_end, samples, length] = work.compared->sampling;
   const auto system = system_of(scene);
   Guard guard(*system, {guarded_strand(scene.strands.front(), make_effects(scene))});
-  const TipRun run =
-      run_tip(work.method.integrator, *system, work.at(dt, most_work), t_end, samples, 0,
-              &guard);
+  const TipRun run = run_tip(work.method.integrator, *system, work.at(dt, most_work),
+                             t_end, samples, 0, &guard);
   const double error = run.status == Status::ok
                            ? tip_error(run.tip, work.compared->reference.tip, length)
                            : never;
@@ -122,11 +121,11 @@ void set_size(System& system, Row& row) {
 }
 
 void measure(const MethodWork& work, Row& row) {
-  const auto [best, complete] = cheapest_run(
-      {target, work.elements, coarsest, finest, work.most_work},
-      [&work](int elements, double dt, double most_work) {
-        return attempt(work, elements, dt, most_work);
-      });
+  const auto [best, complete] =
+      cheapest_run({target, work.elements, coarsest, finest, work.most_work},
+                   [&work](int elements, double dt, double most_work) {
+                     return attempt(work, elements, dt, most_work);
+                   });
   if (!best) {
     row.failed("not_met", complete ? "no run within the target"
                                    : "no run within the target in the work of a row");

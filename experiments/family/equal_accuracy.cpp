@@ -52,16 +52,15 @@ TipRun watched_run_of(const Hair& hair, std::string_view model, int elements, do
 }
 
 std::optional<CheapRun> cheapest(const Hair& hair, std::string_view model, In limit) {
-  return cheapest_run({target, ladder, coarsest, finest},
-                      [&](int elements, double dt, double most_work) -> CheapRun {
-                        const TipRun run =
-                            watched_run_of(hair, model, elements, dt, most_work);
-                        const double error =
-                            run.status == Status::ok
-                                ? tip_error(run.tip, limit, hair.length)
-                                : std::numeric_limits<double>::infinity();
-                        return {elements, dt, error, total_work(run.stats, run.unknowns)};
-                      })
+  return cheapest_run(
+             {target, ladder, coarsest, finest},
+             [&](int elements, double dt, double most_work) -> CheapRun {
+               const TipRun run = watched_run_of(hair, model, elements, dt, most_work);
+               const double error = run.status == Status::ok
+                                        ? tip_error(run.tip, limit, hair.length)
+                                        : std::numeric_limits<double>::infinity();
+               return {elements, dt, error, total_work(run.stats, run.unknowns)};
+             })
       .run;
 }
 

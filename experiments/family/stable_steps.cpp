@@ -91,8 +91,7 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
   }
   const Row both = Row(with).set("reduced", twisting).set("maximal", der);
   const double ratio = std::max(twisting, nothing_stable) / std::max(der, nothing_stable);
-  return {rows[0], rows[1],
-          answer(both, claims[2], ratio, twisting >= der)};
+  return {rows[0], rows[1], answer(both, claims[2], ratio, twisting >= der)};
 }
 
 }  // namespace

@@ -154,8 +154,10 @@ std::string catalogue_text(std::span<const ModelEntry> models,
   text += "\nINTEGRATORS (options of one alone by --set key=value, [default])\n";
   for (const IntegratorEntry& entry : integrators) {
     text += fmt::format("  {:<20} order {}{}, {} [{}] ({})\n", entry.id, entry.order(),
-                        entry.adaptive ? ", adaptive" : "", entry.summary,
-                        letters_of(entry), entry.source);
+                        entry.adaptive           ? ", adaptive"
+                        : entry.error_controlled ? ", fixed step or tolerance"
+                                                 : "",
+                        entry.summary, letters_of(entry), entry.source);
     text += parameter_lines(entry.parameters);
   }
   text += "\nKEYS OF ALL INTEGRATORS\n" + parameter_lines(common_options());

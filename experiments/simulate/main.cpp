@@ -11,6 +11,7 @@
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
 #include "experiments/simulate/scene_run.h"
+#include "experiments/simulate/verify.h"
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
 #include "simulation/scene/schema.h"
@@ -24,7 +25,8 @@ struct Arguments {
   int threads = 1;
   std::size_t hairs = 0;
   bool resume = false, vtk = false, usd = false, print_defaults = false,
-       print_schema = false, no_guard = false, quick = false, full = false;
+       print_schema = false, no_guard = false, verify = false, quick = false,
+       full = false;
   std::string progress = "auto";
 };
 
@@ -48,6 +50,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_flag("--no-guard", a.no_guard,
                "go on where a run does what physics rules out (as guard = false)");
+  app.add_flag(
+      "--verify", a.verify,
+      "with a tolerance: also run with a tenth of it and tell the error achieved");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));
   app.add_flag("--print-defaults", a.print_defaults,
@@ -88,6 +93,30 @@ constexpr Column columns[] = {
     {"wall_s", "time it took, output included", true},
 };
 
+/// False: there is no such error, since a run did not come to its end.
+bool tell_achieved(const Scene& scene, int threads) {
+  const Achieved found = achieved_error(scene, threads);
+  if (!found.failure.empty()) {
+    tell("simulate: {}: not verified: {}\n", scene.name, found.failure);
+    return false;
+  }
+  tell("simulate: {}: error {:.2g} of the length, at {:.3g} s; asked for {:g}\n",
+       scene.name, found.error, found.at, scene.options.tolerance);
+  return true;
+}
+
+/// Steps since the run began or was resumed, where error control chose them.
+std::string control_in_words(const Stats& work) {
+  std::string words =
+      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration",
+                  work.steps, work.rejected_by_error, work.rejected_by_newton);
+  if (work.smallest_step > 0) {
+    words += fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", work.smallest_step,
+                         work.smallest_step_at, work.smallest_step_cause);
+  }
+  return words;
+}
+
 const Experiment experiment{.name = "simulate",
                             .question = "What does a scene do?",
                             .example = "scenes/hair_under_wind.toml --vtk",
@@ -116,13 +145,17 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   row.set("scene", scene.name).set("frames", run.frames);
   row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
   row.set("rejected_steps", run.rejected);
+  const std::string control =
+      scene.options.tolerance > 0 ? control_in_words(run.work)
+      : run.rejected > 0
+          ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
+          : "";
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
+  bool complete = run.end != SceneRun::End::failed;
+  if (complete && a.verify) complete = tell_achieved(scene, a.threads);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
-       scene.name, run.frames, run.simulated_s, run.wall_s,
-       run.rejected > 0
-           ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
-           : "",
+       scene.name, run.frames, run.simulated_s, run.wall_s, control,
        run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
   if (run.indicator > unresolved) {
     tell(
@@ -131,7 +164,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
         "an integrator that iterates such as implicit_midpoint\n",
         scene.name, scene.integrator, run.indicator);
   }
-  return run.end != SceneRun::End::failed;
+  return complete;
 }
 
 int run(const Arguments& a, CommandLine line) {
@@ -145,7 +178,9 @@ int run(const Arguments& a, CommandLine line) {
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
   std::set<std::string> names;
   for (const std::string& file : files) {
-    if (names.insert(read_scene(file).name).second) continue;
+    const Scene scene = read_scene(file);
+    if (a.verify) check_verifiable(scene);
+    if (names.insert(scene.name).second) continue;
     throw InputError("two scenes of one name", file,
                      "rename one of them, or run it with another --out");
   }

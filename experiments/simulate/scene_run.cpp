@@ -121,10 +121,12 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
       const auto whole = interruption.hold();
       recording.save(snapshot);
     }
+    add_work(world->stats(), run.work);
     world = std::make_unique<World>(scene, options.threads);
     world->restore(snapshot);
     readout.restart();
   }
+  add_work(world->stats(), run.work);
   run.frames = recording.frames().size();
   for (const Frame3d& frame : recording.frames()) {
     run.rejected += static_cast<long>(frame.series.back());

@@ -27,6 +27,7 @@ struct SceneRun {
   long rejected;  // steps repeated with shorter ones
   double wall_s, simulated_s;
   double indicator = 0;  // largest World::error_indicator
+  Stats work = {};       // since this run began or was resumed
 };
 
 /// Runs a scene and writes series, pictures, and during the run the states from which a

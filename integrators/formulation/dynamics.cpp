@@ -7,12 +7,6 @@
 #include "linear/finite.h"
 
 namespace tress::integrators {
-namespace {
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
-}  // namespace
-
 double scaled_norm(In x, In typ) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "linear/kkt.h"
 
 namespace tress::integrators {
+
+inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 /// A system together with the form its constraints take, as one set of equations in the
 /// accelerations a (n) and multipliers lambda (m):

@@ -16,8 +16,6 @@ constexpr double reduction = 0.1;
 // Near g = 0 each digit costs m sweeps; a state that needs more is not near.
 constexpr long sweeps_per_constraint = 100;
 
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
 }  // namespace
 
 std::optional<std::vector<double>> diagonal_mass(System& system) {

@@ -6,7 +6,7 @@ namespace tress::integrators {
 namespace {
 
 constexpr std::string_view bdf_id = "cvode_bdf";
-constexpr int standard_order = 2;
+constexpr int bdf_standard_order = 2;
 constexpr int bdf_highest_order = 5;
 
 int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vector error,
@@ -19,7 +19,7 @@ int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vecto
 
 CvodeBdf::CvodeBdf(System& system, const Options& options)
     : Cvode(bdf_id, system, options, projected_formulations, CV_BDF,
-            chosen_order(bdf_id, options, standard_order, 1, bdf_highest_order)),
+            chosen_order(bdf_id, options, bdf_standard_order, 1, bdf_highest_order)),
       linear_(context_, equations_) {
   void* const memory = memory_.get();
   linear_.attach(memory_);

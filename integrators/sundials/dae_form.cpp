@@ -14,8 +14,6 @@ Options for_dynamics(Options options) {
   return options;
 }
 
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
 }  // namespace
 
 DaeForm::DaeForm(System& system, const Options& options)

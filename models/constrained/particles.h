@@ -73,6 +73,9 @@ class ParticleSystem final : public System,
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
+  double next_breakpoint(double t) const override {
+    return models::next_breakpoint(scene_.effects, t);
+  }
   std::string not_finite(double t, In q, In v) override;
 
   SparseForm* sparse_form() override { return this; }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -76,6 +78,11 @@ class Effect {
   virtual double potential(double t, const Points& p) const noexcept = 0;
   /// Power (W) of the part of the load that is not in `potential`.
   virtual double power(double t, const Points& p) const noexcept = 0;
+  /// The first time after t at which the load is switched on or off, or ends to be; where
+  /// it follows a root's motion, the root knows. Infinity: none.
+  virtual double next_breakpoint(double /*t*/) const noexcept {
+    return std::numeric_limits<double>::infinity();
+  }
   /// Largest depth (m) of the strand's surface in the body over the points at `x` (3 per
   /// point), 0 without contact. Empty if the effect is not a body.
   virtual std::optional<double> penetration(double /*t*/, In /*x*/) const { return {}; }
@@ -85,6 +92,12 @@ class Effect {
 
 /// Effects are stateless, so strands may share them.
 using Effects = std::vector<std::shared_ptr<const Effect>>;
+
+inline double next_breakpoint(const Effects& effects, double t) {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& effect : effects) next = std::min(next, effect->next_breakpoint(t));
+  return next;
+}
 
 inline Needs needs(const Effects& effects) {
   Needs all;

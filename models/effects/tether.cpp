@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "contract/input_error.h"
@@ -135,6 +136,14 @@ double Tether::strength(double t) const {
 double Tether::strength_rate(double t) const {
   const double on = (t - s_.on) / s_.ramp, off = (t - s_.off) / s_.ramp;
   return (rise_rate(on) * (1 - rise(off)) - rise(on) * rise_rate(off)) / s_.ramp;
+}
+
+double Tether::next_breakpoint(double t) const noexcept {
+  double next = std::numeric_limits<double>::infinity();
+  for (const double time : {s_.on, s_.on + s_.ramp, s_.off, s_.off + s_.ramp}) {
+    if (time > t) next = std::min(next, time);
+  }
+  return next;
 }
 
 std::size_t Tether::held(const Points& p) const {

@@ -45,6 +45,7 @@ class Tether final : public Effect {
                        InOut blocks) const noexcept override;
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
+  double next_breakpoint(double t) const noexcept override;
 
   /// Position of the target, for pictures.
   Vec target(double t) const;

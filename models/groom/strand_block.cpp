@@ -1,6 +1,7 @@
 #include "models/groom/strand_block.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tress::models {
 
@@ -34,6 +35,12 @@ void StrandBlock::scale(Out q_typ, Out v_typ) const {
   for (std::size_t k = 0; k < strands(); ++k) {
     strands_[k]->scale(part(q_typ, k), part(v_typ, k));
   }
+}
+
+double StrandBlock::next_breakpoint(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& strand : strands_) next = std::min(next, strand->next_breakpoint(t));
+  return next;
 }
 
 std::string StrandBlock::not_finite(double t, In q, In v) {

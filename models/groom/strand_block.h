@@ -19,6 +19,7 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
   Traits traits() const override;
   void initial_state(Out q, Out v) const override;
   void scale(Out q_typ, Out v_typ) const override;
+  double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override;
   /// Null unless all strands have Energetics.
   Energetics* energetics() override;

@@ -73,6 +73,10 @@ class MaximalSystem final : public System,
   void reset() override { strand_.elasticity->reset(); }
   std::vector<double> memory() const override { return strand_.elasticity->memory(); }
   void recall(In memory) override { strand_.elasticity->recall(memory); }
+  double next_breakpoint(double t) const override {
+    return std::min(strand_.root.next_breakpoint(t),
+                    models::next_breakpoint(strand_.effects, t));
+  }
   std::string not_finite(double t, In q, In v) override;
 
   SparseForm* sparse_form() override { return this; }

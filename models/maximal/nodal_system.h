@@ -36,6 +36,10 @@ class NodalSystem final : public System,
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
+  double next_breakpoint(double t) const override {
+    return std::min(parts_.root.next_breakpoint(t),
+                    models::next_breakpoint(parts_.effects, t));
+  }
   std::string not_finite(double t, In q, In v) override;
 
   ExplicitForm* explicit_form() override { return this; }

@@ -93,7 +93,7 @@ Knots spline(const std::vector<double>& times, const std::vector<double>& values
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values) {
   check(times, values);
   const auto k = std::make_shared<const Knots>(spline(times, values));
-  return [k](double t) -> SignalValue {
+  const auto value = [k](double t) -> SignalValue {
     if (t <= k->t.front()) return {k->x.front(), 0, 0};
     if (t >= k->t.back()) return {k->x.back(), 0, 0};
     const auto after = std::ranges::upper_bound(k->t, t);
@@ -106,6 +106,7 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
             (k->x[j] - k->x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m),
             u * m + w * n};
   };
+  return {value, k->t};
 }
 
 }  // namespace tress::models

@@ -56,7 +56,7 @@ Signal driven_oscillator(const Oscillator& body, double t0) {
   const double p = f * away / norm, q = -f * friction / norm;
   const double d2 = w2 - d * d;  // squared rate of the free oscillation
   const double start = p * drive + d * q;
-  return [=](double time) -> SignalValue {
+  const auto value = [=](double time) -> SignalValue {
     const double t = time - t0;
     if (t <= 0) return {};
     const double c = std::cos(drive * t), s = std::sin(drive * t);
@@ -69,6 +69,7 @@ Signal driven_oscillator(const Oscillator& body, double t0) {
     const double rate = drive * (p * c - q * s) + decay * (d * y - y_rate);
     return {x, rate, f * s - 2 * d * rate - w2 * x};
   };
+  return {value, {t0}};
 }
 
 }  // namespace tress::models

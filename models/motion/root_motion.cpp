@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "contract/input_error.h"
@@ -36,31 +37,36 @@ Signal one_minus_cosine(double amplitude, double frequency) {
 
 Signal smooth_step(double height, double t0, double duration) {
   check_duration(duration);
-  return [=](double t) -> SignalValue {
+  const auto value = [=](double t) -> SignalValue {
     const double x = std::clamp((t - t0) / duration, 0.0, 1.0);
     const double rest = 1 - x;
     return {height * x * x * x * (10 + x * (6 * x - 15)),
             height / duration * 30 * x * x * rest * rest,
             height / (duration * duration) * 60 * x * rest * (1 - 2 * x)};
   };
+  return {value, {t0, t0 + duration}};
 }
 
 Signal stop(double speed, double t0, double duration) {
   check_duration(duration);
-  return [=](double t) -> SignalValue {
+  const auto value = [=](double t) -> SignalValue {
     const double before = std::min(t - t0, 0.0);
     const double x = std::clamp((t - t0) / duration, 0.0, 1.0);
     const double x2 = x * x;
     return {speed * (before + duration * x * (1 - x2 * (1 - x / 2))),
             speed * (1 - x2 * (3 - 2 * x)), -speed / duration * 6 * x * (1 - x)};
   };
+  return {value, {t0, t0 + duration}};
 }
 
 Signal sum(Signal a, Signal b) {
-  return [a = std::move(a), b = std::move(b)](double t) -> SignalValue {
+  std::vector<double> breakpoints = a.breakpoints();
+  breakpoints.insert(breakpoints.end(), b.breakpoints().begin(), b.breakpoints().end());
+  const auto value = [a = std::move(a), b = std::move(b)](double t) -> SignalValue {
     const SignalValue x = a(t), y = b(t);
     return {x.value + y.value, x.rate + y.rate, x.acceleration + y.acceleration};
   };
+  return {value, std::move(breakpoints)};
 }
 
 Signal there_and_back(double height, double duration) {
@@ -94,6 +100,18 @@ RootPose RootMotion::at(double t) const {
     pose.a = pose.a + along.acceleration * part.direction;
   }
   return pose;
+}
+
+double RootMotion::next_breakpoint(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto* parts : {&translations, &rotations}) {
+    for (const Part& part : *parts) {
+      const auto& all = part.signal.breakpoints();
+      const auto after = std::ranges::upper_bound(all, t);
+      if (after != all.end()) next = std::min(next, *after);
+    }
+  }
+  return next;
 }
 
 void check(const RootMotion& motion, const std::string& where) {

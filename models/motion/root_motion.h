@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "contract/layers.h"
@@ -14,7 +18,26 @@ namespace tress::models {
 struct SignalValue {
   double value = 0, rate = 0, acceleration = 0;
 };
-using Signal = std::function<SignalValue(double t)>;
+/// The times at which it is only C^2, a third derivative jumps, are its breakpoints.
+class Signal {
+ public:
+  Signal() = default;
+  template <class F>
+  requires std::convertible_to<F, std::function<SignalValue(double)>> &&
+      (!std::same_as<std::remove_cvref_t<F>, Signal>)
+          Signal(F value, std::vector<double> breakpoints = {})
+      : value_(std::move(value)), breakpoints_(std::move(breakpoints)) {
+    std::ranges::sort(breakpoints_);
+  }
+
+  explicit operator bool() const { return static_cast<bool>(value_); }
+  SignalValue operator()(double t) const { return value_(t); }
+  const std::vector<double>& breakpoints() const { return breakpoints_; }  // ascending
+
+ private:
+  std::function<SignalValue(double)> value_;
+  std::vector<double> breakpoints_;
+};
 
 /// amplitude sin(2 pi frequency t)
 Signal sine(double amplitude, double frequency);
@@ -66,6 +89,8 @@ struct RootMotion {
 
   bool fixed() const { return translations.empty() && rotations.empty(); }
   RootPose at(double t) const;  // never allocates
+  /// The first of its signals' breakpoints after t, or infinity.
+  double next_breakpoint(double t) const;
 };
 
 /// Throws InputError naming `where` unless the frame is a rotation, axes are not 0, every

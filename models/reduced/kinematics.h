@@ -88,6 +88,14 @@ class Kinematics {
     return !free_root_ && !std::ranges::all_of(root_motions_, &RootMotion::fixed);
   }
 
+  double next_breakpoint(double t) const {
+    double next = std::numeric_limits<double>::infinity();
+    for (const RootMotion& motion : root_motions_) {
+      next = std::min(next, motion.next_breakpoint(t));
+    }
+    return next;
+  }
+
   // Arrays over points hold strand after strand: number of points per strand, and indices
   // of a block's points.
   std::size_t points() const { return Pack::lanes / lanes<Real> * blocks_.size(); }

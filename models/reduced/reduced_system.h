@@ -125,6 +125,10 @@ class ReducedSystem : public System,
     if (kinematics_.free()) kinematics_.free_root().recall(load9(memory.data()));
   }
 
+  double next_breakpoint(double t) const override {
+    return std::min(kinematics_.next_breakpoint(t),
+                    models::next_breakpoint(dynamics_.effects(0), t));
+  }
   std::string not_finite(double t, In q, In v) override {
     const auto of_unknowns = [this](In x, const std::string& what) {
       const std::size_t chain = dofs * kinematics_.segments().size();

@@ -156,21 +156,23 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
   }
   ordered_json columns = ordered_json::array();
   for (const Reading& column : animation.series) columns.push_back(column.name);
-  ordered_json page{{"format", "tress-strands-1"},
-                    {"scene", scene.name},
-                    {"title", scene.title},
-                    {"source", scene.source},
-                    {"model", scene.model->id},
-                    {"integrator", scene.integrator},
-                    {"dt_s", scene.options.step},
-                    {"times_s", times},
-                    {"strand_points", curves.lines()},
-                    {"low", {box[0].low, box[1].low, box[2].low}},
-                    {"high", {box[0].high, box[1].high, box[2].high}},
-                    {"positions", base64(places)},
-                    {"channels", channels},
-                    {"bodies", bodies(scene, times)},
-                    {"series", {{"columns", columns}, {"rows", rows}}}};
+  ordered_json page{
+      {"format", "tress-strands-1"},
+      {"scene", scene.name},
+      {"title", scene.title},
+      {"source", scene.source},
+      {"model", scene.model->id},
+      {"integrator", scene.integrator},
+      {"dt_s",
+       scene.options.tolerance > 0 ? ordered_json() : ordered_json(scene.options.step)},
+      {"times_s", times},
+      {"strand_points", curves.lines()},
+      {"low", {box[0].low, box[1].low, box[2].low}},
+      {"high", {box[0].high, box[1].high, box[2].high}},
+      {"positions", base64(places)},
+      {"channels", channels},
+      {"bodies", bodies(scene, times)},
+      {"series", {{"columns", columns}, {"rows", rows}}}};
   if (animation.guides > 0) page["guides"] = animation.guides;
   if (!animation.lines.empty()) {
     std::vector<int> ids;

@@ -45,6 +45,10 @@ std::string Breach::message() const {
 
 std::string remedy(std::string_view integrator, const Options& options, Limit limit) {
   const bool adaptive = find_integrator(integrator).adaptive;
+  if (limit == Limit::steps && options.tolerance > 0) {
+    return fmt::format("try a larger tolerance than {:g}, or more than max_steps = {}",
+                       options.tolerance, options.max_steps);
+  }
   if (limit == Limit::steps) {
     return (adaptive
                 ? fmt::format("try a larger tolerance than rtol = {:g}, a method for "
@@ -58,6 +62,10 @@ std::string remedy(std::string_view integrator, const Options& options, Limit li
   }
   if (adaptive) {
     return fmt::format("try a smaller tolerance than rtol = {:g}", options.rtol);
+  }
+  if (options.tolerance > 0) {
+    return fmt::format("try another tolerance than {:g}, or a max_step_s",
+                       options.tolerance);
   }
   std::string words = fmt::format("try a step of {:.3g} s", options.step / 4);
   if (integrator != "backward_euler") words += ", or backward_euler, which damps";

@@ -40,6 +40,9 @@ class Metered final : public Effect {
   double power(double t, const Points& p) const noexcept override {
     return effect_->power(t, p);
   }
+  double next_breakpoint(double t) const noexcept override {
+    return effect_->next_breakpoint(t);
+  }
   std::optional<double> penetration(double t, In x) const override {
     return effect_->penetration(t, x);
   }

@@ -25,6 +25,9 @@ struct Snapshot {
   std::vector<double> guards;  // their Guard::memory(); empty: they start here
 };
 
+/// Adds the work of one part of a run to that of the others.
+void add_work(const Stats& from, Stats& to);
+
 /// J, of all strands; `elastic` is the potential not due to effects, for a mechanism all.
 struct Energies {
   double kinetic = 0, elastic = 0;

@@ -17,6 +17,14 @@ constexpr int halvings = 6;
 /// Per strand: a run that needs more has too long a step, and its time is unbounded.
 constexpr int most_shortened = 100;
 
+/// Steps that fail are repeated as shorter ones; methods that choose their steps have
+/// done that already.
+bool has_fixed_step(const IntegratorEntry& integrator, const Options& options) {
+  return !integrator.adaptive && options.tolerance == 0;
+}
+
+}  // namespace
+
 void add_work(const Stats& from, Stats& to) {
   to.steps += from.steps;
   to.rejected += from.rejected;
@@ -28,9 +36,14 @@ void add_work(const Stats& from, Stats& to) {
   to.solver = from.solver;
   to.rank_deficiency = std::max(to.rank_deficiency, from.rank_deficiency);
   to.condition = std::max(to.condition, from.condition);
+  to.rejected_by_error += from.rejected_by_error;
+  to.rejected_by_newton += from.rejected_by_newton;
+  if (from.smallest_step == 0) return;
+  if (to.smallest_step != 0 && to.smallest_step <= from.smallest_step) return;
+  to.smallest_step = from.smallest_step;
+  to.smallest_step_at = from.smallest_step_at;
+  to.smallest_step_cause = from.smallest_step_cause;
 }
-
-}  // namespace
 
 Status World::advance(double t_end) {
   // Without an exchange no strand has to wait for the others.
@@ -61,8 +74,8 @@ void World::advance(Body& body, double t, bool last) {
   if (body.status != Status::ok) return;
   const double span = t - t_,
                count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
-  const bool again =
-      !integrator_.adaptive && count <= static_cast<double>(options_.max_steps);
+  const bool again = has_fixed_step(integrator_, options_) &&
+                     count <= static_cast<double>(options_.max_steps);
   Integrator& method = *body.integrator;
   // Shorter steps would only use more work.
   const auto used_up = [&] {

@@ -126,6 +126,7 @@ Scene only(Scene scene, const std::vector<std::size_t>& strands) {
 
 Scene refined(Scene scene) {
   scene.options.step /= 2;
+  scene.options.tolerance /= 4;  // as the error of halved elements
   std::vector<Strand> fine;
   for (const Strand& strand : scene.strands) fine.push_back(halved(strand));
   return with_strands(std::move(scene), std::move(fine));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -116,9 +117,38 @@ class Reader {
     places_.integrator = read.place("id");
     for (const Parameter& p : read.declared()) {
       if (p.name == "id" || !read.given(p.name)) continue;
-      const std::string_view option = p.name == "dt_s" ? "step" : p.name;
-      apply(scene_.options, option, read.text(p.name), read.place(p.name));
+      apply(scene_.options, option_of(p.name), read.text(p.name), read.place(p.name));
     }
+    check_tolerance(read);
+  }
+
+  /// Either the step is given, or an error and with it all that follows from it.
+  void check_tolerance(const Table& read) {
+    const IntegratorEntry& entry = find_integrator(scene_.integrator);
+    const auto refuse = [&](std::string_view key, const std::string& why) {
+      if (!read.given(key)) return;
+      throw InputError(fmt::format("{} {}", key, why), read.place(key), "leave it out");
+    };
+    const bool least = scene_.options.min_step > 0;
+    if (scene_.options.tolerance == 0) {
+      if (least) refuse("min_step_s", "does nothing without tolerance");
+      return;
+    }
+    if (!entry.adaptive && !entry.error_controlled) {
+      refuse("tolerance", fmt::format("is not for {}, which has a fixed step", entry.id));
+    }
+    if (entry.adaptive && least) {
+      refuse("min_step_s", fmt::format("does nothing with {}", entry.id));
+    }
+    const auto decided =
+        entry.adaptive
+            ? std::array<std::string_view, 3>{"dt_s", "rtol", "atol"}
+            : std::array<std::string_view, 3>{"dt_s", "newton_tolerance", "refresh"};
+    for (const std::string_view key : decided) {
+      refuse(key, "is not for a run with tolerance, from which it follows");
+    }
+    scene_.options = with_tolerance(entry, scene_.options);
+    places_.tolerance = read.place("tolerance");
   }
 
   void refuse_strand_tables() const {

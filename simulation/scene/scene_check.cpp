@@ -67,6 +67,12 @@ void check(const Scene& scene, const ScenePlaces& places) {
     check_integrator(scene, *system, places);
     return;
   }
+  const Parameters* interaction = scene.interaction();
+  if (!places.tolerance.empty() && interaction != nullptr &&
+      interaction->word("coupling") != "monolithic") {
+    throw InputError("strands that touch exchange forces every dt_s", places.tolerance,
+                     "give dt_s and no tolerance, or coupling = \"monolithic\"");
+  }
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];

@@ -10,6 +10,7 @@ namespace tress::simulation {
 /// Locations of the settings that can be checked only together.
 struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
+  std::string tolerance;             // empty: the step is given
   std::vector<std::string> strands;  // of each strand's table
   std::vector<std::string> effects;
 };

@@ -57,6 +57,13 @@ std::string choices_of(const Entries& entries, std::string_view first) {
   return all;
 }
 
+/// The integrators' options whose keys say their unit.
+struct KeyOfOption {
+  std::string_view key, option;
+};
+constexpr KeyOfOption in_seconds[] = {
+    {"dt_s", "step"}, {"max_step_s", "max_step"}, {"min_step_s", "min_step"}};
+
 std::vector<Parameter> options_of(const ModelEntry& model, std::string_view ids) {
   std::vector<Parameter> list{{.name = "id", .help = "which model", .choices = ids}};
   list.insert(list.end(), model.parameters.begin(), model.parameters.end());
@@ -84,12 +91,19 @@ std::span<const Parameter> integrator_table_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
     for (Parameter p : integrator_options()) {
-      if (p.name == "step") p.name = "dt_s";
+      for (const auto& [key, option] : in_seconds) {
+        if (p.name == option) p.name = key;
+      }
       list.push_back(p);
     }
     return list;
   }();
   return all;
+}
+
+std::string_view option_of(std::string_view key) {
+  const auto found = std::ranges::find(in_seconds, key, &KeyOfOption::key);
+  return found == std::end(in_seconds) ? key : found->option;
 }
 
 std::span<const Use> integrator_uses() {

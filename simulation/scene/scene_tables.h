@@ -19,8 +19,10 @@ std::span<const Parameter> top_parameters();
 /// `id` and the model's options.
 std::span<const Parameter> model_table_parameters(const ModelEntry& model);
 
-/// `id`, `dt_s` and the integrators' options.
+/// `id` and the integrators' options, those in seconds as dt_s, max_step_s, min_step_s.
 std::span<const Parameter> integrator_table_parameters();
+/// The integrators' option that a key of the table sets.
+std::string_view option_of(std::string_view key);
 /// The keys that apply to only one integrator.
 std::span<const Use> integrator_uses();
 

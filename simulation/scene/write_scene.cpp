@@ -92,7 +92,7 @@ void add_integrator(std::string& text, const Scene& scene) {
       add_key(text, p, scene.integrator);
       continue;
     }
-    const std::string_view option = p.name == "dt_s" ? "step" : p.name;
+    const std::string_view option = option_of(p.name);
     const std::string value = text_of(scene.options, option);
     if (value != text_of(defaults, option)) add_key(text, p, value);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -101,9 +102,13 @@ TEST_P(FixedStepOrder, ErrorFallsAtTheNominalOrder) {
     options.alpha =
         100;  // fixed gains: order survives, unlike with gains tied to the step
     options.beta = 20;
+    const double error = run(GetParam(), options).position_error;
+    // Each step rounds positions of size 1: a smaller error says nothing of the order.
+    if (error < std::numeric_limits<double>::epsilon() * end_time / options.step) break;
     steps.push_back(options.step);
-    errors.push_back(run(GetParam(), options).position_error);
+    errors.push_back(error);
   }
+  ASSERT_GE(errors.size(), 4u);
   const int order = *GetParam().entry->order(GetParam().formulation);
   EXPECT_NEAR(log_log_slope(steps, errors), order, 0.2)
       << "errors from " << errors.front() << " to " << errors.back();

@@ -154,6 +154,27 @@ INSTANTIATE_TEST_SUITE_P(Models, Continued,
                          testing::Values("super_helix", "der", "corde", "groom"),
                          [](const auto& tested) { return tested.param; });
 
+TEST(Simulate, RunsByToleranceAndVerifiesIt) {
+  std::string scene = falling("super_helix");
+  const std::string given = "id = \"semi_implicit_euler\"\ndt_s = 0.001";
+  scene.replace(scene.find(given), given.size(), "id = \"tr_bdf2\"\ntolerance = 1e-3");
+  Toy toy;
+  toy.write("fall.toml", scene);
+  const Toy::Result run = toy.run("fall.toml --out out --progress none --verify");
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const char* const words :
+       {" steps, ", "rejected by their error", "the shortest "}) {
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  }
+  const std::string before = "fall: error ";
+  const auto at = run.err.find(before);
+  ASSERT_NE(at, std::string::npos) << run.err;
+  const double achieved = std::stod(run.err.substr(at + before.size()));
+  EXPECT_GT(achieved, 0);
+  // Steps are controlled, their sum over an undamped second is of that size.
+  EXPECT_LE(achieved, 1e-2);
+}
+
 TEST(Simulate, ThreadsDoNotChangeABit) {
   Toy one, two;
   for (const Toy* toy : {&one, &two}) toy->write("scene.toml", groom(20));
@@ -224,6 +245,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"threads", "good.toml --threads 0", "threads"},
         Wrong{"no_scenes", "--out out", "scene"},
         Wrong{"second_is_bad", "good.toml typo.toml --out out", "linear_drag"},
+        Wrong{"verify", "good.toml --verify --out out", "tolerance"},
         Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
         Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });

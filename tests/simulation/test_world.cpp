@@ -72,6 +72,57 @@ TEST(World, KnowsEnergiesByKindAsSystemsOfOneEffectDo) {
   }
 }
 
+/// One strand of every model whose root stops and which is tethered later.
+Scene switched(const std::string& model) {
+  return parse_scene(
+      "title = \"switched\"\nduration_s = 0.5\n[model]\nid = \"" + model +
+          "\"\n[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\n[material]\n"
+          "name = \"hair.asian\"\n[strand]\nelements = 6\n[root]\nmotion = \"stop\"\n"
+          "speed_m_s = 0.5\ntime_s = 0.125\n[effects.gravity]\n[effects.tether]\n"
+          "stiffness_n_m = 1e-3\nt_on_s = 0.25\nramp_s = 0.125\n",
+      "switched.toml");
+}
+
+TEST(World, SystemsOfEveryStrandModelNameTheirBreakpoints) {
+  int strands = 0;
+  for (const ModelEntry& model : model_catalogue()) {
+    if (model.on_strand == nullptr) continue;
+    Scene scene = switched("super_helix");
+    scene.model = &model;
+    const auto system =
+        model.on_strand(scene.strands.front(), Parameters(model.parameters, "model"),
+                        make_effects(scene));
+    ++strands;
+    double t = 0;
+    for (const double next : {0.125, 0.25, 0.375}) {
+      EXPECT_EQ(system->next_breakpoint(t), next) << model.id;
+      t = next;
+    }
+  }
+  EXPECT_GE(strands, 7);
+}
+
+TEST(World, RunsByToleranceAndGoesOnFromASnapshotBitForBit) {
+  const Scene scene = switched("super_helix");
+  EXPECT_EQ(scene.options.tolerance, 1e-3);
+  World world(scene), other(scene);
+  ASSERT_EQ(world.advance(0.2), Status::ok) << world.failure();
+  const Snapshot middle = world.snapshot();
+  World through(scene);
+  through.restore(middle);
+  other.restore(middle);
+  for (World* const one : {&through, &other}) {
+    ASSERT_EQ(one->advance(0.3), Status::ok) << one->failure();
+    ASSERT_EQ(one->advance(0.5), Status::ok) << one->failure();
+  }
+  EXPECT_EQ(through.positions(), other.positions());
+  const Stats done = through.stats();
+  EXPECT_GT(done.smallest_step, 0);
+  EXPECT_EQ(done.rejected, done.rejected_by_error + done.rejected_by_newton);
+  // A step of 1 ms would take 300.
+  EXPECT_LT(done.steps, 300);
+}
+
 /// Its system remembers more than its strands do: a snapshot that kept only their part
 /// was read beyond its end.
 TEST(World, StrandsThatAreOneSystemGoOnFromASnapshot) {

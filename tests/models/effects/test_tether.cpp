@@ -68,6 +68,16 @@ TEST(Tether, ActsFromOnToOffOnly) {
 
 // The strength rises with a horizontal tangent at both ends: within 1e-4 of an end of the
 // ramp it has changed by 3 1e-8.
+TEST(Tether, NamesTheTimesBetweenWhichItIsSmooth) {
+  const Tether tether({.stiffness = 5, .on = 1, .off = 2, .ramp = 0.25});
+  double t = 0;
+  for (const double next : {1.0, 1.25, 2.0, 2.25}) {
+    EXPECT_EQ(tether.next_breakpoint(t), next);
+    t = next;
+  }
+  EXPECT_EQ(tether.next_breakpoint(t), std::numeric_limits<double>::infinity());
+}
+
 TEST(Tether, TakesHoldSmoothly) {
   Cloud one(1);
   one.x = {-1, 0, 0};

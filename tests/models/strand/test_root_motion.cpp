@@ -180,6 +180,18 @@ TEST(Signal, SineStartsAtZeroAndOneMinusCosineFromRest) {
   EXPECT_DOUBLE_EQ(one_minus_cosine(2, 0.5)(0).acceleration, 2 * pi * pi);
 }
 
+TEST(RootMotion, NamesTheTimesBetweenWhichItsSignalsAreSmooth) {
+  RootMotion motion;
+  motion.translations = {{{1, 0, 0}, sum(sine(1, 1), smooth_step(1, 0.5, 1))}};
+  motion.rotations = {{{1, 0, 0}, stop(1, 1, 2)}};
+  double t = -1;
+  for (const double next : {0.5, 1.0, 1.5, 3.0}) {
+    EXPECT_EQ(motion.next_breakpoint(t), next);
+    t = next;
+  }
+  EXPECT_EQ(motion.next_breakpoint(t), std::numeric_limits<double>::infinity());
+}
+
 TEST(RootMotion, RefusesWhatIsNoMotion) {
   const auto refuses = [](auto spoil) {
     RootMotion motion = tumbling();

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/integrator.h"
+#include "integrators/error_norm.h"
+#include "integrators/formulation/dynamics.h"
+#include "integrators/formulation/projection.h"
+
+namespace tress::integrators {
+
+/// The loop shared by every method that chooses its steps so that the estimated error of
+/// each stays below a threshold (ErrorNorm). A method writes try_step().
+///
+/// Steps do not end where advance() does: the state there is read off a quintic
+/// polynomial through (q, v, a) at both ends of the step, error O(h^6), before
+/// System::accept is called for the step's end, so that coordinates keep their meaning.
+/// Constraints hold at the steps' ends, and there as far as the polynomial follows them.
+/// The system must not be changed from outside between two calls of advance().
+///
+/// Step control: PI with gains 0.7/k and 0.4/k for an estimate that falls as h^k
+/// [Gustafsson 1991, ACM TOMS 17, 533], a dead band that leaves the step alone, and no
+/// growth after a rejection. A failed Newton iteration also sets a ceiling, which rises
+/// slowly: the estimate does not see what Newton stumbles over, and steps would grow into
+/// it again and again.
+class ErrorControlled : public Integrator {
+ public:
+  Status start(double t, In q, In v) final;
+  Status advance(double t_end, const Observer& each_step = {}) final;
+  double time() const final { return t_; }
+  In q() const final { return q_; }
+  In v() const final { return v_; }
+  Stats stats() const final { return dynamics_.stats; }
+  std::string failure() const final { return failure_; }
+  Limit limit() const final { return limit_; }
+
+ protected:
+  /// The estimate falls as h^`power` and shall be at most `threshold` in a step.
+  ErrorControlled(System& system, const Options& options, int power, double threshold);
+
+  /// One end of a step.
+  struct State {
+    State(std::size_t n, std::size_t m) : q(n), v(n), a(n), lambda(m) {}
+    double t = 0;
+    std::vector<double> q, v, a, lambda;
+  };
+
+  /// From `from` over h to `to`, with the estimated errors of its q and v.
+  virtual Status try_step(const State& from, double h, State& to, Out error_q,
+                          Out error_v) = 0;
+
+  Dynamics& dynamics() { return dynamics_; }
+
+ private:
+  Status end_run(Status status, const std::string& what);
+  /// As above for a step that cannot be taken; adds its number and what was not finite.
+  Status fail(Status status, const std::string& what);
+  /// Forgets history at begin_.
+  Status restart();
+  /// Finds the next step: end_.
+  Status next_step();
+  struct Trial {
+    double h;
+    bool cut;  // shorter than what the control asked for
+    bool at_break;
+  };
+  Trial trial();
+  void adapt(const Trial& taken, double error);
+  /// Goes on with a step of h; fails where that is too short.
+  Status shorten(double h, std::string_view cause);
+  Status accept_end();
+  void interpolate(double t);
+
+  Options options_;
+  Dynamics dynamics_;
+  ErrorNorm norm_;
+  std::optional<Projection> projection_;
+  double power_, threshold_;
+  double t_ = 0;
+  std::vector<double> q_, v_;  // at t_
+  State begin_, end_;          // of the step around t_
+  bool ahead_ = false;         // end_ is beyond t_ and not accepted yet
+  bool at_break_ = false;      // end_ is where the equations are not smooth
+  std::vector<double> error_q_, error_v_;
+  double h_ = 0;            // of the next step
+  double ceiling_ = 0;      // for it
+  double before_ = 1;       // estimate of the step before, over the threshold
+  bool rejected_ = false;   // the last trial
+  std::string_view cause_;  // of h_
+  std::string failure_ = "not started";
+  Limit limit_ = Limit::none;
+};
+
+}  // namespace tress::integrators

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "integrators/formulation/dynamics.h"
+
+namespace tress::integrators {
+
+/// Size of an error as a viewer of the strand sees it: the largest over its material
+/// points of |dx|/L and |du| sqrt(L/g)/L, L the longest way along the body and g = 9.81
+/// m/s^2. Coordinates alone miss energy, and generalised velocities count twist that
+/// moves nothing. A body without length is measured by its coordinates over
+/// System::scale.
+class ErrorNorm {
+ public:
+  explicit ErrorNorm(Dynamics& dynamics);
+
+  void start(double t, In q);
+
+  /// Of the error (dq, dv) of the state (q, v).
+  double of(double t, In q, In v, In dq, In dv);
+
+  /// What the last value came from: "velocity of point 7".
+  std::string where() const;
+
+  /// Time (s) in which the body falls about its own size.
+  double typical_time() const { return time_; }
+
+ private:
+  void look(const std::vector<double>& x, const std::vector<double>& shifted,
+            double factor, bool velocity);
+
+  Dynamics& dynamics_;
+  MaterialPoints* points_;
+  double length_ = 0;  // m, 0: measured by coordinates
+  double time_ = 0;
+  double value_ = 0;
+  std::size_t point_ = 0;
+  bool velocity_ = false;
+  std::vector<double> x_, shifted_x_, u_, shifted_u_, q_, v_;
+};
+
+}  // namespace tress::integrators

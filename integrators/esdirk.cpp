@@ -1,0 +1,173 @@
+#include "integrators/esdirk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "contract/input_error.h"
+#include "integrators/error_controlled.h"
+#include "integrators/fixed_step.h"
+#include "integrators/vector_ops.h"
+
+namespace tress::integrators {
+namespace {
+
+/// Accelerations of this many stages before give the guess of the next: a parabola.
+/// Higher polynomials amplify what the fast modes left in them.
+constexpr std::size_t guessed_from = 3;
+
+class FixedEsdirk final : public FixedStep {
+ public:
+  FixedEsdirk(System& system, const Options& options, const EsdirkTable& table)
+      : FixedStep(system, options), stages_(dynamics_, options, table) {}
+
+ private:
+  Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
+
+  Status step(double t, double h) override {
+    const Status s = stages_.step(t, h, q_, v_, a_, lambda_);
+    take(stages_.q(), stages_.v());
+    std::ranges::copy(stages_.a(), a_.begin());
+    std::ranges::copy(stages_.lambda(), lambda_.begin());
+    return s;
+  }
+
+  EsdirkStages stages_;
+};
+
+/// Newton's tolerance over that of the step. Stages enter the estimate with weights of
+/// order one, so that a hundredth of the tolerance is not seen in it.
+constexpr double newton_part = 1e-2;
+/// But however loose the tolerance, unresolved stages cost more in steps than they save
+/// in iterations.
+constexpr double loosest_newton = 1e-6;
+
+Options with_control(Options options) {
+  options.newton_tolerance = std::min(loosest_newton, newton_part * options.tolerance);
+  options.refresh = Refresh::every_step;
+  return options;
+}
+
+class ControlledEsdirk final : public ErrorControlled {
+ public:
+  ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
+      : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
+                        table.share * std::pow(options.tolerance, table.power)),
+        stages_(dynamics(), with_control(options), table) {}
+
+ private:
+  Status try_step(const State& from, double h, State& to, Out error_q,
+                  Out error_v) override {
+    const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda);
+    if (s != Status::ok) return s;
+    std::ranges::copy(stages_.q(), to.q.begin());
+    std::ranges::copy(stages_.v(), to.v.begin());
+    std::ranges::copy(stages_.a(), to.a.begin());
+    std::ranges::copy(stages_.lambda(), to.lambda.begin());
+    stages_.difference(h, error_q, error_v);
+    return s;
+  }
+
+  EsdirkStages stages_;
+};
+
+}  // namespace
+
+double EsdirkTable::c(std::size_t i) const {
+  return std::accumulate(a[i].begin(), a[i].end(), 0.0);
+}
+
+EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
+                           const EsdirkTable& table)
+    : table_(table),
+      stage_(dynamics, options),
+      v_(table.stages, std::vector<double>(static_cast<std::size_t>(dynamics.n()))),
+      a_(v_),
+      q_bar_(v_.front()),
+      v_bar_(q_bar_),
+      lambda_(static_cast<std::size_t>(dynamics.m())),
+      a_before_(q_bar_) {}
+
+void EsdirkStages::look_back(double t) noexcept {
+  constexpr double rounding = 1e-6;
+  if (h_ > 0 && std::abs(t - t_) <= rounding * h_) return;  // the same step, shorter
+  const bool goes_on = h_ > 0 && std::abs(t - t_ - h_) <= rounding * h_;
+  h_before_ = goes_on ? h_ : 0;
+  if (goes_on) a_before_.swap(a_[0]);
+}
+
+/// By the polynomial through the last stages, of which the start of the step before is
+/// one.
+void EsdirkStages::guess(std::size_t i, double h) noexcept {
+  struct Node {
+    double c;
+    const std::vector<double>* a;
+  };
+  std::array<Node, guessed_from> nodes;
+  std::size_t count = 0;
+  for (std::size_t j = i; j-- > 0 && count < guessed_from;) {
+    nodes[count++] = {table_.c(j), &a_[j]};
+  }
+  if (count < guessed_from && h_before_ > 0) {
+    nodes[count++] = {-h_before_ / h, &a_before_};
+  }
+  std::ranges::fill(a_[i], 0.0);
+  for (std::size_t j = 0; j < count; ++j) {
+    double weight = 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k != j) weight *= (table_.c(i) - nodes[k].c) / (nodes[j].c - nodes[k].c);
+    }
+    add(a_[i], weight, *nodes[j].a);
+  }
+}
+
+Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda) noexcept {
+  look_back(t);
+  t_ = t;
+  h_ = h;
+  std::ranges::copy(v, v_[0].begin());
+  std::ranges::copy(a, a_[0].begin());
+  std::ranges::copy(lambda, lambda_.begin());
+  const double hg = h * table_.gamma();
+  for (std::size_t i = 1; i < table_.stages; ++i) {
+    std::ranges::copy(v, v_bar_.begin());
+    std::ranges::copy(q, q_bar_.begin());
+    for (std::size_t j = 0; j < i; ++j) {
+      add(v_bar_, h * table_.a[i][j], a_[j]);
+      add(q_bar_, h * table_.a[i][j], v_[j]);
+    }
+    add(q_bar_, hg, v_bar_);
+    guess(i, h);
+    const Status s =
+        stage_.solve(t + h * table_.c(i), q_bar_, v_bar_, {1, hg, hg * hg}, a_[i],
+                     lambda_, i == 1 ? Stage::Matrix::own : Stage::Matrix::shared);
+    if (s != Status::ok) return s;
+    std::ranges::copy(stage_.v(), v_[i].begin());
+  }
+  return Status::ok;
+}
+
+void EsdirkStages::difference(double h, Out dq, Out dv) const noexcept {
+  std::ranges::fill(dq, 0.0);
+  std::ranges::fill(dv, 0.0);
+  for (std::size_t i = 0; i < table_.stages; ++i) {
+    const double weight = h * (table_.a[last()][i] - table_.embedded[i]);
+    add(dq, weight, v_[i]);
+    add(dv, weight, a_[i]);
+  }
+}
+
+std::unique_ptr<Integrator> make_esdirk(const EsdirkTable& table, System& system,
+                                        const Options& options) {
+  if (options.tolerance > 0) {
+    if (options.formulation == Formulation::index3) {
+      throw InputError("no error control on index 3", "tolerance",
+                       "use projection, or a fixed step");
+    }
+    return std::make_unique<ControlledEsdirk>(system, options, table);
+  }
+  return std::make_unique<FixedEsdirk>(system, options, table);
+}
+
+}  // namespace tress::integrators

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "integrators/stage.h"
+
+namespace tress::integrators {
+
+/// Coefficients of an ESDIRK method: a Runge-Kutta method whose first stage is the known
+/// state, whose other stages are implicit with one diagonal entry a_ii = gamma, and whose
+/// last stage is the new state (b = the last row of a), so that its first stage is the
+/// last one of the step before.
+struct EsdirkTable {
+  static constexpr std::size_t most_stages = 6;
+  std::size_t stages = 0;
+  int order = 0;
+  int embedded_order = 0;
+  std::array<std::array<double, most_stages>, most_stages> a{};
+  std::array<double, most_stages> embedded{};  // weights of the comparison solution
+  /// The estimate allowed in one step is share tolerance^power. In the limit of short
+  /// steps the error of a whole run is proportional to the tolerance with power =
+  /// k/order, where the estimate falls as h^k [Soederlind, Wang 2006, J. Comput. Appl.
+  /// Math. 185, 244].
+  double share = 1, power = 1;
+
+  double gamma() const { return a[1][1]; }
+  /// Time of stage i over the step: the sum of its row.
+  double c(std::size_t i) const;
+};
+
+/// The stages of one step of q' = v, v' = a. Stage i has
+///
+///     v_i = v_bar + h gamma a_i,                v_bar = v + h sum_{j<i} a_ij a_j
+///     q_i = q_bar + (h gamma)^2 a_i,            q_bar = q + h sum_{j<i} a_ij v_j
+///                                                         + h gamma v_bar
+///
+/// so that every stage hands the same weights (1, h gamma, (h gamma)^2) to Stage, and one
+/// matrix serves all of them (Refresh::every_step: one a step).
+class EsdirkStages {
+ public:
+  EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table);
+
+  /// From (q, v) at t with its acceleration a and multipliers over h.
+  Status step(double t, double h, In q, In v, In a, In lambda) noexcept;
+
+  // The end of the last step.
+  In q() const { return stage_.q(); }
+  In v() const { return v_[last()]; }
+  In a() const { return a_[last()]; }
+  In lambda() const { return lambda_; }
+
+  /// The method minus its embedded comparison over the last step, of length h.
+  void difference(double h, Out dq, Out dv) const noexcept;
+
+ private:
+  std::size_t last() const { return table_.stages - 1; }
+  /// Whether the last step ended, or began, where this one begins.
+  void look_back(double t) noexcept;
+  void guess(std::size_t i, double h) noexcept;
+
+  const EsdirkTable& table_;
+  Stage stage_;
+  std::vector<std::vector<double>> v_, a_;  // of the stages
+  std::vector<double> q_bar_, v_bar_, lambda_;
+  double t_ = 0, h_ = 0;          // of the last step, h_ = 0: none
+  double h_before_ = 0;           // of the step before, 0: none
+  std::vector<double> a_before_;  // at its start
+};
+
+/// The method with a fixed step, or with Options::tolerance. `table` must outlive it.
+std::unique_ptr<Integrator> make_esdirk(const EsdirkTable& table, System& system,
+                                        const Options& options);
+
+}  // namespace tress::integrators
