@@ -131,13 +131,13 @@ INSTANTIATE_TEST_SUITE_P(Esdirk, Table, testing::ValuesIn(all_methods),
 /// A soft strand whose root translates and turns, as in test_strands.
 std::unique_ptr<System> strand(std::string_view tangent) {
   const ModelEntry& entry = find_model("super_helix");
-  Parameters p(entry.parameters, "model super_helix");
+  Parameters p(setup_parameters(entry), "model super_helix");
   p.set("elements", "3");
   p.set("radius_m", "1e-3");
   p.set("natural_curvature_1_m", "8");
   p.set("youngs_modulus_pa", "1e6");
   p.set("mass_damping_1_s", "2");
-  p.set("root", "shake_rotate");
+  p.set("motion", "shake_rotate");
   p.set("tangent", tangent);
   return entry.make(p);
 }
