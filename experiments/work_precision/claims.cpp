@@ -9,19 +9,25 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-/// Most correct digits that a method reaches on a problem; empty: not run.
-std::optional<double> best_scd(const std::vector<Row>& rows, std::string_view scene,
-                               std::string_view integrator) {
-  std::optional<double> best;
+/// Most correct digits that a method reaches on a problem.
+struct Digits {
+  std::optional<double> most;  // empty: not run
+  bool complete = true;        // no run was cut by its work limit
+};
+
+Digits best_digits(const std::vector<Row>& rows, std::string_view scene,
+                   std::string_view integrator) {
+  Digits best;
   for (const Row& row : rows) {
     if (row.text("scene") != scene || row.text("integrator") != integrator) continue;
-    best = std::max(best.value_or(0), row.ok() ? row.number("scd") : 0);
+    best.most = std::max(best.most.value_or(0), row.ok() ? row.number("scd") : 0);
+    best.complete = best.complete && row.status() != "gave_up";
   }
   return best;
 }
 
 /// At least `least` methods reach six digits on a problem. So many of these suffice to
-/// confirm it; to refute it all of them must have been run.
+/// confirm it; to refute it all of them must have been run to the end.
 struct DigitsClaim {
   std::string_view claim, scene;
   std::vector<std::string_view> by;
@@ -33,9 +39,9 @@ void check_digits(const std::vector<Row>& rows, const DigitsClaim& claim,
   int enough = 0;
   bool complete = true;
   for (const std::string_view id : claim.by) {
-    const auto digits = best_scd(rows, claim.scene, id);
-    complete = complete && digits;
-    if (digits.value_or(0) >= 6) ++enough;
+    const Digits digits = best_digits(rows, claim.scene, id);
+    complete = complete && digits.most && digits.complete;
+    if (digits.most.value_or(0) >= 6) ++enough;
   }
   verdicts.check_found(std::string(claim.claim), enough >= claim.least, complete, enough);
 }

@@ -39,7 +39,8 @@ void measure(const Work& work, Row& row) {
   row.set("elements", run->end.state.q.size()).set("solver", stats.solver);
   set_counts(stats, row);
   if (run->end.status != Status::ok) {
-    row.failed("solver_error", run->end.failure);
+    row.failed(run->end.limit == Limit::work ? "gave_up" : "solver_error",
+               run->end.failure);
     return;
   }
   const double error = run->error.relative;
@@ -86,7 +87,7 @@ class List {
     Work work{problem, entry.id, entry.adaptive, base_, line_.repeat};
     work.options.formulation = formulation;
     if (line_.quick && base_.max_work == 0) work.options.max_work = quick_work;
-    const int points = line_.full ? 10 : line_.quick ? 5 : 7;
+    const int points = line_.full ? 10 : line_.quick ? 6 : 7;
     const bool orders =
         problem.name == "beam" && entry.id == "cvode_bdf" && !chosen_order_;
     if (!orders) {

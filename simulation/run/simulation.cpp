@@ -32,7 +32,8 @@ Simulation run_method(Integrator& method, System& system, const State& start,
     if (status != Status::ok) break;
     if (at_stop) at_stop(state);
   }
-  return {status, method.failure(), method.time(), std::move(state), method.stats()};
+  return {status,           method.failure(), method.time(),
+          std::move(state), method.stats(),   method.limit()};
 }
 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,

@@ -29,6 +29,7 @@ struct Simulation {
   double t;
   State state;
   Stats stats;
+  Limit limit;  // of Options that ended it, if any
 };
 
 /// One run of the system, which is reset first, from `start` at t = 0 through all `stops`
