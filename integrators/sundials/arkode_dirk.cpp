@@ -57,7 +57,7 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
       memory_(require(ARKStepCreate(nullptr, &FirstOrder::rate_callback, time_,
                                     y_.handle(), context_.handle()),
                       "ARKStepCreate")),
-      linear_(context_, equations_) {
+      implicit_(context_, equations_) {
   void* const memory = memory_.get();
   require(send_messages(memory_, context_.messages), "ARKStepSetErrHandlerFn");
   require(ARKStepSetUserData(memory, &equations_), "ARKStepSetUserData");
@@ -66,15 +66,7 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
   choose_table();
   require(ARKStepSetMaxStep(memory, options.max_step), "ARKStepSetMaxStep");
   require(ARKStepSetMaxHnilWarns(memory, -1), "ARKStepSetMaxHnilWarns");
-  linear_.attach(memory_);
-  if (options.refresh == Refresh::every_step) {
-    require(ARKStepSetLSetupFrequency(memory, 1), "ARKStepSetLSetupFrequency");
-    require(ARKStepSetDeltaGammaMax(memory, 0), "ARKStepSetDeltaGammaMax");
-  }
-  if (options.newton_coefficient > 0) {
-    require(ARKStepSetNonlinConvCoef(memory, options.newton_coefficient),
-            "ARKStepSetNonlinConvCoef");
-  }
+  implicit_.attach(memory_);
 }
 
 void ArkodeDirk::choose_table() {
@@ -105,13 +97,11 @@ int ArkodeDirk::step(double t_end, double& t) {
 }
 
 Stats ArkodeDirk::counters() const {
-  long errors = 0, stalls = 0, iterations = 0;
+  long errors = 0, stalls = 0;
   ARKStepGetNumErrTestFails(memory_.get(), &errors);
   ARKStepGetNumStepSolveFails(memory_.get(), &stalls);
-  ARKStepGetNumNonlinSolvIters(memory_.get(), &iterations);
   Stats stats;
   stats.rejected = errors + stalls;
-  stats.newton_iterations = iterations;
   return stats;
 }
 
