@@ -34,25 +34,40 @@ std::string objection(const IntegratorEntry& entry, System& system) {
                                                  : Formulation::parametric);
 }
 
-/// Steps of dt that reach t_end, each ended exactly.
+/// Steps to t_end or a little beyond, which end at the stops; with a tolerance, stops at
+/// which the state is read.
 struct Course {
   Options options;
   std::vector<double> stops;
   double growth;  // largest ratio of neighbouring steps
 };
 
-Course course(const HardCase& hard, const Options& options, double dt, double shorter) {
+/// Also stops wherever the tip is compared: the method knows the motion within its long
+/// steps better than an interpolant of their ends.
+void stop_at_samples(double horizon, std::vector<double>& stops) {
+  for (int k = 1; k <= Reference::samples; ++k) {
+    stops.push_back(TipSamples::time(horizon, k, Reference::samples));
+  }
+  std::ranges::sort(stops);
+  stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+}
+
+Course course(const Attempt& attempt) {
   constexpr double even = 1.5, jumping = 150;
-  Course c{options, {}, even};
-  c.options.step = dt;
-  const double t_end =
-      hard.count > 0 ? static_cast<double>(hard.count) * shorter * dt : hard.t_end;
+  const HardCase& hard = *attempt.hard;
+  const double dt = attempt.pace.step;
+  const bool by_tolerance = attempt.pace.tolerance > 0;
+  Course c{attempt.pace.applied(attempt.options), {}, even};
+  const double t_end = hard.count > 0
+                           ? static_cast<double>(hard.count) * attempt.shorter * dt
+                           : hard.t_end;
   if (hard.stops != nullptr) {
     c.stops = hard.stops(dt, t_end);
     c.growth = jumping;
   } else {
-    c.stops = {std::max(1.0, std::ceil(t_end / dt - 1e-9)) * dt};
+    c.stops = {by_tolerance ? t_end : std::max(1.0, std::ceil(t_end / dt - 1e-9)) * dt};
   }
+  if (by_tolerance && hard.horizon > 0) stop_at_samples(hard.horizon, c.stops);
   return c;
 }
 
@@ -73,6 +88,16 @@ double work(const Stats& stats, double unknowns, bool dense) {
   return unknowns * static_cast<double>(stats.residuals + stats.newton_iterations +
                                         stats.sweeps) +
          factors * static_cast<double>(stats.linearizations);
+}
+
+/// Its preferred one for this pace; empty: it has none. Error control needs constraints
+/// that hold without multipliers of their own order.
+std::optional<Formulation> formulation_of(const IntegratorEntry& entry, System& system,
+                                          const Pace& pace) {
+  for (const Formulation each : usable_formulations(entry, system)) {
+    if (pace.tolerance == 0 || each != Formulation::index3) return each;
+  }
+  return {};
 }
 
 /// One run, with the tip sampled up to the horizon, if there is one.
@@ -104,15 +129,14 @@ std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
                             const Parameters& defaults, const Options& options, double dt,
                             const WorkLimit& limit, std::string& why) {
   Situation s = situation(hard, subject, defaults);
-  Course c{options, {hard.horizon}, 1.5};
-  c.options.step = dt;
-  const auto formulations =
-      usable_formulations(find_integrator(reference_integrator), *s.system);
-  if (formulations.empty()) {
-    why = objection(find_integrator(reference_integrator), *s.system);
+  Course c{Pace{dt}.applied(options), {hard.horizon}, 1.5};
+  const IntegratorEntry& entry = find_integrator(reference_integrator);
+  const auto formulation = formulation_of(entry, *s.system, Pace{dt});
+  if (!formulation) {
+    why = objection(entry, *s.system);
     return {};
   }
-  c.options.formulation = formulations.front();
+  c.options.formulation = *formulation;
   Watched run = watch(reference_integrator, hard, subject, s, c, limit,
                       [](double, In, In) { return true; });
   if (run.end.status == Status::ok) return std::move(run.tips);
@@ -124,6 +148,17 @@ std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
 Subject rod() { return {&find_model("super_helix"), {}, ""}; }
 
 }  // namespace
+
+Options Pace::applied(Options options) const {
+  options.tolerance = tolerance;
+  (tolerance > 0 ? options.max_step : options.step) = step;
+  return options;
+}
+
+void Pace::identify(Row& row) const {
+  row.set("dt_s", step);
+  if (tolerance > 0) row.set("tolerance", tolerance);
+}
 
 std::string_view name(Outcome outcome) { return names[static_cast<int>(outcome)]; }
 
@@ -203,14 +238,14 @@ Survival survive(const Attempt& attempt, const WorkLimit& limit,
     return result;
   }
   Situation& s = *made;
-  const auto formulations = usable_formulations(entry, *s.system);
-  if (formulations.empty()) {
+  const auto formulation = formulation_of(entry, *s.system, attempt.pace);
+  if (!formulation) {
     result.why = objection(entry, *s.system);
     return result;
   }
-  Course c = course(hard, attempt.options, attempt.dt, attempt.shorter);
-  c.options.formulation = formulations.front();
-  if (s.system->layout().constraints > 0) result.formulation = name(formulations.front());
+  Course c = course(attempt);
+  c.options.formulation = *formulation;
+  if (s.system->layout().constraints > 0) result.formulation = name(*formulation);
 
   const StabilityBounds bounds = hard.bounds(s, c.stops.back());
   StabilityJudge judge(*s.system, bounds, s.start);

@@ -38,10 +38,16 @@ Situation made(std::string_view hard, std::string_view model = "super_helix",
 }
 
 Survival survived(std::string_view hard, std::string_view model,
-                  std::string_view integrator, double dt, Reference exact = {}) {
-  const Attempt attempt{&named(hard), subject(model), defaults(model), integrator, dt, {},
-                        1e-3};
+                  std::string_view integrator, const Pace& pace,
+                  const Reference& exact) {
+  const Attempt attempt{&named(hard), subject(model), defaults(model), integrator, pace,
+                        {},           1e-3};
   return survive(attempt, {}, [&] { return exact; });
+}
+
+Survival survived(std::string_view hard, std::string_view model,
+                  std::string_view integrator, double dt, const Reference& exact = {}) {
+  return survived(hard, model, integrator, Pace{dt}, exact);
 }
 
 // ---- the list -----------------------------------------------------------------------
@@ -208,7 +214,7 @@ TEST(HardCaseJudge, StopsWhenItsWorkIsDone) {
                         subject("super_helix"),
                         defaults("super_helix"),
                         "backward_euler",
-                        1.0 / 300,
+                        {1.0 / 300},
                         {}};
   const WorkLimit little{5 * 2 * 3.0};  // residual and solve of three unknowns
   const auto run = [&] { return survive(attempt, little, [] { return Reference{}; }); };
@@ -228,6 +234,87 @@ TEST(HardCaseJudge, StepsJump) {
   EXPECT_EQ(s.outcome, Outcome::stable);
   const double pairs = 0.25 / 0.0101;
   EXPECT_NEAR(static_cast<double>(s.stats.steps), 2 * pairs, 2);
+}
+
+// ---- by tolerance -------------------------------------------------------------------
+
+constexpr double longest = 1.0 / 30;
+
+/// By tr_bdf2, against bdf2 at a fixed step of 0.25 ms, whose own error (gap) counts
+/// twice: once as that of either.
+TEST(HardCaseByTolerance, ErrorIsThatWhichIsAskedFor) {
+  const HardCase& hard = named("two_elements");
+  const Reference exact =
+      reference(hard, subject("super_helix"), defaults("super_helix"), {}, 1, {});
+  ASSERT_EQ(exact.why, "");
+  ASSERT_LE(exact.gap, 1e-3);
+  for (const double tolerance : {1e-2, 1e-3}) {
+    const Survival s =
+        survived("two_elements", "super_helix", "tr_bdf2", {longest, tolerance}, exact);
+    EXPECT_EQ(s.outcome, Outcome::accurate) << s.why;
+    EXPECT_NEAR(s.t, hard.t_end, 1e-12);
+    EXPECT_LE(*s.error, tolerance + 2 * exact.gap);
+  }
+}
+
+TEST(HardCaseByTolerance, StepsAreNoLongerThanAsked) {
+  const Reference none{{}, 0, "none needed"};
+  const auto steps = [&](double most) {
+    return survived("two_elements", "super_helix", "tr_bdf2", {most, 1e-2}, none)
+        .stats.steps;
+  };
+  const double t_end = named("two_elements").t_end;
+  EXPECT_GE(static_cast<double>(steps(1e-3)), t_end / 1e-3);
+  EXPECT_LT(static_cast<double>(steps(longest)), t_end / 1e-3);
+}
+
+// Of a case that counts steps: the time of so many of the longest.
+TEST(HardCaseByTolerance, StepsThatAreCountedAreTheLongest) {
+  const Survival s =
+      survived("million_steps", "super_helix", "tr_bdf2", {1e-3, 1e-2}, {});
+  EXPECT_NEAR(s.t, 1000 * 1e-3, 1e-9);  // a thousandth of them
+  EXPECT_GE(s.stats.steps, 1000);
+}
+
+// Where a case says where steps end, the method keeps its own and is only asked there.
+TEST(HardCaseByTolerance, StopsDoNotChangeTheSteps) {
+  const HardCase& jumping = named("step_jumps");
+  HardCase whole = jumping;
+  whole.stops = [](double dt, double t_end) {
+    return std::vector{named("step_jumps").stops(dt, t_end).back()};
+  };
+  Attempt attempt{&whole,    subject("super_helix"), defaults("super_helix"),
+                  "tr_bdf2", {longest, 1e-3},        {}};
+  const auto none = [] { return Reference{{}, 0, "none needed"}; };
+  const Survival at_its_end = survive(attempt, {}, none);
+  attempt.hard = &jumping;
+  const Survival at_stops = survive(attempt, {}, none);
+  EXPECT_EQ(at_its_end.outcome, Outcome::stable) << at_its_end.why;
+  EXPECT_EQ(at_stops.outcome, Outcome::stable) << at_stops.why;
+  EXPECT_EQ(at_stops.t, at_its_end.t);
+  EXPECT_EQ(at_stops.stats.steps, at_its_end.stats.steps);
+  EXPECT_EQ(at_stops.stats.residuals, at_its_end.stats.residuals);
+}
+
+// Error control has no index 3, which fixed steps prefer.
+TEST(HardCaseByTolerance, ConstraintsAreHeldByProjection) {
+  const Survival s = survived("two_elements", "inextensible_strand", "tr_bdf2",
+                              {longest, 1e-2}, {{}, 0, "none needed"});
+  EXPECT_EQ(s.outcome, Outcome::stable) << s.why;
+  EXPECT_EQ(s.formulation, "projection");
+}
+
+TEST(HardCaseByTolerance, AToleranceThatCannotBeMetIsNoSurvival) {
+  Attempt attempt{&named("two_elements"),
+                  subject("super_helix"),
+                  defaults("super_helix"),
+                  "tr_bdf2",
+                  {longest, 1e-4},
+                  {}};
+  attempt.options.min_step = longest / 2;
+  const Survival s = survive(attempt, {}, [] { return Reference{}; });
+  EXPECT_EQ(s.outcome, Outcome::unstable);
+  EXPECT_THAT(s.why, HasSubstr("tolerance 0.0001 needs a step below"));
 }
 
 TEST(HardCaseJudge, OutcomesAreReadAsTheyAreWritten) {
@@ -310,8 +397,17 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
     cases.insert(std::string(cell.attempt.hard->name));
   }
   EXPECT_EQ(cases.size(), hard_case_catalogue().size());
-  // Three integrators at two steps on each model and system of particles.
-  EXPECT_EQ(grid.cells.size(), 6 * grid.references);
+  // Three integrators at two steps on each model and system of particles, bdf2 at one and
+  // tr_bdf2 at one tolerance.
+  EXPECT_EQ(grid.cells.size(), 8 * grid.references);
+  line.set = {{"tolerance", "1e-3"}};
+  const Grid chosen = hard_grid(line, Settings(line, hard_case_settings()));
+  EXPECT_EQ(chosen.cells.size(), grid.references);
+  for (const Cell& cell : chosen.cells) {
+    EXPECT_EQ(cell.attempt.pace, (Pace{longest, 1e-3}));
+    EXPECT_EQ(cell.identity().number("tolerance"), 1e-3);
+    EXPECT_EQ(cell.attempt.options.tolerance, 0);  // that of the reference
+  }
   line.set = {{"case", "straihgt"}};
   EXPECT_THROW(static_cast<void>(hard_grid(line, Settings(line, hard_case_settings()))),
                InputError);
