@@ -426,9 +426,10 @@ Row claimed(std::string_view hard, std::string_view passed, std::string_view out
 Verdicts::Verdict judged(const Row& row, std::string_view of) {
   Verdicts verdicts;
   check_hard_cases({row}, verdicts);
+  // One of each case, and three about tolerances.
   EXPECT_EQ(
       std::ranges::count(verdicts.all(), State::not_judged, &Verdicts::Verdict::state),
-      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1);
+      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1 + 3);
   for (const auto& verdict : verdicts.all()) {
     if (verdict.claim.starts_with(of)) return verdict;
   }
@@ -443,6 +444,57 @@ TEST(HardCaseClaims, FailOnAWrongTable) {
   EXPECT_EQ(of("false", "unstable"), State::broken);
   EXPECT_EQ(of("false", "refused"), State::not_judged);  // no claim at all
   EXPECT_EQ(judged(claimed("straight", "true", ""), "every cell").state, State::broken);
+}
+
+Row by_tolerance(std::string_view hard, std::string_view outcome, double error) {
+  Row row;
+  row.set("case", hard).set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("integrator", "tr_bdf2").set("measure", 0.5).set("limit", 1.0);
+  Pace{longest, 1e-3}.identify(row);
+  row.set("outcome", outcome).set("passed", outcome.starts_with("stable"));
+  if (!std::isnan(error)) row.set("error_rel", error);
+  return row;
+}
+
+State state_of(const Row& row, std::string_view claim) {
+  Verdicts verdicts;
+  check_hard_cases({row}, verdicts);
+  for (const auto& verdict : verdicts.all()) {
+    if (verdict.claim.starts_with(claim)) return verdict.state;
+  }
+  throw std::runtime_error("no claim " + std::string(claim));
+}
+
+TEST(HardCaseClaims, NothingPassesByToleranceThatIsWrong) {
+  const std::string_view claim = "by tolerance no run";
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable and accurate", 0.01), claim),
+            State::held);
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable", 0.06), claim), State::broken);
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable", std::nan("")), claim),
+            State::held);  // there is no reference
+  EXPECT_EQ(state_of(by_tolerance("turns_6_per_element", "stable", 0.06), claim),
+            State::held);  // three elements for what a rod of 36 does
+  EXPECT_EQ(state_of(by_tolerance("straight", "unstable", 0.06), claim),
+            State::not_judged);
+  Row beyond = by_tolerance("straight", "stable and accurate", 0.01);
+  beyond.set("measure", 2.0);
+  EXPECT_EQ(state_of(beyond, claim), State::broken);
+  beyond.set("measure", "nan");
+  EXPECT_EQ(state_of(beyond, claim), State::broken);
+}
+
+TEST(HardCaseClaims, LongCurlAndConeAreAccurateByTolerance) {
+  for (const std::string_view hard : {"long_curl", "cone"}) {
+    const std::string claim =
+        std::string(hard) + ": super_helix, exact tangent, tr_bdf2 is accurate";
+    const double none = std::nan("");
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable and accurate", 1e-3), claim),
+              State::held);
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable", 0.2), claim), State::broken);
+    EXPECT_EQ(state_of(by_tolerance(hard, "unstable", none), claim), State::broken);
+    EXPECT_EQ(state_of(by_tolerance(hard, "not finished", none), claim),
+              State::not_judged);
+  }
 }
 
 // What is known to fail is no alarm as long as it fails as it is known to.
