@@ -4,6 +4,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parse_csv } from './src/csv.mjs';
 import { escape_html, format_number, format_time } from './src/format.mjs';
+import { by_pace, by_tolerance, pace } from './src/pace.mjs';
 import { distinct, group_by, is_set } from './src/tables.mjs';
 
 const folder = process.argv[2];
@@ -47,10 +48,12 @@ function stable_steps() {
   );
 }
 
-/// A line for each model and integrator, a column for each step; what is not stable says why.
+/// A line for each model and integrator, a column for each step or tolerance; what is not
+/// stable says why.
 function survival() {
   const rows = rows_of('hard_cases');
-  const steps = distinct(rows.map((row) => row.dt_s)).sort((a, b) => a - b);
+  const head = (row) => `${by_tolerance(row) ? '' : 'step '}${pace(row)}`;
+  const heads = distinct(rows.toSorted(by_pace).map(head));
   const whose = (row) =>
     [row.model, row.variant, row.integrator].filter(Boolean).join(', ');
   // The guard's words begin with the outcome.
@@ -58,12 +61,12 @@ function survival() {
     why.startsWith(outcome) ? why : `${outcome}: ${why}`;
   const lines = [...group_by(rows, whose)].map(([subject, members]) => [
     subject,
-    ...steps.map((dt) => {
-      const row = members.find((one) => one.dt_s === dt);
+    ...heads.map((wanted) => {
+      const row = members.find((one) => head(one) === wanted);
       return !row ? '' : is_set(row.passed) ? row.outcome : reason(row);
     }),
   ]);
-  return table(['model, integrator', ...steps.map((dt) => `step ${seconds(dt)}`)], lines);
+  return table(['model, integrator', ...heads], lines);
 }
 
 function effects() {

@@ -46,6 +46,18 @@ mine,xpbd_cosserat,,bdf2,0.03,stable,true,nothing to compare with
   assert.match(html, /<td>xpbd_cosserat, bdf2<\/td><td><\/td><td>stable<\/td>/);
 });
 
+test('tolerances stand behind the steps, the tightest first', () => {
+  const html = page({
+    'hard_cases.csv': `case,model,variant,integrator,dt_s,tolerance,outcome,passed,why
+mine,der,,tr_bdf2,0.03,1e-2,stable,true,
+mine,der,,tr_bdf2,0.03,1e-3,unstable,false,fell
+mine,der,,tr_bdf2,0.03,,stable,true,
+`,
+  });
+  assert.match(html, /<th>step 30 ms<\/th><th>tolerance 1e-3<\/th><th>tolerance 1e-2<\/th>/);
+  assert.match(html, /<td>der, tr_bdf2<\/td><td>stable<\/td><td>unstable: fell<\/td><td>stable<\/td>/);
+});
+
 test('effects and advice are shown in words', () => {
   const html = page({
     'effect_audit.csv': `scene,effect,error_without_rel,cost_share,verdict,reason

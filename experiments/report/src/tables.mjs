@@ -30,6 +30,7 @@ export const known_tables = {
     required: ['case', 'model', 'integrator', 'dt_s', 'outcome'],
     numeric: [
       'dt_s',
+      'tolerance',
       'measure',
       'limit',
       'error_rel',
