@@ -175,7 +175,7 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
                       own.number("horizon_s"),
                       {row_work(line, own)}};
             work.scene.integrator = integrator;
-            work.scene.options = settings.options(scene.options);
+            work.scene.options = pace.applied(settings.options(scene.options));
             Row row;
             row.set("case", scene.name).set("model", model->id);
             row.set("variant", tangent.empty() ? "" : fmt::format("tangent={}", tangent));

@@ -90,16 +90,6 @@ double work(const Stats& stats, double unknowns, bool dense) {
          factors * static_cast<double>(stats.linearizations);
 }
 
-/// Its preferred one for this pace; empty: it has none. Error control needs constraints
-/// that hold without multipliers of their own order.
-std::optional<Formulation> formulation_of(const IntegratorEntry& entry, System& system,
-                                          const Pace& pace) {
-  for (const Formulation each : usable_formulations(entry, system)) {
-    if (pace.tolerance == 0 || each != Formulation::index3) return each;
-  }
-  return {};
-}
-
 /// One run, with the tip sampled up to the horizon, if there is one.
 Watched watch(std::string_view integrator, const HardCase& hard, const Subject& subject,
               Situation& s, const Course& c, const WorkLimit& limit,
@@ -131,7 +121,7 @@ std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
   Situation s = situation(hard, subject, defaults);
   Course c{Pace{dt}.applied(options), {hard.horizon}, 1.5};
   const IntegratorEntry& entry = find_integrator(reference_integrator);
-  const auto formulation = formulation_of(entry, *s.system, Pace{dt});
+  const auto formulation = preferred_formulation(entry, *s.system);
   if (!formulation) {
     why = objection(entry, *s.system);
     return {};
@@ -238,7 +228,8 @@ Survival survive(const Attempt& attempt, const WorkLimit& limit,
     return result;
   }
   Situation& s = *made;
-  const auto formulation = formulation_of(entry, *s.system, attempt.pace);
+  const auto formulation =
+      preferred_formulation(entry, *s.system, attempt.pace.tolerance);
   if (!formulation) {
     result.why = objection(entry, *s.system);
     return result;

@@ -32,7 +32,7 @@ function table(heads, body) {
 const method = (row) => `${row.integrator}${row.tangent ? `, tangent ${row.tangent}` : ''}`;
 
 function stable_steps() {
-  const rows = rows_of('stability_limit');
+  const rows = rows_of('stability_limit').filter((row) => row.study !== 'tolerance');
   const size = (row) => (typeof row.dt_max_s === 'number' ? row.dt_max_s : 0);
   return table(
     ['method', 'largest stable step', 'beyond it', 'time of a simulated second'],
@@ -44,6 +44,20 @@ function stable_steps() {
              `${row.limited_by === 'cap' ? '≥ ' : ''}${seconds(row.dt_max_s)}`,
              row.limited_by === 'cap' ? 'not tried' : row.limited_by,
              seconds(1 / row.realtime_factor)]
+          : [method(row), 'none', row.reason, '']),
+  );
+}
+
+function tolerances() {
+  const asked = (x) => (typeof x === 'number' ? x.toExponential() : '');
+  return table(
+    ['method', 'loosest', 'tightest within the work', 'steps at 1e-3'],
+    rows_of('stability_limit')
+      .filter((row) => row.study === 'tolerance')
+      .map((row) =>
+        typeof row.tolerance_loosest === 'number'
+          ? [method(row), asked(row.tolerance_loosest), asked(row.tolerance_tightest),
+             row.steps_usual]
           : [method(row), 'none', row.reason, '']),
   );
 }
@@ -114,6 +128,8 @@ th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px soli
 <p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
 needs shorter ones in its place.</p>
 ${stable_steps()}
+<p>By tolerance (error over the length): the loosest such that it and all tighter ones tried were stable.</p>
+${tolerances()}
 <h2>Which models survive it</h2>
 <p>Every model, at the scene's step and at those of the hard cases: each step has a solution, the guard of simulations
 finds nothing, no piece is stretched and no body entered too far.</p>

@@ -11,7 +11,7 @@ namespace tress::experiments::stability_limit {
 namespace {
 
 constexpr Parameter settings_of_rows[] = {
-    {.name = "study", .help = "rows of one study", .choices = "all|grid|nodal"},
+    {.name = "study", .help = "rows of one study", .choices = "all|grid|tolerance|nodal"},
     {.name = "scene",
      .help = "rows of one scene",
      .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
@@ -58,7 +58,8 @@ constexpr Parameter settings_of_rows[] = {
      .whole = true},
     {.name = "row_work",
      .help = "work of the search for one row (max_work), 0: 2e7, with --quick 3e6, "
-             "with --full 1e8, of study nodal 1e9, with --quick 1.5e8",
+             "with --full 1e8; of study tolerance 1e8, with --quick 3e7, with --full "
+             "3e8; of study nodal 1e9, with --quick 1.5e8",
      .number = 0,
      .min = 0},
 };
@@ -106,9 +107,6 @@ constexpr Variation further_methods[] = {
     {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
     {"articulated_chain", "backward_euler", "recursive", "exact"},
 };
-
-/// Where methods are compared.
-constexpr int usual_elements = 20;
 
 /// For --quick, one method of each kind that a user is likely to consider: explicit, of
 /// order 1, symplectic, with one solve a step, and two that damp fast modes. The others
@@ -174,7 +172,8 @@ bool usual(const CommandLine& line, const StabilityCase& c) {
          (c.elements == 5 || c.elements == usual_elements);
 }
 
-/// Whether the model has this solver and tangent, and the integrator takes it.
+}  // namespace
+
 bool possible(const StabilityCase& c, const Settings& settings) {
   for (const auto& [key, word] :
        {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
@@ -187,8 +186,6 @@ bool possible(const StabilityCase& c, const Settings& settings) {
     return false;  // a scene that the model does not support
   }
 }
-
-}  // namespace
 
 Row StabilityCase::identity() const {
   Row row;
@@ -237,11 +234,17 @@ bool considered(const CommandLine& line, const IntegratorEntry& entry) {
   return !line.quick || contains(quick_integrators, entry.id);
 }
 
+bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry) {
+  if (!entry.error_controlled) return false;
+  if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
+  return !line.quick || entry.id == "tr_bdf2";
+}
+
 std::vector<StabilityCase> stability_cases(const CommandLine& line,
                                            const Settings& settings) {
   const Parameters& rows = settings.experiment();
   std::vector<StabilityCase> all;
-  if (rows.word("study") == "nodal") return all;
+  if (rows.word("study") != "all" && rows.word("study") != "grid") return all;
   const bool chosen = rows.word("scene") != "all" || rows.word("damping") != "all" ||
                       !line.elements.empty();
   for (const StrandScene& scene : strand_scenes()) {

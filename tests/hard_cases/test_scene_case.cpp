@@ -241,6 +241,18 @@ TEST(SceneCase, IsTriedAtItsTolerance) {
   EXPECT_EQ(rows(file, line, {{"tolerance", "0.005"}}).size(), 1U);
 }
 
+// Error control holds constraints by projection, where fixed steps hold index 3.
+TEST(SceneCase, ModelsWithConstraintsAreTriedByTolerance) {
+  CommandLine line;
+  line.models = {"inextensible_strand"};
+  line.integrators = {"tr_bdf2"};
+  const auto found =
+      rows(file_of("constrained.toml", soft), line, {{"tolerance", "1e-3"}});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().text("formulation"), "projection");
+  EXPECT_EQ(found.front().text("outcome"), "stable") << found.front().text("why");
+}
+
 TEST(SceneCase, ATreeHasItsOwnModelOnly) {
   const std::string tree = TRESS_SCENES "/palm_tree.toml";
   CommandLine line;

@@ -31,6 +31,19 @@ mine,backward_euler,exact,0.1,cap,100,
   assert.match(html, /250 ms/); // a simulated second of bdf2
 });
 
+test('what is stable by tolerance stands in a table of its own', () => {
+  const html = page({
+    'stability_limit.csv': `study,scene,integrator,tangent,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,reason
+file,mine,bdf2,exact,0.002,energy,4,,,,
+tolerance,mine,tr_bdf2,exact,,cap,,0.1,0.0001,321,
+tolerance,mine,esdirk43,exact,,energy,,,,,no <tolerance>
+`,
+  });
+  assert.match(html, /<td>tr_bdf2, tangent exact<\/td><td>1e-1<\/td><td>1e-4<\/td><td>321<\/td>/);
+  assert.match(html, /<td>esdirk43, tangent exact<\/td><td>none<\/td><td>no &lt;tolerance&gt;<\/td>/);
+  assert.equal(html.match(/tr_bdf2/g).length, 1);
+});
+
 test('outcomes stand beside each other by step, the shortest first; what failed says why', () => {
   const html = page({
     'hard_cases.csv': `case,model,variant,integrator,dt_s,outcome,passed,why
