@@ -131,7 +131,8 @@ std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrat
   const IntegratorEntry& entry = find_integrator(integrator);
   std::vector<Pace> all;
   if (by_step(line, entry)) {
-    // That of order 2 damps long steps as that of order 1 does: its step is the short one.
+    // That of order 2 damps long steps as that of order 1 does: its step is the short
+    // one.
     const bool short_only = line.quick && integrator == "bdf2";
     if (!short_only) all = {{film}, {substep}};
     if (short_only || !line.quick) all.push_back({fine});

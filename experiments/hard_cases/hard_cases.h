@@ -76,9 +76,10 @@ SceneSurvival survive(const Scene& scene, const Pace& pace, const SceneCriteria&
 
 /// Rows for scene files: every strand model and integrator that the command line selects,
 /// at the scene's step or tolerance and at the standard ones; for a scene without strands
-/// its own model. The scene's model keeps the scene's options, others have their defaults, with
-/// the tangents of hard_grid(). Of many strands that do not touch each other, typical
-/// ones are run. Throws InputError on settings that a scene defines itself.
+/// its own model. The scene's model keeps the scene's options, others have their
+/// defaults, with the tangents of hard_grid(). Of many strands that do not touch each
+/// other, typical ones are run. Throws InputError on settings that a scene defines
+/// itself.
 std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
 
 /// The claims about the table of hard_cases: every cell has an outcome, and super_helix

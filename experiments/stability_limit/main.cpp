@@ -17,7 +17,8 @@ namespace {
 
 constexpr Column columns[] = {
     {"study",
-     "grid (of our hair), tolerance (the same by error control, and your scene), nodal (a "
+     "grid (of our hair), tolerance (the same by error control, and your scene), nodal "
+     "(a "
      "claim about a nodal scheme), file (your scene)"},
     {"scene", "what happens to the strand"},
     {"model", "catalogue id"},
@@ -130,7 +131,8 @@ std::vector<Case> cases(const CommandLine& line) {
     all.push_back(
         {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
   }
-  std::ranges::move(tolerance_cases(line, settings, ladder_work), std::back_inserter(all));
+  std::ranges::move(tolerance_cases(line, settings, ladder_work),
+                    std::back_inserter(all));
   std::ranges::move(nodal_cases(line, settings), std::back_inserter(all));
   return all;
 }

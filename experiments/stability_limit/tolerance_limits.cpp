@@ -53,8 +53,7 @@ void measure(const Work& work, Row& row) {
 
 /// By the linear-time solver where there is a choice, and the exact tangent.
 StabilityCase case_of(const StrandScene& scene, const ModelEntry& model,
-                      std::string_view integrator, std::string_view modes,
-                      int elements) {
+                      std::string_view integrator, std::string_view modes, int elements) {
   return {&scene,
           &model,
           integrator,
@@ -101,12 +100,18 @@ void find_tolerances(
   }
   if (!std::isnan(loosest)) return;
   if (unstable) {
-    row.failed("unstable",
-               "at the tightest tolerance that was tried: " +
-                   std::string(name(unstable->broken)) + " " + unstable->failure);
+    row.failed("unstable", "at the tightest tolerance that was tried: " +
+                               std::string(name(unstable->broken)) + " " +
+                               unstable->failure);
   } else {
     row.failed("gave_up", "the work of a row was used up by the loosest tolerance");
   }
+}
+
+bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry) {
+  if (!entry.error_controlled) return false;
+  if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
+  return !line.quick || entry.id == "tr_bdf2";
 }
 
 std::vector<Case> tolerance_cases(const CommandLine& line, const Settings& settings,
@@ -130,9 +135,8 @@ std::vector<Case> tolerance_cases(const CommandLine& line, const Settings& setti
           work.options.max_step = std::min(rows.number("cap_s"), scene.coarsest);
           Row row = c.identity();
           row.set("study", "tolerance");
-          all.push_back({row, [work](Row& of_case, const Deadline&) {
-                           measure(work, of_case);
-                         }});
+          all.push_back(
+              {row, [work](Row& of_case, const Deadline&) { measure(work, of_case); }});
         }
       }
     }

@@ -38,10 +38,9 @@ Situation made(std::string_view hard, std::string_view model = "super_helix",
 }
 
 Survival survived(std::string_view hard, std::string_view model,
-                  std::string_view integrator, const Pace& pace,
-                  const Reference& exact) {
-  const Attempt attempt{&named(hard), subject(model), defaults(model), integrator, pace,
-                        {},           1e-3};
+                  std::string_view integrator, const Pace& pace, const Reference& exact) {
+  const Attempt attempt{
+      &named(hard), subject(model), defaults(model), integrator, pace, {}, 1e-3};
   return survive(attempt, {}, [&] { return exact; });
 }
 
@@ -305,12 +304,9 @@ TEST(HardCaseByTolerance, ConstraintsAreHeldByProjection) {
 }
 
 TEST(HardCaseByTolerance, AToleranceThatCannotBeMetIsNoSurvival) {
-  Attempt attempt{&named("two_elements"),
-                  subject("super_helix"),
-                  defaults("super_helix"),
-                  "tr_bdf2",
-                  {longest, 1e-4},
-                  {}};
+  Attempt attempt{&named("two_elements"),  subject("super_helix"),
+                  defaults("super_helix"), "tr_bdf2",
+                  {longest, 1e-4},         {}};
   attempt.options.min_step = longest / 2;
   const Survival s = survive(attempt, {}, [] { return Reference{}; });
   EXPECT_EQ(s.outcome, Outcome::unstable);
