@@ -11,7 +11,7 @@ namespace {
 
 constexpr double gravity = 9.81;  // m/s^2
 // Of coordinates, whose error may be larger than that of points.
-constexpr double coordinate_weight = 1. / 30;
+constexpr double coordinate_weight = 1. / 15;
 
 constexpr std::string_view position = "position", velocity = "velocity",
                            coordinates = "coordinates";

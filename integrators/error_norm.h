@@ -11,12 +11,12 @@ namespace tress::integrators {
 /// Size of an error as a viewer of the strand sees it: the largest over its material
 /// points of |dx|/L and |du| sqrt(L/g)/L, L the longest way along the body and g = 9.81
 /// m/s^2. Coordinates alone miss energy, and generalised velocities count twist that
-/// moves nothing. But frames that move no point must not leave their solution:
-/// coordinates over System::scale count too, a thirtieth of them. (Seven strand models in
-/// hard cases by tr_bdf2 at 1e-3: in 325 of 259 625 steps they were above two thirds of
-/// that; where an element of xpbd_cosserat turned over unseen, which released a hundred
-/// times the energy of the fall, they were twice as large.) A body without length is
-/// measured by its coordinates and velocities alone.
+/// moves nothing. But frames that move no point must not leave their solution unseen:
+/// coordinates over System::scale count too, a fifteenth of them. (Seven strand models in
+/// hard cases by tr_bdf2 at 1e-3: 325 of 259 625 steps were above that by a quarter or
+/// more; where elements of corde and xpbd_cosserat turned over, which released a hundred
+/// times the energy of the fall, they were 1.3 to 4.6 times as large.) A body without
+/// length is measured by its coordinates and velocities alone.
 class ErrorNorm {
  public:
   explicit ErrorNorm(Dynamics& dynamics);

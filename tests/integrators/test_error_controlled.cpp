@@ -278,7 +278,7 @@ class UnseenFrame final : public System, private MaterialPoints {
 };
 
 // A frame that moves no point is followed too, if only coarsely: its coordinate may be
-// wrong by thirty thresholds a step, 30 times 2.2e-4 for tr_bdf2 and 3e-4 for esdirk43,
+// wrong by fifteen thresholds a step, 15 times 2.2e-4 for tr_bdf2 and 3e-4 for esdirk43,
 // and the errors of an undamped swing add up at most.
 TEST_P(ErrorControl, FollowsWhatMovesNoPoint) {
   UnseenFrame frame;
@@ -287,8 +287,8 @@ TEST_P(ErrorControl, FollowsWhatMovesNoPoint) {
   ASSERT_EQ(drive.to(period), Status::ok);
   const auto steps = static_cast<double>(drive.integrator->stats().steps);
   const double error = std::abs(drive.integrator->q()[1] - 1);
-  EXPECT_LE(error, 30 * 3e-4 * steps);
-  EXPECT_LE(error, 0.2);
+  EXPECT_LE(error, 15 * 3e-4 * steps);
+  EXPECT_LE(error, 0.1);
 }
 
 // A step so long that its end is out of reach of the projection is a step too long.
