@@ -78,9 +78,10 @@ double ErrorNorm::of(double t, In q, In v, In dq, In dv) {
   }
   shifted(q_, q, -1, dq);
   shifted(v_, v, -1, dv);
+  // In this order, for models keep what they have computed at the last q.
   points_->positions(t, q, x_);
-  points_->positions(t, q_, shifted_x_);
   points_->velocities(t, q, v, u_);
+  points_->positions(t, q_, shifted_x_);
   points_->velocities(t, q_, v_, shifted_u_);
   look(x_, shifted_x_, 1 / length_, position);
   look(u_, shifted_u_, time_ / length_, velocity);

@@ -96,6 +96,7 @@ function effects() {
 const configuration = (row) =>
   [row.model, row.modes, row.tangent && `tangent ${row.tangent}`, row.options,
     row.elements && `${row.elements} elements`, row.integrator,
+    typeof row.tolerance === 'number' && `tolerance ${row.tolerance}`,
     typeof row.dt_s === 'number' && `dt ${seconds(row.dt_s)}`].filter(Boolean).join(', ');
 
 function accuracy() {

@@ -53,6 +53,7 @@ export const known_tables = {
       'rank',
       'elements',
       'dt_s',
+      'tolerance',
       'error_rel',
       'error_refined_rel',
       'reference_gap',
