@@ -488,6 +488,8 @@ TEST(HardCaseClaims, LongCurlAndConeAreAccurateByTolerance) {
               State::held);
     EXPECT_EQ(state_of(by_tolerance(hard, "stable", 0.2), claim), State::broken);
     EXPECT_EQ(state_of(by_tolerance(hard, "unstable", none), claim), State::broken);
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable", none), claim),
+              State::not_judged);  // there is no reference
     EXPECT_EQ(state_of(by_tolerance(hard, "not finished", none), claim),
               State::not_judged);
   }
