@@ -50,17 +50,19 @@ const Row* claimed(const std::vector<Row>& rows, std::string_view hard,
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Whether the reference has other elements: the error is then one of space too.
-bool judges_space(const Row& row) {
+/// Whether a tolerance answers for the error: not where the reference has other elements,
+/// for the error is then one of space, nor over so many steps that what each may do wrong
+/// adds up.
+bool of_the_tolerance(const Row& row) {
   const auto cases = hard_case_catalogue();
   const auto found = std::ranges::find(cases, row.text("case"), &HardCase::name);
-  return found != cases.end() && found->rod_elements > 0;
+  return found == cases.end() || (found->rod_elements == 0 && found->count == 0);
 }
 
 /// Passed, but beyond its criterion, or farther off than anyone would ask for.
 bool silently_wrong(const Row& row) {
   const bool kept = !row.has("measure") || row.number("measure") <= row.number("limit");
-  const bool near = !row.has("error_rel") || judges_space(row) ||
+  const bool near = !row.has("error_rel") || !of_the_tolerance(row) ||
                     row.number("error_rel") <= largest_error;
   return !kept || !near;
 }
@@ -73,7 +75,9 @@ void check_by_tolerance(const std::vector<Row>& rows, Verdicts& verdicts) {
     ++passing;
     if (silently_wrong(row)) ++silent;
   }
-  const std::string never = "by tolerance no run passes with an error above 5 %";
+  const std::string never =
+      "by tolerance no run passes with an error above 5 %, but for errors of space and "
+      "those of a million steps";
   if (passing > 0) {
     verdicts.check(never, silent == 0, static_cast<double>(silent));
   } else {

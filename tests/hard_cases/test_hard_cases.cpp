@@ -470,6 +470,7 @@ TEST(HardCaseClaims, NothingPassesByToleranceThatIsWrong) {
             State::held);  // there is no reference
   EXPECT_EQ(state_of(by_tolerance("turns_6_per_element", "stable", 0.06), claim),
             State::held);  // three elements for what a rod of 36 does
+  EXPECT_EQ(state_of(by_tolerance("million_steps", "stable", 0.3), claim), State::held);
   EXPECT_EQ(state_of(by_tolerance("straight", "unstable", 0.06), claim),
             State::not_judged);
   Row beyond = by_tolerance("straight", "stable and accurate", 0.01);
