@@ -37,8 +37,7 @@ void TipSamples::step_to(double t, In q, In v) {
 }
 
 double TipSamples::next() const {
-  const std::size_t taken = tips.size() / 3;
-  return t_end_ * (static_cast<double>(taken + 1) / count_);
+  return time(t_end_, static_cast<int>(tips.size() / 3) + 1, count_);
 }
 
 TipSamples::End TipSamples::read(double t, In q, In v) {

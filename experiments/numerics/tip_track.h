@@ -19,6 +19,11 @@ class TipSamples {
   /// `growth`: largest ratio of successive steps.
   TipSamples(System& system, double t_end, int count, double growth);
 
+  /// s, of sample k, 1 .. count; exact, for those who stop there.
+  static double time(double t_end, int k, int count) {
+    return t_end * (static_cast<double>(k) / count);
+  }
+
   void start(In q, In v);
   void step_to(double t, In q, In v);
 

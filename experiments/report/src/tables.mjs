@@ -30,6 +30,7 @@ export const known_tables = {
     required: ['case', 'model', 'integrator', 'dt_s', 'outcome'],
     numeric: [
       'dt_s',
+      'tolerance',
       'measure',
       'limit',
       'error_rel',
@@ -180,6 +181,10 @@ export const known_tables = {
       'elements',
       'dt_max_s',
       'dt_first_unstable_s',
+      'tolerance_loosest',
+      'tolerance_tightest',
+      'steps_usual',
+      'work_usual',
       'cost_per_step_s',
       'realtime_factor',
       't_claim_s',
