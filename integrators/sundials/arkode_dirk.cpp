@@ -86,14 +86,16 @@ void ArkodeDirk::choose_table() {
 }
 
 int ArkodeDirk::restart() {
+  equations_.begin();
   return ARKStepReInit(memory_.get(), nullptr, &FirstOrder::rate_callback, time_,
                        y_.handle());
 }
 
 int ArkodeDirk::step(double t_end, double& t) {
-  const int code = ARKStepSetStopTime(memory_.get(), t_end);
+  int code = ARKStepSetStopTime(memory_.get(), t_end);
   if (code < 0) return code;
-  return ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+  code = ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+  return code < 0 && equations_.gave_up() ? ARK_RHSFUNC_FAIL : code;
 }
 
 Stats ArkodeDirk::counters() const {
