@@ -36,10 +36,11 @@ void TipSamples::step_to(double t, In q, In v) {
   }
 }
 
-double TipSamples::next() const {
-  const std::size_t taken = tips.size() / 3;
-  return t_end_ * (static_cast<double>(taken + 1) / count_);
+double TipSamples::time(std::size_t i) const {
+  return t_end_ * (static_cast<double>(i + 1) / count_);
 }
+
+double TipSamples::next() const { return time(tips.size() / 3); }
 
 TipSamples::End TipSamples::read(double t, In q, In v) {
   const std::size_t last = x_.size() - 3;
@@ -64,8 +65,13 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   const State start = initial_state(system);
   TipSamples seen(system, t_end, samples,
                   find_integrator(integrator).adaptive ? uneven : even);
+  std::vector<double> stops{t_end};
+  if (options.tolerance > 0) {
+    stops.resize(static_cast<std::size_t>(samples));
+    for (std::size_t i = 0; i < stops.size(); ++i) stops[i] = seen.time(i);
+  }
   const auto run = [&](const Observer& observer) {
-    return run_method(*method, system, start, {&t_end, 1}, {}, observer);
+    return run_method(*method, system, start, stops, {}, observer);
   };
   system.reset();
   seen.start(start.q, start.v);
