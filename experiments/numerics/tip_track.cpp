@@ -63,8 +63,15 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   const State start = initial_state(system);
   TipSamples seen(system, t_end, samples,
                   find_integrator(integrator).adaptive ? uneven : even);
+  std::vector<double> stops{t_end};
+  if (options.tolerance > 0) {
+    stops.resize(static_cast<std::size_t>(samples));
+    for (int k = 1; k <= samples; ++k) {
+      stops[static_cast<std::size_t>(k) - 1] = TipSamples::time(t_end, k, samples);
+    }
+  }
   const auto run = [&](const Observer& observer) {
-    return run_method(*method, system, start, {&t_end, 1}, {}, observer);
+    return run_method(*method, system, start, stops, {}, observer);
   };
   system.reset();
   seen.start(start.q, start.v);
