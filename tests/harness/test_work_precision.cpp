@@ -145,6 +145,60 @@ TEST(StrandRuns, AMotionThatPhysicsRulesOutIsNoResult) {
   }
 }
 
+TEST(StrandRuns, ByToleranceHaveTheTimeErrorThatWasAskedFor) {
+  int controlled = 0;
+  for (const Row& row : released("der", {10})) {
+    if (!row.has("tolerance")) {
+      EXPECT_FALSE(row.has("achieved_over_asked"));
+      continue;
+    }
+    ++controlled;
+    ASSERT_TRUE(row.ok()) << row.text("reason");
+    EXPECT_EQ(row.text("error_kind"), "time");
+    EXPECT_FALSE(row.has("dt_s"));
+    EXPECT_GT(row.number("smallest_step_s"), 0);
+    // The largest distance of a tip is not below its root mean square.
+    EXPECT_GE(row.number("achieved_over_asked") * row.number("tolerance"),
+              row.number("error_rel"));
+    EXPECT_LE(row.number("achieved_over_asked"), 1);
+  }
+  EXPECT_EQ(controlled, 6);  // two methods, three tolerances
+}
+
+/// Index 3 has no error control: constraints are projected instead.
+TEST(StrandRuns, ByToleranceProjectConstraints) {
+  for (const Row& row : released("inextensible_strand", {10})) {
+    if (!row.has("tolerance")) continue;
+    EXPECT_EQ(row.text("formulation"), "projection");
+    EXPECT_TRUE(row.ok()) << row.text("reason");
+  }
+}
+
+TEST(ProblemRuns, ByToleranceMeasureTheBodyOverItsLength) {
+  CommandLine line;
+  line.quick = true;
+  line.repeat = 1;
+  line.integrators = {"esdirk43"};
+  for (const char* const scene : {"beam", "chain_10", "andrews_squeezer"}) {
+    line.set = {{"scene", scene}, {"tolerance", "0.5"}};
+    int controlled = 0;
+    for (const Case& work : problem_runs(line, Settings(line, row_settings()))) {
+      if (!work.identity.has("tolerance")) {
+        EXPECT_TRUE(work.identity.has("dt_s"));
+        continue;
+      }
+      ++controlled;
+      if (work.identity.number("tolerance") < 1e-2) continue;
+      Row row = work.identity;
+      work.run(row, Deadline(600));
+      ASSERT_TRUE(row.ok()) << scene << ": " << row.text("reason");
+      EXPECT_GT(row.number("achieved_over_asked"), 0);
+      EXPECT_LE(row.number("achieved_over_asked"), 1) << scene;
+    }
+    EXPECT_EQ(controlled, 3) << scene;
+  }
+}
+
 Verdicts::State state_of(std::string_view claim, const std::vector<Row>& rows) {
   Verdicts all;
   check_claims(rows, all);
@@ -181,6 +235,30 @@ TEST(Claims, BdfOrdersAreComparedOnTheBeam) {
   EXPECT_EQ(state({steps(2, 100), steps(5, 1001)}), Verdicts::State::held);
   EXPECT_EQ(state({steps(2, 100), steps(5, 999)}), Verdicts::State::broken);
   EXPECT_EQ(state({steps(2, 100)}), Verdicts::State::not_judged);
+}
+
+/// Runs of the swing by esdirk43 with these errors over tolerances of 1e-2, 1e-3, 1e-4.
+std::vector<Row> by_tolerance(const std::vector<double>& ratios) {
+  std::vector<Row> rows;
+  double tolerance = 1e-2;
+  for (const double ratio : ratios) {
+    Row row;
+    row.set("scene", "swing").set("integrator", "esdirk43").set("model", "super_helix");
+    row.set("tolerance", tolerance).set("achieved_over_asked", ratio);
+    rows.push_back(row);
+    tolerance /= 10;
+  }
+  return rows;
+}
+
+TEST(Claims, ErrorControlIsJudgedByItsWorstRatioAndByItsOrder) {
+  constexpr std::string_view claim = "esdirk43, swing";
+  EXPECT_EQ(state_of(claim, by_tolerance({0.06, 0.5, 0.9})), Verdicts::State::held);
+  EXPECT_EQ(state_of(claim, by_tolerance({0.06, 1.1, 0.9})), Verdicts::State::broken);
+  EXPECT_EQ(state_of(claim, by_tolerance({0.04, 0.5, 0.9})), Verdicts::State::broken);
+  // Within bounds, but the error does not fall: 5e-4 by 1e-2 and 9e-4 by 1e-3.
+  EXPECT_EQ(state_of(claim, by_tolerance({0.05, 0.9, 0.5})), Verdicts::State::broken);
+  EXPECT_EQ(state_of(claim, by_tolerance({})), Verdicts::State::not_judged);
 }
 
 }  // namespace tress::test_work_precision
