@@ -159,6 +159,10 @@ std::vector<Problem> make_problems() {
 
 }  // namespace
 
+std::vector<double> points(System& system, const State& state) {
+  return points_of(system, state.q);
+}
+
 std::unique_ptr<System> Problem::make() const { return make_model(model, settings); }
 
 std::vector<Checkpoint> checkpoints(double t_end, int count) {

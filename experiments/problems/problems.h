@@ -45,6 +45,9 @@ struct Problem {
   std::unique_ptr<System> make() const;
 };
 
+/// The material points of a state, three coordinates each.
+std::vector<double> points(System& system, const State& state);
+
 /// A run that is compared at every checkpoint, so that errors which happen to cancel at
 /// one time do not pass for accuracy.
 struct ProblemRun {

@@ -29,7 +29,7 @@ constexpr Column outcome_columns_[] = {
      "its length, at the frames before the two runs part"},
     {"time_error_rms_rel", "the same, root mean square over the strand's points"},
     {"time_error_at_s", "when it is largest"},
-    {"time_error_strand", "that strand"},
+    {"time_error_strand", "that strand, where there are several"},
     {"time_error_median_rel", "median over strands of their largest errors"},
     {"time_horizon_s", "when the first strand's two runs part: no estimate from there"},
     {"time_parted", "strands whose two runs part"},
@@ -95,9 +95,11 @@ void set_errors(std::string_view part, const ErrorBar& bar, Row& row) {
   row.set(column("error_max_rel"), worst.error.largest);
   row.set(column("error_rms_rel"), worst.error.rms);
   row.set(column("error_at_s"), worst.largest_at);
-  row.set(column("error_strand"), bar.worst());
-  row.set(column("error_median_rel"), bar.median());
-  row.set(column("parted"), bar.parted());
+  if (bar.strands.size() > 1) {
+    row.set(column("error_strand"), bar.worst());
+    row.set(column("error_median_rel"), bar.median());
+    row.set(column("parted"), bar.parted());
+  }
   if (worst.parts) row.set(column("horizon_s"), *worst.parts);
 }
 
