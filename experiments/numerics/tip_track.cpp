@@ -98,4 +98,15 @@ double tip_error(In tip, In reference, double length) {
   return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
 }
 
+double largest_tip_error(In tip, In reference, double length) {
+  if (tip.size() != reference.size()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t i = 0; i < tip.size(); i += 3) {
+    const double distance = norm(load3(&tip[i]) - load3(&reference[i]));
+    if (!std::isfinite(distance)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, distance);
+  }
+  return largest / length;
+}
+
 }  // namespace tress::experiments
