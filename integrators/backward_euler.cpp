@@ -33,6 +33,7 @@ IntegratorEntry backward_euler_entry() {
           .summary = "L-stable, strong damping",
           .source = "Hairer-Wanner IV.3",
           .tangent = true,
+          .stages = 1,
           .formulations = of_order(1, stage_formulations),
           .make = make_method<BackwardEuler>};
 }

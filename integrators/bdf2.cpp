@@ -57,6 +57,7 @@ IntegratorEntry bdf2_entry() {
           .summary = "L-stable, damps fast modes",
           .source = "Gear 1971",
           .tangent = true,
+          .stages = 1,
           .formulations = of_order(2, stage_formulations),
           .make = make_method<Bdf2>};
 }

@@ -38,6 +38,7 @@ struct IntegratorEntry {
   bool adaptive = false;          // driven by rtol/atol instead of step
   bool error_controlled = false;  // takes Options::tolerance as well as step
   bool tangent = false;           // solves with the model's tangent
+  int stages = 0;                 // solutions by Newton's method in a step (Stage)
   std::vector<Treatment> formulations;
   std::vector<Gap> gaps = {};
   /// Options that only this method reads, by own_options().

@@ -17,6 +17,12 @@ constexpr double least_factor = 0.2, most_factor = 5;
 constexpr double dead_from = 0.95, dead_to = 1.2;
 // After a failed Newton iteration.
 constexpr double newton_factor = 0.25, newton_ceiling = 0.5, ceiling_growth = 1.05;
+// A step this much shorter than one whose polynomial failed may have a good one: its
+// error falls by 0.7^6 = 0.12.
+constexpr double polynomial_factor = 0.7;
+// The polynomial may stretch the strand twice as much as the ends of its step (4 times
+// the strain energy), and by what a strand shows in rounding.
+constexpr double more_stretch = 2, least_stretch = 1e-9;
 // First step over the time in which the body falls about its size, at tolerance 1: its
 // estimate is far below any threshold for a motion that starts smoothly, and the control
 // needs few trials otherwise.
@@ -70,7 +76,7 @@ Status ErrorControlled::start(double t, In q, In v) {
   begin_.q = q_;
   begin_.v = v_;
   ahead_ = rejected_ = false;
-  ceiling_ = std::numeric_limits<double>::infinity();
+  ceiling_ = fails_from_ = std::numeric_limits<double>::infinity();
   failure_.clear();
   limit_ = Limit::none;
   dynamics_.begin();
@@ -87,28 +93,26 @@ Status ErrorControlled::restart() {
   return dynamics_.accelerate(begin_.t, begin_.q, begin_.v, begin_.a, begin_.lambda);
 }
 
-ErrorControlled::Trial ErrorControlled::trial() {
+ErrorControlled::Trial ErrorControlled::trial(double t_end) {
   double h = std::min(h_, ceiling_);
   if (options_.max_step > 0) h = std::min(h, options_.max_step);
-  const double left = dynamics_.system().next_breakpoint(begin_.t) - begin_.t;
+  const double to_break = dynamics_.system().next_breakpoint(begin_.t) - begin_.t;
+  const bool ends = h > polynomial_factor * fails_from_;
+  const double left = ends ? std::min(to_break, t_end - begin_.t) : to_break;
   // 1e-9: no sliver is left by rounding.
-  if (h > (1 - 1e-9) * left) return {left, left < h_, true};
+  if (h > (1 - 1e-9) * left) return {left, left < h_, left == to_break};
   if (2 * h > left) h = left / 2;  // nor by a step that ends shortly before
   return {h, h < h_, false};
 }
 
-Status ErrorControlled::next_step() {
+Status ErrorControlled::next_step(double t_end) {
   for (;;) {
-    const Trial now = trial();
+    const Trial now = trial(t_end);
     end_.t = begin_.t + now.h;
     const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
     if (s == Status::retry) {
-      ++dynamics_.stats.rejected_by_newton;
-      ceiling_ = newton_ceiling * now.h;
-      if (const Status r = shorten(newton_factor * now.h, by_newton); r != Status::ok) {
-        return r;
-      }
+      if (const Status r = unsolved(now.h); r != Status::ok) return r;
       continue;
     }
     const double error =
@@ -124,7 +128,8 @@ Status ErrorControlled::next_step() {
       continue;
     }
     if (projection_ && projection_->project(end_.t, end_.q, end_.v) != Status::ok) {
-      return fail(Status::fatal, "projection onto the constraints failed");
+      if (const Status r = unsolved(now.h); r != Status::ok) return r;
+      continue;
     }
     at_break_ = now.at_break;
     ahead_ = true;
@@ -139,6 +144,12 @@ Status ErrorControlled::next_step() {
     adapt(now, error);
     return Status::ok;
   }
+}
+
+Status ErrorControlled::unsolved(double h) {
+  ++dynamics_.stats.rejected_by_newton;
+  ceiling_ = newton_ceiling * h;
+  return shorten(newton_factor * h, by_newton);
 }
 
 Status ErrorControlled::shorten(double h, std::string_view cause) {
@@ -205,6 +216,28 @@ void ErrorControlled::interpolate(double t) {
   t_ = t;
 }
 
+bool ErrorControlled::read(double t_end) {
+  interpolate(t_end);
+  if (projection_ && projection_->project(t_end, q_, v_) != Status::ok) return false;
+  MaterialPoints* points = dynamics_.system().material_points();
+  if (points == nullptr) return true;
+  const auto stretch = [points](double t, In q) {
+    return points->stretch(t, q).value_or(0);
+  };
+  const double ends = std::max(stretch(begin_.t, begin_.q), stretch(end_.t, end_.q));
+  return stretch(t_end, q_) <= more_stretch * ends + least_stretch;
+}
+
+void ErrorControlled::give_back() {
+  fails_from_ = end_.t - begin_.t;
+  t_ = begin_.t;
+  q_ = begin_.q;
+  v_ = begin_.v;
+  ahead_ = false;
+  --dynamics_.stats.steps;
+  ++dynamics_.stats.rejected;
+}
+
 Status ErrorControlled::advance(double t_end, const Observer& each_step) {
   const auto seen = [&] { return !each_step || each_step(t_, q_, v_); };
   for (long taken = 0; t_ < t_end;) {
@@ -217,10 +250,13 @@ Status ErrorControlled::advance(double t_end, const Observer& each_step) {
         limit_ = Limit::work;
         return end_run(Status::fatal, "max_work used up");
       }
-      if (const Status s = next_step(); s != Status::ok) return s;
+      if (const Status s = next_step(t_end); s != Status::ok) return s;
     }
     if (end_.t > t_end) {
-      interpolate(t_end);
+      if (!read(t_end)) {
+        give_back();
+        continue;
+      }
     } else if (const Status s = accept_end(); s != Status::ok) {
       return s;
     }

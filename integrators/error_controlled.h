@@ -18,7 +18,9 @@ namespace tress::integrators {
 /// Steps do not end where advance() does: the state there is read off a quintic
 /// polynomial through (q, v, a) at both ends of the step, error O(h^6), before
 /// System::accept is called for the step's end, so that coordinates keep their meaning.
-/// Constraints hold at the steps' ends, and there as far as the polynomial follows them.
+/// It is projected onto the constraints where the method projects. The polynomial does
+/// not keep lengths that a stiff strand keeps: where it stretches the strand, the step is
+/// repeated to end there, and so do the next ones of that length (fails_from_).
 /// The system must not be changed from outside between two calls of advance().
 ///
 /// Step control: PI with gains 0.7/k and 0.4/k for an estimate that falls as h^k
@@ -60,19 +62,26 @@ class ErrorControlled : public Integrator {
   Status fail(Status status, const std::string& what);
   /// Forgets history at begin_.
   Status restart();
-  /// Finds the next step: end_.
-  Status next_step();
+  /// Finds the next step: end_. A step as long as those whose polynomial failed ends at
+  /// `t_end` at the latest.
+  Status next_step(double t_end);
   struct Trial {
     double h;
     bool cut;  // shorter than what the control asked for
     bool at_break;
   };
-  Trial trial();
+  Trial trial(double t_end);
   void adapt(const Trial& taken, double error);
+  /// After Newton's iteration failed for a step of h, in a stage or in the projection.
+  Status unsolved(double h);
   /// Goes on with a step of h; fails where that is too short.
   Status shorten(double h, std::string_view cause);
   Status accept_end();
   void interpolate(double t);
+  /// The state at t_end inside the step; false: the polynomial failed there.
+  bool read(double t_end);
+  /// Goes back to the start of a step whose polynomial failed.
+  void give_back();
 
   Options options_;
   Dynamics dynamics_;
@@ -87,6 +96,7 @@ class ErrorControlled : public Integrator {
   std::vector<double> error_q_, error_v_;
   double h_ = 0;            // of the next step
   double ceiling_ = 0;      // for it
+  double fails_from_ = 0;   // length of the last step whose polynomial failed
   double before_ = 1;       // estimate of the step before, over the threshold
   bool rejected_ = false;   // the last trial
   std::string_view cause_;  // of h_

@@ -36,15 +36,14 @@ class FixedEsdirk final : public FixedStep {
   EsdirkStages stages_;
 };
 
-/// Newton's tolerance over that of the step. Stages enter the estimate with weights of
+/// Newton's tolerance over that of the run. Stages enter the estimate with weights of
 /// order one, so that a hundredth of the tolerance is not seen in it.
 constexpr double newton_part = 1e-2;
-/// But however loose the tolerance, unresolved stages cost more in steps than they save
-/// in iterations.
-constexpr double loosest_newton = 1e-6;
+/// Newton's tolerance has this margin already.
+constexpr double remaining = 1;
 
 Options with_control(Options options) {
-  options.newton_tolerance = std::min(loosest_newton, newton_part * options.tolerance);
+  options.newton_tolerance = newton_part * options.tolerance;
   options.refresh = Refresh::every_step;
   return options;
 }
@@ -54,7 +53,7 @@ class ControlledEsdirk final : public ErrorControlled {
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         table.share * std::pow(options.tolerance, table.power)),
-        stages_(dynamics(), with_control(options), table) {}
+        stages_(dynamics(), with_control(options), table, remaining) {}
 
  private:
   Status try_step(const State& from, double h, State& to, Out error_q,
@@ -79,9 +78,9 @@ double EsdirkTable::c(std::size_t i) const {
 }
 
 EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
-                           const EsdirkTable& table)
+                           const EsdirkTable& table, double remaining)
     : table_(table),
-      stage_(dynamics, options),
+      stage_(dynamics, options, remaining),
       v_(table.stages, std::vector<double>(static_cast<std::size_t>(dynamics.n()))),
       a_(v_),
       q_bar_(v_.front()),

@@ -40,7 +40,9 @@ struct EsdirkTable {
 /// matrix serves all of them (Refresh::every_step: one a step).
 class EsdirkStages {
  public:
-  EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table);
+  /// `remaining`: see Stage.
+  EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
+               double remaining = 0.1);
 
   /// From (q, v) at t with its acceleration a and multipliers over h.
   Status step(double t, double h, In q, In v, In a, In lambda) noexcept;

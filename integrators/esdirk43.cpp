@@ -46,6 +46,7 @@ IntegratorEntry esdirk43_entry() {
           .source = "Kennedy-Carpenter 2016",
           .error_controlled = true,
           .tangent = true,
+          .stages = 5,
           // Index 3 differentiates twice what the stages, of order 2, leave in g.
           .formulations = {{Formulation::parametric, table.order},
                            {Formulation::acceleration, table.order},

@@ -87,6 +87,7 @@ IntegratorEntry newmark_entry() {
           .summary = "average acceleration, no damping",
           .source = "Newmark 1959",
           .tangent = true,
+          .stages = 1,
           .formulations = of_order(2, stage_formulations),
           .make = make_newmark};
 }
@@ -96,6 +97,7 @@ IntegratorEntry generalized_alpha_entry() {
           .summary = "damping by rho_inf",
           .source = "Chung-Hulbert 1993",
           .tangent = true,
+          .stages = 1,
           .formulations = of_order(2, stage_formulations),
           .parameters = own_generalized_alpha,
           .make = make_generalized_alpha};

@@ -35,6 +35,7 @@ IntegratorEntry implicit_midpoint_entry() {
           .summary = "A-stable, no damping, symplectic",
           .source = "Gauss 1 stage",
           .tangent = true,
+          .stages = 1,
           .formulations = of_order(2, projected_formulations),
           .gaps = {{Formulation::index3, "Gauss methods are unstable on index 3"}},
           .make = make_method<ImplicitMidpoint>};

@@ -9,17 +9,25 @@
 namespace tress::integrators {
 namespace {
 
-// A kept matrix is rebuilt when corrections shrink by less than this per iteration.
-constexpr double slow_rate = 0.3;
+// A matrix is rebuilt where more iterations than this are to come at the present rate.
+// An exact tangent costs as much as six of them, and two follow it.
+constexpr double most_to_come = 8;
+
+// Corrections that stop shrinking are rounding errors within this factor of a tight
+// tolerance, and below this size under a loose one.
+constexpr double stagnation = 1e4, largest_rounding = 1e-6;
 
 // After this many growing corrections the iteration counts as not converging.
 constexpr int most_grown = 2;
 
 }  // namespace
 
-Stage::Stage(Dynamics& dynamics, const Options& options)
+Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
     : dynamics_(dynamics),
       tolerance_(options.newton_tolerance),
+      remaining_(remaining * tolerance_),
+      rounding_(
+          std::max(tolerance_, std::min(stagnation * tolerance_, largest_rounding))),
       iterations_(options.newton_iterations),
       refresh_(options.refresh),
       q_(static_cast<std::size_t>(dynamics.n())),
@@ -120,27 +128,26 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
   int grown = 0;
   const bool usable =
       matrix_ == dynamics_.matrix() && factored_.vel == w.vel && factored_.pos == w.pos;
-  const bool shared = refresh == Refresh::every_step && matrix == Matrix::shared;
+  if (matrix == Matrix::own) shares_ = true;
+  const bool shared =
+      refresh == Refresh::every_step && shares_ && matrix == Matrix::shared;
   bool linearize = !usable || !(refresh == Refresh::when_slow || shared);
-  bool built = false;  // for this stage
   for (int i = 0; i < iterations_; ++i) {
     double correction = 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
-    built = built || linearize;
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
     // this one. The first correction has no rate yet.
     const double error_left =
         i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
-    if (correction <= tolerance_ || error_left <= 0.1 * tolerance_) return Status::ok;
-    if (rate > 0.5 && i >= 2 && correction <= stage_stagnation * tolerance_) {
-      return Status::ok;
-    }
+    if (correction <= tolerance_ || error_left <= remaining_) return Status::ok;
+    if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
-    const bool slow = i > 0 && rate > slow_rate;
-    linearize = refresh == Refresh::every_iteration ||
-                (slow && (refresh == Refresh::when_slow || (shared && !built)));
+    const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <
+                                                 most_to_come * std::log(rate));
+    linearize = refresh == Refresh::every_iteration || slow;
+    if (slow) shares_ = false;
     previous = correction;
   }
   return Status::retry;

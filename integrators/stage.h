@@ -6,10 +6,6 @@
 
 namespace tress::integrators {
 
-/// Corrections that stop shrinking within this factor of the tolerance are rounding
-/// errors.
-inline constexpr double stage_stagnation = 1e4;
-
 /// The nonlinear equations of one implicit stage, shared by every implicit fixed-step
 /// method: find a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a
@@ -29,14 +25,16 @@ inline constexpr double stage_stagnation = 1e4;
 /// solves the equations. There a mean of Newton's corrections from both sides vanishes.
 ///
 /// Options: newton_tolerance bounds the last correction of q and v over System::scale,
-/// newton_iterations, refresh.
+/// newton_iterations, refresh. The iteration also ends where the error that its rate lets
+/// expect is below `remaining` times newton_tolerance, and where corrections of the size
+/// of rounding errors stop shrinking.
 class Stage {
  public:
-  Stage(Dynamics& dynamics, const Options& options);
+  Stage(Dynamics& dynamics, const Options& options, double remaining = 0.1);
 
   /// The matrix under Refresh::every_step: of this stage's own, or shared with the stage
-  /// solved before, of the same step; a shared one is rebuilt once where it converges
-  /// slowly.
+  /// solved before, of the same step. Either is rebuilt where it converges slowly, and
+  /// then serves the next stages no more: they have their own.
   enum class Matrix { own, shared };
 
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
@@ -83,12 +81,14 @@ class Stage {
                  InOut lambda, double& correction) noexcept;
 
   Dynamics& dynamics_;
-  double tolerance_;
+  double tolerance_, remaining_;
+  double rounding_;  // corrections below it may be rounding errors
   int iterations_;
   Refresh refresh_;
-  Weights factored_;  // of the matrix that newton() used last
-  double rate_ = 0;   // of newton(): its last correction over the one before
-  long matrix_ = -1;  // its Dynamics::matrix(); other callers may have factored since
+  Weights factored_;    // of the matrix that newton() used last
+  double rate_ = 0;     // of newton(): its last correction over the one before
+  bool shares_ = true;  // the last matrix of this step served all stages so far
+  long matrix_ = -1;    // its Dynamics::matrix(); other callers may have factored since
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps

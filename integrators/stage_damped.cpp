@@ -25,7 +25,7 @@ Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
     Status s = newton_step(t, w, a, lambda, a_step_, lambda_step_, size);
     if (s != Status::ok) return s;
     s = halve_until_smaller(t, q_bar, v_bar, w, size, a, lambda);
-    const bool rounding = s == Status::retry && size <= stage_stagnation * tolerance_;
+    const bool rounding = s == Status::retry && size <= rounding_;
     if (size <= tolerance_ || rounding) return Status::ok;
     if (s != Status::ok) return s;
   }

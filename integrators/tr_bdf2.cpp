@@ -31,6 +31,7 @@ IntegratorEntry tr_bdf2_entry() {
           .source = "Bank 1985; Hosea-Shampine 1996",
           .error_controlled = true,
           .tangent = true,
+          .stages = 2,
           .formulations = of_order(table.order, stage_formulations),
           .make = [](System& system, const Options& options) {
             return make_esdirk(table, system, options);

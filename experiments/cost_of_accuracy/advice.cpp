@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/problems/strand_models.h"
@@ -9,7 +10,8 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms"
+/// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms", or
+/// "..., 10 and 5 elements, esdirk43, tolerance 0.001"
 std::string what(const Row& row) {
   const ModelEntry& model = find_model(row.text("model"));
   std::string options;
@@ -22,10 +24,18 @@ std::string what(const Row& row) {
     }
   }
   if (row.has("options")) add(row.text("options"));
-  return fmt::format("{}{}, {} elements, {}, dt {:.3g} ms", model.id,
-                     options.empty() ? "" : fmt::format(" ({})", options),
-                     row.text("elements"), row.text("integrator"),
-                     1e3 * row.number("dt_s"));
+  const auto elements = static_cast<int>(row.number("elements"));
+  const std::string counts = row.text("extrapolated") == "true"
+                                 ? fmt::format("{} and {}", elements, coarser(elements))
+                                 : fmt::format("{}", elements);
+  const std::string steps = row.has("tolerance")
+                                ? fmt::format("tolerance {:.2g}", row.number("tolerance"))
+                                : fmt::format("dt {:.3g} ms", 1e3 * row.number("dt_s"));
+  return fmt::format("{}{}, {} elements, {}{}, {}", model.id,
+                     options.empty() ? "" : fmt::format(" ({})", options), counts,
+                     row.text("integrator"),
+                     row.has("refresh") ? fmt::format(" ({})", row.text("refresh")) : "",
+                     steps);
 }
 
 /// "0.82 % of the length in 3.2 ms per simulated second (0.053 ms per frame)"
@@ -95,6 +105,16 @@ std::string what_not(const std::vector<Row>& rows, const Row& best) {
                      what(*worst), worst->number("cost_factor"));
 }
 
+/// A scene file holds one run.
+std::string how_to_extrapolate(const Configuration& taken) {
+  if (!taken.method.extrapolated) return "";
+  const int n = taken.elements, m = coarser(n);
+  return fmt::format(
+      "# Run it with {} elements, as it is, and with {}: the result is x + {:.3g} "
+      "(x - y), x the points by {} and y those by {} elements.\n",
+      n, m, 1 / (std::pow(1. * n / m, 2) - 1), n, m);
+}
+
 }  // namespace
 
 const Row* advised(const std::vector<Row>& rows) {
@@ -132,8 +152,8 @@ std::string configuration_and_price(const Row& row) {
 std::string advised_text(const Scene& given, const Row& row, double rate) {
   const Configuration taken = configuration(row, rate);
   return fmt::format(
-      "# {} as advised for {} frames per second: {}.\n# {}\n\n{}", given.name, rate,
-      price(row), what(row),
+      "# {} as advised for {} frames per second: {}.\n# {}\n{}\n{}", given.name, rate,
+      price(row), what(row), how_to_extrapolate(taken),
       scene_text(trial_scene(given, taken.method, taken.elements, taken.substeps, rate)));
 }
 

@@ -24,7 +24,7 @@ namespace {
 /// reference.
 SceneReference differences(const Scene& given, const Comparison& comparison,
                            const ReferenceCut& cut) {
-  const Method method{&find_model("super_helix"), {}, "implicit_midpoint"};
+  const Method method{{&find_model("super_helix"), {}, "implicit_midpoint"}};
   const Scene scene =
       compared(trial_scene(given, method, cut.elements, cut.substeps, comparison.rate),
                comparison);

@@ -56,14 +56,14 @@ struct MethodWork {
   int repeat;
   double most_work;
 
-  Scene with(int elements) const {
-    return with_elements(with_method(compared->scene, method), elements);
+  Scene with(int count) const {
+    return with_elements(with_method(compared->scene, method), count);
   }
-  Options at(double dt, double most_work = 0) const {
+  Options at(double dt, double limit = 0) const {
     Options options;
     options.formulation = method.formulation;
     options.step = dt;
-    options.max_work = most_work;
+    options.max_work = limit;
     return options;
   }
 };
@@ -158,7 +158,7 @@ ModelSettings own_options(const Scene& scene) {
 TipReference rod(const Compared& compared) {
   const MakeStrand make = [&](std::string_view id, int elements) {
     const ModelEntry& model = find_model(id);
-    const Method method{&model, known_to(model, own_options(compared.scene)), {}};
+    const Method method{{&model, known_to(model, own_options(compared.scene)), {}}};
     return system_of(with_elements(with_method(compared.scene, method), elements));
   };
   return converged_rod(make, compared.sampling, compared.free() ? free_rod : clamped_rod);
@@ -207,7 +207,7 @@ std::vector<Case> method_cases(const CommandLine& line, const std::string& file)
   for (const ModelVariant& variant : length_variants()) {
     const ModelEntry& model = *variant.model;
     if (!wanted(line.models, model.id)) continue;
-    Method method{&model, known_to(model, own_options(compared->scene)), {}};
+    Method method{{&model, known_to(model, own_options(compared->scene)), {}}};
     method.options.insert(method.options.end(), variant.settings.begin(),
                           variant.settings.end());
     const auto system = system_or_none(compared->scene, method);

@@ -52,6 +52,8 @@ void Finalists::time_simpler(const Trial& run) {
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     const Method& other = methods_[i];
     if (other.model != method.model || other.integrator != method.integrator ||
+        other.by_tolerance != method.by_tolerance ||
+        other.extrapolated != method.extrapolated ||
         other.options.size() >= method.options.size()) {
       continue;
     }
@@ -84,8 +86,10 @@ std::optional<Trial> Finalists::counting(double target, const Accept& accept) {
 
 bool Finalists::simpler(const Trial& a, const Trial& b) const {
   const auto key = [this](const Trial& run) {
-    return std::tuple(methods_[run.method].options.size(), run.elements * run.substeps,
-                      run.elements, run.method);
+    const Method& method = methods_[run.method];
+    return std::tuple(method.extrapolated, method.options.size(),
+                      frame_work(method, run.elements, run.substeps), run.elements,
+                      run.method);
   };
   return key(a) < key(b);
 }
@@ -126,9 +130,10 @@ std::optional<Trial> Finalists::replaced(
     if (!other(methods_[method]) || cheapest(search_.runs(), target, own) != nullptr) {
       continue;
     }
+    const int substeps =
+        std::max(1, winner.substeps * search_.unit(method) / search_.unit(winner.method));
     for (const int elements : {winner.elements, winner.elements + winner.elements / 2}) {
-      search_.fewest_that_hold(method, elements, target, winner.substeps,
-                               dearest * winner.substeps);
+      search_.fewest_that_hold(method, elements, target, substeps, dearest * substeps);
     }
   }
   const Trial* first = search_.robust(target, accept);
@@ -183,6 +188,10 @@ std::optional<BestRuns> Finalists::of(double target) {
   const auto integrator = [&](const Method& method) {
     return method.integrator == won.integrator;
   };
+  const auto control = [&](const Method& method) {
+    return method.by_tolerance == won.by_tolerance &&
+           method.extrapolated == won.extrapolated && method.refresh == won.refresh;
+  };
   BestRuns best{*winner, {}, {}};
   const auto add = [&](std::string_view choice, const auto& other) {
     best.without.emplace_back(choice, replaced(*winner, target, other));
@@ -193,12 +202,34 @@ std::optional<BestRuns> Finalists::of(double target) {
   for (const std::string_view choice : choices_of(*won.model)) {
     if (!varied(won, choice)) continue;
     add(choice, [&](const Method& method) {
-      if (!model(method) || !integrator(method)) return false;
+      if (!model(method) || !integrator(method) || !control(method)) return false;
       return std::ranges::all_of(choices_of(*won.model), [&](std::string_view one) {
         return (method.word(one) == won.word(one)) != (one == choice);
       });
     });
   }
+  const auto has = [&](const auto& other) {
+    return std::ranges::any_of(methods_, [&](const Method& method) {
+      return integrator(method) && other(method);
+    });
+  };
+  const auto replace = [&](std::string_view choice, const auto& other) {
+    if (!has(other)) return;
+    add(choice, [&](const Method& method) {
+      return model(method) && integrator(method) && other(method);
+    });
+  };
+  replace("tolerance", [&](const Method& method) {
+    return method.by_tolerance != won.by_tolerance &&
+           method.extrapolated == won.extrapolated;
+  });
+  replace("extrapolated", [&](const Method& method) {
+    return method.extrapolated != won.extrapolated &&
+           method.by_tolerance == won.by_tolerance;
+  });
+  replace("refresh", [&](const Method& method) {
+    return method.refresh != won.refresh && method.by_tolerance == won.by_tolerance;
+  });
   best.without.emplace_back("elements", twice_the_elements(*winner, target));
   best.without.emplace_back("dt_s", half_the_step(*winner, target));
   best.runner_up = settled(target, [&](const Trial& run) {

@@ -65,8 +65,8 @@ constexpr Parameter own_settings[] = {
      .max = 1e4,
      .whole = true},
     {.name = "search_work",
-     .help = "of one scene's search, million elements x steps of all runs; 0: 1.5 with "
-             "--quick, else 30",
+     .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
+             "--quick, else 60",
      .number = 0,
      .min = 0,
      .max = 1e6},
@@ -98,8 +98,8 @@ constexpr OwnOption command_options[] = {
      "best accuracy for so many ms per frame (--set fps=30: of 30 a second)"},
 };
 
-constexpr double usual_targets[] = {0.1, 0.03, 0.01, 0.003, 0.001};
-constexpr double quick_targets[] = {0.1, 0.03, 0.01};
+constexpr double usual_targets[] = {0.03, 0.01, 0.001, 1e-4};
+constexpr double quick_targets[] = {0.03, 0.01, 0.001};
 constexpr double advised_target = 0.01;
 
 StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
@@ -116,7 +116,8 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   }
   plan.elements = {3, 4, 6, 9, 13, 19, 28, 42, 63};
   plan.substeps = {1, 2, 4, 8, 16, 32, 64, 128};
-  plan.methods = {line.models, line.integrators, {}};
+  plan.methods.models = line.models;
+  plan.methods.integrators = line.integrators;
   if (line.quick) {
     if (line.models.empty()) {
       plan.methods.models = {"super_helix", "articulated_chain", "der", "mass_spring",
@@ -124,8 +125,10 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
     }
     if (line.integrators.empty()) {
       plan.methods.integrators = {"semi_implicit_euler", "implicit_midpoint",
-                                  "linearly_implicit_midpoint"};
+                                  "linearly_implicit_midpoint", "tr_bdf2", "esdirk43"};
     }
+    plan.methods.refreshes = {Refresh::every_step};
+    plan.methods.fixed_steps = false;
     // Without torsion mass_spring does not preserve the direction of curls.
     plan.methods.options = {"modes=bend", "tangent=stiff", "torsion"};
   }
@@ -136,7 +139,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.horizon = own.number("horizon_s");
   plan.strands = static_cast<std::size_t>(own.whole("strands"));
   plan.search_work = 1e6 * own.number("search_work");
-  if (plan.search_work == 0) plan.search_work = line.quick ? 1.5e6 : 3e7;
+  if (plan.search_work == 0) plan.search_work = line.quick ? 1e6 : 6e7;
   plan.longest_run = line.quick ? 2048 : 8192;
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;

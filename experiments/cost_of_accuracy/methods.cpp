@@ -59,12 +59,30 @@ std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& o
   }
 }
 
-/// The integrator's preferred formulation for the system, if it has one.
-void add(const ModelEntry& model, const ModelSettings& options,
-         const IntegratorEntry& entry, System& system, std::vector<Method>& all) {
+/// The method with its preferred formulation for the system, if it has one, in all ways
+/// to choose the accuracy of a run.
+void add(Method method, System& system, const Scene& given, const MethodChoice& choice,
+         std::vector<Method>& all) {
+  const IntegratorEntry& entry = find_integrator(method.integrator);
   const auto usable = usable_formulations(entry, system);
   if (usable.empty()) return;
-  all.push_back({&model, options, std::string(entry.id), usable.front()});
+  method.formulation = usable.front();
+  const bool controls = entry.error_controlled && usable.front() != Formulation::index3;
+  if (entry.stages == 0) {
+    all.push_back(method);
+  } else if (!controls || choice.fixed_steps) {
+    for (const Refresh refresh : choice.refreshes) {
+      method.refresh = refresh;
+      all.push_back(method);
+    }
+  }
+  if (!controls) return;
+  method.refresh = {};
+  method.by_tolerance = true;
+  all.push_back(method);
+  if (!may_extrapolate(given)) return;
+  method.extrapolated = true;
+  all.push_back(method);
 }
 
 }  // namespace
@@ -78,7 +96,7 @@ std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
       if (system == nullptr) continue;
       for (const IntegratorEntry& entry : integrator_catalogue()) {
         if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
-        add(model, options, entry, *system, all);
+        add({{&model, options, std::string(entry.id)}}, *system, given, choice, all);
       }
     }
   }
@@ -97,7 +115,12 @@ std::vector<Method> with_other_words(const Scene& given, const Method& method,
       if (word != words_of(p.choices).front()) options.emplace_back(choice, word);
       const auto system = on_scene(*method.model, options, given);
       if (system == nullptr) continue;
-      add(*method.model, options, find_integrator(method.integrator), *system, all);
+      const auto usable =
+          usable_formulations(find_integrator(method.integrator), *system);
+      if (usable.empty()) continue;
+      all.push_back(method);
+      all.back().options = options;
+      all.back().formulation = usable.front();
     }
   }
   return all;
@@ -112,7 +135,8 @@ std::vector<std::string_view> choices_of(const ModelEntry& model) {
 }
 
 bool same(const Method& a, const Method& b) {
-  return a.model == b.model && a.integrator == b.integrator &&
+  return a.model == b.model && a.integrator == b.integrator && a.refresh == b.refresh &&
+         a.by_tolerance == b.by_tolerance && a.extrapolated == b.extrapolated &&
          std::ranges::all_of(choices_of(*a.model), [&](std::string_view choice) {
            return a.word(choice) == b.word(choice);
          });

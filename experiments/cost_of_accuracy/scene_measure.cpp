@@ -1,7 +1,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <stdexcept>
 
 #include "contract/input_error.h"
@@ -19,7 +19,7 @@ constexpr int short_repeats = 3;
 /// settle.
 constexpr double long_enough = 0.01;  // s
 
-/// Mean iterations of a step beyond which no run is the cheapest: an undisturbed one
+/// Mean iterations of a stage beyond which no run is the cheapest: an undisturbed one
 /// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
 
@@ -39,17 +39,57 @@ Scene SceneMeasure::scene(const Method& method, int elements, int substeps) cons
                   comparison_);
 }
 
+/// With n and m elements and an error C/n^2 the extrapolated tip is
+/// x_n + (x_n - x_m)/((n/m)^2 - 1): 4/3 x_n - 1/3 x_m for n = 2 m.
+SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
+                                            int substeps, double most_s,
+                                            std::optional<Change> change) const {
+  const int stages = std::max(1, find_integrator(method.integrator).stages);
+  const auto of = [&](int count) {
+    Scene run = scene(method, count, substeps);
+    if (change) run = changed(std::move(run), *change);
+    return tip_paths(run, 0, {most_iterations * stages, most_s});
+  };
+  TipPaths fine = of(elements);
+  Outcome made{std::move(fine.x), fine.once_s, fine.indicator};
+  if (!method.extrapolated) return made;
+  const int few = coarser(elements);
+  if (few == elements) {
+    throw InputError("nothing to extrapolate from", "elements", "take two at least");
+  }
+  const TipPaths coarse = of(few);
+  const double factor = 1 / (std::pow(1. * elements / few, 2) - 1);
+  for (std::size_t i = 0; i < made.tips.size(); ++i) {
+    made.tips[i] += factor * (made.tips[i] - coarse.x[i]);
+  }
+  made.once_s += coarse.once_s;
+  made.indicator = std::max(made.indicator, coarse.indicator);
+  return made;
+}
+
+WallTime SceneMeasure::repeated(const Method& method, int elements, int substeps,
+                                int count, double at_least_s) const {
+  const auto of = [&](int elements_of_one) {
+    return wall_time(
+        wall_times(scene(method, elements_of_one, substeps), count, at_least_s));
+  };
+  WallTime all = of(elements);
+  if (!method.extrapolated) return all;
+  const WallTime coarse = of(coarser(elements));
+  return {all.least_s + coarse.least_s, std::max(all.scatter, coarse.scatter)};
+}
+
 std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int substeps,
                                          double most_s) const {
   try {
-    const Scene run = scene(method, elements, substeps);
-    const TipPaths paths = tip_paths(run, 0, {most_iterations, most_s});
-    const double wall_s = paths.once_s < short_run
-                              ? wall_time(wall_times(run, short_repeats)).least_s
-                              : paths.once_s;
-    Trial made{0, elements, substeps, tip_error(paths.x, reference_, comparison_.length),
+    const Outcome run = outcome(method, elements, substeps, most_s);
+    const double wall_s =
+        run.once_s < short_run
+            ? repeated(method, elements, substeps, short_repeats, 0).least_s
+            : run.once_s;
+    Trial made{0, elements, substeps, tip_error(run.tips, reference_, comparison_.length),
                wall_s};
-    made.indicator = paths.indicator;
+    made.indicator = run.indicator;
     return made;
   } catch (const InputError&) {  // refused at this number of elements
     return {};
@@ -63,11 +103,10 @@ double SceneMeasure::changed_error(const Method& method, int elements, int subst
   const std::vector<double>& reference =
       change == Change::up ? changed_.up : changed_.down;
   try {
-    const Scene run = changed(scene(method, elements, substeps), change);
-    return tip_error(tip_paths(run, 0, {most_iterations, most_s}).x, reference,
+    return tip_error(outcome(method, elements, substeps, most_s, change).tips, reference,
                      comparison_.length);
   } catch (const std::runtime_error&) {  // including refusals: InputError is one
-    return std::numeric_limits<double>::infinity();
+    return never;
   }
 }
 
@@ -86,12 +125,12 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const 
 
 WallTime SceneMeasure::time(const Method& method, int elements, int substeps,
                             int count) const {
-  return wall_time(wall_times(scene(method, elements, substeps), count, long_enough));
+  return repeated(method, elements, substeps, count, long_enough);
 }
 
 double SceneMeasure::error(const Method& method, int elements, int substeps,
                            const std::vector<double>& reference) const {
-  return tip_error(tip_paths(scene(method, elements, substeps), 0).x, reference,
+  return tip_error(outcome(method, elements, substeps).tips, reference,
                    comparison_.length);
 }
 

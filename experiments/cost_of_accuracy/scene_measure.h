@@ -73,7 +73,16 @@ class SceneMeasure {
                const std::vector<double>& reference) const;
 
  private:
+  /// What one run shows, or two of which the tips are extrapolated.
+  struct Outcome {
+    std::vector<double> tips;
+    double once_s = 0, indicator = 0;
+  };
   Scene scene(const Method& method, int elements, int substeps) const;
+  Outcome outcome(const Method& method, int elements, int substeps, double most_s = never,
+                  std::optional<Change> change = {}) const;
+  WallTime repeated(const Method& method, int elements, int substeps, int count,
+                    double at_least_s) const;
 
   const Scene& given_;
   Comparison comparison_;

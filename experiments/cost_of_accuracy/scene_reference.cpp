@@ -93,7 +93,7 @@ SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut) {
   const auto tips = [&](std::string_view model, std::string_view integrator, int elements,
                         const Options& options) {
-    const Method method{&find_model(model), {}, std::string(integrator)};
+    const Method method{{&find_model(model), {}, std::string(integrator)}};
     Scene scene =
         compared(trial_scene(given, method, elements, 1, comparison.rate), comparison);
     scene.options = options;

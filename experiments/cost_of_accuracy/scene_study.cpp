@@ -57,7 +57,9 @@ class Work {
         time_s_(deadline.remaining_s()) {}
 
   double done() const { return done_; }
-  void add(int elements, int substeps) { done_ += steps_ * elements * substeps; }
+  void add(const Method& method, int elements, int substeps) {
+    done_ += steps_ * frame_work(method, elements, substeps);
+  }
   /// True when this fraction of the work is done, or the time is over.
   std::function<bool()> until(double share) const {
     return [this, share] { return done_ >= share * most_ || late(share); };
@@ -113,11 +115,13 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
 std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   const StudyPlan& plan = study.plan;
   const SceneMeasure measure = measure_of(study);
-  SearchPlan search_plan{.targets = {},
-                         .elements = plan.elements,
-                         .substeps = plan.substeps,
-                         .longest_run = plan.longest_run,
-                         .slack = 0};
+  SearchPlan search_plan{
+      .targets = {},
+      .elements = plan.elements,
+      .substeps = plan.substeps,
+      .longest_run = plan.longest_run,
+      .unit = [&study](std::size_t method) { return steps_unit(study.methods[method]); },
+      .slack = 0};
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
   }
@@ -136,14 +140,14 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
       search_plan, study.methods.size(),
       [&](std::size_t method, int elements, int substeps) {
         progress.say(search);
-        work.add(elements, substeps);
+        work.add(study.methods[method], elements, substeps);
         auto run = measure.quick(study.methods[method], elements, substeps,
                                  deadline.remaining_s());
         if (run) run->method = method;
         return run;
       },
       [&](const Trial& run, Neighbour change) {
-        work.add(run.elements, run.substeps);
+        work.add(study.methods[run.method], run.elements, run.substeps);
         return measure.changed_error(
             study.methods[run.method], run.elements, run.substeps,
             change == Neighbour::data_up ? Change::up : Change::down,

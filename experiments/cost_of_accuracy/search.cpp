@@ -146,12 +146,13 @@ void Search::climb(std::size_t method) {
     int idle = 0;
     std::size_t at = begin;
     for (; at < ladder.size(); ++at) {
+      const int substeps = ladder[at] * unit(method);
       if (static_cast<long>(elements) * ladder[at] > plan_.longest_run) break;
       // Longer than any run that could still keep the method.
       const Trial* best = robust(tightest);
       const double most_s = best == nullptr ? never : plan_.slack * best->wall_s;
-      if (cut_ || expected_s(method, elements, ladder[at]) > most_s) break;
-      const Trial* found = run(method, elements, ladder[at]);
+      if (cut_ || expected_s(method, elements, substeps) > most_s) break;
+      const Trial* found = run(method, elements, substeps);
       if (cut_) return;
       if (found == nullptr) continue;  // too long a step
       if (holds(*found, tightest)) {
@@ -175,7 +176,7 @@ std::vector<std::size_t> Search::promising_first() {
   const int substeps = plan_.substeps[plan_.substeps.size() / 3];
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t method = 0; method < methods_; ++method) {
-    const Trial* probe = run(method, elements, substeps);
+    const Trial* probe = run(method, elements, substeps * unit(method));
     order.emplace_back(
         probe == nullptr ? never : std::round(std::log2(probe->error * probe->wall_s)),
         method);
@@ -249,9 +250,10 @@ void Search::refine(std::size_t method, double target) {
       if (best == nullptr) return;
       const double one_s =
           expected_s(method, elements, start->substeps) / start->substeps;
-      const int most =
-          static_cast<int>(std::min({noise * best->wall_s / one_s, 4.0 * start->substeps,
-                                     static_cast<double>(plan_.longest_run) / elements}));
+      const double longest =
+          static_cast<double>(plan_.longest_run) * unit(method) / elements;
+      const int most = static_cast<int>(
+          std::min({noise * best->wall_s / one_s, 4.0 * start->substeps, longest}));
       if (most < 1) continue;
       fewest_substeps(method, elements, target, start->substeps, most);
     }

@@ -17,6 +17,8 @@ struct SearchPlan {
   std::vector<int> elements;    // coarse ladders, ascending
   std::vector<int> substeps;
   long longest_run;  // elements x substeps; longer runs are not tried
+  /// "Substeps" of a method that its ladder counts as one; without it 1.
+  std::function<int(std::size_t method)> unit = {};
   /// Tolerance for the coarseness of the ladders: a method whose cheapest run on them
   /// costs more than `slack` times the cheapest of all is dropped (see ladder_slack).
   double slack;
@@ -68,6 +70,9 @@ class Search {
   /// The same, with neighbours that hold.
   const Trial* fewest_that_hold(std::size_t method, int elements, double target,
                                 int guess, int most);
+
+  /// SearchPlan::unit
+  int unit(std::size_t method) const { return plan_.unit ? plan_.unit(method) : 1; }
 
   /// One run, measured unless already known; null if it fails.
   const Trial* run(std::size_t method, int elements, int substeps);

@@ -34,7 +34,12 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   Row row = begin(study, kind);
   set_method(study.methods[run.method], row);
   row.set("elements", run.elements);
-  row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
+  const Method& method = study.methods[run.method];
+  if (method.by_tolerance) {
+    row.set("tolerance", tolerance_of(method, run.substeps));
+  } else {
+    row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
+  }
   row.set("error_rel", run.error);
   if (run.examined == neighbour_count) row.set("error_neighbours_rel", run.neighbours);
   if (run.indicator > 0) row.set("error_indicator", run.indicator);
@@ -115,7 +120,9 @@ void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows
 void add_given(const Study& study, std::vector<Row>& rows) {
   const Scene& given = study.given;
   Row row = begin(study, "as_given");
-  Method method{given.model, {}, given.integrator, given.options.formulation};
+  Method method{{given.model, {}, given.integrator, given.options.formulation}};
+  method.refresh = given.options.refresh;
+  method.by_tolerance = given.options.tolerance > 0;
   for (const Parameter& p : model_table_parameters(*given.model)) {
     if (p.name == "id" || p.choices.empty()) continue;
     const std::string_view word = given.model_options.word(p.name);
@@ -123,7 +130,11 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   }
   set_method(method, row);
   row.set("elements", given.strands.front().segments.size());
-  row.set("dt_s", given.options.step);
+  if (method.by_tolerance) {
+    row.set("tolerance", given.options.tolerance);
+  } else {
+    row.set("dt_s", given.options.step);
+  }
   const auto run = measure_of(study).best_of(given, study.plan.repeat);
   if (!run) {
     row.failed("diverged", "the scene as given does not run to the horizon");

@@ -5,6 +5,7 @@
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/problems/strand_models.h"
+#include "integrators/integrator_options.h"
 #include "simulation/files/parse.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -16,7 +17,9 @@ constexpr Column columns[] = {
      "winner, runner_up (another model or integrator), without (one choice replaced), "
      "budget, front (Pareto), as_given (by the scene file); method: the cheapest of one "
      "model by one integrator"},
-    {"choice", "of kind without: what is replaced; elements: twice, dt_s: half"},
+    {"choice",
+     "of kind without: what is replaced; elements: twice, dt_s: half (or the tolerance "
+     "that halves the steps)"},
     {"target_error_rel", "wanted error"},
     {"budget_ms", "of kind budget: wall time per frame that there is"},
     {"rank", "1 winner, 2 runner-up; 1 as well where the two are tied"},
@@ -27,8 +30,12 @@ constexpr Column columns[] = {
     {"tangent", "terms of the Newton matrix, where there is a choice"},
     {"solver", "linear solver, where there is a choice"},
     {"options", "other options of the model that are not the default"},
+    {"refresh", "when the Newton matrix is rebuilt, if not in every iteration"},
     {"elements", "number of elements"},
-    {"dt_s", "time step"},
+    {"extrapolated",
+     "whether the tip is extrapolated from these elements and half as many (Richardson)"},
+    {"dt_s", "time step; empty: by tolerance"},
+    {"tolerance", "asked error over the length, of a run that chooses its steps"},
     {"error_rel",
      "tip against the continuous rod: rms over frames and strands, over the length"},
     {"error_refined_rel", "the same against the reference refined once more"},
@@ -82,6 +89,12 @@ void set_method(const Method& method, Row& row) {
     if (std::ranges::count(own_columns, key) > 0) continue;
     others += fmt::format("{}{}={}", others.empty() ? "" : ",", key, value);
   }
+  if (method.refresh != Refresh::every_iteration) {
+    Options options;
+    options.refresh = method.refresh;
+    row.set("refresh", integrators::text_of(options, "refresh"));
+  }
+  if (method.extrapolated) row.set("extrapolated", true);
   for (const std::string_view choice : own_columns) {
     if (!method.word(choice).empty()) row.set(choice, method.word(choice));
   }
@@ -109,7 +122,16 @@ Configuration configuration(const Row& row, double rate) {
     }
   }
   made.elements = static_cast<int>(row.number("elements"));
-  made.substeps = static_cast<int>(std::lround(1 / (rate * row.number("dt_s"))));
+  if (row.has("refresh")) {
+    Options options;
+    integrators::apply(options, "refresh", row.text("refresh"), "refresh");
+    made.method.refresh = options.refresh;
+  }
+  made.method.extrapolated = row.text("extrapolated") == "true";
+  made.method.by_tolerance = row.has("tolerance");
+  made.substeps = made.method.by_tolerance
+                      ? fineness_of(made.method, row.number("tolerance"))
+                      : static_cast<int>(std::lround(1 / (rate * row.number("dt_s"))));
   return made;
 }
 

@@ -1,5 +1,7 @@
 #include "experiments/cost_of_accuracy/trial_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -24,11 +26,53 @@ Scene read_open_scene(const std::string& file) {
   return scene;
 }
 
+namespace {
+
+constexpr double loosest_tolerance = 0.1;
+
+int order_of(const Method& method) {
+  return find_integrator(method.integrator).order(method.formulation).value();
+}
+
+}  // namespace
+
+double tolerance_of(const Method& method, int substeps) {
+  const double fineness = static_cast<double>(substeps) / fineness_unit;
+  // The coarsest rungs of a ladder ask for no more than this.
+  return std::min(1.0, loosest_tolerance * std::pow(fineness, -order_of(method)));
+}
+
+int fineness_of(const Method& method, double tolerance) {
+  const double fineness = std::pow(tolerance / loosest_tolerance, -1. / order_of(method));
+  return std::max(1, static_cast<int>(std::lround(fineness_unit * fineness)));
+}
+
+int steps_unit(const Method& method) { return method.by_tolerance ? fineness_unit : 1; }
+
+double frame_work(const Method& method, int elements, int substeps) {
+  // A step with one linear solve is one; a stage needs several with the step's matrix.
+  const int stages = find_integrator(method.integrator).stages;
+  const double step = stages == 0 ? 1 : 0.5 + 0.3 * stages;
+  const int all = elements + (method.extrapolated ? coarser(elements) : 0);
+  return all * step * substeps / steps_unit(method);
+}
+
+bool may_extrapolate(const Scene& scene) {
+  return std::ranges::none_of(
+      scene.effects, [](const EffectChoice& effect) { return effect.entry->contact; });
+}
+
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate) {
   Scene scene = with_elements(with_method(std::move(given), method), elements);
-  scene.options.step = 1 / (rate * substeps);
-  scene.options.newton_tolerance = newton_tolerance;
+  if (method.by_tolerance) {
+    scene.options.step = Options{}.step;  // does not count
+    scene.options.tolerance = tolerance_of(method, substeps);
+  } else {
+    scene.options.step = 1 / (rate * substeps);
+    scene.options.refresh = method.refresh;
+    scene.options.newton_tolerance = newton_tolerance;
+  }
   scene.frame_rate = rate;
   return scene;
 }

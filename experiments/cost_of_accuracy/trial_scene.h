@@ -8,13 +8,42 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
+/// How a scene is simulated, and how the accuracy of a run is chosen.
+struct Method : simulation::Method {
+  Refresh refresh = Refresh::every_iteration;
+  /// By tolerance: it falls with the "substeps" s as an error of steps 1/s does, so that
+  /// work rises with s as with a number of steps (tolerance_of).
+  bool by_tolerance = false;
+  /// Tips with n elements and with half as many, extrapolated as an error that falls with
+  /// their square (Richardson). Not where something touches: the instant of contact
+  /// depends on the elements.
+  bool extrapolated = false;
+};
+
+/// 0.1 (fineness_unit/s)^p over the length, p the method's order.
+inline constexpr int fineness_unit = 8;
+double tolerance_of(const Method& method, int substeps);
+/// The number s of which tolerance_of is nearest to `tolerance`.
+int fineness_of(const Method& method, double tolerance);
+
+/// Steps of a run that an integer s counts as one (fineness_unit, or 1), and the work of
+/// a frame, in elements x steps of one linear solve.
+int steps_unit(const Method& method);
+double frame_work(const Method& method, int elements, int substeps);
+
+/// Of an extrapolated run, the number of elements of its coarser part.
+inline int coarser(int elements) { return (elements + 1) / 2; }
+
+/// Whether the error of a run may be extrapolated in elements.
+bool may_extrapolate(const Scene& scene);
+
 /// A scene whose model, integrator, numbers of elements and steps are left open. Throws
 /// InputError as read_scene does, and where the scene has no strand or strands that touch
 /// each other.
 Scene read_open_scene(const std::string& file);
 
 /// The scene by this method, with `elements` per strand, `rate` frames per second and
-/// steps that divide a frame. Throws InputError as with_elements does.
+/// steps that divide a frame, or the tolerance. Throws InputError as with_elements does.
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate);
 
@@ -22,18 +51,24 @@ Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
 /// without the open choices, and the contents of the files it names.
 std::string physics(Scene scene);
 
-/// Newton's corrections below 1e-6 of the scale of an unknown: a thousandth of the
-/// smallest target error.
+/// Newton's corrections below 1e-6 of the scale of an unknown, with fixed steps: a
+/// hundredth of the smallest target error.
 inline constexpr double newton_tolerance = 1e-6;
 
-/// Every strand model with its options and every fixed-step integrator that can drive it
-/// on this scene. Tolerance-controlled methods are excluded: their cost per frame is not
-/// known beforehand.
+/// Every strand model with its options and every integrator that can drive it on this
+/// scene: with fixed steps, those with error control also by tolerance, and the most
+/// accurate of these also extrapolated. Other adaptive methods are left out: they control
+/// an error of the unknowns and not of the strand.
 struct MethodChoice {
   std::vector<std::string> models, integrators;  // empty: all
   /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in
   /// all pairs, others one at a time.
   std::vector<std::string> options;
+  /// When integrators that iterate rebuild their matrix.
+  /// Integrators with error control also with fixed steps.
+  bool fixed_steps = true;
+  std::vector<Refresh> refreshes = {Refresh::every_iteration, Refresh::every_step,
+                                    Refresh::when_slow};
 };
 std::vector<Method> methods(const Scene& given, const MethodChoice& choice);
 
@@ -45,7 +80,7 @@ std::vector<Method> with_other_words(const Scene& given, const Method& method,
 /// The model's options.
 std::vector<std::string_view> choices_of(const ModelEntry& model);
 
-/// The same model, integrator and options.
+/// The same model, integrator and options, all else too.
 bool same(const Method& a, const Method& b);
 
 }  // namespace tress::experiments::cost_of_accuracy

@@ -57,6 +57,10 @@ std::vector<Hair> latin_hypercube(int count, std::uint64_t seed);
 /// The hair with its natural shape straightened, its section and material kept.
 Hair straightened(Hair hair);
 
+/// Elements that follow its natural shape: at least 20, and no more than 1.5 rad of
+/// winding in each, for those of der must stay below half a circle.
+int elements_of(const Hair& hair);
+
 /// Parameters of `model` for this hair.
 Parameters parameters_of(const Hair& hair, std::string_view model, int elements);
 
@@ -83,8 +87,16 @@ struct Claim {
 struct Study {
   std::string_view id;
   std::span<const Claim> claims;
-  /// Rows in the order of `claims`. `row`: identity and hair are set.
+  /// Rows in the order of `claims`, once for each integrator that they are about. `row`:
+  /// identity and hair are set; with `models`, `model`, `tolerance` and `most_calls` too.
   std::vector<Row> (*run)(const Hair& hair, const Row& row);
+  /// A piece of work on each of these models; empty: one on the hair.
+  std::span<const std::string_view> models = {};
+  /// What --quick leaves of it.
+  struct Quick {
+    int stride = 1;          // the first hair and every so manieth after it
+    std::size_t models = 0;  // the first so many
+  } quick = {};
 };
 
 std::span<const Study> studies();
@@ -100,7 +112,7 @@ Row answer(Row row, const Claim& claim, double value, bool holds);
 Row no_answer(Row row, const Claim& claim, std::string_view status,
               std::string_view reason);
 
-extern const Study stable_steps, twist, bdf_order, equal_accuracy;
+extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance;
 
 /// Linear interpolation between order statistics [Hyndman & Fan 1996, type 7];
 /// `share` in [0, 1], `values` not empty.
@@ -124,10 +136,10 @@ struct Stump {
 Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
                  std::size_t least);
 
-/// One row per claim over the hairs that answered it: their number, the share for which
-/// it holds, quantiles of the value, the hair parameter with the strongest rank
-/// correlation with the value, and the one that best predicts by one threshold whether
-/// the claim holds.
+/// One row per claim, model and integrator over the hairs that answered it: their number,
+/// the share for which it holds, quantiles of the value, the hair parameter with the
+/// strongest rank correlation with the value, and the one that best predicts by one
+/// threshold whether the claim holds.
 std::vector<Row> summarize(std::span<const Row> rows);
 
 std::span<const Column> summary_columns();

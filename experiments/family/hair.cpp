@@ -20,6 +20,8 @@ constexpr double density = 1300;  // kg/m^3
 constexpr double gravity = 9.81;  // m/s^2
 constexpr double twist_per_curvature = 0.3;
 constexpr double share_without_friction = 0.25;
+constexpr int least_elements = 20;
+constexpr double most_winding = 1.5;  // rad per element
 
 struct Range {
   double low, high;
@@ -134,6 +136,11 @@ std::vector<Hair> latin_hypercube(int count, std::uint64_t seed) {
 Hair straightened(Hair hair) {
   hair.natural_curvature = 0;
   return hair;
+}
+
+int elements_of(const Hair& hair) {
+  return std::max(least_elements,
+                  static_cast<int>(std::ceil(hair.winding() / most_winding)));
 }
 
 double wind_speed(const Hair& hair) { return winds.at(hair.level); }

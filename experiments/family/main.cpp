@@ -24,17 +24,40 @@ constexpr Parameter settings[] = {
      .whole = true},
     {.name = "study",
      .help = "rows of one piece of work",
-     .choices = "all|stable_steps|twist|bdf_order|equal_accuracy"},
+     .choices = "all|stable_steps|twist|bdf_order|equal_accuracy|tolerance"},
+    {.name = "tolerance",
+     .help = "asked for by the study of that name, over the length",
+     .number = 1e-3,
+     .min = 1e-8,
+     .max = 0.1},
+    {.name = "most_calls",
+     .help = "of the model in a run by tolerance, 0: 4e5, with --quick 6.4e4",
+     .number = 0,
+     .min = 0,
+     .max = 1e12},
 };
 
 std::vector<Column> columns_of_table() {
   std::vector<Column> all = {{"study", "the piece of work"},
                              {"claim", "the statement that the row tests"},
-                             {"hair", "number of the hair in the family"}};
+                             {"hair", "number of the hair in the family"},
+                             {"model", "where one model is tested"},
+                             {"tolerance", "error asked for, over the length"},
+                             {"most_calls", "of the model in a run by tolerance"},
+                             {"integrator", "where one method is tested"}};
   for (const Column& column : hair_columns()) all.push_back(column);
   all.insert(all.end(),
              {{"value", "what decides; family_summary.csv says what it is"},
               {"holds", "whether the claim holds for this hair"},
+              {"steps", "of the run by tolerance, rejected ones apart"},
+              {"rejected", "its steps that were repeated"},
+              {"work", "its calls of the model and steps, each times coordinates + 10"},
+              {"wall_s", "its time", true},
+              {"failure", "why it has no solution"},
+              {"fixed_integrator", "the method with the best fixed step"},
+              {"fixed_dt_s", "that step, of 1/60 s and its halves"},
+              {"fixed_work", "its work"},
+              {"fixed_wall_s", "its time", true},
               {"elements", "of all models of the row"},
               {"reduced",
                "what value compares, of the model of reduced coordinates: the "
@@ -44,9 +67,52 @@ std::vector<Column> columns_of_table() {
   return all;
 }
 
-int hairs_of(const CommandLine& line, const Parameters& own) {
+int count_of(const CommandLine& line, const Parameters& own) {
   if (own.whole("hairs") > 0) return own.whole("hairs");
   return line.full ? 144 : 48;
+}
+
+Case case_of(const Study& study, const Hair& hair, Row identity) {
+  hair.describe(identity);
+  const auto run = study.run;
+  return {identity, {}, [hair, run](const Row& row, const Deadline&) {
+            return run(hair, row);
+          }};
+}
+
+/// The hairs of a study.
+std::vector<Hair> hairs_of(const CommandLine& line, const Parameters& own,
+                           const Study& study) {
+  std::vector<Hair> all = latin_hypercube(count_of(line, own), line.seed);
+  if (line.quick) {
+    std::erase_if(all, [&](const Hair& hair) {
+      return (hair.number - 1) % study.quick.stride != 0;
+    });
+  }
+  return all;
+}
+
+double calls_of(const CommandLine& line, const Parameters& own) {
+  if (own.number("most_calls") > 0) return own.number("most_calls");
+  return line.quick ? 6.4e4 : 4e5;
+}
+
+void add_cases(const CommandLine& line, const Parameters& own, const Study& study,
+               std::vector<Case>& all) {
+  const std::vector<Hair> hairs = hairs_of(line, own, study);
+  const auto add = [&](const Row& of_model) {
+    for (const Hair& hair : hairs) {
+      Row identity = of_model;
+      all.push_back(case_of(study, hair, identity.set("hair", hair.number)));
+    }
+  };
+  Row identity;
+  identity.set("study", study.id);
+  if (study.models.empty()) return add(identity);
+  identity.set("tolerance", own.number("tolerance"));
+  identity.set("most_calls", calls_of(line, own));
+  const auto models = line.quick ? study.models.first(study.quick.models) : study.models;
+  for (const std::string_view model : models) add(Row(identity).set("model", model));
 }
 
 std::vector<Case> cases(const CommandLine& line) {
@@ -55,15 +121,7 @@ std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
   for (const Study& study : studies()) {
     if (own.word("study") != "all" && own.word("study") != study.id) continue;
-    for (const Hair& hair : latin_hypercube(hairs_of(line, own), line.seed)) {
-      Row identity;
-      identity.set("study", study.id).set("hair", hair.number);
-      hair.describe(identity);
-      const auto run = study.run;
-      all.push_back({identity, {}, [hair, run](const Row& row, const Deadline&) {
-                       return run(hair, row);
-                     }});
-    }
+    add_cases(line, own, study, all);
   }
   return all;
 }

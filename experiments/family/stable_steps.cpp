@@ -30,14 +30,6 @@ constexpr double t_end = 0.5;  // s
 constexpr std::array ladder{1e-3, 0.01 / 3, 0.01, 0.1 / 3, 0.1};
 constexpr double shorter = 1e-3 / 3;
 constexpr double nothing_stable = 1e-4;  // s, value of "none of these" in ratios
-constexpr int least_elements = 20;
-constexpr double most_winding = 1.5;  // rad per element: der must stay below half a
-                                      // circle
-
-int elements_of(const Hair& hair) {
-  return std::max(least_elements,
-                  static_cast<int>(std::ceil(hair.winding() / most_winding)));
-}
 
 /// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass, u u' <=
 /// c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2, the square of the root mean

@@ -10,6 +10,8 @@ namespace {
 constexpr Column columns[] = {
     {"study", "the piece of work"},
     {"claim", "the statement's name"},
+    {"model", "where it is about one"},
+    {"integrator", "where it is about one"},
     {"statement", "what is claimed of every hair"},
     {"value", "what the quantiles are of"},
     {"hairs", "hairs that answered"},
@@ -96,16 +98,39 @@ void describe_decision(const std::vector<const Row*>& rows,
   }
 }
 
-Row summary_of(const Study& study, const Claim& claim, std::span<const Row> rows) {
+/// What a claim is about.
+struct Subject {
+  std::string_view model, integrator;  // empty: it compares its own
+  bool operator==(const Subject&) const = default;
+};
+
+Subject subject_of(const Row& row) { return {row.text("model"), row.text("integrator")}; }
+
+/// In the order of their first rows; one without a name if there are no rows.
+std::vector<Subject> subjects_of(const Claim& claim, std::span<const Row> rows) {
+  std::vector<Subject> all;
+  for (const Row& row : rows) {
+    if (row.text("claim") != claim.id) continue;
+    if (std::ranges::find(all, subject_of(row)) == all.end()) {
+      all.push_back(subject_of(row));
+    }
+  }
+  if (all.empty()) all.emplace_back();
+  return all;
+}
+
+Row summary_of(const Study& study, const Claim& claim, const Subject& subject,
+               std::span<const Row> rows) {
   Row summary;
   summary.set("study", study.id).set("claim", claim.id);
+  summary.set("model", subject.model).set("integrator", subject.integrator);
   summary.set("statement", claim.statement).set("value", claim.value);
   std::vector<const Row*> answered;
   std::vector<double> values;
   std::vector<bool> holds;
   int silent = 0;
   for (const Row& row : rows) {
-    if (row.text("claim") != claim.id) continue;
+    if (row.text("claim") != claim.id || subject_of(row) != subject) continue;
     if (!row.ok()) {
       ++silent;
       continue;
@@ -172,7 +197,11 @@ Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
 std::vector<Row> summarize(std::span<const Row> rows) {
   std::vector<Row> all;
   for (const Study& study : studies()) {
-    for (const Claim& claim : study.claims) all.push_back(summary_of(study, claim, rows));
+    for (const Claim& claim : study.claims) {
+      for (const Subject& subject : subjects_of(claim, rows)) {
+        all.push_back(summary_of(study, claim, subject, rows));
+      }
+    }
   }
   return all;
 }

@@ -37,8 +37,7 @@ void TipSamples::step_to(double t, In q, In v) {
 }
 
 double TipSamples::next() const {
-  const std::size_t taken = tips.size() / 3;
-  return t_end_ * (static_cast<double>(taken + 1) / count_);
+  return time(t_end_, static_cast<int>(tips.size() / 3) + 1, count_);
 }
 
 TipSamples::End TipSamples::read(double t, In q, In v) {
@@ -64,8 +63,15 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   const State start = initial_state(system);
   TipSamples seen(system, t_end, samples,
                   find_integrator(integrator).adaptive ? uneven : even);
+  std::vector<double> stops{t_end};
+  if (options.tolerance > 0) {
+    stops.resize(static_cast<std::size_t>(samples));
+    for (int k = 1; k <= samples; ++k) {
+      stops[static_cast<std::size_t>(k) - 1] = TipSamples::time(t_end, k, samples);
+    }
+  }
   const auto run = [&](const Observer& observer) {
-    return run_method(*method, system, start, {&t_end, 1}, {}, observer);
+    return run_method(*method, system, start, stops, {}, observer);
   };
   system.reset();
   seen.start(start.q, start.v);

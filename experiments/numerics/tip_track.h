@@ -10,14 +10,19 @@
 
 namespace tress::experiments {
 
-/// Positions of a tip, the last material point, at t_end k / count, k = 1 .. count. Steps
-/// do not land on these times: in between, the tip follows the cubic Hermite interpolant
-/// of the step, whose error falls as the fourth power of the step. Positions are read
-/// during the run: the meaning of q may change as it goes on (System::accept).
+/// Positions of a tip, the last material point, at t_end k / count, k = 1 .. count. Fixed
+/// steps do not land on these times: in between, the tip follows the cubic Hermite
+/// interpolant of the step, whose error falls as the fourth power of the step. Positions
+/// are read during the run: the meaning of q may change as it goes on (System::accept).
 class TipSamples {
  public:
   /// `growth`: largest ratio of successive steps.
   TipSamples(System& system, double t_end, int count, double growth);
+
+  /// s, of sample k, 1 .. count; exact, for those who stop there.
+  static double time(double t_end, int k, int count) {
+    return t_end * (static_cast<double>(k) / count);
+  }
 
   void start(In q, In v);
   void step_to(double t, In q, In v);
@@ -52,9 +57,10 @@ struct TipRun {
   int unknowns;             // coordinates
 };
 
-/// Runs to t_end; samples the tip by TipSamples. repeat = 0, or a failure: one untimed
-/// run; else the median time, as time_run. `guard` watches the first run, not the timed
-/// ones; a breach is the run's failure.
+/// Runs to t_end; samples the tip by TipSamples. With a tolerance steps are long, and the
+/// method itself gives the states at the samples' times, within its tolerance. repeat =
+/// 0, or a failure: one untimed run; else the median time, as time_run. `guard` watches
+/// the first run, not the timed ones; a breach is the run's failure.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat = 0, Guard* guard = nullptr);
 

@@ -21,7 +21,8 @@ struct EffectEntry {
   /// `head`: the rigid motion of all roots, for bodies that follow it. Null for the
   /// effect between strands, which is made for all of them at once (StrandInteraction).
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
-  bool many = false;  // a scene may name several: [[effects.id]]
+  bool many = false;     // a scene may name several: [[effects.id]]
+  bool contact = false;  // its load begins where parts meet
 };
 
 std::span<const EffectEntry> effects();

@@ -25,8 +25,8 @@ namespace {
 constexpr std::size_t most_effects = 1000;
 constexpr double most_frames = 1e6;
 
-constexpr std::string_view tables[] = {"model", "integrator", "material", "strand",
-                                       "groom", "root",       "effects"};
+constexpr std::string_view known_tables[] = {"model", "integrator", "material", "strand",
+                                             "groom", "root",       "effects"};
 constexpr std::string_view material_table[] = {"material"};
 
 /// A scene being read: the parsed text and the part interpreted so far.
@@ -78,7 +78,8 @@ class Reader {
   }
 
   void read_top() {
-    const Table top = read_table(root_, top_parameters(), "the scene", file_, tables);
+    const Table top =
+        read_table(root_, top_parameters(), "the scene", file_, known_tables);
     const Parameters& p = top.values();
     scene_.name = std::filesystem::path(file_).stem().string();
     scene_.title = p.word("title");

@@ -47,6 +47,22 @@ TEST(Advise, SaysThreeLinesAndWritesASceneThatRuns) {
   EXPECT_EQ(world.advance(scene.duration), Status::ok) << world.failure();
 }
 
+TEST(Advise, WritesAToleranceAndHowToExtrapolate) {
+  Toy process;
+  process.write("hair.toml", sagging);
+  std::string by_tolerance = small;
+  by_tolerance.replace(by_tolerance.find("implicit_midpoint"), 17, "esdirk43");
+  const Toy::Result result = process.run("--advise hair.toml" + by_tolerance);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("esdirk43, tolerance"));
+  const std::string text = process.read("hair.advised.toml");
+  EXPECT_THAT(text, HasSubstr("the result is x + "));
+  const Scene scene = parse_scene(text, "hair.advised.toml");
+  EXPECT_GT(scene.options.tolerance, 0);
+  World world(scene);
+  EXPECT_EQ(world.advance(scene.duration), Status::ok) << world.failure();
+}
+
 TEST(Advise, KeepsTheReference) {
   Toy process;
   process.write("hair.toml", sagging);

@@ -16,6 +16,7 @@ namespace tress::test_scene_study {
 
 using namespace experiments;
 using namespace experiments::cost_of_accuracy;
+using experiments::cost_of_accuracy::Method;
 
 const char* const sagging = R"(
 title = "a hair sags"
@@ -214,9 +215,9 @@ TEST(SceneStudy, LuckyRunOfTheSwingIsPassedOver) {
 
 TipPaths swing_by_one_solve_a_step(int elements, int substeps) {
   const Scene given = read_open_scene(TRESS_SCENES "/accuracy/swing.toml");
-  const Method method{&find_model("super_helix"),
-                      {{"modes", "bend_planar"}, {"tangent", "stiff"}},
-                      "linearly_implicit_midpoint"};
+  const Method method{{&find_model("super_helix"),
+                       {{"modes", "bend_planar"}, {"tangent", "stiff"}},
+                       "linearly_implicit_midpoint"}};
   const Comparison compare = comparison(given, 60, 0.5, 1);
   Scene scene = compared(trial_scene(given, method, elements, substeps, 60), compare);
   scene.guard = false;  // it would end the run; here the method shall tell
@@ -237,6 +238,29 @@ TEST(ErrorIndicator, FallsWithTheFourthPowerOfTheStep) {
   const double ratio = swing_by_one_solve_a_step(3, 64).indicator /
                        swing_by_one_solve_a_step(3, 128).indicator;
   EXPECT_NEAR(std::log2(ratio), 4, 0.2);
+}
+
+// The error of n elements falls as 1/n^2: what is left after the extrapolation falls with
+// the next power. The error of the reference is 1/64 of that of 16 elements.
+TEST(Extrapolation, LeavesAFractionOfTheSpaceError) {
+  const Scene given = read_open_scene(TRESS_SCENES "/accuracy/side_wind.toml");
+  const Comparison compare = comparison(given, 60, 0.2, 1);
+  Method method{{&find_model("super_helix"), {}, "esdirk43"}};
+  method.by_tolerance = true;
+  const int fine = fineness_of(method, 1e-6);
+  const Scene reference =
+      compared(trial_scene(given, method, 128, fine, compare.rate), compare);
+  const SceneMeasure measure(given, compare, tip_paths(reference, 0).x);
+  const auto error = [&](int elements) {
+    return measure.quick(method, elements, fine, 100).value().error;
+  };
+  const double plain = error(16);
+  EXPECT_NEAR(error(8) / plain, 4, 1);
+  method.extrapolated = true;
+  const double extrapolated = error(16);
+  EXPECT_LT(extrapolated, plain / 6);
+  EXPECT_GT(error(8) / extrapolated, 6);
+  EXPECT_FALSE(measure.quick(method, 1, fine, 100));  // from what?
 }
 
 // ---- claims -----------------------------------------------------------------------

@@ -12,6 +12,7 @@ namespace tress::test_trial_scene {
 
 using namespace experiments;
 using namespace experiments::cost_of_accuracy;
+using experiments::cost_of_accuracy::Method;
 
 const char* const curly = R"(
 title = "curly # not a comment"
@@ -36,9 +37,9 @@ shape = "sphere"
 TEST(TrialScene, HasTheChoiceAndNothingElseChanged) {
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
-  const Method method{&find_model("super_helix"),
-                      {{"modes", "bend"}, {"tangent", "stiff"}},
-                      "implicit_midpoint"};
+  const Method method{{&find_model("super_helix"),
+                       {{"modes", "bend"}, {"tangent", "stiff"}},
+                       "implicit_midpoint"}};
   const Scene scene = trial_scene(given, method, 9, 7, 60);
   EXPECT_EQ(scene.model->id, "super_helix");
   EXPECT_EQ(scene.model_options.word("modes"), "bend");
@@ -137,12 +138,48 @@ TEST(Methods, AreAllThatCanDoTheScene) {
   EXPECT_TRUE(has("mass_spring", "torsion", "altitude"));
 }
 
+// Three ways to rebuild its matrix with fixed steps; by tolerance; and extrapolated.
+TEST(Methods, OfErrorControlAreTriedInFiveWays) {
+  const Scene given = read_open_scene(TRESS_SCENES "/accuracy/side_wind.toml");
+  const auto ways = methods(given, {{"super_helix"}, {"esdirk43"}, {"none"}});
+  ASSERT_EQ(ways.size(), 5u);
+  EXPECT_NE(ways[1].refresh, ways[2].refresh);
+  EXPECT_FALSE(ways[2].by_tolerance);
+  EXPECT_TRUE(ways[3].by_tolerance && !ways[3].extrapolated);
+  EXPECT_TRUE(ways[4].by_tolerance && ways[4].extrapolated);
+  EXPECT_FALSE(same(ways[3], ways[4]));
+}
+
+TEST(Methods, AreNotExtrapolatedWhereSomethingTouches) {
+  const Scene given = read_open_scene(TRESS_SCENES "/accuracy/fall_on_sphere.toml");
+  bool by_tolerance = false;
+  for (const Method& method : methods(given, {{"super_helix"}, {"tr_bdf2"}, {}})) {
+    EXPECT_FALSE(method.extrapolated);
+    by_tolerance = by_tolerance || method.by_tolerance;
+  }
+  EXPECT_TRUE(by_tolerance);
+}
+
+TEST(Methods, AskForATenthOfTheLengthAtFirstAndLessByTheirOrder) {
+  Method method{{&find_model("super_helix"), {}, "esdirk43"}};
+  method.by_tolerance = true;
+  EXPECT_DOUBLE_EQ(tolerance_of(method, steps_unit(method)), 0.1);
+  EXPECT_DOUBLE_EQ(tolerance_of(method, 2 * steps_unit(method)), 0.1 / 16);
+  for (const int substeps : {5, 8, 9, 21, 64, 500}) {
+    EXPECT_EQ(fineness_of(method, tolerance_of(method, substeps)), substeps);
+  }
+  const Scratch folder;
+  const Scene given = read_open_scene(folder.write("curly.toml", curly));
+  const Scene scene = trial_scene(given, method, 6, 16, 60);
+  EXPECT_DOUBLE_EQ(scene.options.tolerance, 0.1 / 16);
+}
+
 TEST(Methods, DifferInOneWord) {
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
-  const Method method{&find_model("super_helix"),
-                      {{"modes", "bend"}, {"tangent", "stiff"}},
-                      "implicit_midpoint"};
+  const Method method{{&find_model("super_helix"),
+                       {{"modes", "bend"}, {"tangent", "stiff"}},
+                       "implicit_midpoint"}};
   EXPECT_TRUE(same(method, {&find_model("super_helix"),
                             {{"tangent", "stiff"}, {"modes", "bend"}},
                             "implicit_midpoint"}));
@@ -157,8 +194,11 @@ TEST(Methods, DifferInOneWord) {
 TEST(Methods, AreThoseAskedFor) {
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
-  const auto some =
-      methods(given, {{"super_helix"}, {"implicit_midpoint"}, {"modes=bend"}});
+  const MethodChoice choice{.models = {"super_helix"},
+                            .integrators = {"implicit_midpoint"},
+                            .options = {"modes=bend"},
+                            .refreshes = {Refresh::every_iteration}};
+  const auto some = methods(given, choice);
   ASSERT_EQ(some.size(), 2u);
   EXPECT_EQ(some[0].word("modes"), "bend_twist");
   EXPECT_EQ(some[1].word("modes"), "bend");

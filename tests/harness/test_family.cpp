@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
 
 #include "experiments/family/family.h"
+#include "experiments/numerics/tip_track.h"
+#include "simulation/run/simulation.h"
 
 namespace tress::family {
 
@@ -79,6 +82,130 @@ TEST(Family, Summary_CountsHairsWithoutAnAnswerApart) {
   EXPECT_EQ(summary.text("no_answer"), "1");
   EXPECT_EQ(summary.text("correlated_with"), "length_m");
   EXPECT_EQ(summary.number("rank_correlation"), 1);
+}
+
+TEST(Family, Summary_TellsModelsAndIntegratorsApart) {
+  const Claim& claim = tolerance.claims.front();
+  std::vector<Row> rows;
+  for (const Hair& hair : latin_hypercube(8, 1)) {
+    for (const std::string_view model : {"der", "corde"}) {
+      Row row;
+      hair.describe(row);
+      row.set("model", model).set("integrator", "tr_bdf2");
+      rows.push_back(answer(row, claim, 1e-4, model == "der" || hair.number < 3));
+    }
+  }
+  std::vector<Row> of_claim = summarize(rows);
+  std::erase_if(of_claim, [&](const Row& row) { return row.text("claim") != claim.id; });
+  ASSERT_EQ(of_claim.size(), 2u);
+  EXPECT_EQ(of_claim[0].text("model"), "der");
+  EXPECT_EQ(of_claim[0].number("holds_share"), 1);
+  EXPECT_EQ(of_claim[1].text("model"), "corde");
+  EXPECT_EQ(of_claim[1].text("integrator"), "tr_bdf2");
+  EXPECT_EQ(of_claim[1].text("hairs"), "8");
+  EXPECT_EQ(of_claim[1].number("holds_share"), 0.25);
+}
+
+Hair short_hair() {
+  return {.number = 1,
+          .length = 0.05,
+          .radius = 50e-6,
+          .youngs_modulus = 1e9,
+          .ellipticity = 1.2,
+          .natural_curvature = 20,
+          .internal_friction = 1e-11,
+          .drive = Drive::turning_head,
+          .level = 0.5,
+          .frequency = 2};
+}
+
+constexpr double asked = 1e-3;
+
+std::vector<Row> by_tolerance(const Hair& hair, std::string_view model, double calls) {
+  Row row;
+  row.set("model", model).set("tolerance", asked).set("most_calls", calls);
+  return tolerance.run(hair, row);
+}
+
+/// The tip at 24 times up to 0.4 s, as the study takes it.
+TipRun by_step(const Hair& hair, std::string_view model, double dt) {
+  const auto system = make_system(hair, model, elements_of(hair));
+  Options options;
+  options.step = dt;
+  return run_tip("implicit_midpoint", *system, options, 0.4, 24);
+}
+
+TEST(Family, Tolerance_StatesTheErrorAgainstAnotherMethodsLimit) {
+  const Hair hair = short_hair();
+  // The rule's error falls with the square of the step: a quarter of its change remains
+  // for the finer run, a third of the change is its own error, and the change is a bound.
+  const TipRun coarse = by_step(hair, "super_helix", 2e-4);
+  const TipRun fine = by_step(hair, "super_helix", 1e-4);
+  const double limit = tip_error(coarse.tip, fine.tip, hair.length);
+  ASSERT_LT(limit, asked / 10);
+  const auto rows = by_tolerance(hair, "super_helix", 1e5);
+  ASSERT_EQ(rows.size(), 6u);
+  for (const std::size_t i : {0u, 3u}) {
+    const auto system = make_system(hair, "super_helix", elements_of(hair));
+    Options options;
+    options.tolerance = asked;
+    const TipRun run = run_tip(rows[i].text("integrator"), *system, options, 0.4, 24);
+    const double error = tip_error(run.tip, fine.tip, hair.length);
+    // The study's own limit has been asked for a hundredth of the tolerance.
+    EXPECT_NEAR(rows[i].number("value"), error, limit + asked / 100);
+    EXPECT_EQ(rows[i].text("holds"), error <= asked ? "true" : "false");
+    EXPECT_LE(rows[i].number("gap"), asked);
+  }
+}
+
+TEST(Family, Tolerance_ComparesWithAFixedStepThatIsAsAccurate) {
+  const Hair hair = short_hair();
+  const auto rows = by_tolerance(hair, "der", 1e5);
+  for (const std::size_t i : {0u, 3u}) {
+    const Row &met = rows[i], &at_error = rows[i + 1], &as_asked = rows[i + 2];
+    ASSERT_TRUE(met.ok() && at_error.ok() && as_asked.ok()) << describe(met);
+    // What suffices for the tolerance is no dearer than what suffices for the error.
+    EXPECT_LE(as_asked.number("fixed_work"), at_error.number("fixed_work"));
+    EXPECT_NEAR(at_error.number("value"),
+                at_error.number("fixed_work") / at_error.number("work"), 1e-12);
+  }
+}
+
+TEST(Family, Tolerance_CountsARunCutShortAsWithoutSolution) {
+  const auto rows = by_tolerance(short_hair(), "super_helix", 50);
+  EXPECT_TRUE(rows[0].ok());
+  EXPECT_EQ(rows[0].number("value"), 1);
+  EXPECT_EQ(rows[0].text("holds"), "false");
+  EXPECT_NE(rows[0].text("failure").find("max_work"), std::string_view::npos);
+  EXPECT_EQ(rows[1].status(), "no_reference");
+}
+
+// Between the ends of such steps a cubic would add an error of its own, and of a step
+// that grows more than those of fixed-step methods it would not have read the beginning.
+TEST(Family, RunTip_TakesTheStatesThatARunByToleranceGives) {
+  const Hair hair = short_hair();
+  const auto system = make_system(hair, "super_helix", elements_of(hair));
+  Options options;
+  options.tolerance = asked;
+  const TipRun run = run_tip("esdirk43", *system, options, 0.4, 4);
+  std::vector<double> tips, x(3 * static_cast<std::size_t>(elements_of(hair) + 1));
+  std::size_t stop = 0;
+  constexpr std::array stops{0.1, 0.2, 0.4 * 0.75, 0.4};
+  const auto read = [&](const State& state) {
+    system->material_points()->positions(stops[stop++], state.q, x);
+    tips.insert(tips.end(), x.end() - 3, x.end());
+  };
+  ASSERT_EQ(system->material_points()->count(), elements_of(hair) + 1);
+  simulate("esdirk43", *system, options, initial_state(*system), stops, read);
+  EXPECT_EQ(run.tip, tips);
+}
+
+TEST(Family, ElementsFollowTheCurl) {
+  Hair hair = short_hair();
+  EXPECT_EQ(elements_of(hair), 20);
+  hair.natural_curvature = 1000;
+  EXPECT_GE(elements_of(hair) * 1.5, hair.winding());
+  EXPECT_LT((elements_of(hair) - 1) * 1.5, hair.winding());
 }
 
 TEST(Family, Straightened_LeavesTheRestOfTheHairAlone) {

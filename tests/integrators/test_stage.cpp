@@ -167,6 +167,22 @@ TEST(StageDamping, BeginsAnewWhereTheGuessLeadsNowhere) {
   EXPECT_EQ(solved(square, 1, -1, 0).status, Status::retry);
 }
 
+// a = -q with a derivative of -4 for -1: corrections shrink by 1 - 2/5 each.
+TEST(StageIteration, GoesOnUnderALooseToleranceWhileCorrectionsShrink) {
+  Scalar system({[](double) { return 1.0; }, none, [](double q) { return -q; },
+                 [](double) { return -4.0; }});
+  Options options;
+  options.newton_tolerance = 1e-6;
+  options.newton_iterations = 50;
+  Dynamics dynamics(system, options);
+  Stage stage(dynamics, options);
+  const std::vector<double> bar{0.05}, v{0};
+  std::vector<double> a{0}, lambda;
+  ASSERT_EQ(stage.solve(0, bar, v, {1, 1, 1}, a, lambda), Status::ok);
+  // The corrections to come are 0.6/0.4 of the last one, which is at most the tolerance.
+  EXPECT_NEAR(stage.q()[0], 0.025, 1.5 * options.newton_tolerance);
+}
+
 double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
 double sigmoid_slope(double x) { return sigmoid(x) * (1 - sigmoid(x)); }
 

@@ -1,6 +1,12 @@
 // The cheapest way to a wanted error, scene by scene, and what each choice is worth.
 import { distinct, group_by, is_number, is_positive, succeeded } from '../src/tables.mjs';
-import { format_number, format_ratio, format_time } from '../src/format.mjs';
+import {
+  format_elements,
+  format_number,
+  format_ratio,
+  format_steps,
+  format_time,
+} from '../src/format.mjs';
 import { spaced } from '../src/strand.mjs';
 import {
   dimmed_unless,
@@ -27,14 +33,15 @@ const rows_of = (tables) =>
       method: spaced(row.integrator),
       wall_ms: 1e3 * row.wall_s_per_sim_s,
       error_pct: 100 * row.error_rel,
-      dt_ms: 1e3 * row.dt_s,
+      steps: format_steps(row),
       how: [row.modes, row.tangent, row.solver, row.options].filter(Boolean).join(', '),
     }));
 
 const percent = (value) => `${format_number(100 * value)} %`;
 
 const run_text = (row) =>
-  `${row.name}, ${row.method}, ${row.elements} elements, steps of ${format_time(row.dt_s)}`;
+  `${row.name}, ${row.method}, ${format_elements(row)} elements, ` +
+  format_steps(row, (dt) => `steps of ${format_time(dt)}`);
 
 const of_kind = (rows, kind) => rows.filter((row) => row.kind === kind);
 
@@ -79,7 +86,13 @@ const choice_medians = (rows) =>
     }))
     .sort((a, b) => b.factor - a.factor);
 
-const choice_words = { elements: 'number of elements', dt_s: 'time step' };
+const choice_words = {
+  elements: 'number of elements',
+  dt_s: 'time step',
+  tolerance: 'step control',
+  extrapolated: 'extrapolation',
+  refresh: 'refresh of the matrix',
+};
 const choice_name = (choice) => choice_words[choice] ?? spaced(choice);
 
 export function cost_findings(tables) {
@@ -137,7 +150,7 @@ export const cost_of_accuracy = {
       ['method', 'integrator'],
       ['how', 'options'],
       ['elements', 'elements'],
-      ['dt_ms', 'step (ms)', '.3g'],
+      ['steps', 'step'],
       ['error_pct', 'error (%)', '.3g'],
       ['wall_ms', 'time per simulated second (ms)', '.3g'],
       ...(margin ? [['margin', 'margin', '.3g']] : []),

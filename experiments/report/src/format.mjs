@@ -33,3 +33,15 @@ export function format_time(seconds) {
   if (seconds >= 1e-3) return `${format_number(seconds * 1e3)} ms`;
   return `${format_number(seconds * 1e6)} µs`;
 }
+
+// The steps of a run, given or chosen by a tolerance.
+export const format_steps = (row, time = format_time) =>
+  typeof row.tolerance === 'number'
+    ? `tolerance ${format_number(row.tolerance)}`
+    : time(row.dt_s);
+
+// Two numbers where the result of a run is extrapolated from them.
+export const format_elements = (row) =>
+  String(row.extrapolated) === 'true'
+    ? `${row.elements} and ${Math.ceil(row.elements / 2)}`
+    : `${row.elements}`;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 #include "tests/models/strand/parameters_for.h"
 

@@ -1,5 +1,6 @@
 // The cheapest way to a wanted error.
 import { distinct, group_by, is_number, is_positive } from '../../src/tables.mjs';
+import { format_elements, format_steps } from '../../src/format.mjs';
 import { spaced } from '../../src/strand.mjs';
 import { median, number, percent, range, rows_of, table, time } from '../markdown.mjs';
 
@@ -31,7 +32,7 @@ export function winners_table(tables) {
     return [
       spaced(winner.scene),
       way(winner),
-      `${winner.elements}, ${time(winner.dt_s)}`,
+      `${format_elements(winner)}, ${format_steps(winner, time)}`,
       time(winner.wall_s_per_sim_s),
       next ? way(next) : '',
       next ? number(next.cost_factor) : '',
@@ -52,6 +53,26 @@ export function winners_table(tables) {
   );
 }
 
+// The cheapest run for every wanted error, scene by scene.
+export function winners_by_target(tables) {
+  const winners = cheapest(rows_of(tables, 'cost_of_accuracy', { kind: 'winner' }));
+  const targets = distinct(winners.map((row) => row.target_error_rel)).sort((a, b) => b - a);
+  const cell = (row) =>
+    row && row.status === 'ok'
+      ? `${way(row)}, ${format_elements(row)}, ${format_steps(row, time)}: ` +
+        time(row.wall_s_per_sim_s)
+      : 'none found';
+  return table(
+    ['scene', ...targets.map((target) => percent(target))],
+    distinct(winners.map((row) => row.scene)).map((scene) => [
+      spaced(scene),
+      ...targets.map((target) =>
+        cell(winners.find((row) => row.scene === scene && row.target_error_rel === target)),
+      ),
+    ]),
+  );
+}
+
 // "linearly_implicit_midpoint 7 of 7": how often each integrator wins.
 export function winning_integrators(tables) {
   const rows = cheapest(of_kind(tables, 'winner'));
@@ -69,7 +90,13 @@ export function winning_models(tables) {
     .join(', ');
 }
 
-const words = { elements: 'number of elements', dt_s: 'time step' };
+const words = {
+  elements: 'number of elements',
+  dt_s: 'time step',
+  tolerance: 'step control',
+  extrapolated: 'extrapolation',
+  refresh: 'refresh of the matrix',
+};
 
 // What replacing one choice by the next best costs: the median over scenes and errors.
 export function choices(tables) {

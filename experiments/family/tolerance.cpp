@@ -1,0 +1,256 @@
+// Runs by tolerance, hair by hair and model by model: is there a solution, is its error
+// in time what was asked for, and what would the best fixed step have cost? All runs of a
+// row have the same elements, so that no error is one of space.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/family/family.h"
+#include "experiments/numerics/tip_track.h"
+
+namespace tress::experiments::family {
+namespace {
+
+constexpr Claim claims[] = {
+    {"tolerance_met", "the error of a run by tolerance stays within the tolerance",
+     "tip error in time over the length; 1: no solution"},
+    {"tolerance_cheaper_at_error",
+     "a run by tolerance is no dearer than the best fixed step that is as accurate",
+     "work of the best fixed step as accurate over that of the run by tolerance; 0.2: or "
+     "only a fixed step is a solution, 5: no fixed step is as accurate"},
+    {"tolerance_cheaper_as_asked",
+     "a run by tolerance is no dearer than the best fixed step within the tolerance",
+     "work of the best fixed step within the tolerance over that of the run by "
+     "tolerance; 0.2: or only a fixed step is within it, 5: only the run by tolerance"}};
+
+// Models with a material frame. mass_spring and inextensible_strand have none: a section
+// that is not round and twist at rest mean nothing to them.
+constexpr std::string_view models[] = {"super_helix",
+                                       "articulated_chain",
+                                       "der",
+                                       "force_transport",
+                                       "corde",
+                                       "xpbd_cosserat",
+                                       "dynamic_spline",
+                                       "kirchhoff_nodal"};
+constexpr std::array by_tolerance{"tr_bdf2", "esdirk43"};
+// The best first: what costs more than the best so far is not finished.
+constexpr std::array by_step{"linearly_implicit_midpoint", "implicit_midpoint", "bdf2"};
+constexpr std::string_view reference_method = "esdirk43";  // of the higher order
+
+constexpr double t_end = 0.4;  // s
+constexpr int samples = 24;
+constexpr double coarsest = 1 / 60.0;  // s, of the fixed steps, which halve
+constexpr double no_solution = 1;      // value of the error
+constexpr double finer = 100;  // tolerance of a run over that of its reference, which
+constexpr double reference_calls = 5;  // may take so many times the calls: 100^(1/4) = 3
+constexpr double newton_part = 1e-2;   // of the tolerance, as error control has it
+constexpr double most = 5;             // times the work; no ratio is beyond
+constexpr int repeats = 3;
+
+/// One model of one hair.
+struct Subject {
+  const Hair& hair;
+  std::string_view model;
+  double tolerance;
+  double most_calls;
+  int elements = elements_of(hair);
+
+  std::unique_ptr<System> system() const { return make_system(hair, model, elements); }
+};
+
+Options options_of(System& system, double max_work) {
+  Options options;
+  options.max_work = max_work;
+  // Multipliers there are those of a spline's clamp.
+  if (system.layout().constraints > 0) options.formulation = Formulation::projection;
+  return options;
+}
+
+TipRun run_by_tolerance(const Subject& subject, std::string_view integrator,
+                        double tolerance, double most_calls, int repeat) {
+  const auto system = subject.system();
+  Guard guard = make_guard(subject.hair, subject.model, subject.elements, *system);
+  const double work_of_call = system->layout().coordinates + 10;
+  Options options = options_of(*system, most_calls * work_of_call);
+  options.tolerance = tolerance;
+  return run_tip(integrator, *system, options, t_end, samples, repeat, &guard);
+}
+
+TipRun run_by_step(const Subject& subject, std::string_view integrator, double dt,
+                   double max_work, int repeat) {
+  const auto system = subject.system();
+  Options options = options_of(*system, max_work);
+  options.step = dt;
+  options.newton_tolerance = newton_part * subject.tolerance;
+  options.refresh = Refresh::when_slow;
+  return run_tip(integrator, *system, options, t_end, samples, repeat);
+}
+
+double work_of(const TipRun& run) { return total_work(run.stats, run.unknowns); }
+
+struct Rung {
+  std::string_view integrator;
+  double dt, error, work;
+};
+
+/// Every method's steps, halved until one is as accurate as `least_error`, or as dear as
+/// `most_work` or as another that is so accurate.
+std::vector<Rung> ladder(const Subject& subject, In reference, double least_error,
+                         double most_work) {
+  std::vector<Rung> all;
+  for (const std::string_view integrator : by_step) {
+    for (double dt = coarsest;; dt /= 2) {
+      const TipRun run = run_by_step(subject, integrator, dt, most_work, 0);
+      const double error = tip_error(run.tip, reference, subject.hair.length);
+      all.push_back({integrator, dt, error, work_of(run)});
+      if (error <= least_error) most_work = std::min(most_work, work_of(run));
+      if (work_of(run) >= most_work) break;
+    }
+  }
+  return all;
+}
+
+const Rung* cheapest(const std::vector<Rung>& rungs, double error) {
+  const Rung* best = nullptr;
+  for (const Rung& rung : rungs) {
+    if (rung.error > error || (best != nullptr && rung.work >= best->work)) continue;
+    best = &rung;
+  }
+  return best;
+}
+
+/// A run by tolerance with its error in time.
+struct Outcome {
+  TipRun run;
+  double error = std::numeric_limits<double>::infinity();
+
+  bool solved() const { return run.status == Status::ok; }
+};
+
+Row described(Row row, std::string_view integrator, const Outcome& outcome) {
+  const Stats& done = outcome.run.stats;
+  row.set("integrator", integrator).set("steps", done.steps);
+  row.set("rejected", done.rejected).set("work", work_of(outcome.run));
+  if (outcome.solved()) return row.set("wall_s", outcome.run.wall_s);
+  return row.set("failure", outcome.run.failure);
+}
+
+Row compared(const Subject& subject, Row row, const Claim& claim, const Outcome& outcome,
+             const std::vector<Rung>& rungs, double error) {
+  const Rung* step = cheapest(rungs, error);
+  const bool met = outcome.solved() && outcome.error <= error;
+  if (step == nullptr) {
+    if (met) return answer(row, claim, most, true);
+    return no_answer(row, claim, "not_met", "neither way is within the tolerance");
+  }
+  const double wall = run_by_step(subject, step->integrator, step->dt, 0, repeats).wall_s;
+  row.set("fixed_integrator", step->integrator).set("fixed_dt_s", step->dt);
+  row.set("fixed_work", step->work).set("fixed_wall_s", wall);
+  if (!met) return answer(row, claim, 1 / most, false);
+  const double ratio = std::clamp(step->work / work_of(outcome.run), 1 / most, most);
+  return answer(row, claim, ratio, ratio >= 1);
+}
+
+std::vector<Outcome> outcomes_of(const Subject& subject) {
+  std::vector<Outcome> all;
+  for (const std::string_view integrator : by_tolerance) {
+    all.push_back({run_by_tolerance(subject, integrator, subject.tolerance,
+                                    subject.most_calls, repeats)});
+  }
+  return all;
+}
+
+/// Empty without a solution, or where no run is compared with it.
+std::optional<std::vector<double>> reference_of(const Subject& subject,
+                                                const std::vector<Outcome>& outcomes) {
+  if (std::ranges::none_of(outcomes, &Outcome::solved)) return {};
+  TipRun run = run_by_tolerance(subject, reference_method, subject.tolerance / finer,
+                                reference_calls * subject.most_calls, 0);
+  if (run.status != Status::ok) return {};
+  return std::move(run.tip);
+}
+
+void measure(const Subject& subject, In reference, std::vector<Outcome>& outcomes) {
+  for (Outcome& outcome : outcomes) {
+    if (!outcome.solved()) continue;
+    outcome.error = tip_error(outcome.run.tip, reference, subject.hair.length);
+  }
+}
+
+/// As far as needed for a comparison with the outcomes.
+std::vector<Rung> ladder_for(const Subject& subject, const std::vector<Outcome>& outcomes,
+                             In reference) {
+  double least_error = subject.tolerance;
+  double least_work = std::numeric_limits<double>::infinity();
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.solved()) continue;
+    least_error = std::min(least_error, outcome.error);
+    least_work = std::min(least_work, work_of(outcome.run));
+  }
+  return ladder(subject, reference, least_error, most * least_work);
+}
+
+/// Rows of a subject without a reference: that a run has no solution is certain
+/// nevertheless.
+std::vector<Row> unconfirmed(const Row& row, const std::vector<Outcome>& outcomes,
+                             std::string_view reason) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const Row one = described(row, by_tolerance[i], outcomes[i]);
+    rows.push_back(outcomes[i].solved()
+                       ? no_answer(one, claims[0], "no_reference", reason)
+                       : answer(one, claims[0], no_solution, false));
+    rows.push_back(no_answer(one, claims[1], "no_reference", reason));
+    rows.push_back(no_answer(one, claims[2], "no_reference", reason));
+  }
+  return rows;
+}
+
+std::vector<Row> judged(const Subject& subject, const Row& row,
+                        const std::vector<Outcome>& outcomes,
+                        const std::vector<Rung>& rungs) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const Outcome& outcome = outcomes[i];
+    const Row one = described(row, by_tolerance[i], outcome);
+    const bool solved = outcome.solved();
+    const double asked = subject.tolerance;
+    rows.push_back(answer(one, claims[0], solved ? outcome.error : no_solution,
+                          outcome.error <= asked));
+    rows.push_back(compared(subject, one, claims[1], outcome, rungs,
+                            solved ? outcome.error : asked));
+    rows.push_back(compared(subject, one, claims[2], outcome, rungs, asked));
+  }
+  return rows;
+}
+
+std::vector<Row> run(const Hair& hair, const Row& row) {
+  const Subject subject{hair, row.text("model"), row.number("tolerance"),
+                        row.number("most_calls")};
+  Row with = row;
+  with.set("elements", subject.elements);
+  auto outcomes = outcomes_of(subject);
+  const auto reference = reference_of(subject, outcomes);
+  if (!reference) {
+    return unconfirmed(with, outcomes, "no solution at a hundredth of the tolerance");
+  }
+  measure(subject, *reference, outcomes);
+  const auto rungs = ladder_for(subject, outcomes, *reference);
+  const double gap = std::ranges::min(rungs, {}, &Rung::error).error;
+  with.set("gap", gap);
+  if (gap <= subject.tolerance) return judged(subject, with, outcomes, rungs);
+  return unconfirmed(with, outcomes, "no fixed step agrees with it within the tolerance");
+}
+
+}  // namespace
+
+const Study tolerance{"tolerance", claims, run, models, {16, 3}};
+
+}  // namespace tress::experiments::family
