@@ -136,10 +136,10 @@ struct Stump {
 Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
                  std::size_t least);
 
-/// One row per claim, model and integrator over the hairs that answered it: their number, the share for which
-/// it holds, quantiles of the value, the hair parameter with the strongest rank
-/// correlation with the value, and the one that best predicts by one threshold whether
-/// the claim holds.
+/// One row per claim, model and integrator over the hairs that answered it: their number,
+/// the share for which it holds, quantiles of the value, the hair parameter with the
+/// strongest rank correlation with the value, and the one that best predicts by one
+/// threshold whether the claim holds.
 std::vector<Row> summarize(std::span<const Row> rows);
 
 std::span<const Column> summary_columns();

@@ -96,8 +96,7 @@ TEST(Family, Summary_TellsModelsAndIntegratorsApart) {
     }
   }
   std::vector<Row> of_claim = summarize(rows);
-  std::erase_if(of_claim,
-                [&](const Row& row) { return row.text("claim") != claim.id; });
+  std::erase_if(of_claim, [&](const Row& row) { return row.text("claim") != claim.id; });
   ASSERT_EQ(of_claim.size(), 2u);
   EXPECT_EQ(of_claim[0].text("model"), "der");
   EXPECT_EQ(of_claim[0].number("holds_share"), 1);
@@ -181,8 +180,8 @@ TEST(Family, Tolerance_CountsARunCutShortAsWithoutSolution) {
   EXPECT_EQ(rows[1].status(), "no_reference");
 }
 
-// Between the ends of such steps a cubic would add an error of its own, and of a step that
-// grows more than those of fixed-step methods it would not have read the beginning.
+// Between the ends of such steps a cubic would add an error of its own, and of a step
+// that grows more than those of fixed-step methods it would not have read the beginning.
 TEST(Family, RunTip_TakesTheStatesThatARunByToleranceGives) {
   const Hair hair = short_hair();
   const auto system = make_system(hair, "super_helix", elements_of(hair));
