@@ -112,11 +112,7 @@ Status ErrorControlled::next_step(double t_end) {
     const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
     if (s == Status::retry) {
-      ++dynamics_.stats.rejected_by_newton;
-      ceiling_ = newton_ceiling * now.h;
-      if (const Status r = shorten(newton_factor * now.h, by_newton); r != Status::ok) {
-        return r;
-      }
+      if (const Status r = unsolved(now.h); r != Status::ok) return r;
       continue;
     }
     const double error =
@@ -132,7 +128,8 @@ Status ErrorControlled::next_step(double t_end) {
       continue;
     }
     if (projection_ && projection_->project(end_.t, end_.q, end_.v) != Status::ok) {
-      return fail(Status::fatal, "projection onto the constraints failed");
+      if (const Status r = unsolved(now.h); r != Status::ok) return r;
+      continue;
     }
     at_break_ = now.at_break;
     ahead_ = true;
@@ -147,6 +144,12 @@ Status ErrorControlled::next_step(double t_end) {
     adapt(now, error);
     return Status::ok;
   }
+}
+
+Status ErrorControlled::unsolved(double h) {
+  ++dynamics_.stats.rejected_by_newton;
+  ceiling_ = newton_ceiling * h;
+  return shorten(newton_factor * h, by_newton);
 }
 
 Status ErrorControlled::shorten(double h, std::string_view cause) {

@@ -72,6 +72,8 @@ class ErrorControlled : public Integrator {
   };
   Trial trial(double t_end);
   void adapt(const Trial& taken, double error);
+  /// After Newton's iteration failed for a step of h, in a stage or in the projection.
+  Status unsolved(double h);
   /// Goes on with a step of h; fails where that is too short.
   Status shorten(double h, std::string_view cause);
   Status accept_end();

@@ -10,6 +10,11 @@ namespace tress::integrators {
 namespace {
 
 constexpr double gravity = 9.81;  // m/s^2
+// Of coordinates, whose error may be larger than that of points.
+constexpr double coordinate_weight = 1. / 15;
+
+constexpr std::string_view position = "position", velocity = "velocity",
+                           coordinates = "coordinates";
 
 double distance(In x, std::size_t i, In y, std::size_t j) {
   return std::hypot(x[3 * i] - y[3 * j], x[3 * i + 1] - y[3 * j + 1],
@@ -53,13 +58,13 @@ void ErrorNorm::start(double t, In q) {
 
 /// A number that is not finite makes the value infinite.
 void ErrorNorm::look(const std::vector<double>& x, const std::vector<double>& shifted,
-                     double factor, bool velocity) {
+                     double factor, std::string_view what) {
   for (std::size_t i = 0; i < x.size() / 3; ++i) {
     const double error = factor * distance(x, i, shifted, i);
     if (error <= value_) continue;
     value_ = std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
     point_ = i;
-    velocity_ = velocity;
+    what_ = what;
   }
 }
 
@@ -68,7 +73,7 @@ double ErrorNorm::of(double t, In q, In v, In dq, In dv) {
   if (length_ == 0) {
     value_ = scaled_norm(dq, dynamics_.q_typ());
     const double of_v = scaled_norm(dv, dynamics_.v_typ());
-    velocity_ = of_v > value_;
+    what_ = of_v > value_ ? velocity : position;
     return value_ = std::max(value_, of_v);
   }
   shifted(q_, q, -1, dq);
@@ -78,14 +83,20 @@ double ErrorNorm::of(double t, In q, In v, In dq, In dv) {
   points_->velocities(t, q, v, u_);
   points_->positions(t, q_, shifted_x_);
   points_->velocities(t, q_, v_, shifted_u_);
-  look(x_, shifted_x_, 1 / length_, false);
-  look(u_, shifted_u_, time_ / length_, true);
+  look(x_, shifted_x_, 1 / length_, position);
+  look(u_, shifted_u_, time_ / length_, velocity);
+  const double of_q = coordinate_weight * scaled_norm(dq, dynamics_.q_typ());
+  if (of_q > value_) {
+    value_ = of_q;
+    what_ = coordinates;
+  }
   return value_;
 }
 
 std::string ErrorNorm::where() const {
-  const std::string what = velocity_ ? "velocity" : "position";
-  return length_ == 0 ? what : what + " of point " + std::to_string(point_);
+  std::string where(what_);
+  if (length_ > 0 && what_ != coordinates) where += " of point " + std::to_string(point_);
+  return where;
 }
 
 }  // namespace tress::integrators

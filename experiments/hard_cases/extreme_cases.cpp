@@ -172,7 +172,7 @@ std::vector<HardCase> extreme_cases() {
                            {"root_tangent", "down"}});
   curl.t_end = 0.2;
   curl.horizon = 0.15;
-  curl.reference_step = 1e-3;
+  curl.reference_step = 1.25e-4;
   all.push_back(curl);
   return all;
 }

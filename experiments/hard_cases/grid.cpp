@@ -16,6 +16,11 @@ constexpr Parameter settings_of_rows[] = {
      .text = true,
      .fallback = "all"},
     {.name = "dt_s", .help = "rows of one step (s), 0: all", .number = 0, .min = 0},
+    {.name = "tolerance",
+     .help = "rows of one tolerance (error over the length), 0: all",
+     .number = 0,
+     .min = 0,
+     .max = 1},
     {.name = "scenes", .help = "scene files instead of our cases", .text = true},
     {.name = "horizon_s",
      .help = "of a scene file: time that a run simulates, at most the scene's (s)",
@@ -51,20 +56,33 @@ constexpr Parameter settings_of_rows[] = {
 };
 
 constexpr double film = 1.0 / 30, substep = 1.0 / 300, fine = 1e-3;  // s
+constexpr double usual_tolerance = 1e-3;
 
 constexpr std::string_view usual[] = {"semi_implicit_euler",
                                       "backward_euler",
                                       "implicit_midpoint",
                                       "bdf2",
+                                      "tr_bdf2",
+                                      "esdirk43",
                                       "generalized_alpha",
                                       "xpbd",
                                       "rattle",
                                       "rk4"};
-constexpr std::size_t usual_quick = 3;  // the first of them
+constexpr std::size_t usual_quick = 5;  // the first of them
 
-std::vector<double> steps_of(const CommandLine& line, const HardCase& hard) {
-  std::vector<double> all = tried_steps(line);
-  if (!line.quick && hard.further_step > 0) all.push_back(hard.further_step);
+/// Whether the integrator is tried at fixed steps.
+bool by_step(const CommandLine& line, const IntegratorEntry& entry) {
+  return line.full || !entry.error_controlled;
+}
+
+std::vector<Pace> paces_of(const CommandLine& line, const Parameters& own,
+                           const HardCase& hard, std::string_view integrator) {
+  std::vector<Pace> all = tried_paces(line, integrator);
+  if (!line.quick && hard.further_step > 0 &&
+      by_step(line, find_integrator(integrator))) {
+    all.push_back({hard.further_step});
+  }
+  std::erase_if(all, [&](const Pace& pace) { return !selected(own, pace); });
   return all;
 }
 
@@ -109,9 +127,28 @@ std::vector<std::string_view> tried_integrators(const CommandLine& line) {
   return all;
 }
 
-std::vector<double> tried_steps(const CommandLine& line) {
-  if (line.quick) return {film, substep};
-  return {film, substep, fine};
+std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrator) {
+  const IntegratorEntry& entry = find_integrator(integrator);
+  std::vector<Pace> all;
+  if (by_step(line, entry)) {
+    // That of order 2 damps long steps as that of order 1 does: its step is the short
+    // one.
+    const bool short_only = line.quick && integrator == "bdf2";
+    if (!short_only) all = {{film}, {substep}};
+    if (short_only || !line.quick) all.push_back({fine});
+  }
+  if (!entry.error_controlled) return all;
+  for (const double tolerance : {1e-2, usual_tolerance, 1e-4}) {
+    if (line.quick && tolerance != usual_tolerance) continue;
+    all.push_back({longest_step, tolerance});
+  }
+  return all;
+}
+
+bool selected(const Parameters& own, const Pace& pace) {
+  const double step = own.number("dt_s"), tolerance = own.number("tolerance");
+  return (step == 0 || step == pace.step) &&
+         (tolerance == 0 || tolerance == pace.tolerance);
 }
 
 std::vector<std::string_view> tried_tangents(const CommandLine& line,
@@ -130,13 +167,13 @@ Row Cell::identity() const {
   Row row;
   row.set("case", attempt.hard->name).set("model", attempt.subject.model->id);
   row.set("variant", attempt.subject.words).set("integrator", attempt.integrator);
-  row.set("dt_s", attempt.dt);
+  attempt.pace.identify(row);
   return row;
 }
 
 Grid hard_grid(const CommandLine& line, const Settings& settings) {
-  const std::string_view only = settings.experiment().word("case");
-  const double one_step = settings.experiment().number("dt_s");
+  const Parameters& selection = settings.experiment();
+  const std::string_view only = selection.word("case");
   constexpr double quick_part = 0.005;  // of a million steps
   Grid grid;
   std::vector<std::string_view> names;
@@ -154,10 +191,9 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
             own.words +=
                 (own.words.empty() ? "tangent=" : " tangent=") + std::string(tangent);
           }
-          for (const double dt : steps_of(line, hard)) {
-            if (one_step > 0 && dt != one_step) continue;
-            Attempt attempt{&hard,      own, settings.parameters(*own.model),
-                            integrator, dt,  settings.options()};
+          for (const Pace& pace : paces_of(line, selection, hard, integrator)) {
+            Attempt attempt{&hard,      own,  settings.parameters(*own.model),
+                            integrator, pace, settings.options()};
             if (line.quick) attempt.shorter = quick_part;
             grid.cells.push_back({std::move(attempt), subject, reference});
           }

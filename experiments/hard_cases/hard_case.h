@@ -62,7 +62,9 @@ struct HardCase {
 
   ModelSettings settings = {};
   double t_end = 0.25;  // s
-  long count = 0;       // not 0: this many steps, however long
+  /// Not 0: the time of this many steps, however long they are; with a tolerance, of the
+  /// longest that are allowed.
+  long count = 0;
   /// Accuracy is judged up to this time, s: beyond it an undamped strand is chaotic, or
   /// the remaining motion is too small to compare. 0: judged by the gauge.
   double horizon = 0.25;
@@ -82,7 +84,9 @@ struct HardCase {
   void (*displace)(const Situation&, State&) = nullptr;
   /// Why this system cannot be in this situation; null or empty: it can.
   std::string (*objection)(System&) = nullptr;
-  /// Ends of the steps; null: all steps have the requested length.
+  /// Ends of the steps; null: all steps have the requested length. With a tolerance the
+  /// method chooses its steps, and these are the times at which it is asked for the
+  /// state.
   std::vector<double> (*stops)(double dt, double t_end) = nullptr;
   double (*error_scale)(const Situation&) = nullptr;  // m; null: the length
 };

@@ -99,6 +99,7 @@ std::vector<HardCase> motion_cases() {
                               {"initial", "bent"},
                               {"initial_curvature_1_m", "0.1"}},
                  .t_end = 0.4,
+                 .reference_step = 1.25e-4,
                  .bounds = pressed_bounds,
                  .act = press_down});
   all.push_back({.name = "folded",

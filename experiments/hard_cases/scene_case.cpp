@@ -33,6 +33,7 @@ Scene with_model(const Scene& scene, const ModelEntry& model, std::string_view t
 
 struct Work {
   Scene scene;
+  Pace pace;
   SceneCriteria criteria;
   double horizon;  // s
   WorkLimit limit;
@@ -43,7 +44,8 @@ void measure(const Work& work, Row& row) {
   try {
     const Scene scene =
         driven(work.scene, *work.scene.model, find_integrator(work.scene.integrator));
-    s = survive(scene, work.criteria, std::min(work.horizon, scene.duration), work.limit);
+    s = survive(scene, work.pace, work.criteria, std::min(work.horizon, scene.duration),
+                work.limit);
     row.set("measure_name", s.measured).set("limit", s.limit);
     row.set("criterion", s.criterion);
   } catch (const InputError& refused) {
@@ -52,12 +54,23 @@ void measure(const Work& work, Row& row) {
   set_survival(s, row);
 }
 
-/// The standard steps and the scene's own.
-std::vector<double> steps_of(const CommandLine& line, const Scene& scene, double only) {
-  std::set<double> all{scene.options.step};
-  for (const double dt : tried_steps(line)) all.insert(dt);
-  if (only > 0) std::erase_if(all, [only](double dt) { return dt != only; });
-  return {all.begin(), all.end()};
+Pace pace_of(const Scene& scene) {
+  const Options& own = scene.options;
+  if (own.tolerance == 0) return {own.step};
+  return {own.max_step > 0 ? own.max_step : longest_step, own.tolerance};
+}
+
+/// The standard ones and the scene's own, where the integrator has it.
+std::set<Pace> paces_of(const CommandLine& line, const Parameters& own,
+                        const Scene& scene, std::string_view integrator) {
+  std::set<Pace> all;
+  for (const Pace& pace : tried_paces(line, integrator)) all.insert(pace);
+  const Pace of_scene = pace_of(scene);
+  if (of_scene.tolerance == 0 || find_integrator(integrator).error_controlled) {
+    all.insert(of_scene);
+  }
+  std::erase_if(all, [&](const Pace& pace) { return !selected(own, pace); });
+  return all;
 }
 
 std::vector<const ModelEntry*> models_of(const CommandLine& line, const Scene& scene) {
@@ -77,12 +90,16 @@ double row_work(const CommandLine& line, const Parameters& own) {
 
 }  // namespace
 
-SceneSurvival survive(const Scene& given, const SceneCriteria& criteria, double t_end,
-                      const WorkLimit& limit) {
+SceneSurvival survive(const Scene& given, const Pace& pace, const SceneCriteria& criteria,
+                      double t_end, const WorkLimit& limit) {
   Scene scene = given;
   scene.guard = true;
-  scene.options.max_work = 0;  // counted here, over all strands
-  const double dt = scene.options.step;
+  scene.options = pace.applied(scene.options);
+  // Counted here, over all strands; but between two looks a method with a tolerance may
+  // take any number of steps.
+  const bool by_tolerance = pace.tolerance > 0;
+  scene.options.max_work = by_tolerance && std::isfinite(limit.most) ? limit.most : 0;
+  const double dt = pace.step;
   World world(scene);
   SceneGauge gauge(scene, world, criteria);
   SceneSurvival result;
@@ -99,8 +116,12 @@ SceneSurvival survive(const Scene& given, const SceneCriteria& criteria, double 
       if (const Breach* breach = world.breach()) {
         ends(Outcome::unstable, breach->message());
       } else if (status != Status::ok) {
-        ends(Outcome::unstable, world.failure());
-      } else if (world.stats().rejected > 0) {
+        if (by_tolerance && world.work() >= limit.most) {
+          ends(Outcome::not_finished, cut_at(world.time()));
+        } else {
+          ends(Outcome::unstable, world.failure());
+        }
+      } else if (!by_tolerance && world.stats().rejected > 0) {
         ends(Outcome::unstable,
              fmt::format("no solution for the step to t = {:.9g} s, only for shorter "
                          "ones in its place",
@@ -147,18 +168,19 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
     for (const ModelEntry* model : models_of(line, scene)) {
       for (const std::string_view integrator : tried_integrators(line)) {
         for (const std::string_view tangent : tangents(line, scene, *model, integrator)) {
-          for (const double dt : steps_of(line, scene, own.number("dt_s"))) {
+          for (const Pace& pace : paces_of(line, own, scene, integrator)) {
             Work work{with_model(scene, *model, tangent),
+                      pace,
                       criteria,
                       own.number("horizon_s"),
                       {row_work(line, own)}};
             work.scene.integrator = integrator;
-            work.scene.options = settings.options(scene.options);
-            work.scene.options.step = dt;
+            work.scene.options = pace.applied(settings.options(scene.options));
             Row row;
             row.set("case", scene.name).set("model", model->id);
             row.set("variant", tangent.empty() ? "" : fmt::format("tangent={}", tangent));
-            row.set("integrator", integrator).set("dt_s", dt);
+            row.set("integrator", integrator);
+            pace.identify(row);
             all.push_back(
                 {row, [work](Row& of_case, const Deadline&) { measure(work, of_case); }});
           }

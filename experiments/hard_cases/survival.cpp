@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "contract/input_error.h"
+#include "experiments/hard_cases/course.h"
 #include "experiments/numerics/tip_track.h"
 #include "experiments/problems/formulations.h"
-#include "simulation/run/simulation.h"
 
 namespace tress::experiments::hard_cases {
 namespace {
@@ -34,85 +34,19 @@ std::string objection(const IntegratorEntry& entry, System& system) {
                                                  : Formulation::parametric);
 }
 
-/// Steps of dt that reach t_end, each ended exactly.
-struct Course {
-  Options options;
-  std::vector<double> stops;
-  double growth;  // largest ratio of neighbouring steps
-};
-
-Course course(const HardCase& hard, const Options& options, double dt, double shorter) {
-  constexpr double even = 1.5, jumping = 150;
-  Course c{options, {}, even};
-  c.options.step = dt;
-  const double t_end =
-      hard.count > 0 ? static_cast<double>(hard.count) * shorter * dt : hard.t_end;
-  if (hard.stops != nullptr) {
-    c.stops = hard.stops(dt, t_end);
-    c.growth = jumping;
-  } else {
-    c.stops = {std::max(1.0, std::ceil(t_end / dt - 1e-9)) * dt};
-  }
-  return c;
-}
-
-struct Watched {
-  Simulation end;
-  std::vector<double> tips;
-  bool cut;  // the work ran out
-};
-
-/// These two factor a dense matrix if their tangent is exact.
-bool dense(const Situation& s, std::string_view model) {
-  return (model == "kirchhoff_nodal" || model == "force_transport") &&
-         s.parameters.word("tangent") == "exact";
-}
-
-double work(const Stats& stats, double unknowns, bool dense) {
-  const double factors = dense ? unknowns * unknowns * unknowns / 1500 : 0;
-  return unknowns * static_cast<double>(stats.residuals + stats.newton_iterations +
-                                        stats.sweeps) +
-         factors * static_cast<double>(stats.linearizations);
-}
-
-/// One run, with the tip sampled up to the horizon, if there is one.
-Watched watch(std::string_view integrator, const HardCase& hard, const Subject& subject,
-              Situation& s, const Course& c, const WorkLimit& limit,
-              const Observer& each_step) {
-  std::optional<TipSamples> tip;
-  if (hard.horizon > 0) {
-    tip.emplace(*s.system, hard.horizon, Reference::samples, c.growth);
-    s.system->reset();
-    tip->start(s.start.q, s.start.v);
-  }
-  const Layout layout = s.system->layout();
-  const double unknowns = layout.coordinates + layout.constraints;
-  const bool full = dense(s, subject.model->id);
-  const auto method = make_integrator(integrator, *s.system, c.options);
-  bool cut = false;
-  Simulation end =
-      run_method(*method, *s.system, s.start, c.stops, {}, [&](double t, In q, In v) {
-        if (tip) tip->step_to(t, q, v);
-        cut = work(method->stats(), unknowns, full) > limit.most;
-        return !cut && each_step(t, q, v);
-      });
-  return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>(), cut};
-}
-
 /// The reference's tips at one step; empty, with `why`, if there is none.
 std::vector<double> tips_at(const HardCase& hard, const Subject& subject,
                             const Parameters& defaults, const Options& options, double dt,
                             const WorkLimit& limit, std::string& why) {
   Situation s = situation(hard, subject, defaults);
-  Course c{options, {hard.horizon}, 1.5};
-  c.options.step = dt;
-  const auto formulations =
-      usable_formulations(find_integrator(reference_integrator), *s.system);
-  if (formulations.empty()) {
-    why = objection(find_integrator(reference_integrator), *s.system);
+  Course c{Pace{dt}.applied(options), {hard.horizon}, 1.5};
+  const IntegratorEntry& entry = find_integrator(reference_integrator);
+  const auto formulation = preferred_formulation(entry, *s.system);
+  if (!formulation) {
+    why = objection(entry, *s.system);
     return {};
   }
-  c.options.formulation = formulations.front();
+  c.options.formulation = *formulation;
   Watched run = watch(reference_integrator, hard, subject, s, c, limit,
                       [](double, In, In) { return true; });
   if (run.end.status == Status::ok) return std::move(run.tips);
@@ -203,14 +137,15 @@ Survival survive(const Attempt& attempt, const WorkLimit& limit,
     return result;
   }
   Situation& s = *made;
-  const auto formulations = usable_formulations(entry, *s.system);
-  if (formulations.empty()) {
+  const auto formulation =
+      preferred_formulation(entry, *s.system, attempt.pace.tolerance);
+  if (!formulation) {
     result.why = objection(entry, *s.system);
     return result;
   }
-  Course c = course(hard, attempt.options, attempt.dt, attempt.shorter);
-  c.options.formulation = formulations.front();
-  if (s.system->layout().constraints > 0) result.formulation = name(formulations.front());
+  Course c = course(attempt);
+  c.options.formulation = *formulation;
+  if (s.system->layout().constraints > 0) result.formulation = name(*formulation);
 
   const StabilityBounds bounds = hard.bounds(s, c.stops.back());
   StabilityJudge judge(*s.system, bounds, s.start);

@@ -62,14 +62,25 @@ struct Survival {
 /// Sets the columns about how a run ended.
 void set_survival(const Survival& survival, Row& row);
 
+/// The steps of a run.
+struct Pace {
+  double step;           // s; with a tolerance the longest
+  double tolerance = 0;  // Options::tolerance; 0: all steps have this length
+
+  Options applied(Options options) const;
+  /// Sets the columns that say so.
+  void identify(Row& row) const;
+  auto operator<=>(const Pace&) const = default;
+};
+
 /// One run to try.
 struct Attempt {
   const HardCase* hard;
   Subject subject;
   Parameters defaults;  // of the model
   std::string_view integrator;
-  double dt;           // s
-  Options options;     // except step and formulation
+  Pace pace;
+  Options options;     // except those of the pace, and the formulation
   double shorter = 1;  // fraction of HardCase::count that is run
 };
 

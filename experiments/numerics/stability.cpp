@@ -129,9 +129,10 @@ std::optional<StabilityRun> judge_run(std::string_view integrator, System& syste
                                       double t_end, const StabilityBounds& bounds) {
   // 1e-9: a whole number of steps up to rounding gets no extra step.
   const double steps = std::max(1.0, std::ceil(t_end / options.step - 1e-9));
+  const double end = options.tolerance > 0 ? t_end : steps * options.step;
   StabilityJudge judge(system, bounds, start);
   const Simulation run =
-      simulate(integrator, system, options, start, steps * options.step,
+      simulate(integrator, system, options, start, end,
                [&judge](double t, In q, In v) { return judge(t, q, v); });
   StabilityRun verdict = judge.verdict(run);
   if (verdict.broken == Broken::no_solution &&

@@ -36,11 +36,9 @@ void TipSamples::step_to(double t, In q, In v) {
   }
 }
 
-double TipSamples::time(std::size_t i) const {
-  return t_end_ * (static_cast<double>(i + 1) / count_);
+double TipSamples::next() const {
+  return time(t_end_, static_cast<int>(tips.size() / 3) + 1, count_);
 }
-
-double TipSamples::next() const { return time(tips.size() / 3); }
 
 TipSamples::End TipSamples::read(double t, In q, In v) {
   const std::size_t last = x_.size() - 3;
@@ -68,7 +66,9 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   std::vector<double> stops{t_end};
   if (options.tolerance > 0) {
     stops.resize(static_cast<std::size_t>(samples));
-    for (std::size_t i = 0; i < stops.size(); ++i) stops[i] = seen.time(i);
+    for (int k = 1; k <= samples; ++k) {
+      stops[static_cast<std::size_t>(k) - 1] = TipSamples::time(t_end, k, samples);
+    }
   }
   const auto run = [&](const Observer& observer) {
     return run_method(*method, system, start, stops, {}, observer);
@@ -96,6 +96,17 @@ double tip_error(In tip, In reference, double length) {
   }
   const double error = std::sqrt(3 * sum / static_cast<double>(tip.size())) / length;
   return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
+}
+
+double largest_tip_error(In tip, In reference, double length) {
+  if (tip.size() != reference.size()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t i = 0; i < tip.size(); i += 3) {
+    const double distance = norm(load3(&tip[i]) - load3(&reference[i]));
+    if (!std::isfinite(distance)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, distance);
+  }
+  return largest / length;
 }
 
 }  // namespace tress::experiments

@@ -19,11 +19,13 @@ class TipSamples {
   /// `growth`: largest ratio of successive steps.
   TipSamples(System& system, double t_end, int count, double growth);
 
+  /// s, of sample k, 1 .. count; exact, for those who stop there.
+  static double time(double t_end, int k, int count) {
+    return t_end * (static_cast<double>(k) / count);
+  }
+
   void start(In q, In v);
   void step_to(double t, In q, In v);
-
-  /// When sample i is taken.
-  double time(std::size_t i) const;
 
   std::vector<double> tips;  // (3 samples), so far
 
@@ -65,5 +67,8 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
 /// Root mean square distance over the samples, over `length`; infinite when a sample is
 /// missing or not finite.
 double tip_error(In tip, In reference, double length);
+
+/// As above, the largest distance.
+double largest_tip_error(In tip, In reference, double length);
 
 }  // namespace tress::experiments

@@ -15,4 +15,12 @@ std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
   return list;
 }
 
+std::optional<Formulation> preferred_formulation(const IntegratorEntry& entry,
+                                                 System& system, double tolerance) {
+  for (const Formulation each : usable_formulations(entry, system)) {
+    if (tolerance == 0 || each != Formulation::index3) return each;
+  }
+  return {};
+}
+
 }  // namespace tress::experiments

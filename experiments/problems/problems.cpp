@@ -13,7 +13,56 @@ namespace {
 
 using Values = std::vector<double>;
 
-Values coordinates(System&, const State& end) { return end.q; }
+Values points_of(System& system, In q) {
+  MaterialPoints& material = *system.material_points();
+  Values x(3 * static_cast<std::size_t>(material.count()));
+  material.positions(0, q, x);
+  return x;
+}
+
+Values compared_values(const Problem& problem, System& system, In q) {
+  if (problem.compared == Compared::points) return points_of(system, q);
+  return {q.begin(), q.end()};
+}
+
+double distance(In x, std::size_t i, In y, std::size_t j) {
+  return std::hypot(x[3 * i] - y[3 * j], x[3 * i + 1] - y[3 * j + 1],
+                    x[3 * i + 2] - y[3 * j + 2]);
+}
+
+/// The longest way along a body.
+double length_of(const MaterialPoints& body, In x) {
+  Values way(x.size() / 3);
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const int before = body.before(static_cast<int>(i));
+    if (before < 0) continue;
+    const auto j = static_cast<std::size_t>(before);
+    way[i] = way[j] + distance(x, i, x, j);
+  }
+  return std::ranges::max(way);
+}
+
+double body_error(const Problem& problem, System& system, In q, In reference) {
+  const MaterialPoints* const body = system.material_points();
+  const Values x = body == nullptr ? Values{} : points_of(system, q);
+  const double length = body == nullptr ? 0 : length_of(*body, x);
+  if (length == 0) {
+    if (problem.compared == Compared::points) {
+      return error_norms(x, reference, problem.scale).relative;
+    }
+    Values q_typ(q.size()), v_typ(q.size());
+    system.scale(q_typ, v_typ);
+    return error_norms(q, reference, q_typ).relative;
+  }
+  const Values y = problem.compared == Compared::points
+                       ? Values(reference.begin(), reference.end())
+                       : points_of(system, reference);
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size() / 3; ++i) {
+    largest = std::max(largest, distance(x, i, y, i));
+  }
+  return largest / length;
+}
 
 /// A bead of 1 m radius released horizontally: x = sin theta, z = -cos theta.
 Problem bead(std::string_view name, const char* form) {
@@ -26,7 +75,7 @@ Problem bead(std::string_view name, const char* form) {
                   .reference = checkpoints(5, 10),
                   // Error of GSL's elliptic functions over a few periods: rounding.
                   .reference_gap = 1e-14,
-                  .compared = points};
+                  .compared = Compared::points};
   const PendulumReference exact(std::sqrt(9.81), {M_PI / 2, 0});
   for (Checkpoint& at : problem.reference) {
     const double angle = exact.at(at.t).angle;
@@ -46,7 +95,7 @@ Problem published(std::string_view model, double coarse_step) {
                   .scale = {end.q.begin(), end.q.end()},
                   .reference = {{end.t, {end.q.begin(), end.q.end()}}},
                   .reference_gap = std::pow(10, -end.digits_q),
-                  .compared = coordinates};
+                  .compared = Compared::coordinates};
   for (double& entry : problem.scale) entry = std::abs(entry);
   return problem;
 }
@@ -67,7 +116,7 @@ std::vector<Checkpoint> tight_run(const Problem& problem, std::string_view integ
   const Simulation run = simulate(integrator, *system, options, initial_state(*system),
                                   stops, [&](const State& state) {
                                     values[next++].values =
-                                        problem.compared(*system, state);
+                                        compared_values(problem, *system, state.q);
                                   });
   if (run.status != Status::ok) {
     throw std::runtime_error("reference of " + std::string(problem.name) + " by " +
@@ -81,7 +130,7 @@ std::vector<Problem> make_problems() {
                            bead("pendulum_constrained", "implicit")};
   const auto add = [&all](std::string_view name, std::string_view model,
                           const ModelSettings& settings, double t_end, double coarse_step,
-                          const std::vector<double>& scale, int stops, auto compared,
+                          const std::vector<double>& scale, int stops, Compared compared,
                           Formulation runge_kutta, Formulation adams) {
     all.push_back(computed({.name = name,
                             .model = model,
@@ -94,15 +143,15 @@ std::vector<Problem> make_problems() {
                             .compared = compared},
                            runge_kutta, adams));
   };
-  add("double_pendulum", "double_pendulum", {}, 2, 0.01, {1}, 5, coordinates,
+  add("double_pendulum", "double_pendulum", {}, 2, 0.01, {1}, 5, Compared::coordinates,
       Formulation::parametric, Formulation::parametric);
-  add("chain_10", "inextensible_chain", {{"links", "10"}}, 0.5, 4e-3, {1}, 5, points,
+  add("chain_10", "inextensible_chain", {{"links", "10"}}, 0.5, 4e-3, {1}, 5, Compared::points,
       Formulation::projection, Formulation::acceleration);
   all.push_back(published("andrews_squeezer", 2e-4));
   // The printed end state has five digits (tests/models/published): our own has more.
   // Each coordinate on its own scale: the elastic modes are of micrometres, unlike the
   // crank's turns.
-  add("slider_crank", "slider_crank", {}, 0.1, 1e-3, {}, 1, coordinates,
+  add("slider_crank", "slider_crank", {}, 0.1, 1e-3, {}, 1, Compared::coordinates,
       Formulation::projection, Formulation::acceleration);
   all.push_back(published("beam", 1e-2));
   return all;
@@ -111,10 +160,7 @@ std::vector<Problem> make_problems() {
 }  // namespace
 
 std::vector<double> points(System& system, const State& state) {
-  MaterialPoints& material = *system.material_points();
-  std::vector<double> x(3 * static_cast<std::size_t>(material.count()));
-  material.positions(0, state.q, x);
-  return x;
+  return points_of(system, state.q);
 }
 
 std::unique_ptr<System> Problem::make() const { return make_model(model, settings); }
@@ -144,19 +190,21 @@ Problem computed(Problem problem, Formulation runge_kutta, Formulation adams) {
 ProblemRun run_problem(const Problem& problem, std::string_view integrator,
                        const Options& options) {
   const auto system = problem.make();
-  ProblemError error{0, 16};
+  ProblemError error{0, 16, 0};
   std::size_t next = 0;
   std::vector<double> stops;
   for (const Checkpoint& at : problem.reference) stops.push_back(at.t);
   Simulation end = simulate(
       integrator, *system, options, initial_state(*system), stops,
       [&](const State& state) {
-        const Values x = problem.compared(*system, state);
+        const Values x = compared_values(problem, *system, state.q);
         const Values& reference = problem.reference[next++].values;
         const double relative = error_norms(x, reference, problem.scale).relative;
         // NaN counts as the largest error.
         error.relative = relative <= error.relative ? error.relative : relative;
         error.scd = std::min(error.scd, scd(x, reference));
+        error.of_body =
+            std::max(error.of_body, body_error(problem, *system, state.q, reference));
       });
   return {std::move(end), error};
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,7 +13,14 @@ namespace tress::experiments {
 struct ProblemError {
   double relative;  // largest error over the scale of its entry
   double scd;       // -log10 of the largest entry-wise relative error
+  /// Largest distance of a material point over the length of the body, as error control
+  /// measures it, but for velocities; coordinates over System::scale where there is no
+  /// length.
+  double of_body;
 };
+
+/// What is compared: material points are independent of the formulation.
+enum class Compared { coordinates, points };
 
 /// The state at one time of a run.
 struct Checkpoint {
@@ -34,9 +40,7 @@ struct Problem {
   std::vector<Checkpoint> reference;  // the last one at t_end
   double reference_gap;               // relative to scale
 
-  /// What is compared: coordinates, or material points for independence of the
-  /// formulation.
-  std::function<std::vector<double>(System&, const State&)> compared;
+  Compared compared;
 
   std::unique_ptr<System> make() const;
 };

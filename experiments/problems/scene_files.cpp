@@ -34,13 +34,13 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
                           : model.on_strand(scene.strands.front(), scene.model_options,
                                             make_effects(scene));
   if (refusal(entry, *system, scene.options.formulation).empty()) return scene;
-  const auto usable = usable_formulations(entry, *system);
-  if (usable.empty()) {
+  const auto usable = preferred_formulation(entry, *system, scene.options.tolerance);
+  if (!usable) {
     throw InputError(refusal(entry, *system, entry.formulations.front().formulation),
                      std::string(entry.id) + " on " + std::string(model.id),
                      "./tress list shows what can drive what");
   }
-  scene.options.formulation = usable.front();
+  scene.options.formulation = *usable;
   return scene;
 }
 

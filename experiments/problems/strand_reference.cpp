@@ -4,6 +4,8 @@
 #include <string>
 
 #include "experiments/numerics/tip_track.h"
+#include "experiments/problems/formulations.h"
+#include "integrators/catalogue.h"
 
 namespace tress::experiments {
 namespace {
@@ -20,15 +22,24 @@ constexpr std::string_view one_method = "implicit_midpoint",
 constexpr double newton_tolerance = 1e-4;  // corrections below 1e-6 of the length
 
 std::vector<double> tip(const MakeStrand& make, std::string_view model, int elements,
-                        std::string_view integrator, const Options& options,
+                        std::string_view integrator, Options options,
                         const TipSampling& sampling) {
   const auto system = make(model, elements);
+  const auto usable = usable_formulations(find_integrator(integrator), *system);
+  if (!usable.empty()) options.formulation = usable.front();
   TipRun run = run_tip(integrator, *system, options, sampling.t_end, sampling.samples);
   if (run.status != Status::ok) {
     throw std::runtime_error("reference of " + std::string(model) + " by " +
                              std::string(integrator) + " failed: " + run.failure);
   }
   return std::move(run.tip);
+}
+
+TipsOf tips_of(const MakeStrand& make, const TipSampling& sampling) {
+  return [&make, &sampling](std::string_view model, std::string_view integrator,
+                            int elements, const Options& options) {
+    return tip(make, model, elements, integrator, options, sampling);
+  };
 }
 
 std::vector<double> in_time(const TipsOf& tips, std::string_view model,
@@ -87,13 +98,15 @@ TipReference extrapolated_model(const TipsOf& tips, double length, std::string_v
               in_time(tips, model, other_method, finest), length);
 }
 
+TipReference extrapolated_model(const MakeStrand& make, std::string_view model,
+                                int elements, const TipSampling& sampling, double step) {
+  return extrapolated_model(tips_of(make, sampling), sampling.length, model,
+                            {elements, step});
+}
+
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models) {
-  const auto tips = [&](std::string_view model, std::string_view integrator, int elements,
-                        const Options& options) {
-    return tip(make, model, elements, integrator, options, sampling);
-  };
-  return converged_rod(tips, sampling.length, models);
+  return converged_rod(tips_of(make, sampling), sampling.length, models);
 }
 
 }  // namespace tress::experiments

@@ -64,6 +64,10 @@ TipReference converged_rod(const TipsOf& tips, double length, const RodModels& m
 TipReference extrapolated_model(const TipsOf& tips, double length, std::string_view model,
                                 const Finest& finest);
 
+/// As above for a strand of the catalogue.
+TipReference extrapolated_model(const MakeStrand& make, std::string_view model,
+                                int elements, const TipSampling& sampling, double step);
+
 /// The rod limit of a strand of the catalogue. About 10 s for 2 s of a hair.
 TipReference converged_rod(const MakeStrand& make, const TipSampling& sampling,
                            const RodModels& models = clamped_rod);

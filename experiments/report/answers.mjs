@@ -4,6 +4,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parse_csv } from './src/csv.mjs';
 import { escape_html, format_number, format_time } from './src/format.mjs';
+import { by_pace, by_tolerance, pace } from './src/pace.mjs';
 import { distinct, group_by, is_set } from './src/tables.mjs';
 
 const folder = process.argv[2];
@@ -31,7 +32,7 @@ function table(heads, body) {
 const method = (row) => `${row.integrator}${row.tangent ? `, tangent ${row.tangent}` : ''}`;
 
 function stable_steps() {
-  const rows = rows_of('stability_limit');
+  const rows = rows_of('stability_limit').filter((row) => row.study !== 'tolerance');
   const size = (row) => (typeof row.dt_max_s === 'number' ? row.dt_max_s : 0);
   return table(
     ['method', 'largest stable step', 'beyond it', 'time of a simulated second'],
@@ -47,10 +48,26 @@ function stable_steps() {
   );
 }
 
-/// A line for each model and integrator, a column for each step; what is not stable says why.
+function tolerances() {
+  const asked = (x) => (typeof x === 'number' ? x.toExponential() : '');
+  return table(
+    ['method', 'loosest', 'tightest within the work', 'steps at 1e-3'],
+    rows_of('stability_limit')
+      .filter((row) => row.study === 'tolerance')
+      .map((row) =>
+        typeof row.tolerance_loosest === 'number'
+          ? [method(row), asked(row.tolerance_loosest), asked(row.tolerance_tightest),
+             row.steps_usual]
+          : [method(row), 'none', row.reason, '']),
+  );
+}
+
+/// A line for each model and integrator, a column for each step or tolerance; what is not
+/// stable says why.
 function survival() {
   const rows = rows_of('hard_cases');
-  const steps = distinct(rows.map((row) => row.dt_s)).sort((a, b) => a - b);
+  const head = (row) => `${by_tolerance(row) ? '' : 'step '}${pace(row)}`;
+  const heads = distinct(rows.toSorted(by_pace).map(head));
   const whose = (row) =>
     [row.model, row.variant, row.integrator].filter(Boolean).join(', ');
   // The guard's words begin with the outcome.
@@ -58,12 +75,12 @@ function survival() {
     why.startsWith(outcome) ? why : `${outcome}: ${why}`;
   const lines = [...group_by(rows, whose)].map(([subject, members]) => [
     subject,
-    ...steps.map((dt) => {
-      const row = members.find((one) => one.dt_s === dt);
+    ...heads.map((wanted) => {
+      const row = members.find((one) => head(one) === wanted);
       return !row ? '' : is_set(row.passed) ? row.outcome : reason(row);
     }),
   ]);
-  return table(['model, integrator', ...steps.map((dt) => `step ${seconds(dt)}`)], lines);
+  return table(['model, integrator', ...heads], lines);
 }
 
 function effects() {
@@ -112,6 +129,8 @@ th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px soli
 <p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
 needs shorter ones in its place.</p>
 ${stable_steps()}
+<p>By tolerance (error over the length): the loosest such that it and all tighter ones tried were stable.</p>
+${tolerances()}
 <h2>Which models survive it</h2>
 <p>Every model, at the scene's step and at those of the hard cases: each step has a solution, the guard of simulations
 finds nothing, no piece is stretched and no body entered too far.</p>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,19 @@ ordered_json checks_of(const Verdicts& verdicts) {
     all.push_back(
         {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
     if (!reason.empty()) all.back()["reason"] = reason;
+  }
+  return all;
+}
+
+ordered_json outcome_of(const Row& row) {
+  ordered_json all = ordered_json::object();
+  for (const auto& [column, text] : row.cells()) {
+    const double value = row.number(column);
+    if (std::isnan(value)) {
+      all[column] = text;
+    } else {
+      all[column] = value;
+    }
   }
   return all;
 }
@@ -94,7 +108,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   for (const auto& [file, text] : inputs_) {
     inputs.push_back({{"file", file}, {"fnv1a_64", checksum(text)}, {"text", text}});
   }
-  const ordered_json manifest{
+  ordered_json manifest{
       {"experiment", experiment_.name},
       {"question", experiment_.question},
       {"schema", schema_version},
@@ -134,6 +148,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"columns", columns},
       {"timings", timings},
       {"glossary", glossary}};
+  if (outcome_) manifest["outcome"] = outcome_of(*outcome_);
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/run/experiment.h"
@@ -19,6 +21,9 @@ class Manifest {
   /// A file that the work depends on, stored with its text and checksum.
   void add_input(std::string file, std::string text);
 
+  /// Of a program without a table: the cells of its one row, by column.
+  void set_outcome(Row row) { outcome_ = std::move(row); }
+
   /// The JSON text, with end time, load and the counts of `rows`.
   std::string finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                        std::size_t kept_from_before) const;
@@ -31,6 +36,7 @@ class Manifest {
   double sundials_ratio_;
   std::string start_;
   std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
+  std::optional<Row> outcome_;
 };
 
 /// "--set", seed, quick and the like in canonical order: a resumed run must repeat them.

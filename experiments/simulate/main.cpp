@@ -10,8 +10,9 @@
 #include "experiments/run/exit_code.h"
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
+#include "experiments/simulate/error_bars.h"
+#include "experiments/simulate/outcome.h"
 #include "experiments/simulate/scene_run.h"
-#include "experiments/simulate/verify.h"
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
 #include "simulation/scene/schema.h"
@@ -26,14 +27,14 @@ struct Arguments {
   std::size_t hairs = 0;
   bool resume = false, vtk = false, usd = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
-       full = false;
+       full = false, error_bars = false;
   std::string progress = "auto";
 };
 
 constexpr const char* help_end =
     "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
-    "the\nreport page). Exit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
+    "the\nreport page), with --error-bars .errors.csv (errors over time). Exit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
     "scene\ndid not run to its end, 130 interrupted (--resume continues)\n";
 
@@ -50,9 +51,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_flag("--no-guard", a.no_guard,
                "go on where a run does what physics rules out (as guard = false)");
-  app.add_flag(
-      "--verify", a.verify,
-      "with a tolerance: also run with a tenth of it and tell the error achieved");
+  app.add_flag("--error-bars", a.error_bars,
+               "also run finer in time and with twice the elements: the errors of both");
+  app.add_flag("--verify", a.verify, "with a tolerance: the error in time alone");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));
   app.add_flag("--print-defaults", a.print_defaults,
@@ -85,43 +86,26 @@ void ready_folder(const std::string& folder) {
   }
 }
 
-constexpr Column columns[] = {
-    {"scene", "name of the scene"},
-    {"frames", "frames written"},
-    {"simulated_s", "simulated time"},
-    {"rejected_steps", "steps that were tried again with shorter ones"},
-    {"wall_s", "time it took, output included", true},
-};
-
-/// False: there is no such error, since a run did not come to its end.
-bool tell_achieved(const Scene& scene, int threads) {
-  const Achieved found = achieved_error(scene, threads);
-  if (!found.failure.empty()) {
-    tell("simulate: {}: not verified: {}\n", scene.name, found.failure);
-    return false;
-  }
-  tell("simulate: {}: error {:.2g} of the length, at {:.3g} s; asked for {:g}\n",
-       scene.name, found.error, found.at, scene.options.tolerance);
-  return true;
-}
-
-/// Steps since the run began or was resumed, where error control chose them.
-std::string control_in_words(const Stats& work) {
-  std::string words =
-      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration",
-                  work.steps, work.rejected_by_error, work.rejected_by_newton);
-  if (work.smallest_step > 0) {
-    words += fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", work.smallest_step,
-                         work.smallest_step_at, work.smallest_step_cause);
-  }
-  return words;
-}
-
 const Experiment experiment{.name = "simulate",
                             .question = "What does a scene do?",
                             .example = "scenes/hair_under_wind.toml --vtk",
-                            .columns = columns,
+                            .columns = outcome_columns(),
                             .cases = {}};
+
+/// Tells the errors and writes those over time; false: a run did not come to its end.
+bool estimate_errors(const Scene& scene, const Arguments& a, const std::string& stem,
+                     Row& row) {
+  const auto found = [&](std::string_view part, const ErrorBar& bar) {
+    tell("simulate: {}: {}\n", scene.name, in_words(part, bar, scene));
+    set_errors(part, bar, row);
+    return bar;
+  };
+  const ErrorBar time = found("time", time_error(scene, a.threads));
+  if (!a.error_bars) return !time.unfinished;
+  const ErrorBar space = found("space", space_error(scene, a.threads));
+  replace_file(stem + ".errors.csv", errors_csv(scene, time, space));
+  return !time.unfinished && !space.unfinished;
+}
 
 /// False: the scene did not run to its end.
 bool run_file(const std::string& file, const Arguments& a, const CommandLine& line,
@@ -136,27 +120,22 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   options.vtk = a.vtk;
   options.usd = a.usd;
   options.progress = line.progress;
+  std::filesystem::remove(options.stem + ".errors.csv");  // of a run before
   RunKey key;
   key.add("scene", contents_checksum({file}));
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
   const SceneRun run = run_scene(scene, key, options, interruption);
-  Row row;
-  row.set("scene", scene.name).set("frames", run.frames);
-  row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
-  row.set("rejected_steps", run.rejected);
-  const std::string control =
-      scene.options.tolerance > 0 ? control_in_words(run.work)
-      : run.rejected > 0
-          ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
-          : "";
-  if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
+  Row row = outcome(scene, run);
   bool complete = run.end != SceneRun::End::failed;
-  if (complete && a.verify) complete = tell_achieved(scene, a.threads);
-  replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
-       scene.name, run.frames, run.simulated_s, run.wall_s, control,
-       run.end == SceneRun::End::failed ? "; " : "", run.reason, options.stem);
+       scene.name, run.frames, run.simulated_s, run.wall_s, control_in_words(scene, run),
+       complete ? "" : "; ", run.reason, options.stem);
+  if (complete && (a.verify || a.error_bars)) {
+    complete = estimate_errors(scene, a, options.stem, row);
+  }
+  manifest.set_outcome(row);
+  replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   if (run.indicator > unresolved) {
     tell(
         "simulate: warning: {}: {} did not resolve the motion (one step was wrong by "

@@ -17,7 +17,9 @@ namespace {
 
 constexpr Column columns[] = {
     {"study",
-     "grid (of our hair), nodal (a claim about a nodal scheme), file (your scene)"},
+     "grid (of our hair), tolerance (the same by error control, and your scene), nodal "
+     "(a "
+     "claim about a nodal scheme), file (your scene)"},
     {"scene", "what happens to the strand"},
     {"model", "catalogue id"},
     {"integrator", "method"},
@@ -30,11 +32,18 @@ constexpr Column columns[] = {
      "nodal: space, shaken in all directions by 1e-3 of its rates; plane, not out of it"},
     {"dt_max_s", "largest step such that every step tested up to it was stable"},
     {"dt_first_unstable_s", "smallest unstable step tested"},
-    {"limited_by", "what broke there; cap: no larger step was tried"},
+    {"limited_by", "what broke there; cap: no larger step or tolerance was tried"},
     {"stable_above_s", "largest stable step above it: stability is not monotone"},
     {"dt_finest_s", "smallest step tested"},
-    {"search_done", "false: the work was used up before smaller steps were all tested"},
-    {"runs", "steps tested"},
+    {"search_done",
+     "false: the work was used up before smaller steps or tolerances were all tested"},
+    {"runs", "steps or tolerances tested"},
+    {"tolerance_loosest",
+     "tolerance: largest asked error over the length, of 1e-1 to 1e-5, such that it and "
+     "all smaller ones tried were stable"},
+    {"tolerance_tightest", "tolerance: smallest that the work was enough for"},
+    {"steps_usual", "tolerance: steps at 1e-3"},
+    {"work_usual", "tolerance: work at 1e-3 (max_work)"},
     {"t_end_s", "time simulated by a run, at least"},
     {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
     {"energy_gain_j", "largest gain of energy at dt_max"},
@@ -100,14 +109,18 @@ std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, stability_settings());
   const Parameters& rows = settings.experiment();
   const StepSearch search = step_search(rows, 1e-6, line.quick ? 10 : 30);
-  const double row_work = set_or(rows, "row_work",
-                                 line.quick  ? 3e6
-                                 : line.full ? 1e8
-                                             : 2e7);
+  const auto most = [&](double quick, double usual, double full) {
+    return set_or(rows, "row_work", line.quick ? quick : line.full ? full : usual);
+  };
+  const double row_work = most(3e6, 2e7, 1e8), ladder_work = most(3e7, 1e8, 3e8);
   if (!rows.word("scenes").empty()) {
-    return scene_cases(line, split(rows.word("scenes"), ',', "scenes"),
-                       {search, row_work, set_or(rows, "horizon_s", 0.5),
-                        static_cast<std::size_t>(rows.whole("strands")), line.repeat});
+    const auto files = split(rows.word("scenes"), ',', "scenes");
+    SceneLimits how{search, row_work, set_or(rows, "horizon_s", 0.5),
+                    static_cast<std::size_t>(rows.whole("strands")), line.repeat};
+    std::vector<Case> all = scene_cases(line, files, how);
+    how.most_work = ladder_work;
+    std::ranges::move(scene_tolerance_cases(line, files, how), std::back_inserter(all));
+    return all;
   }
   std::vector<Case> all;
   for (const StabilityCase& c : stability_cases(line, settings)) {
@@ -118,6 +131,8 @@ std::vector<Case> cases(const CommandLine& line) {
     all.push_back(
         {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
   }
+  std::ranges::move(tolerance_cases(line, settings, ladder_work),
+                    std::back_inserter(all));
   std::ranges::move(nodal_cases(line, settings), std::back_inserter(all));
   return all;
 }

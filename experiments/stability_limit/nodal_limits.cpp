@@ -156,7 +156,7 @@ void check_explicit_limits(const std::vector<Row>& rows, Verdicts& verdicts) {
 std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings) {
   const Parameters& rows = settings.experiment();
   std::vector<Case> all;
-  if (rows.word("study") == "grid") return all;
+  if (rows.word("study") != "all" && rows.word("study") != "nodal") return all;
   const std::vector<int> counts = line.elements.empty()
                                       ? std::vector<int>{20, 50, 100, claimed_nodes}
                                       : line.elements;

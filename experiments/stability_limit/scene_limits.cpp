@@ -27,10 +27,12 @@ Broken broken_by(const Breach& breach) {
   return Broken::energy;
 }
 
-/// One step length of one search: stable, broken, or empty when the work is used up.
-std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& left) {
+/// One step length or tolerance of one search: stable, broken, or empty when the work is
+/// used up.
+std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
   if (left <= 0) return {};
-  scene.options.step = dt;
+  const bool by_step = scene.options.tolerance == 0;
+  const double dt = by_step ? scene.options.step : scene.options.max_step;
   scene.options.max_work = left;
   scene.guard = true;
   World world(scene);
@@ -40,7 +42,7 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   Status status = Status::ok;
   for (double part = 1; part <= parts && status == Status::ok; ++part) {
     status = world.advance(std::round(steps * part / parts) * dt);
-    if (world.stats().rejected > 0) break;
+    if (by_step && world.stats().rejected > 0) break;
   }
   StabilityRun run;
   run.t = world.time();
@@ -50,7 +52,7 @@ std::optional<StabilityRun> judge(Scene scene, double dt, double t_end, double& 
   if (const Breach* breach = world.breach()) {
     run.broken = broken_by(*breach);
     run.t = breach->t;
-  } else if (status != Status::ok || run.stats.rejected > 0) {
+  } else if (status != Status::ok || (by_step && run.stats.rejected > 0)) {
     if (left <= 0) return {};
     run.broken = Broken::no_solution;
   }
@@ -62,15 +64,74 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   row.set("t_end_s", t_end);
   double left = how.most_work;
   std::optional<FoundLimit> limit;
+  Scene tried = scene;
+  tried.options.tolerance = 0;
   try {
     limit = find_limit(
-        how.search, [&](double dt) { return judge(scene, dt, t_end, left); }, row);
+        how.search,
+        [&](double dt) {
+          tried.options.step = dt;
+          return judge(tried, t_end, left);
+        },
+        row);
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   }
   if (limit) {
-    set_cost(*limit, step_cost(scene, limit->step, t_end / limit->step, how.repeat), row);
+    set_cost(*limit, step_cost(tried, limit->step, t_end / limit->step, how.repeat), row);
   }
+}
+
+void measure_tolerances(const Scene& scene, const SceneLimits& how, Row& row) {
+  const double t_end = std::min(how.horizon, scene.duration);
+  row.set("t_end_s", t_end);
+  double left = how.most_work;
+  Scene tried = scene;
+  tried.options.max_step = how.search.coarsest;
+  try {
+    find_tolerances(
+        [&](double tolerance) -> std::optional<ToleranceRun> {
+          const double before = left;
+          tried.options.tolerance = tolerance;
+          const auto run =
+              judge(driven(tried, *tried.model, find_integrator(tried.integrator)), t_end,
+                    left);
+          if (!run) return {};
+          return ToleranceRun{*run, before - left};
+        },
+        row);
+  } catch (const InputError& refused) {
+    row.failed("refused", refused.what());
+  }
+}
+
+/// A row for each method that `chosen` includes.
+template <typename Chosen>
+std::vector<Case> cases_of(const CommandLine& line, const std::vector<std::string>& files,
+                           const SceneLimits& how, std::string_view study, Chosen chosen,
+                           void (*fill)(const Scene&, const SceneLimits&, Row&)) {
+  leave_strands_to_the_scene(line);
+  std::vector<Case> all;
+  for (const Scene& given : read_scenes(files)) {
+    const Scene scene = thinned(given, how.strands);
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      if (!chosen(line, entry)) continue;
+      for (const std::string_view tangent : scene_tangents(scene, entry.id)) {
+        Scene own = scene;
+        own.integrator = entry.id;
+        if (!tangent.empty()) own.model_options.set("tangent", tangent);
+        Row row;
+        row.set("study", study).set("scene", scene.name);
+        row.set("model", scene.model->id);
+        row.set("integrator", entry.id).set("tangent", tangent);
+        if (most_elements(scene) > 0) row.set("elements", most_elements(scene));
+        all.push_back({row, [own, how, fill](Row& of_case, const Deadline&) {
+                         fill(own, how, of_case);
+                       }});
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -78,28 +139,13 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how) {
-  leave_strands_to_the_scene(line);
-  std::vector<Case> all;
-  for (const Scene& given : read_scenes(files)) {
-    const Scene scene = thinned(given, how.strands);
-    for (const IntegratorEntry& entry : integrator_catalogue()) {
-      if (!considered(line, entry)) continue;
-      for (const std::string_view tangent : scene_tangents(scene, entry.id)) {
-        Scene own = scene;
-        own.integrator = entry.id;
-        if (!tangent.empty()) own.model_options.set("tangent", tangent);
-        Row row;
-        row.set("study", "file").set("scene", scene.name);
-        row.set("model", scene.model->id);
-        row.set("integrator", entry.id).set("tangent", tangent);
-        if (most_elements(scene) > 0) row.set("elements", most_elements(scene));
-        all.push_back({row, [own, how](Row& of_case, const Deadline&) {
-                         measure(own, how, of_case);
-                       }});
-      }
-    }
-  }
-  return all;
+  return cases_of(line, files, how, "file", considered, measure);
+}
+
+std::vector<Case> scene_tolerance_cases(const CommandLine& line,
+                                        const std::vector<std::string>& files,
+                                        const SceneLimits& how) {
+  return cases_of(line, files, how, "tolerance", by_tolerance, measure_tolerances);
 }
 
 }  // namespace tress::experiments::stability_limit

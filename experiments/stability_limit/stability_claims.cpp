@@ -90,6 +90,25 @@ const Row* shaken(const std::vector<Row>& rows, std::string_view integrator,
   return found == rows.end() ? nullptr : &*found;
 }
 
+/// Error control rejects the steps that would make a run unstable.
+void check_tolerances(const std::vector<Row>& rows, Verdicts& verdicts) {
+  std::ptrdiff_t judged = 0, unstable = 0;
+  for (const Row& row : rows) {
+    if (row.text("study") != "tolerance" || row.text("model") != "super_helix") continue;
+    if (row.text("limited_by").empty()) continue;
+    ++judged;
+    if (row.text("limited_by") != "cap") ++unstable;
+  }
+  const std::string claim =
+      "super_helix by tolerance: no run of 1e-1 or less that the work is enough for is "
+      "unstable";
+  if (judged > 0) {
+    verdicts.check(claim, unstable == 0, static_cast<double>(unstable));
+  } else {
+    verdicts.not_judged(claim);
+  }
+}
+
 }  // namespace
 
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
@@ -120,6 +139,7 @@ void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   limit("semi_implicit_euler", "stiff",
         "shake, undamped, N = 20: semi_implicit_euler stiff stays below 2 ms",
         [](double dt) { return dt < 0.002; });
+  check_tolerances(rows, verdicts);
 }
 
 }  // namespace tress::experiments::stability_limit

@@ -10,59 +10,6 @@
 namespace tress::experiments::stability_limit {
 namespace {
 
-constexpr Parameter settings_of_rows[] = {
-    {.name = "study", .help = "rows of one study", .choices = "all|grid|nodal"},
-    {.name = "scene",
-     .help = "rows of one scene",
-     .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
-    {.name = "damping",
-     .help = "rows of one level of internal friction: 0, 1e-12 or 1e-10 kg m^3/s",
-     .choices = "all|none|light|seed"},
-    {.name = "solver",
-     .help = "rows of one solver of the model",
-     .choices = "all|recursive|composite|sparse|recursive_plain"},
-    {.name = "tangent",
-     .help = "rows of one tangent of the model",
-     .choices = "all|stiff|exact|less_implicit"},
-    {.name = "modes",
-     .help = "which modes the strands have",
-     .choices = "bend_twist|bend|bend_planar"},
-    {.name = "cap_s", .help = "largest step tried (s)", .number = 0.1, .min = 1e-9},
-    {.name = "floor_s",
-     .help = "smallest step tried (s), 0: 1e-6, of study nodal 1e-7",
-     .number = 0,
-     .min = 0},
-    {.name = "depth",
-     .help = "test below a stable step until this factor is stable, 0: 30, with --quick "
-             "10, of study nodal 1",
-     .number = 0,
-     .min = 0},
-    {.name = "resolution",
-     .help = "bisect until unstable over stable step is this",
-     .number = 1.05,
-     .min = 1.0001},
-    {.name = "scenes", .help = "scene files instead of our scenes", .text = true},
-    {.name = "horizon_s",
-     .help =
-         "time that a run simulates (s), of a scene file (at most the scene's) and of "
-         "study nodal; 0: 0.5, of study nodal 1, with --quick 0.25, explicit methods "
-         "0.02",
-     .number = 0,
-     .min = 0,
-     .max = 1e3},
-    {.name = "strands",
-     .help = "of a scene file whose strands do not touch: so many typical ones",
-     .number = 8,
-     .min = 1,
-     .max = 1e4,
-     .whole = true},
-    {.name = "row_work",
-     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 3e6, "
-             "with --full 1e8, of study nodal 1e9, with --quick 1.5e8",
-     .number = 0,
-     .min = 0},
-};
-
 // EI/gamma is the relaxation rate; gamma damps modes beyond 2 EI/gamma over-critically.
 // The "seed" gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
 // a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
@@ -106,9 +53,6 @@ constexpr Variation further_methods[] = {
     {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
     {"articulated_chain", "backward_euler", "recursive", "exact"},
 };
-
-/// Where methods are compared.
-constexpr int usual_elements = 20;
 
 /// For --quick, one method of each kind that a user is likely to consider: explicit, of
 /// order 1, symplectic, with one solve a step, and two that damp fast modes. The others
@@ -174,7 +118,8 @@ bool usual(const CommandLine& line, const StabilityCase& c) {
          (c.elements == 5 || c.elements == usual_elements);
 }
 
-/// Whether the model has this solver and tangent, and the integrator takes it.
+}  // namespace
+
 bool possible(const StabilityCase& c, const Settings& settings) {
   for (const auto& [key, word] :
        {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
@@ -187,8 +132,6 @@ bool possible(const StabilityCase& c, const Settings& settings) {
     return false;  // a scene that the model does not support
   }
 }
-
-}  // namespace
 
 Row StabilityCase::identity() const {
   Row row;
@@ -218,19 +161,6 @@ Parameters StabilityCase::parameters(const Settings& settings) const {
   return p;
 }
 
-std::span<const Parameter> stability_settings() { return settings_of_rows; }
-
-double set_or(const Parameters& rows, std::string_view key, double usual) {
-  return rows.number(key) > 0 ? rows.number(key) : usual;
-}
-
-StepSearch step_search(const Parameters& rows, double finest, double depth) {
-  return {.coarsest = rows.number("cap_s"),
-          .finest = set_or(rows, "floor_s", finest),
-          .resolution = rows.number("resolution"),
-          .depth = std::max(set_or(rows, "depth", depth), 1.0)};
-}
-
 bool considered(const CommandLine& line, const IntegratorEntry& entry) {
   if (entry.adaptive) return false;
   if (!line.integrators.empty()) return wanted(line.integrators, entry.id);
@@ -241,7 +171,7 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
                                            const Settings& settings) {
   const Parameters& rows = settings.experiment();
   std::vector<StabilityCase> all;
-  if (rows.word("study") == "nodal") return all;
+  if (rows.word("study") != "all" && rows.word("study") != "grid") return all;
   const bool chosen = rows.word("scene") != "all" || rows.word("damping") != "all" ||
                       !line.elements.empty();
   for (const StrandScene& scene : strand_scenes()) {

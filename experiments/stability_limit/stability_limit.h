@@ -26,6 +26,9 @@ struct Damping {
 
 inline constexpr Damping undamped{"none", "0"};
 
+/// Where methods are compared.
+inline constexpr int usual_elements = 20;
+
 /// One row of stability_limit: the strand, its motion and the method.
 struct StabilityCase {
   const StrandScene* scene;
@@ -54,6 +57,12 @@ StepSearch step_search(const Parameters& rows, double finest, double depth);
 /// Whether a study of all integrators includes this one: it has a step, and is named, or
 /// is one that --quick keeps.
 bool considered(const CommandLine& line, const IntegratorEntry& entry);
+
+/// Whether the study by tolerance includes it: --quick keeps tr_bdf2.
+bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry);
+
+/// Whether the model has this solver and tangent, and the integrator takes it.
+bool possible(const StabilityCase& c, const Settings& settings);
 
 /// The rows that the command line and its settings select, without those whose model the
 /// integrator refuses.
@@ -93,6 +102,30 @@ struct SceneLimits {
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how);
+
+/// The tolerances from 1e-1 to 1e-5, from loose to tight until the work is used up: the
+/// loosest such that it and all tighter ones tried were stable, the tightest that was
+/// run, and the cost at 1e-3.
+struct ToleranceRun {
+  StabilityRun run;
+  double work;  // total_work()
+};
+/// Fills the columns about them. `judge`: empty when the work is used up. The row fails
+/// if the tightest one tried was unstable, or none was run.
+void find_tolerances(
+    const std::function<std::optional<ToleranceRun>(double tolerance)>& judge, Row& row);
+
+/// The study `tolerance`, of our hair: error-controlled methods have no largest step, but
+/// a loosest tolerance. super_helix on every scene, other models on two, undamped; with
+/// --full on every scene. Steps are no longer than the longest that fixed ones are tried
+/// at. Empty if the command line selects other rows.
+std::vector<Case> tolerance_cases(const CommandLine& line, const Settings& settings,
+                                  double most_work);
+
+/// The same for scene files; arguments as for scene_cases().
+std::vector<Case> scene_tolerance_cases(const CommandLine& line,
+                                        const std::vector<std::string>& files,
+                                        const SceneLimits& how);
 
 /// The study `nodal`: is a nodal scheme of Kirchhoff's equations with the stiffness of
 /// curvature removed unstable for a hair of 200 nodes at steps of 1e-5 s [Bertails 2006],

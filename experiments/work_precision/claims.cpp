@@ -106,6 +106,7 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
   check_bdf(rows, verdicts);
   check_swing_claims(rows, verdicts);
+  check_tolerances(rows, verdicts);
 }
 
 }  // namespace tress::experiments::work_precision

@@ -24,6 +24,7 @@ constexpr Column columns[] = {
     {"refresh", "when S is rebuilt, where chosen"},
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance, adaptive methods"},
+    {"tolerance", "asked time error of a point over the length, from which steps follow"},
     {"elements", "coordinates of the problem; of a strand, its elements"},
     {"grading", "of a strand, the last element's length over the first's"},
     {"solver", "linear solver in use; of a strand, the model's own"},
@@ -34,12 +35,19 @@ constexpr Column columns[] = {
      "largest error of the compared positions over their scale; of a strand, root mean "
      "square over the run of the tip's distance from the reference, over the length"},
     {"scd", "significant correct digits, -log10 of the largest relative error"},
+    {"achieved_over_asked",
+     "largest time error at the compared instants over the tolerance: of the tip of a "
+     "strand, over its length; of the points of a problem's body, over its length, or of "
+     "its coordinates over their scales where it has none"},
     {"reference_gap", "disagreement of the two references, same norm"},
     {"below_reference", "error below ten times that gap: not to be trusted"},
     {"wall_s", "median wall time of the run, setting up a strand aside", true},
     {"wall_s_per_sim_s", "the same per simulated second", true},
     {"steps", "accepted steps"},
     {"rejected", "rejected steps"},
+    {"rejected_by_error", "of these, those with too large an error"},
+    {"rejected_by_newton", "of these, those without a solution"},
+    {"smallest_step_s", "the shortest step that error control chose"},
     {"residuals", "residual or acceleration evaluations"},
     {"linearizations", "matrices built and factored"},
     {"solves", "linear solves"},

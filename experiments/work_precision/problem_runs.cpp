@@ -26,7 +26,8 @@ struct Work {
     row.set("scene", problem.name).set("model", problem.model);
     row.set("integrator", integrator).set("formulation", name(options.formulation));
     if (options.max_order > 0) row.set("max_order", options.max_order);
-    return adaptive ? row.set("rtol", options.rtol) : row.set("dt_s", options.step);
+    set_drive(options, adaptive, row);
+    return row;
   }
 };
 
@@ -50,6 +51,7 @@ void measure(const Work& work, Row& row) {
   }
   row.set("error_kind", "time").set("scd", run->error.scd);
   set_error(error, problem.reference_gap, row);
+  set_achieved(run->error.of_body, work.options, row);
   set_time(wall, problem.t_end, row);
 }
 
@@ -73,8 +75,10 @@ class List {
     const auto system = problem.make();
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!wanted(line_.integrators, entry.id)) continue;
-      for (const Formulation formulation : shown(entry, *system, line_.full)) {
-        add(problem, entry, formulation);
+      const std::vector<Formulation> all = shown(entry, *system, line_.full);
+      for (const Formulation formulation : all) add(problem, entry, formulation);
+      if (entry.error_controlled && !all.empty()) {
+        add_tolerances(work_of(problem, entry, controlled(all.front())));
       }
     }
   }
@@ -82,11 +86,17 @@ class List {
   std::vector<Case> cases() { return std::move(all_); }
 
  private:
-  void add(const Problem& problem, const IntegratorEntry& entry,
-           Formulation formulation) {
+  Work work_of(const Problem& problem, const IntegratorEntry& entry,
+               Formulation formulation) const {
     Work work{problem, entry.id, entry.adaptive, base_, line_.repeat};
     work.options.formulation = formulation;
     if (line_.quick && base_.max_work == 0) work.options.max_work = quick_work;
+    return work;
+  }
+
+  void add(const Problem& problem, const IntegratorEntry& entry,
+           Formulation formulation) {
+    Work work = work_of(problem, entry, formulation);
     const int points = line_.full ? 10 : line_.quick ? 6 : 7;
     const bool orders =
         problem.name == "beam" && entry.id == "cvode_bdf" && !chosen_order_;
@@ -105,12 +115,24 @@ class List {
     }
   }
 
+  void add_tolerances(Work work) {
+    for (const double tolerance : tolerances(line_)) {
+      work.options.tolerance = tolerance;
+      put(work);
+    }
+  }
+
   void rung(Work work, double level) {
+    work.options.tolerance = 0;
     if (work.adaptive) {
       work.options.rtol = work.options.atol = std::pow(10, -3 - level);
     } else {
       work.options.step = work.problem.coarse_step / std::pow(2, level);
     }
+    put(work);
+  }
+
+  void put(const Work& work) {
     all_.push_back(
         {work.identity(), [work](Row& row, const auto&) { measure(work, row); }});
   }

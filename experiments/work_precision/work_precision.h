@@ -25,10 +25,23 @@ bool keeps(const Settings& settings, std::string_view key, std::string_view word
 
 /// Fills the columns common to all runs: counters,
 void set_counts(const Stats& stats, Row& row);
+/// largest error of a point over the body, over what was asked for, where steps followed
+/// from a tolerance (Options::tolerance: time error of a point over the length; both
+/// sides have the same elements),
+void set_achieved(double largest, const Options& options, Row& row);
 /// distance from the reference, whose two sides are `gap` apart,
 void set_error(double relative, double gap, Row& row);
 /// and times (s).
 void set_time(double wall, double simulated, Row& row);
+
+/// Options::tolerance from loose to tight, for methods that control their error.
+std::span<const double> tolerances(const CommandLine& line);
+
+/// The formulation of a run by tolerance where one of fixed steps has `preferred`.
+Formulation controlled(Formulation preferred);
+
+/// Sets the column that drives a row's steps: tolerance, rtol or dt_s.
+void set_drive(const Options& options, bool adaptive, Row& row);
 
 /// A strand whose tip is followed: its name in the column `scene`, the strand scene it
 /// runs, and the sampling of the tip comparison.
@@ -112,6 +125,9 @@ void add_series_columns(std::vector<Row>& rows);
 /// errors in element length, the cost of a high BDF order on a rod, and the claims about
 /// the swing.
 void check_claims(const std::vector<Row>& rows, Verdicts& verdicts);
+
+/// The claims that a time error is proportional to the tolerance.
+void check_tolerances(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// The claims about the rows of the swing: runs with a time error of 1 % and of 0.1 % at
 /// the peers' number of elements and with a total error of 1 %, whose times are figures;

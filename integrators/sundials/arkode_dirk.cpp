@@ -57,7 +57,7 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
       memory_(require(ARKStepCreate(nullptr, &FirstOrder::rate_callback, time_,
                                     y_.handle(), context_.handle()),
                       "ARKStepCreate")),
-      linear_(context_, equations_) {
+      implicit_(context_, equations_) {
   void* const memory = memory_.get();
   require(send_messages(memory_, context_.messages), "ARKStepSetErrHandlerFn");
   require(ARKStepSetUserData(memory, &equations_), "ARKStepSetUserData");
@@ -66,15 +66,7 @@ ArkodeDirk::ArkodeDirk(System& system, const Options& options)
   choose_table();
   require(ARKStepSetMaxStep(memory, options.max_step), "ARKStepSetMaxStep");
   require(ARKStepSetMaxHnilWarns(memory, -1), "ARKStepSetMaxHnilWarns");
-  linear_.attach(memory_);
-  if (options.refresh == Refresh::every_step) {
-    require(ARKStepSetLSetupFrequency(memory, 1), "ARKStepSetLSetupFrequency");
-    require(ARKStepSetDeltaGammaMax(memory, 0), "ARKStepSetDeltaGammaMax");
-  }
-  if (options.newton_coefficient > 0) {
-    require(ARKStepSetNonlinConvCoef(memory, options.newton_coefficient),
-            "ARKStepSetNonlinConvCoef");
-  }
+  implicit_.attach(memory_);
 }
 
 void ArkodeDirk::choose_table() {
@@ -94,24 +86,24 @@ void ArkodeDirk::choose_table() {
 }
 
 int ArkodeDirk::restart() {
+  equations_.begin();
   return ARKStepReInit(memory_.get(), nullptr, &FirstOrder::rate_callback, time_,
                        y_.handle());
 }
 
 int ArkodeDirk::step(double t_end, double& t) {
-  const int code = ARKStepSetStopTime(memory_.get(), t_end);
+  int code = ARKStepSetStopTime(memory_.get(), t_end);
   if (code < 0) return code;
-  return ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+  code = ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
+  return code < 0 && equations_.gave_up() ? ARK_RHSFUNC_FAIL : code;
 }
 
 Stats ArkodeDirk::counters() const {
-  long errors = 0, stalls = 0, iterations = 0;
+  long errors = 0, stalls = 0;
   ARKStepGetNumErrTestFails(memory_.get(), &errors);
   ARKStepGetNumStepSolveFails(memory_.get(), &stalls);
-  ARKStepGetNumNonlinSolvIters(memory_.get(), &iterations);
   Stats stats;
   stats.rejected = errors + stalls;
-  stats.newton_iterations = iterations;
   return stats;
 }
 

@@ -1,15 +1,15 @@
 #pragma once
 
 #include "integrators/sundials/driver.h"
-#include "integrators/sundials/first_order.h"
+#include "integrators/sundials/implicit_adapter.h"
 
 namespace tress::integrators {
 
-/// ARKODE's diagonally implicit Runge-Kutta methods on the ODE form with the eliminated
-/// Newton matrix of FirstOrder. By default ESDIRK4(3)6L[2]SA, stiffly accurate and
-/// L-stable (Kennedy and Carpenter, NASA/TM-2016-219173). `table` selects any SUNDIALS
-/// DIRK table by name; otherwise max_order 2 to 5 selects SUNDIALS' default of that
-/// order. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
+/// ARKODE's diagonally implicit Runge-Kutta methods on the ODE form, each stage solved
+/// for the acceleration (ImplicitAdapter). By default ESDIRK4(3)6L[2]SA, stiffly accurate
+/// and L-stable (Kennedy and Carpenter, NASA/TM-2016-219173). `table` selects any
+/// SUNDIALS DIRK table by name; otherwise max_order 2 to 5 selects SUNDIALS' default of
+/// that order. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
 class ArkodeDirk final : public Driver {
  public:
   ArkodeDirk(System& system, const Options& options);
@@ -25,7 +25,7 @@ class ArkodeDirk final : public Driver {
 
   FirstOrder equations_;
   ArkstepMemory memory_;
-  LinearAdapter linear_;
+  ImplicitAdapter implicit_;
 };
 
 }  // namespace tress::integrators

@@ -38,7 +38,7 @@ Stats Cvode::counters() const {
   long errors = 0, stalls = 0, iterations = 0;
   CVodeGetNumErrTestFails(memory_.get(), &errors);
   CVodeGetNumStepSolveFails(memory_.get(), &stalls);
-  CVodeGetNumNonlinSolvIters(memory_.get(), &iterations);
+  CVodeGetNumNonlinSolvIters(memory_.get(), &iterations);  // of Adams' fixed point
   Stats stats;
   stats.rejected = errors + stalls;
   stats.newton_iterations = iterations;

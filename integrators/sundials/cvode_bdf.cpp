@@ -20,15 +20,10 @@ int project(sunrealtype t, N_Vector y, N_Vector correction, sunrealtype, N_Vecto
 CvodeBdf::CvodeBdf(System& system, const Options& options)
     : Cvode(bdf_id, system, options, projected_formulations, CV_BDF,
             chosen_order(bdf_id, options, bdf_standard_order, 1, bdf_highest_order)),
-      linear_(context_, equations_) {
-  void* const memory = memory_.get();
-  linear_.attach(memory_);
-  if (options.refresh == Refresh::every_step) {
-    require(CVodeSetLSetupFrequency(memory, 1), "CVodeSetLSetupFrequency");
-    require(CVodeSetDeltaGammaMaxLSetup(memory, 0), "CVodeSetDeltaGammaMaxLSetup");
-  }
+      implicit_(context_, equations_) {
+  implicit_.attach(memory_);
   if (options.formulation == Formulation::projection) {
-    require(CVodeSetProjFn(memory, &project), "CVodeSetProjFn");
+    require(CVodeSetProjFn(memory_.get(), &project), "CVodeSetProjFn");
   }
 }
 

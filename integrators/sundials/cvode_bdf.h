@@ -1,11 +1,12 @@
 #pragma once
 
 #include "integrators/sundials/cvode.h"
+#include "integrators/sundials/implicit_adapter.h"
 
 namespace tress::integrators {
 
-/// CVODE's backward differentiation formulas (variable step and order) with the
-/// eliminated Newton matrix of FirstOrder. Order 2 at most by default: BDF 3 to 5 are
+/// CVODE's backward differentiation formulas (variable step and order), each step solved
+/// for the acceleration (ImplicitAdapter). Order 2 at most by default: BDF 3 to 5 are
 /// unstable near the imaginary axis, where the eigenvalues of elastic rods lie, and
 /// perform ten to a hundred times worse there; max_order 1 to 5 overrides.
 ///
@@ -17,7 +18,7 @@ class CvodeBdf final : public Cvode {
   CvodeBdf(System& system, const Options& options);
 
  private:
-  LinearAdapter linear_;
+  ImplicitAdapter implicit_;
 };
 
 }  // namespace tress::integrators

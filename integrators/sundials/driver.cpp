@@ -158,7 +158,7 @@ Stats Driver::stats() const {
   all.solves -= work_before_.solves;
   all.steps = steps_;
   all.rejected = counted.rejected;
-  all.newton_iterations = counted.newton_iterations;
+  all.newton_iterations += counted.newton_iterations - work_before_.newton_iterations;
   return all;
 }
 

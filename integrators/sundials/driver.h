@@ -39,9 +39,11 @@ class Driver : public Integrator {
   /// After a failed step, with y_ back at the last good state: true when the method has
   /// restarted there with a smaller step.
   virtual bool recover(int /*code*/) { return false; }
-  /// Rejected steps and Newton iterations since the last restart().
+  /// Rejected steps since the last restart(), and Newton iterations if the library counts
+  /// them.
   virtual Stats counters() const = 0;
-  /// Residuals, linearizations and solves since construction, and the solver.
+  /// Residuals, linearizations, solves and Newton iterations that we count, since
+  /// construction, and the solver.
   virtual Stats work() const = 0;
   virtual std::string reason(int code) const = 0;
   /// The equations of motion, which report what was not finite.

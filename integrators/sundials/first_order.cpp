@@ -4,26 +4,36 @@
 #include <cmath>
 
 namespace tress::integrators {
+namespace {
+
+/// The error test allows each unknown atol of its scale and rtol of its size, which is
+/// taken to be a hundredth of the scale: Newton's iteration may leave a part of that, but
+/// not less than the rounding of the unknowns. A matrix is kept while it serves.
+Options of_stages(Options options) {
+  constexpr double sundials_coefficient = 0.1;  // its default, selected by 0
+  constexpr double small = 0.01, rounding = 1e-13;
+  const double part =
+      options.newton_coefficient > 0 ? options.newton_coefficient : sundials_coefficient;
+  options.newton_tolerance =
+      std::max(part * (options.atol + small * options.rtol), rounding);
+  if (options.refresh == Refresh::every_iteration) options.refresh = Refresh::when_slow;
+  return options;
+}
+
+}  // namespace
 
 FirstOrder::FirstOrder(System& system, const Options& options)
     : rates_(system, options),
-      newton_(system, options),
-      n_(static_cast<std::size_t>(rates_.n())),
-      shared_(rates_.m() == 0 && system.explicit_form() == nullptr),
-      sparse_(shared_ ? system.sparse_form() : nullptr) {
-  if (sparse_ != nullptr) {
-    own_ = make_linear_solver(options.linear, sparse_->pattern());
-    own_values_.resize(static_cast<std::size_t>(sparse_->pattern().nonzeros()));
-  }
+      stage_(rates_, of_stages(options)),
+      n_(static_cast<std::size_t>(rates_.n())) {
   if (options.formulation == Formulation::projection) projection_.emplace(rates_);
-  for (auto* x : {&q_, &v_, &a_, &dq_, &r_}) x->resize(n_);
-  for (auto* x : {&lambda_, &c_, &multipliers_, &g_dot_, &g_dot_0_}) {
+  for (auto* x : {&q_bar_, &a_, &none_, &r_}) x->resize(n_);
+  for (auto* x : {&lambda_, &multipliers_, &g_dot_, &g_dot_0_}) {
     x->resize(static_cast<std::size_t>(rates_.m()));
   }
 }
 
 Status FirstOrder::rate(double t, In y, Out y_dot) noexcept {
-  if (shared_ && own_ == nullptr) newton_current_ = false;
   const In q = y.first(n_), v = y.last(n_);
   const Out a = y_dot.last(n_);
   std::copy(v.begin(), v.end(), y_dot.begin());
@@ -34,52 +44,17 @@ Status FirstOrder::rate(double t, In y, Out y_dot) noexcept {
   return finite ? Status::ok : Status::retry;
 }
 
-Status FirstOrder::factor(double t, In y, In y_dot, double gamma) noexcept {
-  t_ = t;
-  gamma_ = gamma;
-  std::ranges::copy(y.first(n_), q_.begin());
-  std::ranges::copy(y.last(n_), v_.begin());
-  std::ranges::copy(y_dot.last(n_), a_.begin());
-  if (rates_.m() > 0) {
-    if (const Status s = rates_.accelerate(t, q_, v_, a_, lambda_); s != Status::ok) {
-      return s;
-    }
-  }
-  base_ = Dynamics::Base::fresh;
-  return newton_matrix();
-}
-
-Status FirstOrder::newton_matrix() noexcept {
-  newton_current_ = true;
-  const Weights w{1, gamma_, gamma_ * gamma_};
-  if (own_ == nullptr) return newton_.linearize(t_, q_, v_, a_, lambda_, w);
-  ++newton_.stats.linearizations;
-  const Status s = sparse_->values(t_, q_, v_, a_, w, own_values_);
-  return s == Status::ok ? own_->factor(own_values_) : s;
-}
-
-/// Overwrites (r_, c_) with (z, nu).
-Status FirstOrder::newton_solve() noexcept {
-  if (own_ == nullptr) return newton_.solve(r_, c_);
-  ++newton_.stats.solves;
-  return own_->solve(r_);
-}
-
-Status FirstOrder::solve(InOut b) noexcept {
-  const InOut x_q = b.first(n_), x_v = b.last(n_);
-  for (std::size_t i = 0; i < n_; ++i) dq_[i] = x_q[i] + gamma_ * x_v[i];
-  Status s = newton_.directional(t_, q_, v_, a_, lambda_, dq_, x_v, r_, c_, base_);
-  if (s == Status::ok) base_ = Dynamics::Base::kept;
-  if (s == Status::ok && !newton_current_) s = newton_matrix();
-  if (s != Status::ok) return s;
-  for (double& entry : r_) entry *= -gamma_;
-  for (double& entry : c_) entry *= -gamma_;
-  if (s = newton_solve(); s != Status::ok) return s;
+Status FirstOrder::solve(double t, In known, double gamma, InOut y) noexcept {
+  const In v_bar = known.last(n_);
   for (std::size_t i = 0; i < n_; ++i) {
-    x_v[i] += r_[i];
-    x_q[i] += gamma_ * x_v[i];
+    q_bar_[i] = known[i] + gamma * v_bar[i];
+    a_[i] = (y[n_ + i] - v_bar[i]) / gamma;
   }
-  return Status::ok;
+  const Status s = stage_.solve(t, q_bar_, v_bar, {1, gamma, gamma * gamma}, a_, lambda_);
+  if (s == Status::fatal) gave_up_ = true;
+  std::ranges::copy(stage_.q(), y.begin());
+  std::ranges::copy(stage_.v(), y.last(n_).begin());
+  return s;
 }
 
 Status FirstOrder::project(double t, In y, Out correction, InOut error) noexcept {
@@ -94,8 +69,7 @@ Status FirstOrder::project(double t, In y, Out correction, InOut error) noexcept
 /// M^-1 G^T (G M^-1 G^T)^-1 G e_q, using the factorisation of project().
 Status FirstOrder::project_error(double t, In y, InOut error) noexcept {
   ConstraintForm& form = *rates_.constraints();
-  std::ranges::fill(dq_, 0.0);
-  if (const Status s = form.rate(t, y.first(n_), dq_, g_dot_0_); s != Status::ok)
+  if (const Status s = form.rate(t, y.first(n_), none_, g_dot_0_); s != Status::ok)
     return s;
   for (const InOut part : {error.first(n_), error.last(n_)}) {
     // G part = rate(part) - rate(0): the second is dg/dt of moving constraints.
@@ -107,17 +81,6 @@ Status FirstOrder::project_error(double t, In y, InOut error) noexcept {
     for (std::size_t i = 0; i < n_; ++i) part[i] -= r_[i];
   }
   return Status::ok;
-}
-
-Stats FirstOrder::work() const {
-  Stats all = rates_.stats;
-  all.residuals += newton_.stats.residuals;
-  all.linearizations += newton_.stats.linearizations;
-  all.solves += newton_.stats.solves;
-  all.rank_deficiency = std::max(all.rank_deficiency, newton_.stats.rank_deficiency);
-  all.condition = std::max(all.condition, newton_.stats.condition);
-  if (own_ != nullptr) all.solver = own_->name();
-  return all;
 }
 
 int FirstOrder::rate_callback(sunrealtype t, N_Vector y, N_Vector y_dot,

@@ -14,20 +14,6 @@ int factor(double t, N_Vector y, N_Vector y_dot, double coefficient,
   return sundials_code(newton(matrix).factor(t, entries(y), entries(y_dot), coefficient));
 }
 
-int cvode_system(sunrealtype t, N_Vector y, N_Vector y_dot, SUNMatrix matrix,
-                 sunbooleantype, sunbooleantype* current, sunrealtype gamma, void*,
-                 N_Vector, N_Vector, N_Vector) noexcept {
-  *current = 1;
-  return factor(t, y, y_dot, gamma, matrix);
-}
-
-int arkode_system(sunrealtype t, N_Vector y, N_Vector y_dot, SUNMatrix matrix, SUNMatrix,
-                  sunbooleantype, sunbooleantype* current, sunrealtype gamma, void*,
-                  N_Vector, N_Vector, N_Vector) noexcept {
-  *current = 1;
-  return factor(t, y, y_dot, gamma, matrix);
-}
-
 int ida_jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector y_dot, N_Vector,
                  SUNMatrix matrix, void*, N_Vector, N_Vector, N_Vector) noexcept {
   return factor(t, y, y_dot, cj, matrix);
@@ -57,18 +43,6 @@ LinearAdapter::LinearAdapter(const SundialsContext& context, NewtonMatrix& newto
   // The callbacks factor, because only they know the time and coefficient.
   solver_->ops->setup = [](SUNLinearSolver, SUNMatrix) noexcept { return 0; };
   solver_->ops->solve = &solve;
-}
-
-void LinearAdapter::attach(const CvodeMemory& memory) const {
-  require(CVodeSetLinearSolver(memory.get(), solver_.get(), matrix_.get()),
-          "CVodeSetLinearSolver");
-  require(CVodeSetLinSysFn(memory.get(), &cvode_system), "CVodeSetLinSysFn");
-}
-
-void LinearAdapter::attach(const ArkstepMemory& memory) const {
-  require(ARKStepSetLinearSolver(memory.get(), solver_.get(), matrix_.get()),
-          "ARKStepSetLinearSolver");
-  require(ARKStepSetLinSysFn(memory.get(), &arkode_system), "ARKStepSetLinSysFn");
 }
 
 void LinearAdapter::attach(const IdaMemory& memory) const {

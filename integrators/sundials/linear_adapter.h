@@ -4,14 +4,13 @@
 
 namespace tress::integrators {
 
-/// The Newton matrix of one integrator, as SUNDIALS uses it: rebuilt at a state when
-/// SUNDIALS' rules require it, and used for solves until then.
+/// The Newton matrix of IDA, as it uses it: rebuilt at a state when its rules require it,
+/// and used for solves until then.
 class NewtonMatrix {
  public:
   virtual ~NewtonMatrix() = default;
 
-  /// CVODE, ARKODE: I - coefficient df/dy, y_dot = f(t, y).
-  /// IDA: dF/dy + coefficient dF/dy'.
+  /// dF/dy + coefficient dF/dy'.
   virtual Status factor(double t, In y, In y_dot, double coefficient) noexcept = 0;
 
   /// Overwrites b with the solution.
@@ -20,13 +19,11 @@ class NewtonMatrix {
 
 /// An opaque SUNMatrix with a direct SUNLinearSolver around a NewtonMatrix. It is not of
 /// the matrix-embedded type, which would switch off the lazy refactorisation of IDA and
-/// the rescaling of corrections when gamma or cj has changed since.
+/// the rescaling of corrections when cj has changed since.
 class LinearAdapter {
  public:
   LinearAdapter(const SundialsContext& context, NewtonMatrix& newton);
 
-  void attach(const CvodeMemory& memory) const;
-  void attach(const ArkstepMemory& memory) const;
   void attach(const IdaMemory& memory) const;
 
  private:

@@ -39,6 +39,17 @@ Ingredient mode(const std::string& name, const std::string& word) {
           {}};
 }
 
+template <class Change>
+Scene cut_anew(Scene scene, const Change& changed) {
+  if (scene.tables == nullptr) {
+    throw std::logic_error("strands that no table says cannot be cut anew");
+  }
+  auto tables = std::make_shared<StrandTables>(changed(*scene.tables));
+  scene.strands = cut_strands(*tables, scene.head, scene.seed).strands;
+  scene.tables = std::move(tables);
+  return scene;
+}
+
 }  // namespace
 
 std::string_view Method::word(std::string_view choice) const {
@@ -65,13 +76,15 @@ Scene with_method(Scene scene, const Method& method) {
 }
 
 Scene with_elements(Scene scene, int elements) {
-  if (scene.tables == nullptr) {
-    throw std::logic_error("strands that no table says cannot be cut anew");
-  }
-  auto tables = std::make_shared<StrandTables>(with_elements(*scene.tables, elements));
-  scene.strands = cut_strands(*tables, scene.head, scene.seed).strands;
-  scene.tables = std::move(tables);
-  return scene;
+  return cut_anew(std::move(scene), [elements](const StrandTables& tables) {
+    return with_elements(tables, elements);
+  });
+}
+
+Scene with_twice_the_elements(Scene scene) {
+  return cut_anew(std::move(scene), [](const StrandTables& tables) {
+    return with_twice_the_elements(tables);
+  });
 }
 
 Scene with_strands(Scene scene, std::vector<Strand> strands) {

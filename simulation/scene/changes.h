@@ -30,6 +30,8 @@ Scene with_method(Scene scene, const Method& method);
 /// The same strands with `elements` elements each. Throws InputError as read_scene does,
 /// and std::logic_error if the scene's tables no longer describe its strands.
 Scene with_elements(Scene scene, int elements);
+/// As above, every strand with twice its elements.
+Scene with_twice_the_elements(Scene scene);
 
 /// The scene with other strands, which no table describes.
 Scene with_strands(Scene scene, std::vector<Strand> strands);

@@ -25,6 +25,11 @@ std::vector<Strand> strands_of(const StrandSource& source, const Common& common,
   return groom_strands(source.table, own, common, strands, most);
 }
 
+void set_elements(StrandSource& source, long elements) {
+  const std::string place = source.table.place("elements");
+  source.table.set("elements", std::to_string(elements), place);
+}
+
 }  // namespace
 
 CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
@@ -51,10 +56,13 @@ CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
 }
 
 StrandTables with_elements(StrandTables tables, int elements) {
-  const std::string text = std::to_string(elements);
+  for (StrandSource& source : tables.sources) set_elements(source, elements);
+  return tables;
+}
+
+StrandTables with_twice_the_elements(StrandTables tables) {
   for (StrandSource& source : tables.sources) {
-    const std::string place = source.table.place("elements");
-    source.table.set("elements", text, place);
+    set_elements(source, 2 * source.table.values().whole("elements"));
   }
   return tables;
 }

@@ -34,5 +34,7 @@ CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
+/// The same tables, every strand with twice its elements.
+StrandTables with_twice_the_elements(StrandTables tables);
 
 }  // namespace tress::simulation

@@ -38,10 +38,15 @@ Situation made(std::string_view hard, std::string_view model = "super_helix",
 }
 
 Survival survived(std::string_view hard, std::string_view model,
-                  std::string_view integrator, double dt, Reference exact = {}) {
-  const Attempt attempt{&named(hard), subject(model), defaults(model), integrator, dt, {},
-                        1e-3};
+                  std::string_view integrator, const Pace& pace, const Reference& exact) {
+  const Attempt attempt{
+      &named(hard), subject(model), defaults(model), integrator, pace, {}, 1e-3};
   return survive(attempt, {}, [&] { return exact; });
+}
+
+Survival survived(std::string_view hard, std::string_view model,
+                  std::string_view integrator, double dt, const Reference& exact = {}) {
+  return survived(hard, model, integrator, Pace{dt}, exact);
 }
 
 // ---- the list -----------------------------------------------------------------------
@@ -208,7 +213,7 @@ TEST(HardCaseJudge, StopsWhenItsWorkIsDone) {
                         subject("super_helix"),
                         defaults("super_helix"),
                         "backward_euler",
-                        1.0 / 300,
+                        {1.0 / 300},
                         {}};
   const WorkLimit little{5 * 2 * 3.0};  // residual and solve of three unknowns
   const auto run = [&] { return survive(attempt, little, [] { return Reference{}; }); };
@@ -228,6 +233,84 @@ TEST(HardCaseJudge, StepsJump) {
   EXPECT_EQ(s.outcome, Outcome::stable);
   const double pairs = 0.25 / 0.0101;
   EXPECT_NEAR(static_cast<double>(s.stats.steps), 2 * pairs, 2);
+}
+
+// ---- by tolerance -------------------------------------------------------------------
+
+constexpr double longest = 1.0 / 30;
+
+/// By tr_bdf2, against bdf2 at a fixed step of 0.25 ms, whose own error (gap) counts
+/// twice: once as that of either.
+TEST(HardCaseByTolerance, ErrorIsThatWhichIsAskedFor) {
+  const HardCase& hard = named("two_elements");
+  const Reference exact =
+      reference(hard, subject("super_helix"), defaults("super_helix"), {}, 1, {});
+  ASSERT_EQ(exact.why, "");
+  ASSERT_LE(exact.gap, 1e-3);
+  for (const double tolerance : {1e-2, 1e-3}) {
+    const Survival s =
+        survived("two_elements", "super_helix", "tr_bdf2", {longest, tolerance}, exact);
+    EXPECT_EQ(s.outcome, Outcome::accurate) << s.why;
+    EXPECT_NEAR(s.t, hard.t_end, 1e-12);
+    EXPECT_LE(*s.error, tolerance + 2 * exact.gap);
+  }
+}
+
+TEST(HardCaseByTolerance, StepsAreNoLongerThanAsked) {
+  const Reference none{{}, 0, "none needed"};
+  const auto steps = [&](double most) {
+    return survived("two_elements", "super_helix", "tr_bdf2", {most, 1e-2}, none)
+        .stats.steps;
+  };
+  const double t_end = named("two_elements").t_end;
+  EXPECT_GE(static_cast<double>(steps(1e-3)), t_end / 1e-3);
+  EXPECT_LT(static_cast<double>(steps(longest)), t_end / 1e-3);
+}
+
+// Of a case that counts steps: the time of so many of the longest.
+TEST(HardCaseByTolerance, StepsThatAreCountedAreTheLongest) {
+  const Survival s =
+      survived("million_steps", "super_helix", "tr_bdf2", {1e-3, 1e-2}, {});
+  EXPECT_NEAR(s.t, 1000 * 1e-3, 1e-9);  // a thousandth of them
+  EXPECT_GE(s.stats.steps, 1000);
+}
+
+// Where a case says where steps end, the method keeps its own and is only asked there.
+TEST(HardCaseByTolerance, StopsDoNotChangeTheSteps) {
+  const HardCase& jumping = named("step_jumps");
+  HardCase whole = jumping;
+  whole.stops = [](double dt, double t_end) {
+    return std::vector{named("step_jumps").stops(dt, t_end).back()};
+  };
+  Attempt attempt{&whole,    subject("super_helix"), defaults("super_helix"),
+                  "tr_bdf2", {longest, 1e-3},        {}};
+  const auto none = [] { return Reference{{}, 0, "none needed"}; };
+  const Survival at_its_end = survive(attempt, {}, none);
+  attempt.hard = &jumping;
+  const Survival at_stops = survive(attempt, {}, none);
+  EXPECT_EQ(at_its_end.outcome, Outcome::stable) << at_its_end.why;
+  EXPECT_EQ(at_stops.outcome, Outcome::stable) << at_stops.why;
+  EXPECT_EQ(at_stops.t, at_its_end.t);
+  EXPECT_EQ(at_stops.stats.steps, at_its_end.stats.steps);
+  EXPECT_EQ(at_stops.stats.residuals, at_its_end.stats.residuals);
+}
+
+// Error control has no index 3, which fixed steps prefer.
+TEST(HardCaseByTolerance, ConstraintsAreHeldByProjection) {
+  const Survival s = survived("two_elements", "inextensible_strand", "tr_bdf2",
+                              {longest, 1e-2}, {{}, 0, "none needed"});
+  EXPECT_EQ(s.outcome, Outcome::stable) << s.why;
+  EXPECT_EQ(s.formulation, "projection");
+}
+
+TEST(HardCaseByTolerance, AToleranceThatCannotBeMetIsNoSurvival) {
+  Attempt attempt{&named("two_elements"),  subject("super_helix"),
+                  defaults("super_helix"), "tr_bdf2",
+                  {longest, 1e-4},         {}};
+  attempt.options.min_step = longest / 2;
+  const Survival s = survive(attempt, {}, [] { return Reference{}; });
+  EXPECT_EQ(s.outcome, Outcome::unstable);
+  EXPECT_THAT(s.why, HasSubstr("tolerance 0.0001 needs a step below"));
 }
 
 TEST(HardCaseJudge, OutcomesAreReadAsTheyAreWritten) {
@@ -310,8 +393,17 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
     cases.insert(std::string(cell.attempt.hard->name));
   }
   EXPECT_EQ(cases.size(), hard_case_catalogue().size());
-  // Three integrators at two steps on each model and system of particles.
-  EXPECT_EQ(grid.cells.size(), 6 * grid.references);
+  // Three integrators at two steps on each model and system of particles, bdf2 at one and
+  // tr_bdf2 at one tolerance.
+  EXPECT_EQ(grid.cells.size(), 8 * grid.references);
+  line.set = {{"tolerance", "1e-3"}};
+  const Grid chosen = hard_grid(line, Settings(line, hard_case_settings()));
+  EXPECT_EQ(chosen.cells.size(), grid.references);
+  for (const Cell& cell : chosen.cells) {
+    EXPECT_EQ(cell.attempt.pace, (Pace{longest, 1e-3}));
+    EXPECT_EQ(cell.identity().number("tolerance"), 1e-3);
+    EXPECT_EQ(cell.attempt.options.tolerance, 0);  // that of the reference
+  }
   line.set = {{"case", "straihgt"}};
   EXPECT_THROW(static_cast<void>(hard_grid(line, Settings(line, hard_case_settings()))),
                InputError);
@@ -330,9 +422,10 @@ Row claimed(std::string_view hard, std::string_view passed, std::string_view out
 Verdicts::Verdict judged(const Row& row, std::string_view of) {
   Verdicts verdicts;
   check_hard_cases({row}, verdicts);
+  // One of each case, and three about tolerances.
   EXPECT_EQ(
       std::ranges::count(verdicts.all(), State::not_judged, &Verdicts::Verdict::state),
-      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1);
+      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1 + 3);
   for (const auto& verdict : verdicts.all()) {
     if (verdict.claim.starts_with(of)) return verdict;
   }
@@ -347,6 +440,60 @@ TEST(HardCaseClaims, FailOnAWrongTable) {
   EXPECT_EQ(of("false", "unstable"), State::broken);
   EXPECT_EQ(of("false", "refused"), State::not_judged);  // no claim at all
   EXPECT_EQ(judged(claimed("straight", "true", ""), "every cell").state, State::broken);
+}
+
+Row by_tolerance(std::string_view hard, std::string_view outcome, double error) {
+  Row row;
+  row.set("case", hard).set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("integrator", "tr_bdf2").set("measure", 0.5).set("limit", 1.0);
+  Pace{longest, 1e-3}.identify(row);
+  row.set("outcome", outcome).set("passed", outcome.starts_with("stable"));
+  if (!std::isnan(error)) row.set("error_rel", error);
+  return row;
+}
+
+State state_of(const Row& row, std::string_view claim) {
+  Verdicts verdicts;
+  check_hard_cases({row}, verdicts);
+  for (const auto& verdict : verdicts.all()) {
+    if (verdict.claim.starts_with(claim)) return verdict.state;
+  }
+  throw std::runtime_error("no claim " + std::string(claim));
+}
+
+TEST(HardCaseClaims, NothingPassesByToleranceThatIsWrong) {
+  const std::string_view claim = "by tolerance no run";
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable and accurate", 0.01), claim),
+            State::held);
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable", 0.06), claim), State::broken);
+  EXPECT_EQ(state_of(by_tolerance("straight", "stable", std::nan("")), claim),
+            State::held);  // there is no reference
+  EXPECT_EQ(state_of(by_tolerance("turns_6_per_element", "stable", 0.06), claim),
+            State::held);  // three elements for what a rod of 36 does
+  EXPECT_EQ(state_of(by_tolerance("million_steps", "stable", 0.3), claim), State::held);
+  EXPECT_EQ(state_of(by_tolerance("straight", "unstable", 0.06), claim),
+            State::not_judged);
+  Row beyond = by_tolerance("straight", "stable and accurate", 0.01);
+  beyond.set("measure", 2.0);
+  EXPECT_EQ(state_of(beyond, claim), State::broken);
+  beyond.set("measure", "nan");
+  EXPECT_EQ(state_of(beyond, claim), State::broken);
+}
+
+TEST(HardCaseClaims, LongCurlAndConeAreAccurateByTolerance) {
+  for (const std::string_view hard : {"long_curl", "cone"}) {
+    const std::string claim =
+        std::string(hard) + ": super_helix, exact tangent, tr_bdf2 is accurate";
+    const double none = std::nan("");
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable and accurate", 1e-3), claim),
+              State::held);
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable", 0.2), claim), State::broken);
+    EXPECT_EQ(state_of(by_tolerance(hard, "unstable", none), claim), State::broken);
+    EXPECT_EQ(state_of(by_tolerance(hard, "stable", none), claim),
+              State::not_judged);  // there is no reference
+    EXPECT_EQ(state_of(by_tolerance(hard, "not finished", none), claim),
+              State::not_judged);
+  }
 }
 
 // What is known to fail is no alarm as long as it fails as it is known to.

@@ -83,7 +83,7 @@ Scene scene(const std::string& text) { return parse_scene(text, "mine.toml"); }
 
 SceneSurvival survived(const Scene& which, const SceneCriteria& criteria = {},
                        double work = without_end) {
-  return survive(which, criteria, which.duration, {work});
+  return survive(which, {which.options.step}, criteria, which.duration, {work});
 }
 
 std::vector<Row> rows(const std::string& file, CommandLine line,
@@ -170,6 +170,32 @@ TEST(SceneCase, EndsWithItsWork) {
   EXPECT_LT(s.t, 0.3);
 }
 
+/// As many steps as it needs, of which some are rejected: that is no failure.
+TEST(SceneCase, SurvivesByTolerance) {
+  Scene controlled = scene(curl);
+  controlled.integrator = "tr_bdf2";
+  const Pace pace{1.0 / 30, 1e-3};
+  const SceneSurvival s = survive(controlled, pace, {}, 0.3, {without_end});
+  EXPECT_EQ(s.outcome, Outcome::stable) << s.why;
+  EXPECT_NEAR(s.t, 0.3, 1e-9);
+  EXPECT_GT(s.stats.rejected, 0);
+  EXPECT_EQ(s.measured, "depth_m");
+  const double half = *s.measure / 2;
+  const SceneSurvival tight =
+      survive(controlled, pace, {.depth = half}, 0.3, {without_end});
+  EXPECT_EQ(tight.outcome, Outcome::unstable);
+  EXPECT_GT(*tight.measure, half);
+}
+
+// A tolerance may need any number of steps before the next look.
+TEST(SceneCase, EndsWithItsWorkByTolerance) {
+  Scene controlled = scene(soft);
+  controlled.integrator = "tr_bdf2";
+  const SceneSurvival s = survive(controlled, {1.0 / 30, 1e-6}, {}, 0.3, {2e4});
+  EXPECT_EQ(s.outcome, Outcome::not_finished) << s.why;
+  EXPECT_LT(s.t, 0.3);
+}
+
 // ---- rows ---------------------------------------------------------------------------
 
 TEST(SceneCase, IsTriedByEveryModelAtItsStepAndOurs) {
@@ -192,6 +218,39 @@ TEST(SceneCase, IsTriedByEveryModelAtItsStepAndOurs) {
     }
   }
   EXPECT_EQ(rows(file, line, {{"dt_s", "0.002"}}).size(), 4U);
+}
+
+/// The scene's own and ours; a method with fixed steps has none of them.
+TEST(SceneCase, IsTriedAtItsTolerance) {
+  std::string text = soft;
+  const std::string method = "id = \"backward_euler\"\ndt_s = 0.002";
+  text.replace(text.find(method), method.size(),
+               "id = \"tr_bdf2\"\ntolerance = 0.005\nmax_step_s = 0.02");
+  const std::string file = file_of("tolerance.toml", text);
+  CommandLine line;
+  line.models = {"der"};
+  line.integrators = {"backward_euler", "tr_bdf2"};
+  std::vector<std::string> paces;
+  for (const Row& row : rows(file, line)) {
+    EXPECT_EQ(row.text("outcome"), "stable") << row.text("why");
+    if (row.text("integrator") != "tr_bdf2") continue;
+    paces.push_back(std::string(row.text("dt_s")) + " " +
+                    std::string(row.text("tolerance")));
+  }
+  EXPECT_EQ(paces, (std::vector<std::string>{"0.02 0.005", "0.03333333333333333 0.001"}));
+  EXPECT_EQ(rows(file, line, {{"tolerance", "0.005"}}).size(), 1U);
+}
+
+// Error control holds constraints by projection, where fixed steps hold index 3.
+TEST(SceneCase, ModelsWithConstraintsAreTriedByTolerance) {
+  CommandLine line;
+  line.models = {"inextensible_strand"};
+  line.integrators = {"tr_bdf2"};
+  const auto found =
+      rows(file_of("constrained.toml", soft), line, {{"tolerance", "1e-3"}});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().text("formulation"), "projection");
+  EXPECT_EQ(found.front().text("outcome"), "stable") << found.front().text("why");
 }
 
 TEST(SceneCase, ATreeHasItsOwnModelOnly) {

@@ -110,10 +110,11 @@ TEST(StabilityClaims, TheShakenStrandDecidesOnTheTwoTangents) {
   EXPECT_FALSE(bad[0].held || bad[1].held);
 }
 
-// Four claims: of two solvers, of two tangents, and of the shaken strand by two tangents.
+// Five claims: of two solvers, of two tangents, of the shaken strand by two tangents, and
+// of tolerances.
 TEST(StabilityClaims, OfRowsThatWereNotRunAreNotJudged) {
   const auto unjudged = all_of({semi_implicit("recursive", 1, 2)});
-  ASSERT_EQ(unjudged.size(), 4u);
+  ASSERT_EQ(unjudged.size(), 5u);
   for (const auto& verdict : unjudged) {
     EXPECT_EQ(verdict.state, Verdicts::State::not_judged) << verdict.claim;
     EXPECT_FALSE(verdict.alarm());

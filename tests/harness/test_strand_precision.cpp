@@ -111,6 +111,14 @@ TEST(TipError, IsTheRootMeanSquareOverTheLength) {
 
 // ---- references -------------------------------------------------------------------
 
+TEST(TipError, LargestIsThatOfTheWorstSampleAndInfiniteWhereOneIsMissing) {
+  const std::vector<double> reference(6, 0.0);
+  const std::vector<double> tip{0.3, 0, 0.4, 0, 0.1, 0};
+  EXPECT_DOUBLE_EQ(largest_tip_error(tip, reference, 2), 0.25);
+  EXPECT_EQ(largest_tip_error({tip.data(), 3}, reference, 2),
+            std::numeric_limits<double>::infinity());
+}
+
 TEST(Extrapolated, RemovesWhatFallsWithTheSquare) {
   const auto answer = [](double h) { return std::vector<double>{7 + 5 * h * h, -h * h}; };
   const auto limit = extrapolated(answer(0.3), answer(0.1), 3);
@@ -278,16 +286,17 @@ TEST(StrandGrid, ParametersAreThoseOfTheRow) {
   }
 }
 
-TEST(StrandGrid, ReleasesEveryStrandModelForItsTotalError) {
+TEST(StrandGrid, ReleasesEveryStrandModelForItsTotalErrorAndByTolerance) {
   CommandLine line;
   line.set = {{"scene", "strand_release"}};
-  std::set<std::string_view> models;
+  std::set<std::string_view> models, controlled;
   for (const StrandCase& c : cases(line)) {
     EXPECT_EQ(c.strand->name, "strand_release");
-    EXPECT_EQ(c.error_kind, "total");
-    models.insert(c.model->id);
+    EXPECT_EQ(c.error_kind, c.options.tolerance > 0 ? "time" : "total");
+    (c.options.tolerance > 0 ? controlled : models).insert(c.model->id);
   }
   EXPECT_EQ(models.size(), strand_models().size());
+  EXPECT_EQ(controlled.size(), strand_models().size());
 }
 
 Row run(std::string_view kind, int elements, double error, double wall,

@@ -108,14 +108,15 @@ TEST(ProblemRuns, AreNoneWhereTheChoiceIsAboutStrands) {
   EXPECT_TRUE(rows_of(line).empty());
 }
 
-/// The rows of the released hair by this model, run.
-std::vector<Row> released(const std::string& model, const std::vector<int>& elements) {
+/// The rows of the released hair by this model with this kind of error, run.
+std::vector<Row> released(const std::string& model, const std::vector<int>& elements,
+                          const std::string& error) {
   CommandLine line;
   line.models = {model};
   line.elements = elements;
   line.quick = true;
   line.repeat = 1;
-  line.set = {{"scene", "strand_release"}};
+  line.set = {{"scene", "strand_release"}, {"error", error}};
   std::vector<Row> all;
   for (const Case& work : strand_runs(line, Settings(line, row_settings()))) {
     Row row = work.identity;
@@ -127,7 +128,7 @@ std::vector<Row> released(const std::string& model, const std::vector<int>& elem
 
 TEST(StrandRuns, TotalErrorsFallWithElements) {
   std::map<std::string, double> finest;  // error by elements: the last step is the finest
-  for (const Row& row : released("super_helix", {5, 10})) {
+  for (const Row& row : released("super_helix", {5, 10}, "total")) {
     ASSERT_TRUE(row.ok()) << row.text("reason");
     EXPECT_GT(row.number("error_rel"), 100 * row.number("reference_gap"));
     EXPECT_EQ(row.number("wall_s_per_sim_s"), row.number("wall_s") / 0.25);
@@ -139,9 +140,57 @@ TEST(StrandRuns, TotalErrorsFallWithElements) {
 
 TEST(StrandRuns, AMotionThatPhysicsRulesOutIsNoResult) {
   // Forces that are handed from element to element put energy into the released hair.
-  for (const Row& row : released("force_transport", {10})) {
+  for (const Row& row : released("force_transport", {10}, "total")) {
     EXPECT_EQ(row.status(), "solver_error");
     EXPECT_THAT(std::string(row.text("reason")), HasSubstr("energy"));
+  }
+}
+
+TEST(StrandRuns, ByToleranceHaveTheTimeErrorThatWasAskedFor) {
+  int controlled = 0;
+  for (const Row& row : released("der", {10}, "time")) {
+    ++controlled;
+    ASSERT_TRUE(row.ok()) << row.text("reason");
+    EXPECT_FALSE(row.has("dt_s"));
+    EXPECT_GT(row.number("smallest_step_s"), 0);
+    // The largest distance of a tip is not below its root mean square.
+    EXPECT_GE(row.number("achieved_over_asked") * row.number("tolerance"),
+              row.number("error_rel"));
+    EXPECT_LE(row.number("achieved_over_asked"), 1);
+  }
+  EXPECT_EQ(controlled, 6);  // two methods, three tolerances
+}
+
+/// Index 3 has no error control: constraints are projected instead.
+TEST(StrandRuns, ByToleranceProjectConstraints) {
+  for (const Row& row : released("inextensible_strand", {10}, "time")) {
+    EXPECT_EQ(row.text("formulation"), "projection");
+    EXPECT_TRUE(row.ok()) << row.text("reason");
+  }
+}
+
+TEST(ProblemRuns, ByToleranceMeasureTheBodyOverItsLength) {
+  CommandLine line;
+  line.quick = true;
+  line.repeat = 1;
+  line.integrators = {"esdirk43"};
+  for (const char* const scene : {"beam", "chain_10", "andrews_squeezer"}) {
+    line.set = {{"scene", scene}, {"tolerance", "0.5"}};
+    int controlled = 0;
+    for (const Case& work : problem_runs(line, Settings(line, row_settings()))) {
+      if (!work.identity.has("tolerance")) {
+        EXPECT_TRUE(work.identity.has("dt_s"));
+        continue;
+      }
+      ++controlled;
+      if (work.identity.number("tolerance") < 1e-2) continue;
+      Row row = work.identity;
+      work.run(row, Deadline(600));
+      ASSERT_TRUE(row.ok()) << scene << ": " << row.text("reason");
+      EXPECT_GT(row.number("achieved_over_asked"), 0);
+      EXPECT_LE(row.number("achieved_over_asked"), 1) << scene;
+    }
+    EXPECT_EQ(controlled, 3) << scene;
   }
 }
 
@@ -181,6 +230,30 @@ TEST(Claims, BdfOrdersAreComparedOnTheBeam) {
   EXPECT_EQ(state({steps(2, 100), steps(5, 1001)}), Verdicts::State::held);
   EXPECT_EQ(state({steps(2, 100), steps(5, 999)}), Verdicts::State::broken);
   EXPECT_EQ(state({steps(2, 100)}), Verdicts::State::not_judged);
+}
+
+/// Runs of the swing by esdirk43 with these errors over tolerances of 1e-2, 1e-3, 1e-4.
+std::vector<Row> by_tolerance(const std::vector<double>& ratios) {
+  std::vector<Row> rows;
+  double tolerance = 1e-2;
+  for (const double ratio : ratios) {
+    Row row;
+    row.set("scene", "swing").set("integrator", "esdirk43").set("model", "super_helix");
+    row.set("tolerance", tolerance).set("achieved_over_asked", ratio);
+    rows.push_back(row);
+    tolerance /= 10;
+  }
+  return rows;
+}
+
+TEST(Claims, ErrorControlIsJudgedByItsWorstRatioAndByItsOrder) {
+  constexpr std::string_view claim = "esdirk43, swing";
+  EXPECT_EQ(state_of(claim, by_tolerance({0.06, 0.5, 0.9})), Verdicts::State::held);
+  EXPECT_EQ(state_of(claim, by_tolerance({0.06, 1.1, 0.9})), Verdicts::State::broken);
+  EXPECT_EQ(state_of(claim, by_tolerance({0.04, 0.5, 0.9})), Verdicts::State::broken);
+  // Within bounds, but the error does not fall: 5e-4 by 1e-2 and 9e-4 by 1e-3.
+  EXPECT_EQ(state_of(claim, by_tolerance({0.05, 0.9, 0.5})), Verdicts::State::broken);
+  EXPECT_EQ(state_of(claim, by_tolerance({})), Verdicts::State::not_judged);
 }
 
 }  // namespace tress::test_work_precision

@@ -233,6 +233,74 @@ TEST_P(ErrorControl, HoldsConstraintsWhereItsFormulationDoes) {
   EXPECT_LE(error, 1e-3 * length);
 }
 
+/// A resting point, one metre from another, and a frame that swings without moving it.
+class UnseenFrame final : public System, private MaterialPoints {
+ public:
+  static constexpr double omega = 50;  // rad/s
+  Layout layout() const override { return {2, 0}; }
+  Traits traits() const override { return {true, true}; }
+  void initial_state(Out q, Out v) const override {
+    q[0] = v[0] = v[1] = 0;
+    q[1] = 1;
+  }
+  void scale(Out q_typ, Out v_typ) const override {
+    std::ranges::fill(q_typ, 1.0);
+    std::ranges::fill(v_typ, 1.0);
+  }
+  Status residual(double, In q, In, In a, Out r) noexcept override {
+    r[0] = a[0];
+    r[1] = a[1] + omega * omega * q[1];
+    return Status::ok;
+  }
+  Status linearize(double, In, In, In, Weights w) noexcept override {
+    w_ = w;
+    return Status::ok;
+  }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0] / w_.acc;
+    x[1] = b[1] / (w_.acc + w_.pos * omega * omega);
+    return Status::ok;
+  }
+  MaterialPoints* material_points() override { return this; }
+
+ private:
+  int count() const override { return 2; }
+  void positions(double, In q, Out x) override {
+    std::ranges::fill(x, 0.0);
+    x[3] = 1;
+    x[5] = q[0];
+  }
+  void velocities(double, In, In v, Out u) override {
+    std::ranges::fill(u, 0.0);
+    u[5] = v[0];
+  }
+  Weights w_;
+};
+
+// A frame that moves no point is followed too, if only coarsely: its coordinate may be
+// wrong by fifteen thresholds a step, 15 times 2.2e-4 for tr_bdf2 and 3e-4 for esdirk43,
+// and the errors of an undamped swing add up at most.
+TEST_P(ErrorControl, FollowsWhatMovesNoPoint) {
+  UnseenFrame frame;
+  Drive drive(GetParam().id, frame, with(1e-3));
+  constexpr double period = 2 * M_PI / UnseenFrame::omega;
+  ASSERT_EQ(drive.to(period), Status::ok);
+  const auto steps = static_cast<double>(drive.integrator->stats().steps);
+  const double error = std::abs(drive.integrator->q()[1] - 1);
+  EXPECT_LE(error, 15 * 3e-4 * steps);
+  EXPECT_LE(error, 0.1);
+}
+
+// A step so long that its end is out of reach of the projection is a step too long.
+TEST_P(ErrorControl, ShortensStepsThatCannotBeProjected) {
+  const auto system = chain();
+  Options options = with(1);  // the estimate hardly rejects any
+  options.formulation = Formulation::projection;
+  Drive drive(GetParam().id, *system, options);
+  ASSERT_EQ(drive.to(5), Status::ok) << drive.integrator->failure();
+  EXPECT_GT(drive.integrator->stats().rejected_by_newton, 0);
+}
+
 /// A thin strand of springs and bending forces whose root is shaken.
 std::unique_ptr<System> shaken() {
   const ModelEntry& entry = find_model("der");

@@ -31,6 +31,19 @@ mine,backward_euler,exact,0.1,cap,100,
   assert.match(html, /250 ms/); // a simulated second of bdf2
 });
 
+test('what is stable by tolerance stands in a table of its own', () => {
+  const html = page({
+    'stability_limit.csv': `study,scene,integrator,tangent,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,reason
+file,mine,bdf2,exact,0.002,energy,4,,,,
+tolerance,mine,tr_bdf2,exact,,cap,,0.1,0.0001,321,
+tolerance,mine,esdirk43,exact,,energy,,,,,no <tolerance>
+`,
+  });
+  assert.match(html, /<td>tr_bdf2, tangent exact<\/td><td>1e-1<\/td><td>1e-4<\/td><td>321<\/td>/);
+  assert.match(html, /<td>esdirk43, tangent exact<\/td><td>none<\/td><td>no &lt;tolerance&gt;<\/td>/);
+  assert.equal(html.match(/tr_bdf2/g).length, 1);
+});
+
 test('outcomes stand beside each other by step, the shortest first; what failed says why', () => {
   const html = page({
     'hard_cases.csv': `case,model,variant,integrator,dt_s,outcome,passed,why
@@ -44,6 +57,18 @@ mine,xpbd_cosserat,,bdf2,0.03,stable,true,nothing to compare with
   assert.match(html, /<td>der, tangent=exact, rk4<\/td><td>stable<\/td><td>unstable: too &lt;fast&gt; at t = 0.1 s<\/td>/);
   assert.match(html, /<td>unstable: a piece is off<\/td>/);
   assert.match(html, /<td>xpbd_cosserat, bdf2<\/td><td><\/td><td>stable<\/td>/);
+});
+
+test('tolerances stand behind the steps, the tightest first', () => {
+  const html = page({
+    'hard_cases.csv': `case,model,variant,integrator,dt_s,tolerance,outcome,passed,why
+mine,der,,tr_bdf2,0.03,1e-2,stable,true,
+mine,der,,tr_bdf2,0.03,1e-3,unstable,false,fell
+mine,der,,tr_bdf2,0.03,,stable,true,
+`,
+  });
+  assert.match(html, /<th>step 30 ms<\/th><th>tolerance 1e-3<\/th><th>tolerance 1e-2<\/th>/);
+  assert.match(html, /<td>der, tr_bdf2<\/td><td>stable<\/td><td>unstable: fell<\/td><td>stable<\/td>/);
 });
 
 test('effects and advice are shown in words', () => {

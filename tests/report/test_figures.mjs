@@ -15,6 +15,8 @@ import { limit_spec, stability_limit } from '../../experiments/report/figures/st
 import { validation_cells } from '../../experiments/report/figures/validation.mjs';
 import { validation_orders } from '../../experiments/report/figures/validation_orders.mjs';
 import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
+import { control_findings } from '../../experiments/report/src/findings/tolerance.mjs';
+import { outcome_text } from '../../experiments/report/src/outcome.mjs';
 import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
 
 // Relative luminance of sRGB, from 0 to 1, as CIE L*.
@@ -41,7 +43,56 @@ test('Shapes_AreOneForEachIntegrator', () => {
   assert.equal(new Set(shapes).size, shapes.length);
   const known = families.flatMap(({ members }) => members);
   assert.ok(shapes.length >= known.length, `${shapes.length} for ${known.length}`);
-  assert.equal(new Set(series_style(known).shapes).size, known.length);
+  // work_precision draws methods that take a step or a tolerance twice.
+  const drawn = [...known, 'tr_bdf2 (tolerance)', 'esdirk43 (tolerance)'];
+  assert.equal(new Set(series_style(drawn).shapes).size, drawn.length);
+});
+
+const by_tolerance = (integrator, tolerance, achieved_over_asked, more = {}) => ({
+  scene: 'swing',
+  model: 'super_helix',
+  error_kind: 'time',
+  status: 'ok',
+  integrator,
+  tolerance,
+  achieved_over_asked,
+  ...more,
+});
+
+test('ControlFindings_CountTheRunsWithinTheBoundsAndNameTheWorst', () => {
+  const work_precision = [
+    by_tolerance('tr_bdf2', 1e-2, 0.04),
+    by_tolerance('tr_bdf2', 1e-3, 0.5),
+    by_tolerance('tr_bdf2', 1e-4, 2),
+    by_tolerance('tr_bdf2', 1e-5, 90, { below_reference: 'true' }),
+    by_tolerance('esdirk43', 1e-2, 0.1),
+    by_tolerance('esdirk43', 1e-3, null, { status: 'solver_error' }),
+  ];
+  assert.deepEqual(control_findings({ work_precision }), [
+    'tr_bdf2: achieved over asked 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above what was ' +
+      'asked in 1, most on super helix (swing, 1e-4: 2).',
+    'esdirk43: achieved over asked 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
+  ]);
+  assert.deepEqual(control_findings({}), []);
+});
+
+test('Outcome_SaysErrorsWithTheirHorizonOrWhyThereAreNone', () => {
+  assert.equal(outcome_text({}), '');
+  assert.equal(outcome_text(undefined), '');
+  const text = outcome_text({
+    steps: 50,
+    rejected_steps: 3,
+    time_error_max_rel: 0.02,
+    time_error_rms_rel: 0.01,
+    time_horizon_s: 0.5,
+    space_error_missing: 'the model brings its own elements',
+  });
+  assert.equal(
+    text,
+    '50 steps, 3 rejected. Estimated error in time, over the length: at most 0.02, root mean ' +
+      'square 0.01, until 0.5 s, from where the run and a finer one are different motions. ' +
+      'No error in space: the model brings its own elements.',
+  );
 });
 
 test('Spread_KeepsTheOrderAndTheGap', () => {

@@ -21,6 +21,7 @@ const figures = [
   'drift_heatmap',
   'drift_recovery',
   'work_precision',
+  'tolerance',
   'bdf_order',
   'stability_limit',
   'nodal_steps',

@@ -166,13 +166,40 @@ TEST(Simulate, RunsByToleranceAndVerifiesIt) {
        {" steps, ", "rejected by their error", "the shortest "}) {
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   }
-  const std::string before = "fall: error ";
+  const std::string before = "fall: time error ";
   const auto at = run.err.find(before);
   ASSERT_NE(at, std::string::npos) << run.err;
   const double achieved = std::stod(run.err.substr(at + before.size()));
   EXPECT_GT(achieved, 0);
   // Steps are controlled, their sum over an undamped second is of that size.
   EXPECT_LE(achieved, 1e-2);
+}
+
+TEST(Simulate, ErrorsAndCountsStandInTheManifestAndBesideTheSeries) {
+  Toy toy;
+  toy.write("fall.toml", falling("super_helix"));
+  const Toy::Result run = toy.run("fall.toml --out out --progress none --error-bars");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("fall: time error "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("fall: space error "), std::string::npos) << run.err;
+  const auto meta = nlohmann::json::parse(toy.read("out/fall.meta.json"));
+  const auto& outcome = meta["outcome"];
+  EXPECT_EQ(outcome["steps"], 1000);
+  EXPECT_EQ(outcome["solves"], 1000);
+  const CsvTable table = parse_csv(toy.read("out/fall.errors.csv"), "fall.errors.csv");
+  ASSERT_EQ(table.rows.size(), 51U);
+  for (const std::string part : {"time", "space"}) {
+    double largest = 0;
+    for (const Row& row : table.rows) {
+      const double error = row.number(part + "_error_max_rel");
+      if (!std::isnan(error)) largest = std::max(largest, error);
+    }
+    EXPECT_EQ(outcome[part + "_error_max_rel"], largest);
+    EXPECT_GT(largest, 0);
+  }
+  // A later run without them leaves no errors of an older one.
+  ASSERT_EQ(toy.run("fall.toml --out out --progress none").code, 0);
+  EXPECT_FALSE(toy.exists("out/fall.errors.csv"));
 }
 
 TEST(Simulate, ThreadsDoNotChangeABit) {

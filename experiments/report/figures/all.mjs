@@ -16,6 +16,7 @@ import { nodal_steps } from './nodal_steps.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
 import { swing } from './swing.mjs';
+import { tolerance } from './tolerance.mjs';
 import { work_precision } from './work_precision.mjs';
 
 export const figures = [
@@ -31,6 +32,7 @@ export const figures = [
   drift_heatmap,
   drift_recovery,
   work_precision,
+  tolerance,
   bdf_order,
   stability_limit,
   model_steps,

@@ -1,6 +1,7 @@
 // Which model and integrator survives which hard case, at which step.
 import { distinct, group_by, is_number } from '../src/tables.mjs';
-import { format_number, format_time } from '../src/format.mjs';
+import { format_time } from '../src/format.mjs';
+import { by_pace, by_tolerance, pace } from '../src/pace.mjs';
 import { spaced } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
 import { cell_fills } from './palette.mjs';
@@ -24,7 +25,7 @@ const rows_of = (tables) =>
       name: spaced(row.model),
       situation: spaced(row.case),
       letter: letter(row.outcome),
-      step: format_time(row.dt_s),
+      step: pace(row),
       error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
     }));
 
@@ -32,7 +33,7 @@ const rows_of = (tables) =>
 const best_variants = (rows) =>
   [
     ...group_by(rows, (row) =>
-      [row.case, row.model, row.integrator, row.dt_s].join('|'),
+      [row.case, row.model, row.integrator, row.step].join('|'),
     ).values(),
   ].map((members) =>
     members.reduce((a, b) => (rank(b.outcome) < rank(a.outcome) ? b : a)),
@@ -40,11 +41,26 @@ const best_variants = (rows) =>
 
 const survives = (row) => row.outcome.startsWith('stable');
 
+// What an asked error survives, over all models.
+const tolerance_findings = (rows, admitted) =>
+  [...group_by(rows, (row) => `${spaced(row.integrator)}, ${row.step}`)].map(
+    ([name, members]) => {
+      const all = admitted(members);
+      const of = (outcome) => all.filter((row) => row.outcome === outcome).length;
+      return (
+        `${name}: of the ${all.length} pairs of case and model that it can be put to, ` +
+        `${of('stable and accurate')} stable and accurate, ${of('stable')} stable, ` +
+        `${of('unstable')} unstable, ${of('not finished')} not finished.`
+      );
+    },
+  );
+
 export function hard_findings(tables) {
   const rows = best_variants(rows_of(tables));
   if (rows.length === 0) return [];
-  const longest = Math.max(...rows.map((row) => row.dt_s));
-  const at = rows.filter((row) => row.dt_s === longest);
+  const fixed = rows.filter((row) => !by_tolerance(row));
+  const longest = Math.max(...fixed.map((row) => row.dt_s));
+  const at = fixed.filter((row) => row.dt_s === longest);
   const admitted = (members) => members.filter((row) => row.outcome !== 'refused');
   const scores = [...group_by(at, (row) => `${row.name}, ${spaced(row.integrator)}`)]
     .map(([name, members]) => ({
@@ -65,7 +81,7 @@ export function hard_findings(tables) {
     .map(([situation]) => situation);
   if (nobody.length > 0)
     said.push(`Nothing tried survives at ${format_time(longest)}: ${nobody.join(', ')}.`);
-  return said;
+  return [...said, ...tolerance_findings(rows.filter(by_tolerance), admitted)];
 }
 
 export const hard_cases = {
@@ -73,7 +89,7 @@ export const hard_cases = {
   title: 'Case by case, at each step',
   table: 'hard_cases',
   caption: `One chart per integrator: hard cases downwards, models across. Each cell is split by time
-    step, the shortest at the left. A, dark green: stable and within the accepted error; S, light green: every
+    step, the shortest at the left, or by tolerance (the error that was asked for, over the length), the tightest at the left. A, dark green: stable and within the accepted error; S, light green: every
     bound of physics was kept, but the answer is further off; U, orange: a bound broke, or the step's equations
     found no solution; T, yellow: did not finish in the time a run was given; a dash, grey: the model or the
     integrator does not take this case, and says why. Variants of a model (its tangents, its ways to keep lengths) count as their best. Made from
@@ -84,9 +100,7 @@ export const hard_cases = {
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
     const models = distinct(rows.map((row) => row.name));
-    const steps = distinct(rows.map((row) => row.dt_s))
-      .sort((a, b) => a - b)
-      .map(format_time);
+    const steps = distinct(rows.toSorted(by_pace).map((row) => row.step));
     const known = outcomes.filter(([name]) => rows.some((row) => row.outcome === name));
     const room = Math.max(28, Math.min(58, Math.floor((width - 250) / models.length)));
     const chart = ([integrator, members]) => ({
@@ -185,8 +199,8 @@ export const hard_cases = {
       .map(([name, count]) => `${count} ${name}`);
     return `${distinct(rows.map((row) => row.case)).length} hard cases,
       ${distinct(rows.map((row) => row.model)).length} models,
-      ${distinct(rows.map((row) => row.integrator)).length} integrators, steps of
-      ${distinct(rows.map((row) => row.dt_s)).map((dt) => format_number(1e3 * dt)).join(', ')} ms:
+      ${distinct(rows.map((row) => row.integrator)).length} integrators, steps or tolerances:
+      ${distinct(rows.toSorted(by_pace).map((row) => row.step)).join(', ')}:
       ${told.join(', ')}.`;
   },
 };

@@ -34,6 +34,9 @@ export const shapes = [
   'M0,1L0.8,0L0.3,0L0.3,-1L-0.3,-1L-0.3,0L-0.8,0Z',
   'M-1,-0.6L0,0.2L1,-0.6L1,0.2L0,1L-1,0.2Z',
   'M-0.9,-0.9L-0.3,-0.9L-0.3,0.3L0.9,0.3L0.9,0.9L-0.9,0.9Z',
+  'M0.9,-0.9L0.3,-0.9L0.3,0.3L-0.9,0.3L-0.9,0.9L0.9,0.9Z',
+  'M-0.9,-0.9L0.9,-0.9L0.9,-0.3L0.3,-0.3L0.3,0.9L-0.3,0.9L-0.3,-0.3L-0.9,-0.3Z',
+  'M-0.9,0.9L0.9,0.9L0.9,0.3L0.3,0.3L0.3,-0.9L-0.3,-0.9L-0.3,0.3L-0.9,0.3Z',
 ];
 
 const dashes = [
@@ -73,6 +76,11 @@ export const families = [
       'newmark',
       'generalized_alpha',
     ],
+  },
+  {
+    name: 'implicit, step or tolerance',
+    colours: ['#8C5A2B', '#C79A6B'],
+    members: ['tr_bdf2', 'esdirk43'],
   },
   {
     name: 'implicit, adaptive',

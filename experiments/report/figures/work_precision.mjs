@@ -77,6 +77,10 @@ const curve = (row) =>
     row.formulation,
   ].join('|');
 
+// A method that takes both has a curve for each.
+const driven_name = ({ integrator, tolerance }) =>
+  is_positive(tolerance) ? `${integrator} (tolerance)` : integrator;
+
 export function pareto_rows(members) {
   if (members.some((row) => is_set(row.pareto)))
     return members.filter((r) => is_set(r.pareto));
@@ -100,6 +104,7 @@ const counts = [
   ['elements', 'elements'],
   ['dt_s', 'dt (s)'],
   ['rtol', 'rtol'],
+  ['tolerance', 'tolerance'],
   ['max_order', 'max order'],
   ['error_kind', 'error'],
   ['error_rel', 'relative error', '.3e'],
@@ -268,15 +273,13 @@ export const work_precision = {
       )
       .map((row) => ({
         ...row,
+        integrator: driven_name(row),
         formulation: row.formulation ?? '',
         solver: row.solver ?? '',
-        curve: curve(row),
+        curve: curve({ ...row, integrator: driven_name(row) }),
         below: is_set(row.below_reference) ? 'yes' : 'no',
         pareto_text: is_set(row.pareto) ? 'yes' : 'no',
-        rank:
-          row.rtol !== null && row.rtol !== undefined
-            ? -Math.log10(row.rtol)
-            : -Math.log10(row.dt_s ?? row.error_rel),
+        rank: -Math.log10(row.rtol ?? row.tolerance ?? row.dt_s ?? row.error_rel),
       })),
 
   spec(tables, { width, theme }) {

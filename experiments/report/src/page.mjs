@@ -19,6 +19,7 @@ import {
 import { scaling_findings } from './findings/scaling.mjs';
 import { stability_answer, stability_findings } from './findings/stability.mjs';
 import { swing_answer, swing_findings } from './findings/swing.mjs';
+import { control_findings } from './findings/tolerance.mjs';
 import { bdf_findings, work_answer, work_findings } from './findings/work.mjs';
 import { checks_html, manifest_html } from './manifest.mjs';
 import { scenes_html } from './scenes_page.mjs';
@@ -52,6 +53,7 @@ const measurements = [
     tables: [],
   },
   { figure: 'work_precision', findings: work_findings, tables: ['work_precision'] },
+  { figure: 'tolerance', findings: control_findings, tables: [] },
   { figure: 'bdf_order', findings: bdf_findings, tables: [] },
   {
     figure: 'stability_limit',

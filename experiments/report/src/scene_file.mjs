@@ -156,6 +156,13 @@ export function check_scene(scene, file) {
   check_series(scene.series, check);
 }
 
+// What the manifest beside a scene says about its run.
+function outcome_of(file) {
+  const path = file.replace(/\.json$/, '.meta.json');
+  const outcome = existsSync(path) ? read_json(path)?.outcome : undefined;
+  return is_object(outcome) ? outcome : {};
+}
+
 function scene_files(folder, warn) {
   if (!existsSync(folder)) return [];
   try {
@@ -184,7 +191,11 @@ export function load_scenes(directory, warn) {
       (sum, { values }) => sum + values.length,
       scene.positions.length,
     );
-    return { ...scene, title: scene.title === '' ? scene.scene : scene.title };
+    return {
+      ...scene,
+      title: scene.title === '' ? scene.scene : scene.title,
+      outcome: read_or_warn(() => outcome_of(file), warn),
+    };
   };
   for (const name of scene_files(folder, warn)) {
     const scene = read_or_warn(() => read(join(folder, name)), warn);

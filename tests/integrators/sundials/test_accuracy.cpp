@@ -125,7 +125,8 @@ INSTANTIATE_TEST_SUITE_P(Sundials, Stiff,
 class Newton : public testing::TestWithParam<Case> {};
 
 // A right matrix needs about one correction a step (or stage) and the next to see that it
-// was enough; a wrong one converges slowly or not at all.
+// was enough, and one or two more when it is kept; a wrong one converges slowly or not at
+// all.
 TEST_P(Newton, MatrixIsRightAndRebuiltOnlyWhenNeeded) {
   AngleChain system(3);
   system.offers_sparse_form = true;
@@ -141,7 +142,7 @@ TEST_P(Newton, MatrixIsRightAndRebuiltOnlyWhenNeeded) {
   options.refresh = Refresh::when_slow;
   const Stats lazy = newton_work();
   const long stages = GetParam().id == "arkode_dirk" ? 5 : 1;
-  EXPECT_LE(lazy.newton_iterations, 3 * stages * (lazy.steps + lazy.rejected));
+  EXPECT_LE(lazy.newton_iterations, 4 * stages * (lazy.steps + lazy.rejected));
   EXPECT_LE(lazy.linearizations, lazy.newton_iterations / 5);
 
   options.refresh = Refresh::every_step;

@@ -8,6 +8,7 @@ import { validation_findings } from '../../figures/validation.mjs';
 import { boundary_sentences, drift_findings, recovery_sentences } from '../../src/findings/drift.mjs';
 import { scaling_findings } from '../../src/findings/scaling.mjs';
 import { stability_findings } from '../../src/findings/stability.mjs';
+import { control_findings } from '../../src/findings/tolerance.mjs';
 import { swing_findings } from '../../src/findings/swing.mjs';
 import { bdf_findings, work_findings } from '../../src/findings/work.mjs';
 import { bullets } from '../markdown.mjs';
@@ -20,6 +21,13 @@ const listed = (sentences) => (tables) => {
   return bullets(all.slice(0, most));
 };
 
+// With the figure, which there is only where the table has such rows.
+export const control = (tables) => {
+  const found = control_findings(tables);
+  return found.length === 0
+    ? 'The table holds no run by tolerance yet.'
+    : `![Achieved over asked](../../results/tolerance.svg)\n\n${bullets(found)}`;
+};
 export const bdf = listed(bdf_findings);
 export const boundary = listed(boundary_sentences);
 export const cost = listed(cost_findings);

@@ -1,15 +1,16 @@
 // Which model and integrator survives which hard case.
 import { outcomes } from '../../figures/hard_cases.mjs';
+import { by_pace, by_tolerance, pace } from '../../src/pace.mjs';
 import { distinct, group_by, minimum_by } from '../../src/tables.mjs';
 import { rows_of, table, time } from '../markdown.mjs';
 
 const rank = (row) => outcomes.findIndex(([name]) => name === row.outcome);
 
-// One row for each case, model, integrator and step: the best variant counts.
+// One row for each case, model, integrator and step or tolerance: the best variant counts.
 const best_variants = (rows) =>
   [
     ...group_by(rows, (row) =>
-      [row.case, row.model, row.integrator, row.dt_s].join('|'),
+      [row.case, row.model, row.integrator, pace(row)].join('|'),
     ).values(),
   ].map((members) => minimum_by(members, rank));
 
@@ -23,13 +24,13 @@ export const pairs = (tables) =>
   String(distinct(judged(tables).map((row) => `${row.case}|${row.model}`)).length);
 
 export function outcomes_table(tables) {
-  const groups = group_by(judged(tables), (row) => `${row.dt_s}|${row.integrator}`);
+  const groups = group_by(judged(tables), (row) => `${pace(row)}|${row.integrator}`);
   const count = (members, ...wanted) =>
     members.filter((row) => wanted.includes(row.outcome)).length;
   const rows = [...groups.values()]
-    .sort((a, b) => a[0].dt_s - b[0].dt_s)
+    .sort(([a], [b]) => by_pace(a, b))
     .map((members) => [
-      time(members[0].dt_s),
+      by_tolerance(members[0]) ? pace(members[0]) : time(members[0].dt_s),
       members[0].integrator,
       count(members, 'stable', 'stable and accurate'),
       count(members, 'stable and accurate'),
@@ -38,7 +39,7 @@ export function outcomes_table(tables) {
       count(members, 'refused'),
     ]);
   return table(
-    ['step', 'integrator', 'stable', 'of these accurate', 'unstable', 'not finished', 'refused'],
+    ['step or tolerance', 'integrator', 'stable', 'of these accurate', 'unstable', 'not finished', 'refused'],
     rows,
   );
 }
@@ -69,7 +70,8 @@ export function super_helix(tables) {
 // Combinations of case, model and integrator that break at a shorter step although they
 // hold at a longer one, and how many there are.
 function broken_at_shorter_groups(tables) {
-  const groups = group_by(judged(tables), (row) =>
+  const stepped = judged(tables).filter((row) => !by_tolerance(row));
+  const groups = group_by(stepped, (row) =>
     [row.case, row.model, row.integrator].join('|'),
   );
   const broken = [...groups.values()].filter((members) => {

@@ -94,6 +94,28 @@ export function models_table(tables) {
   );
 }
 
+// What error control holds: scenes and models down. A table made before has no such rows.
+export function tolerance_table(tables) {
+  const rows = rows_of(tables, 'stability_limit').filter((row) => row.study === 'tolerance');
+  if (rows.length === 0) return 'The table beside this page has no such rows yet.';
+  const asked = (tolerance) => (is_positive(tolerance) ? tolerance.toExponential() : '');
+  const loosest = ({ status, tolerance_loosest }) =>
+    ({ gave_up: 'not found in time', unstable: 'none found' })[status] ?? asked(tolerance_loosest);
+  return table(
+    ['scene', 'model', 'integrator', 'elements', 'loosest', 'tightest', 'steps at 1e-3', 'work at 1e-3'],
+    rows.map((row) => [
+      row.scene,
+      `\`${row.model}\``,
+      `\`${row.integrator}\``,
+      row.elements,
+      loosest(row),
+      asked(row.tolerance_tightest),
+      is_positive(row.steps_usual) ? row.steps_usual : '',
+      is_positive(row.work_usual) ? number(row.work_usual) : '',
+    ]),
+  );
+}
+
 // Total error of every model on the released hair, by its finest step.
 export function errors_table(tables) {
   const counts = [10, 20, 40];

@@ -9,7 +9,9 @@ const step = (row) =>
     ? `dt ${format_time(row.dt_s)}`
     : is_positive(row.rtol)
       ? `rtol ${format_number(row.rtol)}`
-      : '';
+      : is_positive(row.tolerance)
+        ? `tolerance ${format_number(row.tolerance)}`
+        : '';
 
 function best_peer(rows, { peer }) {
   return minimum_by(

@@ -1,5 +1,6 @@
 // Plays a scene: time runs, the picture, the controls and the address follow.
 import { format_number } from '../../format.mjs';
+import { outcome_text } from '../../outcome.mjs';
 import { decode_scene } from './data.mjs';
 import { steer } from './gestures.mjs';
 import { Picture } from './picture.mjs';
@@ -8,7 +9,7 @@ import { Series } from './series.mjs';
 const at = (id) => document.getElementById(`scene-${id}`);
 const no_channel = 'strand';
 
-function caption({ strand_points, guides, dt_s, model, integrator, source }) {
+function caption({ strand_points, guides, dt_s, model, integrator, source, outcome }) {
   const all = strand_points.length;
   const interpolated = all - (guides ?? all);
   const strands =
@@ -18,7 +19,8 @@ function caption({ strand_points, guides, dt_s, model, integrator, source }) {
   const step =
     dt_s === null ? 'adaptive steps' : `dt = ${format_number(dt_s * 1e3)} ms`;
   const origin = source === '' ? '' : ` Source: ${source}`;
-  return `${strands}, ${model}, ${integrator}, ${step}.${origin}`;
+  const run = outcome_text(outcome);
+  return `${strands}, ${model}, ${integrator}, ${step}.${origin}${run === '' ? '' : ` ${run}`}`;
 }
 
 export class Player {

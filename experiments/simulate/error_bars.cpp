@@ -1,0 +1,295 @@
+#include "experiments/simulate/error_bars.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "simulation/run/timing.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/changes.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+/// A scene as it runs.
+struct Run {
+  Run(const Scene& scene, int threads) : world(scene, threads) {
+    for (const int points : world.points()) {
+      first.push_back(first.back() + static_cast<std::size_t>(points));
+    }
+  }
+
+  const double* strand(std::size_t k) { return &world.positions()[3 * first[k]]; }
+
+  World world;
+  std::vector<std::size_t> first{0};  // point of every strand, and the end
+};
+
+/// Parameters of a strand's points that name the same matter in both runs.
+using Places = std::vector<double>;
+
+Places by_number(std::size_t points) {
+  Places places(points);
+  std::iota(places.begin(), places.end(), 0.0);
+  return places;
+}
+
+/// Rest length from the root: models show the ends of segments. Throws InputError if this
+/// one does not.
+Places by_length(const Strand& strand, std::size_t points) {
+  if (points != strand.segments.size() + 1) {
+    throw InputError("the model's points are not the ends of its elements", "space error",
+                     "compare runs of two numbers of elements by their tips");
+  }
+  Places places{0};
+  for (const Segment& segment : strand.segments) {
+    places.push_back(places.back() + segment.length);
+  }
+  return places;
+}
+
+/// A point between those of another run, by the cubic through the nearest four, whose
+/// error is of order 4 where errors in space are of order 2.
+struct Sample {
+  std::size_t first = 0, count = 0;
+  std::array<double, 4> weight{};
+
+  double at(const double* x, std::size_t axis) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += weight[i] * x[3 * (first + i) + axis];
+    }
+    return sum;
+  }
+};
+
+Sample sample(double place, const Places& among) {
+  const auto above = static_cast<std::size_t>(
+      std::ranges::lower_bound(among, place) - among.begin());
+  Sample made;
+  made.count = std::min(among.size(), made.weight.size());
+  made.first = std::min(above > 1 ? above - 2 : 0, among.size() - made.count);
+  for (std::size_t i = 0; i < made.count; ++i) {
+    made.weight[i] = 1;
+    for (std::size_t j = 0; j < made.count; ++j) {
+      if (i == j) continue;
+      const double xi = among[made.first + i], xj = among[made.first + j];
+      made.weight[i] *= (place - xj) / (xi - xj);
+    }
+  }
+  return made;
+}
+
+/// The longest way along the points of each strand, m.
+std::vector<double> lengths(Run& run) {
+  const std::vector<double>& x = run.world.positions();
+  const std::vector<int>& before = run.world.before();
+  std::vector<double> way(before.size()), longest;
+  for (std::size_t k = 0, i = 0; k < run.world.strands(); ++k) {
+    longest.push_back(0);
+    for (const std::size_t end = run.first[k + 1]; i < end; ++i) {
+      if (before[i] < 0) continue;
+      const auto j = static_cast<std::size_t>(before[i]);
+      way[i] = way[j] + std::hypot(x[3 * i] - x[3 * j], x[3 * i + 1] - x[3 * j + 1],
+                                   x[3 * i + 2] - x[3 * j + 2]);
+      longest.back() = std::max(longest.back(), way[i]);
+    }
+  }
+  return longest;
+}
+
+/// Compares two runs frame by frame. `factor`: the error over the distance.
+class Comparison {
+ public:
+  Comparison(Run& given, Run& finer, double factor)
+      : given_(given),
+        finer_(finer),
+        factor_(factor),
+        lengths_(lengths(given)),
+        samples_(lengths_.size()),
+        squares_(lengths_.size()),
+        counts_(lengths_.size()) {
+    bar.strands.resize(lengths_.size());
+  }
+
+  void match(std::size_t strand, const Places& given, const Places& finer) {
+    for (const double place : given) samples_[strand].push_back(sample(place, finer));
+  }
+
+  bool done() const { return bar.parted() == bar.strands.size(); }
+
+  void look(double t) {
+    double largest = 0, squares = 0;
+    std::size_t points = 0;
+    for (std::size_t k = 0; k < bar.strands.size(); ++k) {
+      StrandError& strand = bar.strands[k];
+      if (strand.parts) continue;
+      const Distances now = distances(k);
+      if (!(now.largest <= parted_from)) {
+        strand.parts = t;
+        continue;
+      }
+      if (factor_ * now.largest > strand.error.largest) {
+        strand.error.largest = factor_ * now.largest;
+        strand.largest_at = t;
+      }
+      squares_[k] += now.squares;
+      counts_[k] += samples_[k].size();
+      strand.error.rms = rms(squares_[k], counts_[k]);
+      largest = std::max(largest, now.largest);
+      squares += now.squares;
+      points += samples_[k].size();
+    }
+    if (points > 0) bar.frames.push_back({factor_ * largest, rms(squares, points)});
+  }
+
+  ErrorBar bar;
+
+ private:
+  struct Distances {
+    double largest = 0, squares = 0;  // over the length
+  };
+
+  Distances distances(std::size_t k) {
+    const double* const x = given_.strand(k);
+    const double* const y = finer_.strand(k);
+    Distances found;
+    for (std::size_t i = 0; i < samples_[k].size(); ++i) {
+      double square = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        square += std::pow(x[3 * i + axis] - samples_[k][i].at(y, axis), 2);
+      }
+      square /= lengths_[k] * lengths_[k];
+      found.squares += square;
+      found.largest = std::max(found.largest, std::sqrt(square));
+    }
+    return found;
+  }
+
+  double rms(double squares, std::size_t count) const {
+    return factor_ * std::sqrt(squares / static_cast<double>(count));
+  }
+
+  Run& given_;
+  Run& finer_;
+  double factor_;
+  std::vector<double> lengths_;
+  std::vector<std::vector<Sample>> samples_;
+  std::vector<double> squares_;
+  std::vector<std::size_t> counts_;
+};
+
+/// Through all frames, or to the one at which no strand is left to compare.
+ErrorBar compared(const Scene& scene, Run& given, Run& finer, Comparison comparison) {
+  for (std::size_t frame = 0; frame <= scene.last_frame(); ++frame) {
+    const double t = scene.time_of(frame);
+    for (World* const world : {&given.world, &finer.world}) {
+      if (frame == 0 || world->advance(t) == Status::ok) continue;
+      ErrorBar bar;
+      bar.missing = (world == &given.world ? "" : "the finer run failed: ") +
+                    world->failure();
+      bar.unfinished = true;
+      return bar;
+    }
+    comparison.look(t);
+    if (comparison.done()) break;
+  }
+  return std::move(comparison.bar);
+}
+
+ErrorBar missing(std::string why) {
+  ErrorBar bar;
+  bar.missing = std::move(why);
+  return bar;
+}
+
+/// Driven by tolerances: without an error of its own beside that of the given scene.
+bool by_tolerance(const Scene& scene) {
+  return scene.options.tolerance > 0 || find_integrator(scene.integrator).adaptive;
+}
+
+Scene finer_in_time(Scene scene) {
+  const double part = by_tolerance(scene) ? 10 : 2;
+  Options& options = scene.options;
+  if (by_tolerance(scene)) {
+    for (double* const value : {&options.tolerance, &options.rtol, &options.atol,
+                                &options.min_step}) {
+      *value /= part;
+    }
+  }
+  options.step /= part;  // of fixed steps, and between exchanges of strands that touch
+  return scene;
+}
+
+double time_factor(const Scene& scene) {
+  if (by_tolerance(scene)) return 1;
+  const IntegratorEntry& method = find_integrator(scene.integrator);
+  const double ratio = std::pow(2, *method.order(scene.options.formulation));
+  return ratio / (ratio - 1);
+}
+
+}  // namespace
+
+std::size_t ErrorBar::worst() const {
+  const auto better = [](const StrandError& a, const StrandError& b) {
+    if (a.parts && b.parts) return *a.parts > *b.parts;
+    if (a.parts || b.parts) return b.parts.has_value();
+    return a.error.largest < b.error.largest;
+  };
+  return static_cast<std::size_t>(std::ranges::max_element(strands, better) -
+                                  strands.begin());
+}
+
+double ErrorBar::median() const {
+  std::vector<double> largest;
+  for (const StrandError& strand : strands) largest.push_back(strand.error.largest);
+  return simulation::median(std::move(largest));
+}
+
+std::size_t ErrorBar::parted() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      strands, [](const StrandError& strand) { return strand.parts.has_value(); }));
+}
+
+ErrorBar time_error(const Scene& scene, int threads) {
+  Run given(scene, threads), finer(finer_in_time(scene), threads);
+  if (std::ranges::min(lengths(given)) == 0) {
+    return missing("the body has no length to measure errors by");
+  }
+  Comparison comparison(given, finer, time_factor(scene));
+  for (std::size_t k = 0; k < given.world.strands(); ++k) {
+    const Places places = by_number(static_cast<std::size_t>(given.world.points()[k]));
+    comparison.match(k, places, places);
+  }
+  return compared(scene, given, finer, std::move(comparison));
+}
+
+ErrorBar space_error(const Scene& scene, int threads) try {
+  if (scene.tables == nullptr) {
+    return missing("the model brings its own elements, which cannot be doubled");
+  }
+  const Scene doubled = with_twice_the_elements(scene);
+  Run given(scene, threads), finer(doubled, threads);
+  Comparison comparison(given, finer, 4. / 3);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    const auto places = [k](const Scene& of, const Run& run) {
+      return by_length(of.strands[k], static_cast<std::size_t>(run.world.points()[k]));
+    };
+    comparison.match(k, places(scene, given), places(doubled, finer));
+  }
+  return compared(scene, given, finer, std::move(comparison));
+} catch (const InputError& error) {
+  return missing(error.what());
+}
+
+void check_verifiable(const Scene& scene) {
+  if (scene.options.tolerance > 0) return;
+  throw InputError("nothing to verify in scene " + scene.name, "--verify",
+                   "give [integrator] tolerance to a method that controls its error, or "
+                   "take --error-bars");
+}
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/scene/scene.h"
+
+namespace tress::experiments::scene_runs {
+
+using namespace simulation;
+
+/// Distance of two runs above which they are no longer one motion and its error, over the
+/// length: from there the estimate would be of no meaning.
+constexpr double parted_from = 0.1;
+
+/// Largest and root mean square error of material points, over the length of their
+/// strand.
+struct PointErrors {
+  double largest = 0, rms = 0;
+};
+
+/// Over the frames before the strand's two runs part.
+struct StrandError {
+  PointErrors error;
+  double largest_at = 0;       // s
+  std::optional<double> parts; // s, the first frame at which they are apart
+};
+
+/// The estimated error of a run in time or in space: its distance from a finer run,
+/// divided by the part of the error that the finer run does not have [Richardson 1911].
+struct ErrorBar {
+  std::vector<StrandError> strands;
+  /// Over all strands that have not parted, at every frame until all have.
+  std::vector<PointErrors> frames;
+  std::string missing;     // why there is no estimate; empty: there is
+  bool unfinished = false; // for a run did not come to its end
+
+  /// The strand with the largest error; the first of those that part earliest, if any do.
+  std::size_t worst() const;
+  /// Over strands, of their largest errors.
+  double median() const;
+  std::size_t parted() const;  // strands
+};
+
+/// Against a run with half the step, or with a tenth of the tolerance (of rtol and atol),
+/// whose own error is neglected. The scene's method is taken to have the order that it
+/// declares: where contact or friction lower that to 1, a method of order 2 has an error
+/// up to 3/2 of the estimate.
+ErrorBar time_error(const Scene& scene, int threads);
+
+/// Against a run with twice the elements, at equal arc length; every strand model is of
+/// order 2 in the length of an element. Missing for bodies that no table says how to cut.
+ErrorBar space_error(const Scene& scene, int threads);
+
+/// Throws InputError if the scene has no tolerance to compare the error with.
+void check_verifiable(const Scene& scene);
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,156 @@
+#include "experiments/simulate/outcome.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "simulation/files/csv.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+constexpr Column outcome_columns_[] = {
+    {"scene", "name of the scene"},
+    {"frames", "frames written"},
+    {"simulated_s", "simulated time"},
+    {"rejected_steps", "steps that were tried again with shorter ones"},
+    {"steps", "accepted steps; this and what follows: since the run began or was resumed"},
+    {"rejected_by_error", "of the rejected steps, those with too large an error"},
+    {"rejected_by_newton", "of the rejected steps, those without a solution"},
+    {"smallest_step_s", "the shortest step that error control chose"},
+    {"smallest_step_at_s", "when it did"},
+    {"smallest_step_cause", "why: start, error or newton"},
+    {"residuals", "residual or acceleration evaluations"},
+    {"linearizations", "matrices built and factored"},
+    {"solves", "linear solves"},
+    {"newton_iterations", "Newton iterations"},
+    {"time_error_max_rel",
+     "estimated error in time: largest of a point of the strand with the largest, over "
+     "its length, at the frames before the two runs part"},
+    {"time_error_rms_rel", "the same, root mean square over the strand's points"},
+    {"time_error_at_s", "when it is largest"},
+    {"time_error_strand", "that strand, where there are several"},
+    {"time_error_median_rel", "median over strands of their largest errors"},
+    {"time_horizon_s", "when the first strand's two runs part: no estimate from there"},
+    {"time_parted", "strands whose two runs part"},
+    {"time_error_missing", "why there is no estimate"},
+    {"space_error_max_rel", "estimated error in space, as in time"},
+    {"space_error_rms_rel", "the same, root mean square"},
+    {"space_error_at_s", "when it is largest"},
+    {"space_error_strand", "the strand with the largest error"},
+    {"space_error_median_rel", "median over strands"},
+    {"space_horizon_s", "when the first strand's two runs part"},
+    {"space_parted", "strands whose two runs part"},
+    {"space_error_missing", "why there is no estimate"},
+    {"wall_s", "time it took, output included", true},
+};
+
+std::string strands_in_words(const ErrorBar& bar) {
+  if (bar.strands.size() == 1) return "";
+  return fmt::format("; strand {} of {}, median {:.2g}", bar.worst(), bar.strands.size(),
+                     bar.median());
+}
+
+void set_frame(std::string_view part, const ErrorBar& bar, std::size_t frame, Row& row) {
+  if (frame >= bar.frames.size()) return;
+  row.set(fmt::format("{}_error_max_rel", part), bar.frames[frame].largest);
+  row.set(fmt::format("{}_error_rms_rel", part), bar.frames[frame].rms);
+}
+
+}  // namespace
+
+std::span<const Column> outcome_columns() { return outcome_columns_; }
+
+Row outcome(const Scene& scene, const SceneRun& run) {
+  Row row;
+  row.set("scene", scene.name).set("frames", run.frames);
+  row.set("simulated_s", run.simulated_s).set("rejected_steps", run.rejected);
+  const Stats& work = run.work;
+  row.set("steps", work.steps);
+  if (scene.options.tolerance > 0) {
+    row.set("rejected_by_error", work.rejected_by_error);
+    row.set("rejected_by_newton", work.rejected_by_newton);
+  }
+  if (work.smallest_step > 0) {
+    row.set("smallest_step_s", work.smallest_step);
+    row.set("smallest_step_at_s", work.smallest_step_at);
+    row.set("smallest_step_cause", work.smallest_step_cause);
+  }
+  row.set("residuals", work.residuals).set("linearizations", work.linearizations);
+  row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
+  row.set("wall_s", run.wall_s);
+  if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
+  return row;
+}
+
+void set_errors(std::string_view part, const ErrorBar& bar, Row& row) {
+  const auto column = [part](std::string_view name) {
+    return fmt::format("{}_{}", part, name);
+  };
+  if (!bar.missing.empty()) {
+    row.set(column("error_missing"), bar.missing);
+    return;
+  }
+  const StrandError& worst = bar.strands[bar.worst()];
+  row.set(column("error_max_rel"), worst.error.largest);
+  row.set(column("error_rms_rel"), worst.error.rms);
+  row.set(column("error_at_s"), worst.largest_at);
+  if (bar.strands.size() > 1) {
+    row.set(column("error_strand"), bar.worst());
+    row.set(column("error_median_rel"), bar.median());
+    row.set(column("parted"), bar.parted());
+  }
+  if (worst.parts) row.set(column("horizon_s"), *worst.parts);
+}
+
+std::string control_in_words(const Scene& scene, const SceneRun& run) {
+  const Stats& work = run.work;
+  if (scene.options.tolerance == 0) {
+    return run.rejected == 0
+               ? ""
+               : fmt::format("; {} steps tried again with shorter ones", run.rejected);
+  }
+  std::string words =
+      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration",
+                  work.steps, work.rejected_by_error, work.rejected_by_newton);
+  if (work.smallest_step > 0) {
+    words += fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", work.smallest_step,
+                         work.smallest_step_at, work.smallest_step_cause);
+  }
+  return words;
+}
+
+std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene) {
+  if (!bar.missing.empty()) return fmt::format("no {} error: {}", part, bar.missing);
+  const StrandError& worst = bar.strands[bar.worst()];
+  std::string words = fmt::format(
+      "{} error {:.2g} of the length at {:.3g} s, root mean square {:.2g}", part,
+      worst.error.largest, worst.largest_at, worst.error.rms);
+  words += strands_in_words(bar);
+  if (worst.parts) {
+    words += fmt::format(
+        "; until {:.3g} s, from where the run and a finer one are different motions",
+        *worst.parts);
+    if (bar.strands.size() > 1) words += fmt::format(" ({} strands)", bar.parted());
+  }
+  if (part == "time" && scene.options.tolerance > 0) {
+    words += fmt::format("; asked for {:g}", scene.options.tolerance);
+  }
+  return words;
+}
+
+std::string errors_csv(const Scene& scene, const ErrorBar& time, const ErrorBar& space) {
+  const std::vector<std::string> header{"t_s", "time_error_max_rel", "time_error_rms_rel",
+                                        "space_error_max_rel", "space_error_rms_rel"};
+  std::string text = csv_line(header);
+  for (std::size_t frame = 0; frame <= scene.last_frame(); ++frame) {
+    Row row;
+    row.set("t_s", scene.time_of(frame));
+    set_frame("time", time, frame, row);
+    set_frame("space", space, frame, row);
+    text += csv_line(in_order(row, header));
+  }
+  return text;
+}
+
+}  // namespace tress::experiments::scene_runs

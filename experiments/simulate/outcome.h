@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "experiments/simulate/error_bars.h"
+#include "experiments/simulate/scene_run.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::scene_runs {
+
+/// What a manifest says about a run.
+std::span<const Column> outcome_columns();
+
+/// The run's frames, time and counts, and why it failed if it did.
+Row outcome(const Scene& scene, const SceneRun& run);
+
+/// Adds the errors of one part, time or space.
+void set_errors(std::string_view part, const ErrorBar& bar, Row& row);
+
+/// Steps since the run began or was resumed, where error control chose them; else those
+/// that were repeated. Empty: none.
+std::string control_in_words(const Scene& scene, const SceneRun& run);
+
+/// "time error 2e-4 of the length at 0.3 s, ..."
+std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene);
+
+/// A table of both over time: one line a frame.
+std::string errors_csv(const Scene& scene, const ErrorBar& time, const ErrorBar& space);
+
+}  // namespace tress::experiments::scene_runs
