@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -48,8 +46,8 @@ constexpr double t_end = 0.4;  // s
 constexpr int samples = 24;
 constexpr double coarsest = 1 / 60.0;  // s, of the fixed steps, which halve
 constexpr double no_solution = 1;      // value of the error
-constexpr double finer = 100;  // tolerance of a run over that of its reference, which
-constexpr double reference_calls = 5;  // may take so many times the calls: 100^(1/4) = 3
+constexpr double finer = 100;          // tolerance of a run over that of its reference
+constexpr double reference_calls = 5;  // times those of a run: 100^(1/4) = 3 in steps
 constexpr double newton_part = 1e-2;   // of the tolerance, as error control has it
 constexpr double most = 5;             // times the work; no ratio is beyond
 constexpr int repeats = 3;
@@ -95,15 +93,30 @@ TipRun run_by_step(const Subject& subject, std::string_view integrator, double d
 
 double work_of(const TipRun& run) { return total_work(run.stats, run.unknowns); }
 
+/// A run by tolerance with its error in time.
+struct Outcome {
+  TipRun run;
+  double error = std::numeric_limits<double>::infinity();
+
+  bool solved() const { return run.status == Status::ok; }
+};
+
 struct Rung {
   std::string_view integrator;
   double dt, error, work;
 };
 
-/// Every method's steps, halved until one is as accurate as `least_error`, or as dear as
-/// `most_work` or as another that is so accurate.
-std::vector<Rung> ladder(const Subject& subject, In reference, double least_error,
-                         double most_work) {
+/// Every method's steps, halved until one is as accurate as the best outcome and as
+/// asked, or as dear as another that is, or `most` times as dear as the cheapest outcome.
+std::vector<Rung> ladder(const Subject& subject, const std::vector<Outcome>& outcomes,
+                         In reference) {
+  double least_error = subject.tolerance;
+  double most_work = std::numeric_limits<double>::infinity();
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.solved()) continue;
+    least_error = std::min(least_error, outcome.error);
+    most_work = std::min(most_work, most * work_of(outcome.run));
+  }
   std::vector<Rung> all;
   for (const std::string_view integrator : by_step) {
     for (double dt = coarsest;; dt /= 2) {
@@ -125,14 +138,6 @@ const Rung* cheapest(const std::vector<Rung>& rungs, double error) {
   }
   return best;
 }
-
-/// A run by tolerance with its error in time.
-struct Outcome {
-  TipRun run;
-  double error = std::numeric_limits<double>::infinity();
-
-  bool solved() const { return run.status == Status::ok; }
-};
 
 Row described(Row row, std::string_view integrator, const Outcome& outcome) {
   const Stats& done = outcome.run.stats;
@@ -184,19 +189,6 @@ void measure(const Subject& subject, In reference, std::vector<Outcome>& outcome
   }
 }
 
-/// As far as needed for a comparison with the outcomes.
-std::vector<Rung> ladder_for(const Subject& subject, const std::vector<Outcome>& outcomes,
-                             In reference) {
-  double least_error = subject.tolerance;
-  double least_work = std::numeric_limits<double>::infinity();
-  for (const Outcome& outcome : outcomes) {
-    if (!outcome.solved()) continue;
-    least_error = std::min(least_error, outcome.error);
-    least_work = std::min(least_work, work_of(outcome.run));
-  }
-  return ladder(subject, reference, least_error, most * least_work);
-}
-
 /// Rows of a subject without a reference: that a run has no solution is certain
 /// nevertheless.
 std::vector<Row> unconfirmed(const Row& row, const std::vector<Outcome>& outcomes,
@@ -234,15 +226,15 @@ std::vector<Row> judged(const Subject& subject, const Row& row,
 std::vector<Row> run(const Hair& hair, const Row& row) {
   const Subject subject{hair, row.text("model"), row.number("tolerance"),
                         row.number("most_calls")};
-  Row with = row;
-  with.set("elements", subject.elements);
+  Row with = Row(row).set("elements", subject.elements);
   auto outcomes = outcomes_of(subject);
   const auto reference = reference_of(subject, outcomes);
   if (!reference) {
-    return unconfirmed(with, outcomes, "no solution at a hundredth of the tolerance");
+    return unconfirmed(with, outcomes,
+                       "no solution at the tolerance or a hundredth of it");
   }
   measure(subject, *reference, outcomes);
-  const auto rungs = ladder_for(subject, outcomes, *reference);
+  const auto rungs = ladder(subject, outcomes, *reference);
   const double gap = std::ranges::min(rungs, {}, &Rung::error).error;
   with.set("gap", gap);
   if (gap <= subject.tolerance) return judged(subject, with, outcomes, rungs);

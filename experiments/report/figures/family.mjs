@@ -34,7 +34,8 @@ export function family_findings({ family_summary: rows = [] }) {
     .filter((row) => row.hairs > 0)
     .map(
       (row) =>
-        `${row.statement.charAt(0).toUpperCase()}${row.statement.slice(1)}: for ` +
+        `${row.statement.charAt(0).toUpperCase()}${row.statement.slice(1)}` +
+        `${row.model ? ` (${row.model}, ${row.integrator})` : ''}: for ` +
         `${format_number(100 * row.holds_share, 2)} % of ${row.hairs} hairs; ` +
         `median ${format_number(row.median)}, a tenth below ${format_number(row.decile_1)}, ` +
         `a tenth above ${format_number(row.decile_9)}` +

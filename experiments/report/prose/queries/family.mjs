@@ -1,5 +1,5 @@
 // Statements about one hair, tested on a family of hairs.
-import { is_number } from '../../src/tables.mjs';
+import { distinct, is_number } from '../../src/tables.mjs';
 import { number, percent, range, row_of, rows_of, table } from '../markdown.mjs';
 
 const parameter = {
@@ -58,7 +58,9 @@ const sentence = (text, row) => {
 export const summary = (tables) =>
   table(
     ['statement', 'holds for', 'decile, median, decile', 'what the numbers are', 'ranks follow'],
-    rows_of(tables, 'family_summary').map((row) => [
+    rows_of(tables, 'family_summary')
+      .filter((row) => row.study !== 'tolerance')
+      .map((row) => [
       row.statement,
       `${held(row)}${silent(row)}`,
       [row.decile_1, row.median, row.decile_9].map((x) => number(x)).join(', '),
@@ -147,3 +149,85 @@ export const equal_curly_wind = (tables) => {
 
 export const gravito_bending = (tables) =>
   range(rows_of(tables, 'family').map((row) => row.gravito_bending));
+
+// Claims about runs by tolerance are made of every model and integrator.
+const tolerance_rows = (tables, claim) =>
+  rows_of(tables, 'family_summary', { study: 'tolerance', claim }).filter((row) => row.model);
+
+const same_runs = (row) => ({ claim: row.claim, model: row.model, integrator: row.integrator });
+
+// Hairs of one model and integrator: all, within the tolerance, without a solution; the
+// latter two of those with internal friction, and of those without.
+const solved = (tables, row) => {
+  const rows = rows_of(tables, 'family', same_runs(row));
+  const count = (chosen) => ({
+    all: chosen.length,
+    within: chosen.filter((hair) => hair.holds === 'true').length,
+    unsolved: chosen.filter((hair) => hair.holds === 'false' && hair.failure).length,
+    silent: chosen.filter((hair) => hair.status !== 'ok').length,
+  });
+  return {
+    ...count(rows),
+    damped: count(rows.filter((hair) => hair.internal_friction_kg_m3_s > 0)),
+    undamped: count(rows.filter((hair) => hair.internal_friction_kg_m3_s === 0)),
+  };
+};
+
+const not_stored = 'The stored tables hold no runs by tolerance yet';
+
+export const tolerance_table = (tables) => {
+  const met = tolerance_rows(tables, 'tolerance_met');
+  if (met.length === 0) return `${not_stored}.`;
+  const spread_of = (claim, row) => {
+    const found = rows_of(tables, 'family_summary', { ...same_runs(row), claim })[0];
+    return found?.hairs > 0
+      ? [found.decile_1, found.median, found.decile_9].map((x) => number(x)).join(', ')
+      : '';
+  };
+  const part = ({ unsolved, all }) => `${unsolved} of ${all}`;
+  return table(
+    [
+      'model, method',
+      'within the tolerance',
+      'no solution, with friction',
+      'no solution, without',
+      'error: decile, median, decile',
+      'work, as accurate',
+      'work, as asked',
+      'what tells best',
+    ],
+    met.map((row) => {
+      const count = solved(tables, row);
+      return [
+        `${row.model}, ${row.integrator}`,
+        `${count.within} of ${count.all}${count.silent > 0 ? `, ${count.silent} unknown` : ''}`,
+        part(count.damped),
+        part(count.undamped),
+        [row.decile_1, row.median, row.decile_9].map((x) => number(x)).join(', '),
+        spread_of('tolerance_cheaper_at_error', row),
+        spread_of('tolerance_cheaper_as_asked', row),
+        rule(row),
+      ];
+    }),
+  );
+};
+
+// "tr_bdf2 stays within 0.1 % ... for 31 of 48 hairs by super_helix, ..."
+export const tolerance = (tables) => {
+  const rows = tolerance_rows(tables, 'tolerance_met').filter(
+    (row) => row.integrator === 'tr_bdf2',
+  );
+  if (rows.length === 0) return not_stored;
+  const asked = distinct(
+    rows_of(tables, 'family', { claim: 'tolerance_met' }).map((row) => row.tolerance),
+  );
+  const counts = rows.map((row) => ({ model: row.model, ...solved(tables, row) }));
+  const sum = (of) => counts.reduce((total, count) => total + of(count), 0);
+  const within = counts.map((c) => `${c.within} of ${c.all} hairs by \`${c.model}\``).join(', ');
+  return (
+    `\`tr_bdf2\`, asked for ${asked.map((x) => percent(x)).join(', ')} of the length, stays within that for ` +
+    `${within}. Of the runs of hairs with internal friction ${sum((c) => c.damped.unsolved)} of ` +
+    `${sum((c) => c.damped.all)} have no solution, of those without ` +
+    `${sum((c) => c.undamped.unsolved)} of ${sum((c) => c.undamped.all)}`
+  );
+};
