@@ -11,20 +11,12 @@
 namespace tress::integrators {
 namespace {
 
-constexpr double safety = 0.9;
-constexpr double least_factor = 0.2, most_factor = 5;
-// A step within these factors of the one wanted is left alone.
-constexpr double dead_from = 0.95, dead_to = 1.2;
-// After a failed Newton iteration.
-constexpr double newton_factor = 0.25, newton_ceiling = 0.5, ceiling_growth = 1.05;
 // First step over the time in which the body falls about its size, at tolerance 1: its
 // estimate is far below any threshold for a motion that starts smoothly, and the control
 // needs few trials otherwise.
 constexpr double first_part = 0.1;
 // Steps below this part of that time are lost in rounding.
 constexpr double shortest_part = 1e-11;
-
-constexpr std::string_view by_start = "start", by_error = "error", by_newton = "newton";
 
 std::string text(double x) {
   char digits[32];
@@ -41,6 +33,7 @@ ErrorControlled::ErrorControlled(System& system, const Options& options, int pow
       norm_(dynamics_),
       power_(power),
       threshold_(threshold),
+      control_(power),
       q_(static_cast<std::size_t>(dynamics_.n())),
       v_(q_),
       begin_(q_.size(), static_cast<std::size_t>(dynamics_.m())),
@@ -69,118 +62,99 @@ Status ErrorControlled::start(double t, In q, In v) {
   std::ranges::copy(v, v_.begin());
   begin_.q = q_;
   begin_.v = v_;
-  ahead_ = rejected_ = false;
-  ceiling_ = std::numeric_limits<double>::infinity();
+  ahead_ = false;
   failure_.clear();
   limit_ = Limit::none;
   dynamics_.begin();
   norm_.start(t, q);
-  h_ = std::max(options_.min_step,
-                first_part * norm_.typical_time() * std::pow(threshold_, 1 / power_));
-  cause_ = by_start;
+  const double time = norm_.typical_time();
+  control_.start(first_part * time * std::pow(threshold_, 1 / power_),
+                 std::max(options_.min_step, shortest_part * time));
   const Status s = restart();
   return s == Status::ok ? s : fail(s, "no acceleration at the initial state");
 }
 
 Status ErrorControlled::restart() {
-  before_ = 1;
+  stale_ = false;
+  forget_steps();
+  control_.forget();
   return dynamics_.accelerate(begin_.t, begin_.q, begin_.v, begin_.a, begin_.lambda);
 }
 
-ErrorControlled::Trial ErrorControlled::trial() {
-  double h = std::min(h_, ceiling_);
-  if (options_.max_step > 0) h = std::min(h, options_.max_step);
-  const double left = dynamics_.system().next_breakpoint(begin_.t) - begin_.t;
-  // 1e-9: no sliver is left by rounding.
-  if (h > (1 - 1e-9) * left) return {left, left < h_, true};
-  if (2 * h > left) h = left / 2;  // nor by a step that ends shortly before
-  return {h, h < h_, false};
+void ErrorControlled::mark() { mark_ = {t_, q_, v_, control_, dynamics_.stats.steps}; }
+
+void ErrorControlled::rewind() {
+  t_ = begin_.t = mark_->t;
+  q_ = begin_.q = mark_->q;
+  v_ = begin_.v = mark_->v;
+  control_ = mark_->control;
+  dynamics_.stats.steps = mark_->steps;
+  ahead_ = false;
+  stale_ = true;
+  failure_.clear();
+  limit_ = Limit::none;
 }
 
 Status ErrorControlled::next_step() {
+  if (stale_) {
+    const Status s = restart();
+    if (s != Status::ok) return fail(s, "restart after an event failed");
+  }
+  const double longest = options_.max_step > 0 ? options_.max_step
+                                               : std::numeric_limits<double>::infinity();
   for (;;) {
-    const Trial now = trial();
-    end_.t = begin_.t + now.h;
+    const double stop = dynamics_.system().next_breakpoint(begin_.t);
+    const StepControl::Trial now = control_.next(stop - begin_.t, longest);
+    end_.t = now.whole ? stop : begin_.t + now.h;
     const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
     if (s == Status::retry) {
       ++dynamics_.stats.rejected_by_newton;
-      ceiling_ = newton_ceiling * now.h;
-      if (const Status r = shorten(newton_factor * now.h, by_newton); r != Status::ok) {
-        return r;
-      }
+      control_.unsolved(now, "newton");
+      const Status r = shortened("Newton's iteration does not converge");
+      if (r != Status::ok) return r;
       continue;
     }
     const double error =
         norm_.of(end_.t, end_.q, end_.v, error_q_, error_v_) / threshold_;
     if (!(error <= 1)) {
       ++dynamics_.stats.rejected_by_error;
-      const double factor = safety * std::pow(error, -1 / power_);
-      if (const Status r =
-              shorten(std::clamp(factor, least_factor, safety) * now.h, by_error);
-          r != Status::ok) {
-        return r;
-      }
+      control_.reject(now, error);
+      const Status r = shortened("the error of the " + norm_.where());
+      if (r != Status::ok) return r;
       continue;
     }
     if (projection_ && projection_->project(end_.t, end_.q, end_.v) != Status::ok) {
       return fail(Status::fatal, "projection onto the constraints failed");
     }
-    at_break_ = now.at_break;
+    at_break_ = now.whole;
     ahead_ = true;
-    ++dynamics_.stats.steps;
     dynamics_.forget();
+    control_.accept(now, error, begin_.t);
     Stats& done = dynamics_.stats;
-    if (!now.cut && (done.smallest_step == 0 || now.h < done.smallest_step)) {
-      done.smallest_step = now.h;
-      done.smallest_step_at = begin_.t;
-      done.smallest_step_cause = cause_;
-    }
-    adapt(now, error);
+    ++done.steps;
+    done.smallest_step = control_.shortest().h;
+    done.smallest_step_at = control_.shortest().at;
+    done.smallest_step_cause = control_.shortest().cause;
     return Status::ok;
   }
 }
 
-Status ErrorControlled::shorten(double h, std::string_view cause) {
+Status ErrorControlled::shortened(const std::string& reason) {
   ++dynamics_.stats.rejected;
-  rejected_ = true;
-  h_ = h;
-  cause_ = cause;
-  const double least = std::max(options_.min_step, shortest_part * norm_.typical_time());
-  if (h >= least) return Status::ok;
-  return fail(Status::fatal,
-              "tolerance " + text(options_.tolerance) + " needs a step below " +
-                  text(least) + " s" +
-                  (cause == by_newton ? ", for Newton's iteration does not converge"
-                                      : ", for the error of the " + norm_.where()));
+  if (!control_.too_short()) return Status::ok;
+  return fail(Status::fatal, "tolerance " + text(options_.tolerance) +
+                                 " needs a step below " + text(control_.least()) +
+                                 " s, for " + reason);
 }
 
-void ErrorControlled::adapt(const Trial& taken, double error) {
-  // 1e-4: an estimate of 0 does not decide about the step after the next.
-  const double now = std::max(error, 1e-4);
-  double factor = safety * std::pow(now, -0.7 / power_) * std::pow(before_, 0.4 / power_);
-  factor = std::clamp(factor, least_factor, rejected_ ? 1 : most_factor);
-  if (factor >= dead_from && factor <= dead_to) factor = 1;
-  // A step that was cut says nothing against the length that the control had chosen.
-  const double wanted = factor * taken.h;
-  if (wanted < taken.h) cause_ = by_error;
-  h_ = taken.cut ? std::max(h_, wanted) : wanted;
-  h_ = std::max(h_, options_.min_step);  // unless that is rejected
-  before_ = now;
-  rejected_ = false;
-  ceiling_ *= ceiling_growth;
-}
-
-Status ErrorControlled::accept_end() {
+void ErrorControlled::accept_end() {
   std::swap(begin_, end_);
   ahead_ = false;
   t_ = begin_.t;
-  const bool changed = dynamics_.system().accept(t_, begin_.q, begin_.v);
+  stale_ = dynamics_.system().accept(t_, begin_.q, begin_.v) || at_break_;
   q_ = begin_.q;
   v_ = begin_.v;
-  if (!changed && !at_break_) return Status::ok;
-  const Status s = restart();
-  return s == Status::ok ? s : fail(s, "restart after an event failed");
 }
 
 /// The quintic with the values, slopes and curvatures of both ends, and its slope.
@@ -221,8 +195,8 @@ Status ErrorControlled::advance(double t_end, const Observer& each_step) {
     }
     if (end_.t > t_end) {
       interpolate(t_end);
-    } else if (const Status s = accept_end(); s != Status::ok) {
-      return s;
+    } else {
+      accept_end();
     }
     if (!seen()) return end_run(Status::fatal, "stopped");
   }

@@ -1,23 +1,11 @@
 #include "integrators/error_norm.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "integrators/vector_ops.h"
 
 namespace tress::integrators {
-namespace {
-
-constexpr double gravity = 9.81;  // m/s^2
-
-double distance(In x, std::size_t i, In y, std::size_t j) {
-  return std::hypot(x[3 * i] - y[3 * j], x[3 * i + 1] - y[3 * j + 1],
-                    x[3 * i + 2] - y[3 * j + 2]);
-}
-
-}  // namespace
-
 ErrorNorm::ErrorNorm(Dynamics& dynamics)
     : dynamics_(dynamics),
       points_(dynamics.system().material_points()),
@@ -29,20 +17,12 @@ ErrorNorm::ErrorNorm(Dynamics& dynamics)
 }
 
 void ErrorNorm::start(double t, In q) {
-  length_ = 0;
   if (points_ != nullptr) {
     points_->positions(t, q, x_);
-    std::vector<double> way(x_.size() / 3);
-    for (std::size_t i = 0; i < way.size(); ++i) {
-      const int before = points_->before(static_cast<int>(i));
-      if (before < 0) continue;
-      const auto j = static_cast<std::size_t>(before);
-      way[i] = way[j] + distance(x_, i, x_, j);
-      length_ = std::max(length_, way[i]);
-    }
+    norm_.start(*points_, x_);
   }
-  if (length_ > 0) {
-    time_ = std::sqrt(length_ / gravity);
+  if (norm_.length() > 0) {
+    time_ = norm_.typical_time();
     return;
   }
   time_ = std::numeric_limits<double>::infinity();
@@ -51,25 +31,12 @@ void ErrorNorm::start(double t, In q) {
   }
 }
 
-/// A number that is not finite makes the value infinite.
-void ErrorNorm::look(const std::vector<double>& x, const std::vector<double>& shifted,
-                     double factor, bool velocity) {
-  for (std::size_t i = 0; i < x.size() / 3; ++i) {
-    const double error = factor * distance(x, i, shifted, i);
-    if (error <= value_) continue;
-    value_ = std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
-    point_ = i;
-    velocity_ = velocity;
-  }
-}
-
 double ErrorNorm::of(double t, In q, In v, In dq, In dv) {
-  value_ = 0;
-  if (length_ == 0) {
-    value_ = scaled_norm(dq, dynamics_.q_typ());
+  if (norm_.length() == 0) {
+    const double of_q = scaled_norm(dq, dynamics_.q_typ());
     const double of_v = scaled_norm(dv, dynamics_.v_typ());
-    velocity_ = of_v > value_;
-    return value_ = std::max(value_, of_v);
+    velocity_ = of_v > of_q;
+    return std::max(of_q, of_v);
   }
   shifted(q_, q, -1, dq);
   shifted(v_, v, -1, dv);
@@ -77,14 +44,11 @@ double ErrorNorm::of(double t, In q, In v, In dq, In dv) {
   points_->positions(t, q_, shifted_x_);
   points_->velocities(t, q, v, u_);
   points_->velocities(t, q_, v_, shifted_u_);
-  look(x_, shifted_x_, 1 / length_, false);
-  look(u_, shifted_u_, time_ / length_, true);
-  return value_;
+  return norm_.of(x_, u_, shifted_x_, shifted_u_);
 }
 
 std::string ErrorNorm::where() const {
-  const std::string what = velocity_ ? "velocity" : "position";
-  return length_ == 0 ? what : what + " of point " + std::to_string(point_);
+  return norm_.length() > 0 ? norm_.where() : velocity_ ? "velocity" : "position";
 }
 
 }  // namespace tress::integrators

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
+#include "integrators/point_norm.h"
 
 namespace tress::integrators {
 
-/// Size of an error as a viewer of the strand sees it: the largest over its material
-/// points of |dx|/L and |du| sqrt(L/g)/L, L the longest way along the body and g = 9.81
-/// m/s^2. Coordinates alone miss energy, and generalised velocities count twist that
-/// moves nothing. A body without length is measured by its coordinates over
+/// Size of an error of coordinates and velocities by the material points that it moves
+/// (PointNorm). Coordinates alone miss energy, and generalised velocities count twist
+/// that moves nothing. A body without length is measured by its coordinates over
 /// System::scale.
 class ErrorNorm {
  public:
@@ -28,16 +28,11 @@ class ErrorNorm {
   double typical_time() const { return time_; }
 
  private:
-  void look(const std::vector<double>& x, const std::vector<double>& shifted,
-            double factor, bool velocity);
-
   Dynamics& dynamics_;
   MaterialPoints* points_;
-  double length_ = 0;  // m, 0: measured by coordinates
+  PointNorm norm_;
   double time_ = 0;
-  double value_ = 0;
-  std::size_t point_ = 0;
-  bool velocity_ = false;
+  bool velocity_ = false;  // of a body without length
   std::vector<double> x_, shifted_x_, u_, shifted_u_, q_, v_;
 };
 

@@ -105,16 +105,26 @@ bool tell_achieved(const Scene& scene, int threads) {
   return true;
 }
 
-/// Steps since the run began or was resumed, where error control chose them.
-std::string control_in_words(const Stats& work) {
-  std::string words =
-      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration",
-                  work.steps, work.rejected_by_error, work.rejected_by_newton);
-  if (work.smallest_step > 0) {
-    words += fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", work.smallest_step,
-                         work.smallest_step_at, work.smallest_step_cause);
-  }
-  return words;
+std::string shortest_in_words(double h, double at, std::string_view cause) {
+  if (h == 0) return {};
+  return fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", h, at, cause);
+}
+
+/// Steps and exchanges since the run began or was resumed, where error control chose them.
+std::string control_in_words(const SceneRun& run) {
+  const Stats& work = run.work;
+  std::string words = fmt::format(
+      "; {} steps, {} rejected by their error and {} by Newton's iteration{}", work.steps,
+      work.rejected_by_error, work.rejected_by_newton,
+      shortest_in_words(work.smallest_step, work.smallest_step_at,
+                        work.smallest_step_cause));
+  const Exchanges& exchanges = run.exchanges;
+  if (exchanges.accepted + exchanges.rejected == 0) return words;
+  return words + fmt::format("; {} exchanges between strands, {} rejected{}",
+                             exchanges.accepted, exchanges.rejected,
+                             shortest_in_words(exchanges.shortest.h,
+                                               exchanges.shortest.at,
+                                               exchanges.shortest.cause));
 }
 
 const Experiment experiment{.name = "simulate",
@@ -146,7 +156,7 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   row.set("simulated_s", run.simulated_s).set("wall_s", run.wall_s);
   row.set("rejected_steps", run.rejected);
   const std::string control =
-      scene.options.tolerance > 0 ? control_in_words(run.work)
+      scene.options.tolerance > 0 ? control_in_words(run)
       : run.rejected > 0
           ? fmt::format("; {} steps tried again with shorter ones", run.rejected)
           : "";
