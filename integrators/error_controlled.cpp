@@ -11,12 +11,6 @@
 namespace tress::integrators {
 namespace {
 
-constexpr double safety = 0.9;
-constexpr double least_factor = 0.2, most_factor = 5;
-// A step within these factors of the one wanted is left alone.
-constexpr double dead_from = 0.95, dead_to = 1.2;
-// After a failed Newton iteration.
-constexpr double newton_factor = 0.25, newton_ceiling = 0.5, ceiling_growth = 1.05;
 // A step this much shorter than one whose polynomial failed may have a good one: its
 // error falls by 0.7^6 = 0.12.
 constexpr double polynomial_factor = 0.7;
@@ -29,8 +23,6 @@ constexpr double more_stretch = 2, least_stretch = 1e-9;
 constexpr double first_part = 0.1;
 // Steps below this part of that time are lost in rounding.
 constexpr double shortest_part = 1e-11;
-
-constexpr std::string_view by_start = "start", by_error = "error", by_newton = "newton";
 
 std::string text(double x) {
   char digits[32];
@@ -47,6 +39,7 @@ ErrorControlled::ErrorControlled(System& system, const Options& options, int pow
       norm_(dynamics_),
       power_(power),
       threshold_(threshold),
+      control_(power),
       q_(static_cast<std::size_t>(dynamics_.n())),
       v_(q_),
       begin_(q_.size(), static_cast<std::size_t>(dynamics_.m())),
@@ -75,123 +68,109 @@ Status ErrorControlled::start(double t, In q, In v) {
   std::ranges::copy(v, v_.begin());
   begin_.q = q_;
   begin_.v = v_;
-  ahead_ = rejected_ = false;
-  ceiling_ = fails_from_ = std::numeric_limits<double>::infinity();
+  ahead_ = false;
+  fails_from_ = std::numeric_limits<double>::infinity();
   failure_.clear();
   limit_ = Limit::none;
   dynamics_.begin();
   norm_.start(t, q);
-  h_ = std::max(options_.min_step,
-                first_part * norm_.typical_time() * std::pow(threshold_, 1 / power_));
-  cause_ = by_start;
+  const double time = norm_.typical_time();
+  control_.start(first_part * time * std::pow(threshold_, 1 / power_),
+                 std::max(options_.min_step, shortest_part * time));
   const Status s = restart();
   return s == Status::ok ? s : fail(s, "no acceleration at the initial state");
 }
 
 Status ErrorControlled::restart() {
-  before_ = 1;
+  stale_ = false;
+  forget_steps();
+  control_.forget();
   return dynamics_.accelerate(begin_.t, begin_.q, begin_.v, begin_.a, begin_.lambda);
 }
 
-ErrorControlled::Trial ErrorControlled::trial(double t_end) {
-  double h = std::min(h_, ceiling_);
-  if (options_.max_step > 0) h = std::min(h, options_.max_step);
-  const double to_break = dynamics_.system().next_breakpoint(begin_.t) - begin_.t;
-  const bool ends = h > polynomial_factor * fails_from_;
-  const double left = ends ? std::min(to_break, t_end - begin_.t) : to_break;
-  // 1e-9: no sliver is left by rounding.
-  if (h > (1 - 1e-9) * left) return {left, left < h_, left == to_break};
-  if (2 * h > left) h = left / 2;  // nor by a step that ends shortly before
-  return {h, h < h_, false};
+void ErrorControlled::mark() { mark_ = {t_, q_, v_, control_, dynamics_.stats.steps}; }
+
+void ErrorControlled::rewind() {
+  t_ = begin_.t = mark_->t;
+  q_ = begin_.q = mark_->q;
+  v_ = begin_.v = mark_->v;
+  control_ = mark_->control;
+  dynamics_.stats.steps = mark_->steps;
+  ahead_ = false;
+  stale_ = true;
+  failure_.clear();
+  limit_ = Limit::none;
 }
 
 Status ErrorControlled::next_step(double t_end) {
+  if (stale_) {
+    const Status s = restart();
+    if (s != Status::ok) return fail(s, "restart after an event failed");
+  }
+  const double longest =
+      options_.max_step > 0 ? options_.max_step : std::numeric_limits<double>::infinity();
   for (;;) {
-    const Trial now = trial(t_end);
-    end_.t = begin_.t + now.h;
+    const double breaks = dynamics_.system().next_breakpoint(begin_.t);
+    double stop = breaks;
+    StepControl::Trial now = control_.next(stop - begin_.t, longest);
+    if (now.h > polynomial_factor * fails_from_) {
+      stop = std::min(breaks, t_end);
+      now = control_.next(stop - begin_.t, longest);
+    }
+    end_.t = now.whole ? stop : begin_.t + now.h;
     const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
     if (s == Status::retry) {
-      if (const Status r = unsolved(now.h); r != Status::ok) return r;
+      if (const Status r = unsolved(now); r != Status::ok) return r;
       continue;
     }
     const double error =
         norm_.of(end_.t, end_.q, end_.v, error_q_, error_v_) / threshold_;
     if (!(error <= 1)) {
       ++dynamics_.stats.rejected_by_error;
-      const double factor = safety * std::pow(error, -1 / power_);
-      if (const Status r =
-              shorten(std::clamp(factor, least_factor, safety) * now.h, by_error);
-          r != Status::ok) {
-        return r;
-      }
+      control_.reject(now, error);
+      const Status r = shortened("the error of the " + norm_.where());
+      if (r != Status::ok) return r;
       continue;
     }
     if (projection_ && projection_->project(end_.t, end_.q, end_.v) != Status::ok) {
-      if (const Status r = unsolved(now.h); r != Status::ok) return r;
+      if (const Status r = unsolved(now); r != Status::ok) return r;
       continue;
     }
-    at_break_ = now.at_break;
+    at_break_ = now.whole && stop == breaks;
     ahead_ = true;
-    ++dynamics_.stats.steps;
     dynamics_.forget();
+    control_.accept(now, error, begin_.t);
     Stats& done = dynamics_.stats;
-    if (!now.cut && (done.smallest_step == 0 || now.h < done.smallest_step)) {
-      done.smallest_step = now.h;
-      done.smallest_step_at = begin_.t;
-      done.smallest_step_cause = cause_;
-    }
-    adapt(now, error);
+    ++done.steps;
+    done.smallest_step = control_.shortest().h;
+    done.smallest_step_at = control_.shortest().at;
+    done.smallest_step_cause = control_.shortest().cause;
     return Status::ok;
   }
 }
 
-Status ErrorControlled::unsolved(double h) {
+Status ErrorControlled::unsolved(const StepControl::Trial& failed) {
   ++dynamics_.stats.rejected_by_newton;
-  ceiling_ = newton_ceiling * h;
-  return shorten(newton_factor * h, by_newton);
+  control_.unsolved(failed, "newton");
+  return shortened("Newton's iteration does not converge");
 }
 
-Status ErrorControlled::shorten(double h, std::string_view cause) {
+Status ErrorControlled::shortened(const std::string& reason) {
   ++dynamics_.stats.rejected;
-  rejected_ = true;
-  h_ = h;
-  cause_ = cause;
-  const double least = std::max(options_.min_step, shortest_part * norm_.typical_time());
-  if (h >= least) return Status::ok;
-  return fail(Status::fatal,
-              "tolerance " + text(options_.tolerance) + " needs a step below " +
-                  text(least) + " s" +
-                  (cause == by_newton ? ", for Newton's iteration does not converge"
-                                      : ", for the error of the " + norm_.where()));
+  if (!control_.too_short()) return Status::ok;
+  return fail(Status::fatal, "tolerance " + text(options_.tolerance) +
+                                 " needs a step below " + text(control_.least()) +
+                                 " s, for " + reason);
 }
 
-void ErrorControlled::adapt(const Trial& taken, double error) {
-  // 1e-4: an estimate of 0 does not decide about the step after the next.
-  const double now = std::max(error, 1e-4);
-  double factor = safety * std::pow(now, -0.7 / power_) * std::pow(before_, 0.4 / power_);
-  factor = std::clamp(factor, least_factor, rejected_ ? 1 : most_factor);
-  if (factor >= dead_from && factor <= dead_to) factor = 1;
-  // A step that was cut says nothing against the length that the control had chosen.
-  const double wanted = factor * taken.h;
-  if (wanted < taken.h) cause_ = by_error;
-  h_ = taken.cut ? std::max(h_, wanted) : wanted;
-  h_ = std::max(h_, options_.min_step);  // unless that is rejected
-  before_ = now;
-  rejected_ = false;
-  ceiling_ *= ceiling_growth;
-}
-
-Status ErrorControlled::accept_end() {
+void ErrorControlled::accept_end() {
   std::swap(begin_, end_);
   ahead_ = false;
   t_ = begin_.t;
-  const bool changed = dynamics_.system().accept(t_, begin_.q, begin_.v);
+  stale_ = dynamics_.system().accept(t_, begin_.q, begin_.v) || at_break_;
   q_ = begin_.q;
   v_ = begin_.v;
-  if (!changed && !at_break_) return Status::ok;
-  const Status s = restart();
-  return s == Status::ok ? s : fail(s, "restart after an event failed");
 }
 
 /// The quintic with the values, slopes and curvatures of both ends, and its slope.
@@ -257,8 +236,8 @@ Status ErrorControlled::advance(double t_end, const Observer& each_step) {
         give_back();
         continue;
       }
-    } else if (const Status s = accept_end(); s != Status::ok) {
-      return s;
+    } else {
+      accept_end();
     }
     if (!seen()) return end_run(Status::fatal, "stopped");
   }

@@ -9,6 +9,8 @@
 #include "integrators/error_norm.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "integrators/rewindable.h"
+#include "integrators/step_control.h"
 
 namespace tress::integrators {
 
@@ -21,14 +23,11 @@ namespace tress::integrators {
 /// It is projected onto the constraints where the method projects. The polynomial does
 /// not keep lengths that a stiff strand keeps: where it stretches the strand, the step is
 /// repeated to end there, and so do the next ones of that length (fails_from_).
-/// The system must not be changed from outside between two calls of advance().
+/// The system must not be changed from outside between two calls of advance(), except
+/// before rewind().
 ///
-/// Step control: PI with gains 0.7/k and 0.4/k for an estimate that falls as h^k
-/// [Gustafsson 1991, ACM TOMS 17, 533], a dead band that leaves the step alone, and no
-/// growth after a rejection. A failed Newton iteration also sets a ceiling, which rises
-/// slowly: the estimate does not see what Newton stumbles over, and steps would grow into
-/// it again and again.
-class ErrorControlled : public Integrator {
+/// Step control: StepControl; where Newton's iteration fails there is no solution.
+class ErrorControlled : public Integrator, public Rewindable {
  public:
   Status start(double t, In q, In v) final;
   Status advance(double t_end, const Observer& each_step = {}) final;
@@ -38,6 +37,8 @@ class ErrorControlled : public Integrator {
   Stats stats() const final { return dynamics_.stats; }
   std::string failure() const final { return failure_; }
   Limit limit() const final { return limit_; }
+  void mark() final;
+  void rewind() final;
 
  protected:
   /// The estimate falls as h^`power` and shall be at most `threshold` in a step.
@@ -53,6 +54,8 @@ class ErrorControlled : public Integrator {
   /// From `from` over h to `to`, with the estimated errors of its q and v.
   virtual Status try_step(const State& from, double h, State& to, Out error_q,
                           Out error_v) = 0;
+  /// The next step does not go on from the last one: nothing may be guessed from it.
+  virtual void forget_steps() = 0;
 
   Dynamics& dynamics() { return dynamics_; }
 
@@ -65,18 +68,11 @@ class ErrorControlled : public Integrator {
   /// Finds the next step: end_. A step as long as those whose polynomial failed ends at
   /// `t_end` at the latest.
   Status next_step(double t_end);
-  struct Trial {
-    double h;
-    bool cut;  // shorter than what the control asked for
-    bool at_break;
-  };
-  Trial trial(double t_end);
-  void adapt(const Trial& taken, double error);
-  /// After Newton's iteration failed for a step of h, in a stage or in the projection.
-  Status unsolved(double h);
-  /// Goes on with a step of h; fails where that is too short.
-  Status shorten(double h, std::string_view cause);
-  Status accept_end();
+  /// After Newton's iteration failed, in a stage or in the projection.
+  Status unsolved(const StepControl::Trial& failed);
+  /// Fails where the next step is too short after a rejection for `reason`.
+  Status shortened(const std::string& reason);
+  void accept_end();
   void interpolate(double t);
   /// The state at t_end inside the step; false: the polynomial failed there.
   bool read(double t_end);
@@ -88,18 +84,23 @@ class ErrorControlled : public Integrator {
   ErrorNorm norm_;
   std::optional<Projection> projection_;
   double power_, threshold_;
+  StepControl control_;
   double t_ = 0;
   std::vector<double> q_, v_;  // at t_
   State begin_, end_;          // of the step around t_
   bool ahead_ = false;         // end_ is beyond t_ and not accepted yet
   bool at_break_ = false;      // end_ is where the equations are not smooth
+  bool stale_ = false;         // begin_.a is of equations that do not hold any more
+  double fails_from_ = 0;      // length of the last step whose polynomial failed
   std::vector<double> error_q_, error_v_;
-  double h_ = 0;            // of the next step
-  double ceiling_ = 0;      // for it
-  double fails_from_ = 0;   // length of the last step whose polynomial failed
-  double before_ = 1;       // estimate of the step before, over the threshold
-  bool rejected_ = false;   // the last trial
-  std::string_view cause_;  // of h_
+  /// What rewind() goes back to.
+  struct Mark {
+    double t;
+    std::vector<double> q, v;
+    StepControl control;
+    long steps;
+  };
+  std::optional<Mark> mark_;
   std::string failure_ = "not started";
   Limit limit_ = Limit::none;
 };

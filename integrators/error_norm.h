@@ -1,22 +1,21 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
+#include "integrators/point_norm.h"
 
 namespace tress::integrators {
 
-/// Size of an error as a viewer of the strand sees it: the largest over its material
-/// points of |dx|/L and |du| sqrt(L/g)/L, L the longest way along the body and g = 9.81
-/// m/s^2. Coordinates alone miss energy, and generalised velocities count twist that
-/// moves nothing. But frames that move no point must not leave their solution unseen:
-/// coordinates over System::scale count too, a fifteenth of them. (Seven strand models in
-/// hard cases by tr_bdf2 at 1e-3: 325 of 259 625 steps were above that by a quarter or
-/// more; where elements of corde and xpbd_cosserat turned over, which released a hundred
-/// times the energy of the fall, they were 1.3 to 4.6 times as large.) A body without
-/// length is measured by its coordinates and velocities alone.
+/// Size of an error of coordinates and velocities by the material points that it moves
+/// (PointNorm). Coordinates alone miss energy, and generalised velocities count twist
+/// that moves nothing. But frames that move no point must not leave their solution
+/// unseen: coordinates over System::scale count too, a fifteenth of them. (Seven strand
+/// models in hard cases by tr_bdf2 at 1e-3: 325 of 259 625 steps were above that by a
+/// quarter or more; where elements of corde and xpbd_cosserat turned over, which released
+/// a hundred times the energy of the fall, they were 1.3 to 4.6 times as large.) A body
+/// without length is measured by its coordinates and velocities alone.
 class ErrorNorm {
  public:
   explicit ErrorNorm(Dynamics& dynamics);
@@ -33,16 +32,13 @@ class ErrorNorm {
   double typical_time() const { return time_; }
 
  private:
-  void look(const std::vector<double>& x, const std::vector<double>& shifted,
-            double factor, std::string_view what);
+  enum class From { points, coordinates, velocities };
 
   Dynamics& dynamics_;
   MaterialPoints* points_;
-  double length_ = 0;  // m, 0: measured by coordinates
+  PointNorm norm_;
   double time_ = 0;
-  double value_ = 0;
-  std::size_t point_ = 0;
-  std::string_view what_ = "position";
+  From from_ = From::points;  // of the last value
   std::vector<double> x_, shifted_x_, u_, shifted_u_, q_, v_;
 };
 

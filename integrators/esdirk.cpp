@@ -67,6 +67,7 @@ class ControlledEsdirk final : public ErrorControlled {
     stages_.difference(h, error_q, error_v);
     return s;
   }
+  void forget_steps() override { stages_.forget(); }
 
   EsdirkStages stages_;
 };

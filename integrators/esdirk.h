@@ -47,6 +47,9 @@ class EsdirkStages {
   /// From (q, v) at t with its acceleration a and multipliers over h.
   Status step(double t, double h, In q, In v, In a, In lambda) noexcept;
 
+  /// The next step does not guess from the last one.
+  void forget() { h_ = 0; }
+
   // The end of the last step.
   In q() const { return stage_.q(); }
   In v() const { return v_[last()]; }

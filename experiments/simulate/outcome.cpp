@@ -21,6 +21,10 @@ constexpr Column outcome_columns_[] = {
     {"smallest_step_s", "the shortest step that error control chose"},
     {"smallest_step_at_s", "when it did"},
     {"smallest_step_cause", "why: start, error or newton"},
+    {"exchanges",
+     "intervals between exchanges of strands that touch, where error control "
+     "chose them"},
+    {"rejected_exchanges", "intervals that were too long"},
     {"residuals", "residual or acceleration evaluations"},
     {"linearizations", "matrices built and factored"},
     {"solves", "linear solves"},
@@ -77,6 +81,10 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("smallest_step_at_s", work.smallest_step_at);
     row.set("smallest_step_cause", work.smallest_step_cause);
   }
+  if (run.exchanges.accepted + run.exchanges.rejected > 0) {
+    row.set("exchanges", run.exchanges.accepted);
+    row.set("rejected_exchanges", run.exchanges.rejected);
+  }
   row.set("residuals", work.residuals).set("linearizations", work.linearizations);
   row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
   row.set("wall_s", run.wall_s);
@@ -104,6 +112,15 @@ void set_errors(std::string_view part, const ErrorBar& bar, Row& row) {
   if (worst.parts) row.set(column("horizon_s"), *worst.parts);
 }
 
+namespace {
+
+std::string shortest_in_words(double h, double at, std::string_view cause) {
+  if (h == 0) return {};
+  return fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", h, at, cause);
+}
+
+}  // namespace
+
 std::string control_in_words(const Scene& scene, const SceneRun& run) {
   const Stats& work = run.work;
   if (scene.options.tolerance == 0) {
@@ -112,13 +129,17 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
                : fmt::format("; {} steps tried again with shorter ones", run.rejected);
   }
   std::string words =
-      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration",
-                  work.steps, work.rejected_by_error, work.rejected_by_newton);
-  if (work.smallest_step > 0) {
-    words += fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", work.smallest_step,
-                         work.smallest_step_at, work.smallest_step_cause);
-  }
-  return words;
+      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration{}",
+                  work.steps, work.rejected_by_error, work.rejected_by_newton,
+                  shortest_in_words(work.smallest_step, work.smallest_step_at,
+                                    work.smallest_step_cause));
+  const Exchanges& exchanges = run.exchanges;
+  if (exchanges.accepted + exchanges.rejected == 0) return words;
+  return words +
+         fmt::format("; {} exchanges between strands, {} rejected{}", exchanges.accepted,
+                     exchanges.rejected,
+                     shortest_in_words(exchanges.shortest.h, exchanges.shortest.at,
+                                       exchanges.shortest.cause));
 }
 
 std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene) {

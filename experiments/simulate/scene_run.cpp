@@ -122,11 +122,13 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
       recording.save(snapshot);
     }
     add_work(world->stats(), run.work);
+    add_exchanges(world->exchanges(), run.exchanges);
     world = std::make_unique<World>(scene, options.threads);
     world->restore(snapshot);
     readout.restart();
   }
   add_work(world->stats(), run.work);
+  add_exchanges(world->exchanges(), run.exchanges);
   run.frames = recording.frames().size();
   for (const Frame3d& frame : recording.frames()) {
     run.rejected += static_cast<long>(frame.series.back());

@@ -5,6 +5,7 @@
 #include "experiments/run/command_line.h"
 #include "experiments/run/interruption.h"
 #include "simulation/files/run_key.h"
+#include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::experiments::scene_runs {
@@ -28,6 +29,7 @@ struct SceneRun {
   double wall_s, simulated_s;
   double indicator = 0;  // largest World::error_indicator
   Stats work = {};       // since this run began or was resumed
+  Exchanges exchanges = {};
 };
 
 /// Runs a scene and writes series, pictures, and during the run the states from which a

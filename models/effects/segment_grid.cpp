@@ -31,9 +31,9 @@ SegmentGrid::SegmentGrid(std::span<const int> points, double reach) : reach_(rea
   start_.assign(buckets + 2, 0);
 }
 
-bool SegmentGrid::stands(In x) const noexcept {
-  if (filled_.size() != x.size()) return false;
-  const double most = margin * reach_ * margin * reach_;
+bool SegmentGrid::stands(In x, double range) const noexcept {
+  if (filled_.size() != x.size() || !(range <= room_)) return false;
+  const double most = (room_ - range) * (room_ - range);
   for (std::size_t i = 0; i < x.size(); i += 3) {
     const Vec moved = load3(&x[i]) - load3(&filled_[i]);
     if (!(dot(moved, moved) <= most)) return false;
@@ -41,22 +41,23 @@ bool SegmentGrid::stands(In x) const noexcept {
   return true;
 }
 
-void SegmentGrid::update(In x) {
+void SegmentGrid::update(In x, double range) {
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const auto from = 3 * static_cast<std::size_t>(point(static_cast<int>(i)));
     pieces_[i] = {load3(&x[from]), load3(&x[from + 3])};
   }
-  if (!stands(x)) fill(x);
+  if (!stands(x, range)) fill(x, range);
 }
 
-void SegmentGrid::fill(In x) {
+void SegmentGrid::fill(In x, double range) {
   ++fillings_;
+  room_ = margin * reach_ + range;
   filled_.assign(x.begin(), x.end());
   double square = 0;
   for (const StraightPiece& piece : pieces_) {
     square = std::max(square, dot(piece.edge, piece.edge));
   }
-  const double wide = (1 + margin) * reach_;
+  const double wide = reach_ + room_;
   cell_ = std::max(coarse * wide, std::min(std::sqrt(square), 1e100) / longest);
   inverse_cell_ = 1 / cell_;
 
@@ -79,7 +80,7 @@ void SegmentGrid::fill(In x) {
 /// Marks cells whose centre is near enough for a point within reach; long pieces in
 /// parts, because a box about a long slanted piece is mostly empty.
 void SegmentGrid::mark(const StraightPiece& piece, int segment) {
-  const double wide = (1 + margin) * reach_;
+  const double wide = reach_ + room_;
   // Half a cell's diagonal, and rounding where cells are far larger than the reach.
   const double near_enough = wide + (1 + 1e-12) * std::sqrt(0.75) * cell_;
   const double length = std::sqrt(dot(piece.edge, piece.edge));

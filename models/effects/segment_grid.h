@@ -14,15 +14,16 @@ namespace tress::models {
 /// uniform grid with its cells in a hash table [Teschner et al. 2003]; a segment is
 /// listed in every cell that it can come within `reach` of. Temporal coherence [Bertails
 /// et al. 2006, section 4.1]: the cells include a margin of half the reach and remain
-/// valid until some point has moved that far since they were filled. Memory and filling
-/// are O(segments) for segments of similar length.
+/// valid until some point may have moved that far since they were filled. Memory and
+/// filling are O(segments) for segments of similar length.
 class SegmentGrid {
  public:
   /// points[k] >= 2: number of points of polyline k; reach > 0, m.
   SegmentGrid(std::span<const int> points, double reach);
 
-  /// Takes the positions of all points (3 each), polyline after polyline.
-  void update(In x);
+  /// Takes the positions of all points (3 each), polyline after polyline. near() also
+  /// holds while points are up to `range` (m) away from them; piece() does not follow.
+  void update(In x, double range = 0);
 
   std::size_t segments() const { return pieces_.size(); }
   const StraightPiece& piece(int segment) const {
@@ -63,14 +64,15 @@ class SegmentGrid {
                             static_cast<std::uint64_t>(c.y) * 0xC2B2AE3D27D4EB4Fu;
     return (static_cast<unsigned>(h >> 32) + static_cast<unsigned>(c.z)) & mask_;
   }
-  bool stands(In x) const noexcept;
-  void fill(In x);
+  bool stands(In x, double range) const noexcept;
+  void fill(In x, double range);
   void mark(const StraightPiece& piece, int segment);
 
   double reach_;
   std::vector<int> polyline_;          // of each segment
   std::vector<StraightPiece> pieces_;  // at the current positions
   std::vector<double> filled_;         // positions when the cells were filled
+  double room_ = 0;                    // how far points may be from there, m
   double cell_ = 0, inverse_cell_ = 0;
   unsigned mask_ = 0;  // number of buckets (a power of two) - 1
   std::vector<Mark> marks_;

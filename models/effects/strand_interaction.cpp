@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "models/effects/nearest_pieces.h"
 
 namespace tress::models {
 namespace {
@@ -30,7 +31,8 @@ std::span<const Parameter> strand_interaction_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "coupling",
-         .help = "lagged: a strand meets the others as they were after the last step; "
+         .help = "lagged: a strand meets the others as they were after the last step, "
+                 "with a tolerance as they move between two exchanges; "
                  "monolithic: as they are, all strands solved for at once",
          .choices = "lagged|monolithic"}};
     const std::span<const Parameter> law = contact_parameters();
@@ -48,42 +50,36 @@ StrandInteraction::StrandInteraction(const ContactLaw& law, std::vector<int> poi
     : law_(law), grid_(checked(points), law.reach()), points_(std::move(points)) {}
 
 void StrandInteraction::update(In x, In v) {
+  motion_.hold(x, v);
+  move(0, 0, x);
+}
+
+void StrandInteraction::extrapolate(double t, double end, In x, In v) {
+  motion_.extrapolate(t, x, v);
+  move(t, end, x);
+}
+
+void StrandInteraction::interpolate(double t, double end, In x, In v, In y, In w) {
+  motion_.interpolate(t, end, x, v, y, w);
+  move(t, end, x);
+}
+
+void StrandInteraction::move(double t, double end, In x) {
   x_.assign(x.begin(), x.end());
-  v_.assign(v.begin(), v.end());
-  grid_.update(x);
+  end_ = end;
+  grid_.update(x, end > t ? motion_.range(end - t) : 0);
   ++updates_;
 }
 
-Vec StrandInteraction::velocity(int segment, double s) const {
-  const double* v = &v_[3 * static_cast<std::size_t>(grid_.point(segment))];
-  return (1 - s) * load3(v) + s * load3(v + 3);
+StraightPiece StrandInteraction::piece(int segment, double elapsed) const {
+  const auto point = static_cast<std::size_t>(grid_.point(segment));
+  return {motion_.place(point, elapsed), motion_.place(point + 1, elapsed)};
 }
 
-/// Calls of_contact for every strand but this within reach of x, in their order.
-template <class F>
-void StrandInteraction::each_contact(const SegmentGrid& grid, double reach, int strand,
-                                     const Vec& x, F of_contact) const {
-  const std::span<const SegmentGrid::Entry> near = grid.near(x);
-  const double far = reach * reach;
-  for (std::size_t k = 0; k < near.size();) {
-    const int other = near[k].polyline;
-    if (other == strand) {
-      ++k;
-      continue;
-    }
-    Contact nearest{};
-    double least = far;
-    for (; k < near.size() && near[k].polyline == other; ++k) {
-      const StraightPiece& piece = grid.piece(near[k].segment);
-      const double s = piece.nearest(x);
-      const Vec gap = x - piece.at(s);
-      const double square = dot(gap, gap);
-      if (!(square < least)) continue;
-      least = square;
-      nearest = {near[k].segment, s, gap};
-    }
-    if (least < far) of_contact(nearest);
-  }
+Vec StrandInteraction::velocity(int segment, double s, double elapsed) const {
+  const auto point = static_cast<std::size_t>(grid_.point(segment));
+  return (1 - s) * motion_.velocity(point, elapsed) +
+         s * motion_.velocity(point + 1, elapsed);
 }
 
 class StrandInteraction::OnStrand final : public Effect {
@@ -95,23 +91,25 @@ class StrandInteraction::OnStrand final : public Effect {
     return {.position = true, .velocity = true, .derivatives = true};
   }
 
-  void add_load(double, const Points& p, InOut f) const noexcept override {
-    each_loaded(p, [&](std::size_t i, const Vec& force) {
+  void add_load(double t, const Points& p, InOut f) const noexcept override {
+    each_loaded(t, p, [&](std::size_t i, const Vec& force) {
       store3(load3(&f[3 * i]) + force, &f[3 * i]);
     });
   }
 
-  void add_derivatives(double, const Points& p, double pos, double vel,
+  void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override {
-    each_contact(p, [&](std::size_t i, const Contact& c) {
-      const StraightPiece& piece = all_.grid_.piece(c.segment);
+    const double elapsed = all_.motion_.elapsed(t);
+    each_contact(elapsed, p, [&](std::size_t i, const NearestPiece& c) {
+      const StraightPiece piece = all_.piece(c.segment, elapsed);
       const Vec v = load3(&p.v[3 * i]);
       const ContactLaw::Slopes slope =
-          all_.law_.slopes(c.gap, v - all_.velocity(c.segment, c.s));
+          all_.law_.slopes(c.gap, v - all_.velocity(c.segment, c.s, elapsed));
       // Between the ends of a segment its nearest point follows x: ds/dx = `along`.
       const bool inside = c.s > 0 && c.s < 1;
       const Vec along = inside ? piece.inverse * piece.edge : Vec{};
-      const Vec faster = all_.velocity(c.segment, 1) - all_.velocity(c.segment, 0);
+      const Vec faster =
+          all_.velocity(c.segment, 1, elapsed) - all_.velocity(c.segment, 0, elapsed);
       const double sliding[] = {faster.x, faster.y, faster.z};
       for (std::size_t row = 0; row < 3; ++row) {
         double* block = &blocks[9 * i + 3 * row];
@@ -125,10 +123,13 @@ class StrandInteraction::OnStrand final : public Effect {
   }
 
   double potential(double, const Points&) const noexcept override { return 0; }
+  double next_breakpoint(double t) const noexcept override {
+    return t < all_.end_ ? all_.end_ : std::numeric_limits<double>::infinity();
+  }
 
-  double power(double, const Points& p) const noexcept override {
+  double power(double t, const Points& p) const noexcept override {
     double sum = 0;
-    each_loaded(p, [&](std::size_t i, const Vec& force) {
+    each_loaded(t, p, [&](std::size_t i, const Vec& force) {
       sum += dot(force, load3(&p.v[3 * i]));
     });
     return sum;
@@ -136,37 +137,54 @@ class StrandInteraction::OnStrand final : public Effect {
 
  private:
   template <class F>
-  void each_contact(const Points& p, F of_contact) const noexcept {
-    find(p);
+  void each_contact(double elapsed, const Points& p, F of_contact) const noexcept {
+    find(elapsed, p);
     for (const auto& [i, c] : found_) of_contact(i, c);
   }
 
   /// Sets found_ for the current points. A step needs load and derivatives at the same
   /// positions, and the search dominates the cost of both.
-  void find(const Points& p) const {
-    if (found_after_ == all_.updates_ && std::ranges::equal(p.x, found_at_)) return;
+  void find(double elapsed, const Points& p) const {
+    if (found_after_ == all_.updates_ && elapsed == found_when_ &&
+        std::ranges::equal(p.x, found_at_)) {
+      return;
+    }
     found_.clear();
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      if (p.length[i] == 0) continue;
-      all_.each_contact(all_.grid_, all_.law_.reach(), strand_, load3(&p.x[3 * i]),
-                        [&](const Contact& c) { found_.emplace_back(i, c); });
+    if (elapsed == 0) {
+      search(p, [&](int segment) -> const StraightPiece& {
+        return all_.grid_.piece(segment);
+      });
+    } else {
+      search(p, [&](int segment) { return all_.piece(segment, elapsed); });
     }
     found_at_.assign(p.x.begin(), p.x.end());
+    found_when_ = elapsed;
     found_after_ = all_.updates_;
   }
 
+  template <class Pieces>
+  void search(const Points& p, const Pieces& piece_of) const {
+    for (std::size_t i = 0; i < p.length.size(); ++i) {
+      if (p.length[i] == 0) continue;
+      each_nearest(all_.grid_, piece_of, all_.law_.reach(), strand_, load3(&p.x[3 * i]),
+                   [&](const NearestPiece& c) { found_.emplace_back(i, c); });
+    }
+  }
+
   template <class F>
-  void each_loaded(const Points& p, F of_force) const noexcept {
-    each_contact(p, [&](std::size_t i, const Contact& c) {
-      const Vec u = load3(&p.v[3 * i]) - all_.velocity(c.segment, c.s);
+  void each_loaded(double t, const Points& p, F of_force) const noexcept {
+    const double elapsed = all_.motion_.elapsed(t);
+    each_contact(elapsed, p, [&](std::size_t i, const NearestPiece& c) {
+      const Vec u = load3(&p.v[3 * i]) - all_.velocity(c.segment, c.s, elapsed);
       of_force(i, p.length[i] * all_.law_.force(c.gap, u));
     });
   }
 
   const StrandInteraction& all_;
   int strand_;
-  mutable std::vector<std::pair<std::size_t, Contact>> found_;
+  mutable std::vector<std::pair<std::size_t, NearestPiece>> found_;
   mutable std::vector<double> found_at_;
+  mutable double found_when_ = 0;
   mutable long found_after_ = -1;
 };
 
@@ -190,7 +208,7 @@ void StrandInteraction::each_sample(F of_sample) const {
 long StrandInteraction::touching_pairs() const {
   std::set<std::pair<int, int>> pairs;
   each_sample([&](int strand, const Vec& x, double) {
-    each_contact(grid_, law_.inner(), strand, x, [&](const Contact& c) {
+    each_nearest(grid_, law_.inner(), strand, x, [&](const NearestPiece& c) {
       pairs.insert(std::minmax(strand, grid_.polyline(c.segment)));
     });
   });
@@ -218,8 +236,9 @@ double StrandInteraction::mean_distance() const {
     still.clear();
     for (const Sample& sample : open) {
       double least = reach * reach;
-      each_contact(grid, reach, sample.strand, sample.x,
-                   [&](const Contact& c) { least = std::min(least, dot(c.gap, c.gap)); });
+      each_nearest(grid, reach, sample.strand, sample.x, [&](const NearestPiece& c) {
+        least = std::min(least, dot(c.gap, c.gap));
+      });
       if (least < reach * reach) {
         sum += sample.length * std::sqrt(least);
       } else {

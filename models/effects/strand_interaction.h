@@ -7,6 +7,7 @@
 #include "contract/parameters.h"
 #include "models/effects/contact_law.h"
 #include "models/effects/effect.h"
+#include "models/effects/point_motion.h"
 #include "models/effects/segment_grid.h"
 
 namespace tress::models {
@@ -16,11 +17,12 @@ std::span<const Parameter> strand_interaction_parameters();
 
 /// Many strands, each a separate System, that repel and drag each other (ContactLaw). The
 /// effect of a strand pushes its points, each by the force per length times the length it
-/// carries, away from the polylines of all other strands' material points *as they were
-/// after the last step* (lagged partners). It is a pure function between two update()s,
-/// for any caller and thread. Only the nearest point of every other strand counts, even
-/// if a second arc of that strand is near: counting segments, a joint would push twice
-/// and a finer discretisation would push more.
+/// carries, away from the polylines of all other strands' material points, whose motion
+/// is given (lagged partners): after update() they are where they were then, after
+/// extrapolate() they move straight on, after interpolate() to known places. It is a pure
+/// function between two of these, for any caller and thread. Only the nearest point of
+/// every other strand counts, even if a second arc of that strand is near: counting
+/// segments, a joint would push twice and a finer discretisation would push more.
 ///
 /// Derivatives are with respect to the strand's own point; partners are fixed. None of
 /// the load is in potential(); power() counts all of it. Action and reaction differ by
@@ -44,9 +46,16 @@ class StrandInteraction {
   /// At the start and after every step: positions and velocities (3 each) of all strands'
   /// material points, strand after strand.
   void update(In x, In v);
+  /// As above at t, for an interval up to `end` (s) in which the points keep their
+  /// velocities; `end` is a breakpoint of the effects.
+  void extrapolate(double t, double end, In x, In v);
+  /// As above; they move along cubics to y with the velocities w.
+  void interpolate(double t, double end, In x, In v, In y, In w);
+  /// Longest distance (m) at which strands feel each other.
+  double reach() const { return law_.reach(); }
 
-  // Readouts of the strands after update(), too costly for every step. Strands are
-  // sampled at most one inner radius apart (up to 64 samples a segment).
+  // Readouts of the strands where the last call put them, too costly for every step.
+  // Strands are sampled at most one inner radius apart (up to 64 samples a segment).
   /// Number of pairs of strands closer to each other than the inner radius.
   long touching_pairs() const;
   /// Distance from a strand to the nearest other one, mean over the length of all
@@ -58,23 +67,18 @@ class StrandInteraction {
  private:
   class OnStrand;
 
-  /// The nearest point of another strand.
-  struct Contact {
-    int segment;
-    double s;  // position on its segment
-    Vec gap;   // vector from there
-  };
-  template <class F>
-  void each_contact(const SegmentGrid& grid, double reach, int strand, const Vec& x,
-                    F of_contact) const;
-  Vec velocity(int segment, double s) const;
+  StraightPiece piece(int segment, double elapsed) const;
+  Vec velocity(int segment, double s, double elapsed) const;
+  void move(double t, double end, In x);
   template <class F>
   void each_sample(F of_sample) const;
 
   ContactLaw law_;
   SegmentGrid grid_;
   std::vector<int> points_;
-  std::vector<double> x_, v_;
+  std::vector<double> x_;
+  PointMotion motion_;
+  double end_ = 0;  // of the interval
   long updates_ = 0;
 };
 

@@ -184,6 +184,7 @@ void World::ready(const Scene& scene) {
   Snapshot begin;
   for (Body& body : bodies_) {
     body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
+    body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
     const Snapshot::OfStrand all = initial_state_of(*body.system);
     append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
   }
@@ -216,6 +217,7 @@ void World::restore(const Snapshot& snapshot) {
   failure_.clear();
   x_.done = u_.done = false;
   exchange();
+  if (interaction_ && options_.tolerance > 0) start_control();
   for (Body& body : bodies_) {
     if (!body.guard) continue;
     if (guards.empty()) {

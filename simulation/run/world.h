@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "integrators/point_norm.h"
+#include "integrators/rewindable.h"
+#include "integrators/step_control.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/run/crew.h"
@@ -25,6 +28,13 @@ struct Snapshot {
   std::vector<double> guards;  // their Guard::memory(); empty: they start here
 };
 
+/// Exchanges between strands whose intervals error control chose.
+struct Exchanges {
+  long accepted = 0, rejected = 0;
+  StepControl::Shortest shortest;  // interval; its cause may be a strand that failed
+};
+void add_exchanges(const Exchanges& from, Exchanges& to);
+
 /// Adds the work of one part of a run to that of the others.
 void add_work(const Stats& from, Stats& to);
 
@@ -39,9 +49,11 @@ struct Energies {
 ///
 /// Strands that touch exchange their positions between steps (coupling = lagged): during
 /// a step each sees the others at their positions at its start, so strands run on several
-/// threads with the same result. With coupling = monolithic they are one system. Strands
-/// of equal discretisation run four at a time if the model supports it
-/// (ModelEntry::on_strands).
+/// threads with the same result. With a tolerance every strand takes its own steps
+/// between two exchanges, during which it sees the others move as the last pass has found
+/// them; the intervals are under the same error control (world_exchange.cpp). With
+/// coupling = monolithic they are one system. Strands of equal discretisation run four at
+/// a time if the model supports it (ModelEntry::on_strands).
 class World {
  public:
   /// Throws InputError if model, strand and effects are incompatible.
@@ -65,6 +77,8 @@ class World {
   /// Work of all strands since restore(), and its cost as defined by total_work().
   Stats stats() const;
   double work() const;
+  /// Since restore(); none where exchanges follow the step.
+  const Exchanges& exchanges() const { return exchanges_; }
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
@@ -104,6 +118,16 @@ class World {
     double indicator = 0;
     int shortened = 0;     // steps divided into shorter ones since restore()
     bool gave_up = false;  // shorter steps did not help
+    // Where exchanges are under error control: the start of the interval.
+    Rewindable* rewindable = nullptr;
+    Snapshot::OfStrand marked;
+    double marked_t = 0;
+    Guard::Memory marked_guard{};
+    PointNorm norm;
+    void mark();
+    void rewind();
+    /// Its points among those of all strands.
+    In part(In all) const { return all.subspan(3 * first_point, 3 * points); }
 
     bool breached() const { return guard && guard->breach(); }
     void keep(double at, In new_q, In new_v);
@@ -119,6 +143,7 @@ class World {
   void ready(const Scene& scene);
   void advance(Body& body, double t, bool last);
   Status shorter_steps(Body& body, double end);
+  std::string name_of(const Body& body) const;
   std::string failure_of(const Body& body) const;
   /// Coordinates of all points at the present state.
   struct Read {
@@ -128,10 +153,24 @@ class World {
   void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();
 
+  // With a tolerance, by intervals.
+  struct Difference {
+    double over = 0;  // of the threshold
+    const Body* body = nullptr;
+  };
+  void start_control();
+  Status advance_controlled(double t_end);
+  Status next_interval(double t_end);
+  bool pass(double begin, double end, const std::function<void(Body&)>& run);
+  Difference difference(In y, In w);
+  Status reject(const StepControl::Trial& failed, const Difference* found);
+
   const IntegratorEntry& integrator_;
   Options options_;
   const Effects effects_;  // on each strand
   std::unique_ptr<StrandInteraction> interaction_;
+  std::optional<StepControl> control_;  // of the exchanges, with a tolerance
+  Exchanges exchanges_;
   std::vector<Body> bodies_;
   std::vector<int> points_, before_;
   Read x_, u_;

@@ -45,7 +45,15 @@ void add_work(const Stats& from, Stats& to) {
   to.smallest_step_cause = from.smallest_step_cause;
 }
 
+void add_exchanges(const Exchanges& from, Exchanges& to) {
+  to.accepted += from.accepted;
+  to.rejected += from.rejected;
+  if (from.shortest.h == 0) return;
+  if (to.shortest.h == 0 || from.shortest.h < to.shortest.h) to.shortest = from.shortest;
+}
+
 Status World::advance(double t_end) {
+  if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
   const double count =
@@ -141,13 +149,17 @@ std::string World::failure_of(const Body& body) const {
     return fmt::format("{}: {}; guard = false lets it go on",
                        body.guard->breach()->message(), remedy(integrator_.id, options_));
   }
-  const std::size_t last = body.first + body.coordinates.size() - 1;
   return fmt::format(
-      "strand {}{}: {}{}: {}", body.first,
-      last > body.first ? fmt::format(" to {}", last) : "", body.integrator->failure(),
+      "{}: {}{}: {}", name_of(body), body.integrator->failure(),
       body.gave_up ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
                    : "",
       remedy(integrator_.id, options_, body.integrator->limit()));
+}
+
+std::string World::name_of(const Body& body) const {
+  const std::size_t last = body.first + body.coordinates.size() - 1;
+  return fmt::format("strand {}{}", body.first,
+                     last > body.first ? fmt::format(" to {}", last) : "");
 }
 
 const Breach* World::breach() const {

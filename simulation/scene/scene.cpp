@@ -135,6 +135,10 @@ class Reader {
       if (least) refuse("min_step_s", "does nothing without tolerance");
       return;
     }
+    if (scene_.options.max_step > 0 &&
+        scene_.options.min_step > scene_.options.max_step) {
+      refuse("min_step_s", "is more than max_step_s");
+    }
     if (!entry.adaptive && !entry.error_controlled) {
       refuse("tolerance", fmt::format("is not for {}, which has a fixed step", entry.id));
     }

@@ -69,9 +69,14 @@ void check(const Scene& scene, const ScenePlaces& places) {
   }
   const Parameters* interaction = scene.interaction();
   if (!places.tolerance.empty() && interaction != nullptr &&
-      interaction->word("coupling") != "monolithic") {
-    throw InputError("strands that touch exchange forces every dt_s", places.tolerance,
-                     "give dt_s and no tolerance, or coupling = \"monolithic\"");
+      interaction->word("coupling") != "monolithic" &&
+      !find_integrator(scene.integrator).error_controlled) {
+    throw InputError(
+        fmt::format(
+            "{} cannot repeat an interval between exchanges of strands that touch",
+            scene.integrator),
+        places.tolerance,
+        "use tr_bdf2 or esdirk43, coupling = \"monolithic\", or no tolerance");
   }
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {

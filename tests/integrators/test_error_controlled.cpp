@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"
+#include "integrators/rewindable.h"
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
@@ -99,6 +100,30 @@ TEST_P(ErrorControl, StateWithinStepsHasTheOrderOfTheMethod) {
   }
   EXPECT_NEAR(log_log_slope(steps, errors), GetParam().order, 0.2)
       << errors.front() << " to " << errors.back();
+}
+
+TEST_P(ErrorControl, RepeatsAPartBitForBit) {
+  AnglePendulum pendulum;
+  Drive drive(GetParam().id, pendulum, with(1e-4));
+  ASSERT_EQ(drive.to(0.5), Status::ok);
+  auto& method = dynamic_cast<Rewindable&>(*drive.integrator);
+  method.mark();
+  const double angle = drive.integrator->q()[0];
+  const long before = drive.integrator->stats().steps;
+  double ends[2];
+  Stats done[2];
+  for (const int round : {0, 1}) {
+    method.rewind();
+    EXPECT_EQ(drive.integrator->time(), 0.5);
+    EXPECT_EQ(drive.integrator->q()[0], angle);
+    EXPECT_EQ(drive.integrator->stats().steps, before);
+    ASSERT_EQ(drive.to(2), Status::ok);
+    ends[round] = drive.integrator->q()[0];
+    done[round] = drive.integrator->stats();
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+  EXPECT_EQ(done[0].steps, done[1].steps);
+  EXPECT_GT(done[1].residuals, done[0].residuals);
 }
 
 TEST_P(ErrorControl, ShortensStepsThatNewtonCannotSolve) {

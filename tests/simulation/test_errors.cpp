@@ -97,9 +97,13 @@ const Wrong wrong_scenes[] = {
      strand + "[integrator]\nid = \"tr_bdf2\"\nmin_step_s = 1e-6\n", "5:14",
      "does nothing without tolerance"},
     {"ToleranceOfStrandsThatTouch",
-     strand + "[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\n"
+     strand + "[integrator]\nid = \"ida\"\ntolerance = 1e-3\n"
               "[effects.strand_interaction]\n",
-     "5:13", "exchange forces every dt_s"},
+     "5:13", "ida cannot repeat an interval between exchanges"},
+    {"LeastStepAboveTheLargest",
+     strand + "[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\nmin_step_s = 1e-2\n"
+              "max_step_s = 1e-3\n",
+     "6:14", "min_step_s is more than max_step_s"},
     {"KeyOfAnotherTable", strand + "[model]\nlength_m = 1\n", "4:1", "unknown key"},
     {"OutOfRange", "[strand]\nlength_m = -1\n", "3:12",
      "give a number between 1e-09 and 1e+06: length of the strand (m)"},

@@ -121,6 +121,19 @@ TEST(Simulate, ThePageHasEveryFrameInItsBox) {
   EXPECT_NE(toy.read("out/fall.usda").find("BasisCurves"), std::string::npos);
 }
 
+/// As groom(), each strand by steps of its own and exchanges under control.
+std::string controlled_groom() {
+  std::string scene = groom();
+  const std::string given = "id = \"semi_implicit_euler\"\ndt_s = 0.001";
+  return scene.replace(scene.find(given), given.size(),
+                       "id = \"tr_bdf2\"\ntolerance = 1e-2");
+}
+
+std::string continued(const std::string& which) {
+  if (which == "groom") return groom();
+  return which == "controlled_groom" ? controlled_groom() : falling(which);
+}
+
 class Continued : public testing::TestWithParam<std::string> {};
 
 /// A run through and one that was ended by a signal, then continued, write the same
@@ -129,12 +142,12 @@ TEST_P(Continued, AStoppedRunEndsBitByBitLikeOneThatGoesThrough) {
   for (const int signal : {SIGKILL, SIGINT}) {
     Toy through, stopped;
     for (const Toy* toy : {&through, &stopped}) {
-      toy->write("scene.toml", GetParam() == "groom" ? groom() : falling(GetParam()));
+      toy->write("scene.toml", continued(GetParam()));
     }
     ASSERT_EQ(through.run("scene.toml --out out --progress none").code, 0);
     const pid_t process = stopped.start("scene.toml --out out --progress none");
     ASSERT_TRUE(wait_for(stopped, "out/scene.csv"));
-    if (GetParam() == "groom") {
+    if (GetParam().ends_with("groom")) {
       ASSERT_TRUE(wait_for(stopped, "out/scene.state"));
     }
     kill(process, signal);
@@ -151,7 +164,8 @@ TEST_P(Continued, AStoppedRunEndsBitByBitLikeOneThatGoesThrough) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Continued,
-                         testing::Values("super_helix", "der", "corde", "groom"),
+                         testing::Values("super_helix", "der", "corde", "groom",
+                                         "controlled_groom"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(Simulate, RunsByToleranceAndVerifiesIt) {
@@ -200,6 +214,19 @@ TEST(Simulate, ErrorsAndCountsStandInTheManifestAndBesideTheSeries) {
   // A later run without them leaves no errors of an older one.
   ASSERT_EQ(toy.run("fall.toml --out out --progress none").code, 0);
   EXPECT_FALSE(toy.exists("out/fall.errors.csv"));
+}
+
+TEST(Simulate, TellsOfExchangesThatErrorControlChose) {
+  Toy toy;
+  toy.write("scene.toml", controlled_groom());
+  const Toy::Result run = toy.run("scene.toml --out out --progress none");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto at = run.err.find(" exchanges between strands, ");
+  ASSERT_NE(at, std::string::npos) << run.err;
+  // 100 frames, each the end of an interval, by saved states too.
+  const auto number = run.err.rfind(' ', at - 1) + 1;
+  EXPECT_GE(std::stol(run.err.substr(number)), 100);
+  EXPECT_NE(run.err.find("the shortest ", at), std::string::npos) << run.err;
 }
 
 TEST(Simulate, ThreadsDoNotChangeABit) {

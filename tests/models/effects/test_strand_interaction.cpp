@@ -143,6 +143,50 @@ TEST(StrandInteraction, MeetsEveryOtherStrandOnceWhateverTheGridSaw) {
   EXPECT_LT(interaction.grid().fillings(), 15);
 }
 
+/// Far from where the grid was filled too: partners move by 8 reaches.
+TEST(StrandInteraction, PartnersThatMoveAreMetWhereTheyAreThen) {
+  const Polylines strands(20, 8, 0.05, 0.01, 1, 8);
+  const double begin = 0.5, end = 0.55, t = 0.54;
+  std::vector<double> straight = strands.x, curved = strands.x, late = strands.v,
+                      y = strands.x, w = strands.v;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    // x + v s + a s^2/2 is a cubic, found from its ends.
+    const double a = i % 3 == 0 ? 100 : -50, h = end - begin, s = t - begin;
+    y[i] += h * strands.v[i] + h * h / 2 * a;
+    w[i] += h * a;
+    straight[i] += s * strands.v[i];
+    curved[i] += s * strands.v[i] + s * s / 2 * a;
+    late[i] += s * a;
+  }
+  StrandInteraction moving(law(), strands.points), there(law(), strands.points);
+  const auto compare = [&](const std::vector<double>& x, const std::vector<double>& v) {
+    there.update(x, v);
+    Polylines moved = strands;
+    moved.x = x;
+    moved.v = v;
+    const std::vector<Own> own = carriers(moved);
+    double most = 0;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const auto effect = moving.effect(k);
+      std::vector<double> f(own[k].x.size());
+      effect->add_load(t, own[k].points(), f);
+      const std::vector<double> expected = load(*there.effect(k), own[k]);
+      for (std::size_t i = 0; i < f.size(); ++i) {
+        most = std::max(most, std::abs(expected[i]));
+        // Rounding of places of 1 m, on which the force depends by K and D w'.
+        EXPECT_NEAR(f[i], expected[i], 1e-12 * std::abs(expected[i]) + 1e-17);
+      }
+      EXPECT_EQ(effect->next_breakpoint(t), end);
+      EXPECT_GT(effect->next_breakpoint(end), 1e300);
+    }
+    EXPECT_GT(most, 1e-9);
+  };
+  moving.extrapolate(begin, end, strands.x, strands.v);
+  compare(straight, strands.v);
+  moving.interpolate(begin, end, strands.x, strands.v, y, w);
+  compare(curved, late);
+}
+
 TEST(StrandInteraction, DoesNotDependOnHowStrandsAreCut) {
   const double length = 0.06, gap = 2e-3;
   const Vec fast{0.3, 0.1, -0.2};

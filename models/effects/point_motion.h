@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "contract/system.h"
+#include "math/vec3.h"
+
+namespace tress::models {
+
+/// Where points are, and how fast they move, as seen by others that do not wait for them.
+class PointMotion {
+ public:
+  /// The points stay at x (3 each) for all time, yet have the velocities v.
+  void hold(In x, In v);
+  /// From (x, v) at time t (s) straight on.
+  void extrapolate(double t, In x, In v);
+  /// From (x, v) at t to (y, w) at `end`, along cubics.
+  void interpolate(double t, double end, In x, In v, In y, In w);
+
+  std::size_t count() const { return at_.size(); }
+  /// Time since the start, 0 for points that stay.
+  double elapsed(double t) const { return moves_ * (t - t_); }
+  Vec place(std::size_t point, double elapsed) const {
+    const Cubic& p = at_[point];
+    return p.x + elapsed * (p.v + elapsed * (p.square + elapsed * p.cube));
+  }
+  Vec velocity(std::size_t point, double elapsed) const {
+    const Cubic& p = at_[point];
+    return p.v + elapsed * (2 * p.square + (3 * elapsed) * p.cube);
+  }
+  /// A bound on how far any point moves in the first `elapsed` seconds, m.
+  double range(double elapsed) const;
+
+ private:
+  /// x + v s + square s^2 + cube s^3 at s seconds after the start.
+  struct Cubic {
+    Vec x, v, square, cube;
+  };
+
+  double t_ = 0, moves_ = 0;  // moves_: 0 or 1
+  std::vector<Cubic> at_;
+};
+
+}  // namespace tress::models
