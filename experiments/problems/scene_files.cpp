@@ -27,7 +27,9 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 }
 
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry) {
+  const double tolerance = entry.error_controlled ? scene.options.tolerance : 0;
   if (scene.model != &model) scene = with_method(std::move(scene), {&model, {}, {}, {}});
+  scene.options.tolerance = tolerance;
   scene.integrator = entry.id;
   const auto system = scene.strands.empty()
                           ? model.make(scene.model_options)

@@ -23,8 +23,8 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 
 /// The scene simulated by this model and integrator. A model other than the scene's own
 /// has its default options; a formulation that the integrator cannot take on is replaced
-/// by the one it prefers. Throws InputError where the model cannot do the scene or the
-/// integrator cannot drive the model.
+/// by the one it prefers; a tolerance is kept if it controls its error. Throws InputError
+/// where the model cannot do the scene or the integrator cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
 
 /// The tangents to try on the scene's own model: the scene's, and the usual one for the

@@ -19,10 +19,6 @@ std::span<const double> tolerances(const CommandLine& line) {
   return line.quick ? std::span<const double>(few) : all;
 }
 
-Formulation controlled(Formulation preferred) {
-  return preferred == Formulation::index3 ? Formulation::projection : preferred;
-}
-
 void set_drive(const Options& options, bool adaptive, Row& row) {
   if (options.tolerance > 0) {
     row.set("tolerance", options.tolerance);

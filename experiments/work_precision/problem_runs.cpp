@@ -77,9 +77,7 @@ class List {
       if (!wanted(line_.integrators, entry.id)) continue;
       const std::vector<Formulation> all = shown(entry, *system, line_.full);
       for (const Formulation formulation : all) add(problem, entry, formulation);
-      if (entry.error_controlled && !all.empty()) {
-        add_tolerances(work_of(problem, entry, controlled(all.front())));
-      }
+      if (entry.error_controlled) add_tolerances(problem, entry, *system);
     }
   }
 
@@ -115,8 +113,12 @@ class List {
     }
   }
 
-  void add_tolerances(Work work) {
+  void add_tolerances(const Problem& problem, const IntegratorEntry& entry,
+                      System& system) {
     for (const double tolerance : tolerances(line_)) {
+      const auto formulation = preferred_formulation(entry, system, tolerance);
+      if (!formulation) return;
+      Work work = work_of(problem, entry, *formulation);
       work.options.tolerance = tolerance;
       put(work);
     }

@@ -48,14 +48,16 @@ double least_work(const Scene& scene) {
   return 2 * steps * (static_cast<double>(most_elements(scene)) + 10);
 }
 
-/// The scene by the method, with the options of the command line.
-Scene method_of(const Curve& work) {
-  Scene scene = driven(work.cut, *work.model, *work.integrator);
+/// The scene by the method, with the options of the command line; tolerance 0: by steps.
+Scene method_of(const Curve& work, double tolerance) {
+  Scene scene = work.cut;
+  scene.options.tolerance = tolerance;
+  scene = driven(std::move(scene), *work.model, *work.integrator);
   const Formulation formulation = scene.options.formulation;
   scene.options = work.options;
   scene.options.formulation = formulation;
   scene.options.max_work = work.extent.work;
-  scene.options.tolerance = 0;
+  scene.options.tolerance = tolerance;
   return scene;
 }
 
@@ -91,19 +93,18 @@ bool exchanges(const Scene& scene) {
   return between != nullptr && between->word("coupling") != "monolithic";
 }
 
-void by_tolerances(const Curve& work, Scene scene, const Row& identity,
-                   std::vector<Row>& rows) {
-  if (exchanges(scene)) return;
-  scene.options.formulation = controlled(scene.options.formulation);
+/// As above; a failure is a row of its own, for the next tolerance may do.
+void by_tolerances(const Curve& work, const Row& identity, std::vector<Row>& rows) {
+  if (exchanges(work.cut)) return;
   for (const double tolerance : work.extent.tolerances) {
-    scene.options.tolerance = tolerance;
+    const Scene scene = method_of(work, tolerance);
     Row row = identity;
     row.set("formulation", name(scene.options.formulation));
     set_drive(scene.options, false, row);
     try {
       for (Row& made : measured(work, scene, row)) rows.push_back(std::move(made));
-    } catch (const InputError&) {
-      throw;
+    } catch (const InputError& error) {
+      rows.push_back(row.failed("refused", error.what()));
     } catch (const std::runtime_error& error) {
       rows.push_back(row.failed("solver_error", error.what()));
     }
@@ -143,11 +144,11 @@ Scene Study::cut(int elements) const {
 
 std::vector<Row> curve(const Curve& work, const Row& identity) {
   try {
-    const Scene scene = method_of(work);
+    const Scene scene = method_of(work, 0);
     Row own = identity;
     own.set("formulation", name(scene.options.formulation));
     std::vector<Row> rows = by_steps(work, scene, own);
-    if (work.integrator->error_controlled) by_tolerances(work, scene, own, rows);
+    if (work.integrator->error_controlled) by_tolerances(work, own, rows);
     return rows;
   } catch (const InputError& error) {
     Row row = identity;

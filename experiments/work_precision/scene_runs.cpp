@@ -16,7 +16,6 @@ TipsOf tips_of(const Study& study, int given_elements) {
                                   int elements, const Options& options) {
     const Scene cut = study.cut(given_elements >= 0 ? given_elements : elements);
     Scene scene = driven(cut, find_model(model), find_integrator(integrator));
-    scene.options.tolerance = 0;
     scene.options.step = options.step;
     scene.options.newton_tolerance = options.newton_tolerance;
     return tip_paths(scene, 0).x;

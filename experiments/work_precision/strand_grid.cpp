@@ -143,8 +143,8 @@ class Grid {
     return line_.elements.empty() ? std::vector<int>(usual) : line_.elements;
   }
 
-  /// Whether the user and the method want it; then with its options.
-  bool ready(StrandCase& c) const {
+  /// Whether the user and the method want it; then with its options and `tolerance`.
+  bool ready(StrandCase& c, double tolerance) const {
     if (!keeps(settings_, "error", c.error_kind)) return false;
     if (!keeps(settings_, "modes", c.modes)) return false;
     if (!keeps(settings_, "solver", c.solver)) return false;
@@ -153,11 +153,11 @@ class Grid {
     if (!wanted(line_.integrators, c.integrator)) return false;
     const IntegratorEntry& entry = find_integrator(c.integrator);
     const auto system = c.model->make(c.parameters(settings_));
-    const auto usable = usable_formulations(entry, *system);
-    if (usable.empty()) return false;
+    const auto formulation = preferred_formulation(entry, *system, tolerance);
+    if (!formulation) return false;
     c.options = settings_.options(c.options);
-    c.options.formulation = usable.front();
-    c.options.tolerance = 0;
+    c.options.formulation = *formulation;
+    c.options.tolerance = tolerance;
     return true;
   }
 
@@ -168,18 +168,16 @@ class Grid {
 
   /// The curve of a method that controls its error, which settles Newton's tolerance.
   void add_tolerances(StrandCase c) {
-    if (!find_integrator(c.integrator).error_controlled || !ready(c)) return;
+    if (!find_integrator(c.integrator).error_controlled) return;
     c.newton = false;
-    c.options.formulation = controlled(c.options.formulation);
     for (const double tolerance : tolerances(line_)) {
-      c.options.tolerance = tolerance;
-      put(c);
+      if (ready(c, tolerance)) put(c);
     }
   }
 
   /// All rungs of one curve.
   void add(StrandCase c, const Ladder& rungs) {
-    if (!ready(c)) return;
+    if (!ready(c, 0)) return;
     for (int i = 0; i < rungs.rungs; ++i) {
       const double x = rungs.loosest / std::pow(rungs.base, i * rungs.exponent);
       const bool both = c.strand == &swing && c.error_kind == "total";

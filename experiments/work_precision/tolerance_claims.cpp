@@ -9,32 +9,27 @@
 namespace tress::experiments::work_precision {
 namespace {
 
-constexpr double least_ratio = 0.05, most_ratio = 1;  // achieved over asked
+// Achieved over asked: above 1 the promise is broken, below 0.05 the run took
+// steps more than four times too short at order 2. What is below depends on the ladder,
+// and is no claim.
+constexpr double least_ratio = 0.05, most_ratio = 1;
 constexpr double loosest = 1e-2, tightest = 1e-4;
 
-/// Error control on one strand, and where it is known not to keep to the bounds.
+/// Error control on one strand, and where it is known not to keep its promise.
 struct ControlClaim {
   std::string_view scene, integrator;
-  double least = 0, most = 0;  // of the ratio farthest outside; 0: none is
+  double most = 0;  // of the largest ratio; 0: it keeps it
   std::string_view reason = {};
 };
 
-constexpr std::string_view few_steps =
-    "at 1e-2 a quarter of a second is a few steps of a smooth start: some models stay "
-    "further below the tolerance than a twentieth";
-
 constexpr ControlClaim claims[] = {
-    {strand_release.name, "tr_bdf2", 0.01, least_ratio, few_steps},
-    {strand_release.name, "esdirk43", 0.01, least_ratio, few_steps},
-    {swing.name, "tr_bdf2", most_ratio, 2.5,
+    {strand_release.name, "tr_bdf2"},
+    {strand_release.name, "esdirk43"},
+    {swing.name, "tr_bdf2", 2.5,
      "the error of an undamped motion grows with time, and at order 2 falls as the "
      "tolerance to the power 5/6"},
     {swing.name, "esdirk43"},
 };
-
-double factor_outside(double ratio) {
-  return std::max({1.0, least_ratio / ratio, ratio / most_ratio});
-}
 
 /// A curve: achieved errors by tolerance.
 using Errors = std::map<double, double>;
@@ -61,33 +56,34 @@ std::map<std::string, Errors> curves(const std::vector<Row>& rows,
 }
 
 void check(const std::vector<Row>& rows, const ControlClaim& claim, Verdicts& verdicts) {
-  const std::string words = std::string(claim.integrator) + ", " +
-                            std::string(claim.scene) +
-                            ": time error is 0.05 to 1 of the tolerance from 1e-2 to "
-                            "1e-4 and falls with it, by "
-                            "all models that run";
-  double worst = std::nan("");
+  const std::string who =
+      std::string(claim.integrator) + ", " + std::string(claim.scene) + ": ";
+  const std::string words = who +
+                            "time error is at most the tolerance from 1e-2 to 1e-4 and "
+                            "falls with it, by all models that run";
+  double largest = 0, within = 0, runs = 0;
   bool falling = true;
   for (const auto& [model, errors] : curves(rows, claim)) {
     falling = falling && falls(errors);
     for (const auto& [tolerance, error] : errors) {
       const double ratio = error / tolerance;
-      if (std::isnan(worst) || factor_outside(ratio) > factor_outside(worst)) {
-        worst = ratio;
-      }
+      largest = std::max(largest, ratio);
+      ++runs;
+      if (ratio >= least_ratio && ratio <= most_ratio) ++within;
     }
   }
-  if (std::isnan(worst)) {
+  if (runs == 0) {
     verdicts.not_judged(words);
     return;
   }
-  const bool held = falling && factor_outside(worst) == 1;
+  const bool held = falling && largest <= most_ratio;
   if (claim.reason.empty()) {
-    verdicts.check(words, held, worst);
+    verdicts.check(words, held, largest);
   } else {
-    verdicts.check_known(words, held, worst,
-                         {words, claim.least, claim.most, claim.reason});
+    verdicts.check_known(words, held, largest,
+                         {words, most_ratio, claim.most, claim.reason});
   }
+  verdicts.figure(who + "share of runs with 0.05 to 1 of the tolerance", within / runs);
 }
 
 }  // namespace

@@ -26,8 +26,10 @@ bool keeps(const Settings& settings, std::string_view key, std::string_view word
 /// Fills the columns common to all runs: counters,
 void set_counts(const Stats& stats, Row& row);
 /// largest error of a point over the body, over what was asked for, where steps followed
-/// from a tolerance (Options::tolerance: time error of a point over the length; both
-/// sides have the same elements),
+/// from a tolerance: Options::tolerance is of the time error of a point over the length,
+/// so the reference has the same elements. Of a strand the tip stands for all points: in
+/// twelve runs (tr_bdf2 at 1e-3, three models, four scenes of scenes/accuracy) its
+/// largest error was theirs, or 0.6 % below it,
 void set_achieved(double largest, const Options& options, Row& row);
 /// distance from the reference, whose two sides are `gap` apart,
 void set_error(double relative, double gap, Row& row);
@@ -36,9 +38,6 @@ void set_time(double wall, double simulated, Row& row);
 
 /// Options::tolerance from loose to tight, for methods that control their error.
 std::span<const double> tolerances(const CommandLine& line);
-
-/// The formulation of a run by tolerance where one of fixed steps has `preferred`.
-Formulation controlled(Formulation preferred);
 
 /// Sets the column that drives a row's steps: tolerance, rtol or dt_s.
 void set_drive(const Options& options, bool adaptive, Row& row);

@@ -246,14 +246,25 @@ std::vector<Row> by_tolerance(const std::vector<double>& ratios) {
   return rows;
 }
 
-TEST(Claims, ErrorControlIsJudgedByItsWorstRatioAndByItsOrder) {
-  constexpr std::string_view claim = "esdirk43, swing";
+TEST(Claims, ErrorControlIsJudgedByItsLargestErrorAndByItsOrder) {
+  constexpr std::string_view claim = "esdirk43, swing: time";
   EXPECT_EQ(state_of(claim, by_tolerance({0.06, 0.5, 0.9})), Verdicts::State::held);
+  EXPECT_EQ(state_of(claim, by_tolerance({0.02, 0.1, 0.1})), Verdicts::State::held);
   EXPECT_EQ(state_of(claim, by_tolerance({0.06, 1.1, 0.9})), Verdicts::State::broken);
-  EXPECT_EQ(state_of(claim, by_tolerance({0.04, 0.5, 0.9})), Verdicts::State::broken);
   // Within bounds, but the error does not fall: 5e-4 by 1e-2 and 9e-4 by 1e-3.
   EXPECT_EQ(state_of(claim, by_tolerance({0.05, 0.9, 0.5})), Verdicts::State::broken);
   EXPECT_EQ(state_of(claim, by_tolerance({})), Verdicts::State::not_judged);
+}
+
+TEST(Claims, TheShareOfRunsNearTheirToleranceIsAFigure) {
+  Verdicts all;
+  check_tolerances(by_tolerance({0.02, 0.5, 1.5, 0.9}), all);
+  for (const auto& verdict : all.all()) {
+    if (verdict.state != Verdicts::State::figure) continue;
+    EXPECT_EQ(verdict.value, 1. / 3);  // the last is beyond 1e-4
+    return;
+  }
+  FAIL() << "no figure";
 }
 
 }  // namespace tress::test_work_precision
