@@ -145,8 +145,8 @@ std::vector<Problem> make_problems() {
   };
   add("double_pendulum", "double_pendulum", {}, 2, 0.01, {1}, 5, Compared::coordinates,
       Formulation::parametric, Formulation::parametric);
-  add("chain_10", "inextensible_chain", {{"links", "10"}}, 0.5, 4e-3, {1}, 5, Compared::points,
-      Formulation::projection, Formulation::acceleration);
+  add("chain_10", "inextensible_chain", {{"links", "10"}}, 0.5, 4e-3, {1}, 5,
+      Compared::points, Formulation::projection, Formulation::acceleration);
   all.push_back(published("andrews_squeezer", 2e-4));
   // The printed end state has five digits (tests/models/published): our own has more.
   // Each coordinate on its own scale: the elastic modes are of micrometres, unlike the

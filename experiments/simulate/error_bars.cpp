@@ -67,8 +67,8 @@ struct Sample {
 };
 
 Sample sample(double place, const Places& among) {
-  const auto above = static_cast<std::size_t>(
-      std::ranges::lower_bound(among, place) - among.begin());
+  const auto above =
+      static_cast<std::size_t>(std::ranges::lower_bound(among, place) - among.begin());
   Sample made;
   made.count = std::min(among.size(), made.weight.size());
   made.first = std::min(above > 1 ? above - 2 : 0, among.size() - made.count);
@@ -189,8 +189,8 @@ ErrorBar compared(const Scene& scene, Run& given, Run& finer, Comparison compari
     for (World* const world : {&given.world, &finer.world}) {
       if (frame == 0 || world->advance(t) == Status::ok) continue;
       ErrorBar bar;
-      bar.missing = (world == &given.world ? "" : "the finer run failed: ") +
-                    world->failure();
+      bar.missing =
+          (world == &given.world ? "" : "the finer run failed: ") + world->failure();
       bar.unfinished = true;
       return bar;
     }
@@ -215,8 +215,8 @@ Scene finer_in_time(Scene scene) {
   const double part = by_tolerance(scene) ? 10 : 2;
   Options& options = scene.options;
   if (by_tolerance(scene)) {
-    for (double* const value : {&options.tolerance, &options.rtol, &options.atol,
-                                &options.min_step}) {
+    for (double* const value :
+         {&options.tolerance, &options.rtol, &options.atol, &options.min_step}) {
       *value /= part;
     }
   }

@@ -23,8 +23,8 @@ struct PointErrors {
 /// Over the frames before the strand's two runs part.
 struct StrandError {
   PointErrors error;
-  double largest_at = 0;       // s
-  std::optional<double> parts; // s, the first frame at which they are apart
+  double largest_at = 0;        // s
+  std::optional<double> parts;  // s, the first frame at which they are apart
 };
 
 /// The estimated error of a run in time or in space: its distance from a finer run,
@@ -33,8 +33,8 @@ struct ErrorBar {
   std::vector<StrandError> strands;
   /// Over all strands that have not parted, at every frame until all have.
   std::vector<PointErrors> frames;
-  std::string missing;     // why there is no estimate; empty: there is
-  bool unfinished = false; // for a run did not come to its end
+  std::string missing;      // why there is no estimate; empty: there is
+  bool unfinished = false;  // for a run did not come to its end
 
   /// The strand with the largest error; the first of those that part earliest, if any do.
   std::size_t worst() const;

@@ -34,7 +34,8 @@ struct Arguments {
 constexpr const char* help_end =
     "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
-    "the\nreport page), with --error-bars .errors.csv (errors over time). Exit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
+    "the\nreport page), with --error-bars .errors.csv (errors over time). Exit codes: 0 "
+    "done, 1 internal error, 2 usage or input error, 3 "
     "a "
     "scene\ndid not run to its end, 130 interrupted (--resume continues)\n";
 

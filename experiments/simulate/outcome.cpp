@@ -14,7 +14,8 @@ constexpr Column outcome_columns_[] = {
     {"frames", "frames written"},
     {"simulated_s", "simulated time"},
     {"rejected_steps", "steps that were tried again with shorter ones"},
-    {"steps", "accepted steps; this and what follows: since the run began or was resumed"},
+    {"steps",
+     "accepted steps; this and what follows: since the run began or was resumed"},
     {"rejected_by_error", "of the rejected steps, those with too large an error"},
     {"rejected_by_newton", "of the rejected steps, those without a solution"},
     {"smallest_step_s", "the shortest step that error control chose"},
@@ -123,9 +124,9 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
 std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene) {
   if (!bar.missing.empty()) return fmt::format("no {} error: {}", part, bar.missing);
   const StrandError& worst = bar.strands[bar.worst()];
-  std::string words = fmt::format(
-      "{} error {:.2g} of the length at {:.3g} s, root mean square {:.2g}", part,
-      worst.error.largest, worst.largest_at, worst.error.rms);
+  std::string words =
+      fmt::format("{} error {:.2g} of the length at {:.3g} s, root mean square {:.2g}",
+                  part, worst.error.largest, worst.largest_at, worst.error.rms);
   words += strands_in_words(bar);
   if (worst.parts) {
     words += fmt::format(

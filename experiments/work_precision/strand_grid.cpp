@@ -120,7 +120,10 @@ class Grid {
       for (const int elements : sizes) {
         // The finest steps add nothing to a total error.
         add(released(*model, "implicit_midpoint", "total", elements),
-            {4e-3, 2, 1, line_.full ? 8 : line_.quick ? 3 : 5});
+            {4e-3, 2, 1,
+             line_.full    ? 8
+             : line_.quick ? 3
+                           : 5});
       }
       add_release_by_tolerance(*model);
     }

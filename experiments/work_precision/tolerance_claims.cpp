@@ -61,10 +61,11 @@ std::map<std::string, Errors> curves(const std::vector<Row>& rows,
 }
 
 void check(const std::vector<Row>& rows, const ControlClaim& claim, Verdicts& verdicts) {
-  const std::string words =
-      std::string(claim.integrator) + ", " + std::string(claim.scene) +
-      ": time error is 0.05 to 1 of the tolerance from 1e-2 to 1e-4 and falls with it, by "
-      "all models that run";
+  const std::string words = std::string(claim.integrator) + ", " +
+                            std::string(claim.scene) +
+                            ": time error is 0.05 to 1 of the tolerance from 1e-2 to "
+                            "1e-4 and falls with it, by "
+                            "all models that run";
   double worst = std::nan("");
   bool falling = true;
   for (const auto& [model, errors] : curves(rows, claim)) {

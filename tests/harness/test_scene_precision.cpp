@@ -149,6 +149,25 @@ TEST(ScenePrecision, OfASoftStrandFallsWithTheStepAtTheMethodsOrder) {
   EXPECT_EQ(rows.size(), 8u);  // four steps each
 }
 
+/// Beside the steps; constraints of clamped inextensible strands are projected, for there
+/// is no error control on index 3, the usual formulation.
+TEST(ScenePrecision, ByToleranceHasTheErrorAskedFor) {
+  CommandLine line = line_of({"super_helix", "inextensible_strand"}, {"esdirk43"});
+  line.set = {{"error", "time"}};
+  int steps = 0, tolerances = 0;
+  for (const Row& row : precision(file("soft.toml", soft), line)) {
+    ASSERT_TRUE(row.ok()) << row.text("reason");
+    ++(row.has("tolerance") ? tolerances : steps);
+    EXPECT_NE(row.has("tolerance"), row.has("dt_s"));
+    EXPECT_EQ(row.has("tolerance"), row.has("achieved_over_asked"));
+    if (!row.has("tolerance")) continue;
+    EXPECT_LE(row.number("achieved_over_asked"), 1);
+    EXPECT_NE(row.text("formulation"), "index3");
+  }
+  EXPECT_EQ(steps, 8);
+  EXPECT_EQ(tolerances, 6);
+}
+
 TEST(ScenePrecision, InAllEndsAtTheErrorOfTheElements) {
   CommandLine line = line_of({"super_helix"}, {"implicit_midpoint"});
   line.set = {{"error", "total"}};

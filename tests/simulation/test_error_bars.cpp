@@ -20,12 +20,13 @@ constexpr double length = 0.1;  // m
 /// A clamped hair, released horizontally.
 Scene released(const std::string& integrator, const std::string& model = "super_helix",
                const std::string& more = "") {
-  return parse_scene("title = \"t\"\nduration_s = 0.1\nframes_1_s = 100\n[model]\nid = \"" +
-                         model + "\"\n[integrator]\n" + integrator +
-                         "\n[material]\nname = \"hair.asian\"\n[strand]\n"
-                         "length_m = 0.1\nelements = 8\nroot_tangent = [1, 0, 0]\n" +
-                         more + "[effects.gravity]\n",
-                     "released.toml");
+  return parse_scene(
+      "title = \"t\"\nduration_s = 0.1\nframes_1_s = 100\n[model]\nid = \"" + model +
+          "\"\n[integrator]\n" + integrator +
+          "\n[material]\nname = \"hair.asian\"\n[strand]\n"
+          "length_m = 0.1\nelements = 8\nroot_tangent = [1, 0, 0]\n" +
+          more + "[effects.gravity]\n",
+      "released.toml");
 }
 
 /// Largest distance over the frames, over the length, of a scene's points from every
@@ -112,8 +113,8 @@ TEST(ErrorBars, GradedElementsAreComparedAtEqualArcLength) {
   EXPECT_GT(error("grading = 2\n"), even / 10);
 }
 
-/// From where the two runs are a tenth of the length apart there is no estimate, and until
-/// then none above that times Richardson's factor: 2 at order 1.
+/// From where the two runs are a tenth of the length apart there is no estimate, and
+/// until then none above that times Richardson's factor: 2 at order 1.
 TEST(ErrorBars, NothingIsEstimatedAfterTheRunsPart) {
   Scene scene = released("id = \"backward_euler\"\ndt_s = 0.01");
   scene.duration = 1;
@@ -150,7 +151,8 @@ TEST(ErrorBars, AStrandIsTheWorstByItsHorizonThenByItsError) {
 
 TEST(ErrorBars, OwnElementsAreNotDoubledButTheTimePartIsGiven) {
   const Scene tree = parse_scene(
-      "title = \"t\"\nduration_s = 0.1\nframes_1_s = 50\n[model]\nid = \"super_helix_tree\"\n"
+      "title = \"t\"\nduration_s = 0.1\nframes_1_s = 50\n[model]\nid = "
+      "\"super_helix_tree\"\n"
       "[integrator]\nid = \"implicit_midpoint\"\ndt_s = 0.001\n",
       "tree.toml");
   EXPECT_NE(space_error(tree, 1).missing.find("cannot be doubled"), std::string::npos);

@@ -22,16 +22,11 @@ const panel_name = (row) =>
     ? problem_name(row)
     : `${problem_name(row)}: ${spaced(row.model)}`;
 
-function band(y, theme) {
-  return {
-    data: { values: [bounds] },
-    mark: { type: 'rect', color: theme.grid, opacity: 0.6 },
-    encoding: {
-      y: { ...y, field: 'least' },
-      y2: { field: 'most' },
-    },
-  };
-}
+const bound_lines = (y, theme) => ({
+  data: { values: Object.values(bounds).map((achieved_over_asked) => ({ achieved_over_asked })) },
+  mark: { type: 'rule', stroke: theme.muted, strokeWidth: 1, strokeDash: [3, 2] },
+  encoding: { y },
+});
 
 export const tolerance = {
   id: 'tolerance',
@@ -40,7 +35,7 @@ export const tolerance = {
   finding: control_finding,
   caption: `Largest time error at the compared instants, of
     a point over the length, divided by the tolerance; the reference has the same elements.
-    1 is what was asked for, the grey band reaches from there to a twentieth. A flat line is an
+    1 is what was asked for; dashed lines mark that and a twentieth of it. A flat line is an
     error in proportion to the tolerance. Click a legend entry to keep that method and dim the
     other. Made from work_precision.csv; failed runs, and errors below ten times the gap of the
     references, are in the table only.`,
@@ -78,7 +73,7 @@ export const tolerance = {
       height: 170,
       layer: [
         ...marked_line(members, { x, y, series, opacity, tooltip }),
-        band(y, theme),
+        bound_lines(y, theme),
       ],
     }));
     return panels(
