@@ -212,7 +212,7 @@ export const tolerance_table = (tables) => {
   );
 };
 
-// "tr_bdf2 stays within 0.1 % ... for 31 of 48 hairs by super_helix, ..."
+// "within that for 31 of 48 hairs by super_helix (9 of 12 without internal friction ..."
 export const tolerance = (tables) => {
   const rows = tolerance_rows(tables, 'tolerance_met').filter(
     (row) => row.integrator === 'tr_bdf2',
@@ -221,13 +221,15 @@ export const tolerance = (tables) => {
   const asked = distinct(
     rows_of(tables, 'family', { claim: 'tolerance_met' }).map((row) => row.tolerance),
   );
-  const counts = rows.map((row) => ({ model: row.model, ...solved(tables, row) }));
-  const sum = (of) => counts.reduce((total, count) => total + of(count), 0);
-  const within = counts.map((c) => `${c.within} of ${c.all} hairs by \`${c.model}\``).join(', ');
+  const of_model = (row) => {
+    const { within, all, damped, undamped } = solved(tables, row);
+    return (
+      `${within} of ${all} hairs by \`${row.model}\` (no solution for ${damped.unsolved} of ` +
+      `${damped.all} with internal friction, ${undamped.unsolved} of ${undamped.all} without)`
+    );
+  };
   return (
-    `\`tr_bdf2\`, asked for ${asked.map((x) => percent(x)).join(', ')} of the length, stays within that for ` +
-    `${within}. Of the runs of hairs with internal friction ${sum((c) => c.damped.unsolved)} of ` +
-    `${sum((c) => c.damped.all)} have no solution, of those without ` +
-    `${sum((c) => c.undamped.unsolved)} of ${sum((c) => c.undamped.all)}`
+    `\`tr_bdf2\`, asked for ${asked.map((x) => percent(x)).join(', ')} of the length, stays ` +
+    `within that for ${rows.map(of_model).join(', ')}`
   );
 };
