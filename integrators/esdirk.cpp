@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "contract/input_error.h"
-#include "integrators/error_controlled.h"
+#include "integrators/control/error_controlled.h"
 #include "integrators/fixed_step.h"
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

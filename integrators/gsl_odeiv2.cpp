@@ -8,8 +8,8 @@
 #include "integrators/entry.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/vector_ops.h"
 #include "linear/finite.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

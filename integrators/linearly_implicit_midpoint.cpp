@@ -5,7 +5,7 @@
 #include "integrators/error_indicator.h"
 #include "integrators/fixed_step.h"
 #include "integrators/stage.h"
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

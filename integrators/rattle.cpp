@@ -1,6 +1,6 @@
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "integrators/stage.h"
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 

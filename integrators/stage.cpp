@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

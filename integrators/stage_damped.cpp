@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "integrators/stage.h"
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {

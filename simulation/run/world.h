@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "integrators/point_norm.h"
-#include "integrators/rewindable.h"
-#include "integrators/step_control.h"
+#include "integrators/control/point_norm.h"
+#include "integrators/control/rewindable.h"
+#include "integrators/control/step_control.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/run/crew.h"

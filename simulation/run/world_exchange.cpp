@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrators/rewindable.h"
+#include "integrators/control/rewindable.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {

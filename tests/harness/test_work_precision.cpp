@@ -222,7 +222,7 @@ TEST(Claims, BdfOrdersAreComparedOnTheBeam) {
   const auto steps = [](int order, int count) {
     Row row;
     row.set("scene", "beam").set("integrator", "cvode_bdf").set("max_order", order);
-    return row.set("rtol", 1e-4).set("steps", count);
+    return row.set("rtol", 1e-5).set("steps", count);
   };
   const auto state = [](const std::vector<Row>& rows) {
     return state_of("BDF up to order 5", rows);

@@ -8,7 +8,7 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"
-#include "integrators/rewindable.h"
+#include "integrators/control/rewindable.h"
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"

@@ -1,4 +1,4 @@
-#include "integrators/step_control.h"
+#include "integrators/control/step_control.h"
 
 #include <algorithm>
 #include <cmath>

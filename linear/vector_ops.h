@@ -4,7 +4,7 @@
 
 #include "contract/system.h"
 
-namespace tress::integrators {
+namespace tress {
 
 /// y += factor x
 inline void add(InOut y, double factor, In x) {
@@ -16,4 +16,4 @@ inline void shifted(Out y, In x, double factor, In d) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] = x[i] + factor * d[i];
 }
 
-}  // namespace tress::integrators
+}  // namespace tress

@@ -1,4 +1,4 @@
-#include "integrators/error_controlled.h"
+#include "integrators/control/error_controlled.h"
 
 #include <algorithm>
 #include <cmath>

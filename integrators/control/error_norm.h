@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "integrators/control/point_norm.h"
 #include "integrators/formulation/dynamics.h"
-#include "integrators/point_norm.h"
 
 namespace tress::integrators {
 

@@ -1,4 +1,4 @@
-#include "integrators/point_norm.h"
+#include "integrators/control/point_norm.h"
 
 #include <algorithm>
 #include <cmath>

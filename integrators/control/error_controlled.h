@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "contract/integrator.h"
-#include "integrators/error_norm.h"
+#include "integrators/control/error_norm.h"
+#include "integrators/control/rewindable.h"
+#include "integrators/control/step_control.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/rewindable.h"
-#include "integrators/step_control.h"
 
 namespace tress::integrators {
 

@@ -1,9 +1,9 @@
-#include "integrators/error_norm.h"
+#include "integrators/control/error_norm.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "integrators/vector_ops.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
