@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "integrators/catalogue.h"
 #include "simulation/files/run_key.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/write_scene.h"
