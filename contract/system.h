@@ -185,8 +185,25 @@ class MaterialPoints {
   }
 };
 
+/// What a system remembers of the steps behind it: reference frames, contact sets.
+class History {
+ public:
+  virtual ~History() = default;
+  /// Called once after every accepted step; may move frames or contact sets and adjust
+  /// the state to them. True: the equations changed, multistep methods must restart.
+  virtual bool accept(double t, InOut q, InOut v) = 0;
+  /// Discards the effects of every accept(): coordinates regain the meaning that they
+  /// have in initial_state().
+  virtual void reset() = 0;
+  /// All that accept() has changed since reset(). recall() restores it in an identically
+  /// constructed system, which then continues as this one would.
+  virtual std::vector<double> memory() const = 0;
+  virtual void recall(In memory) = 0;
+};
+
 /// One mechanical system. `residual` is pure; `linearize` prepares `solve`; nothing
-/// allocates after the first call of each; only `accept` may change memory.
+/// allocates after the first call of each; only History::accept may
+/// change what it remembers.
 class System {
  public:
   virtual ~System() = default;
@@ -200,25 +217,12 @@ class System {
   virtual Status linearize(double t, In q, In v, In a, Weights w) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // S(w) x = b; b and x may be the same
 
-  /// Called once after every accepted step; may move frames or contact sets and adjust
-  /// the state to them. True: the equations changed, multistep methods must restart.
-  virtual bool accept(double /*t*/, InOut /*q*/, InOut /*v*/) { return false; }
-
   /// The first time after t at which the equations are not smooth in time (a prescribed
   /// motion stops, a force is switched); methods that rely on smoothness end a step
   /// there. Infinity: none.
   virtual double next_breakpoint(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }
-
-  /// Discards the effects of every accept(): coordinates regain the meaning that they
-  /// have in initial_state().
-  virtual void reset() {}
-
-  /// All that accept() has changed since reset(). recall() restores it in an identically
-  /// constructed system, which then continues as this one would.
-  virtual std::vector<double> memory() const { return {}; }
-  virtual void recall(In /*memory*/) {}
 
   /// Names the term of r(t, q, v, 0) that is not finite and its location: "quadratic_drag
   /// at point 7". Empty: all terms are finite, or the model does not report it.
@@ -231,6 +235,21 @@ class System {
   virtual ComplianceForm* compliance_form() { return nullptr; }
   virtual Energetics* energetics() { return nullptr; }
   virtual MaterialPoints* material_points() { return nullptr; }
+  virtual History* history() { return nullptr; }
+
+  // Of the history, where there is one.
+  bool accept(double t, InOut q, InOut v) {
+    return history() != nullptr && history()->accept(t, q, v);
+  }
+  void reset() {
+    if (history() != nullptr) history()->reset();
+  }
+  std::vector<double> memory() {
+    return history() == nullptr ? std::vector<double>{} : history()->memory();
+  }
+  void recall(In memory) {
+    if (history() != nullptr) history()->recall(memory);
+  }
 };
 
 }  // namespace tress

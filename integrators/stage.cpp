@@ -46,7 +46,9 @@ Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
       a_before_(q_.size()),
       here_(q_.size(), c_.size()),
       there_(q_.size(), c_.size()),
-      middle_(q_.size(), c_.size()) {}
+      middle_(q_.size(), c_.size()),
+      path_(q_.size(), c_.size()),
+      next_(q_.size(), c_.size()) {}
 
 void Stage::place(In q_bar, In v_bar, Weights w, In a) noexcept {
   for (std::size_t i = 0; i < q_.size(); ++i) {

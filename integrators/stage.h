@@ -16,7 +16,11 @@ namespace tress::integrators {
 /// fails too, a shortened step is solved and lengthened gradually [section 5.1]: first
 /// with the drift of the whole step, for soft strands that fall far in one step; then
 /// with the drift of the shortened step, for strands that turn fast, which the drift of
-/// the whole step carries out of reach of any guess.
+/// the whole step carries out of reach of any guess. Where that gets stuck, the solution
+/// is followed by pseudo-arclength continuation [Keller 1977, in Applications of
+/// Bifurcation Theory, 359], which passes the places where it turns back: it either comes
+/// to the whole step, or Dynamics learns at which part of the step it turned back
+/// (`reached`), beyond which no solution continues the motion.
 ///
 /// With a discontinuous force, such as that of a contact whose location switches, there
 /// may be no solution: the step from either side of the jump leads to the other, and
@@ -69,6 +73,23 @@ class Stage {
   Status damped(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
   Status lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, InOut a,
                     InOut lambda) noexcept;
+  /// From a solution of `part` of the step, with its own drift.
+  Status followed(double t, In q_bar, In v_bar, Weights w, double part, InOut a,
+                  InOut lambda) noexcept;
+  /// A point of the path of solutions, and its direction there.
+  struct OnPath {
+    OnPath(std::size_t n, std::size_t m) : a(n), lambda(m), a_along(n), lambda_along(m) {}
+    std::vector<double> a, lambda, a_along, lambda_along;
+    double part = 0, part_along = 0;
+  };
+  Status direction(double t, In q_bar, In v_bar, Weights w, OnPath& at) noexcept;
+  Status correct_onto(double t, In q_bar, In v_bar, Weights w, const OnPath& from,
+                      double length, OnPath& to) noexcept;
+  Status equations(double t, In q_bar, In v_bar, Weights w, const OnPath& at, double part,
+                   Out r, Out c) noexcept;
+  Status matrix_at(double t, In q_bar, In v_bar, Weights w, const OnPath& at) noexcept;
+  double along(Weights w, In a, double part, In a_other,
+               double part_other) const noexcept;
   /// Starts where newton() ended; `retry` unless its iterates alternated there.
   Status on_jump(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda) noexcept;
   Status close_in(double t, In q_bar, In v_bar, Weights w) noexcept;
@@ -94,6 +115,7 @@ class Stage {
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
   std::vector<double> q_start_, a_part_, lambda_part_, a_before_;    // of short ones
   Side here_, there_, middle_;                                       // of a jump
+  OnPath path_, next_;
 };
 
 }  // namespace tress::integrators

@@ -88,7 +88,11 @@ Status Stage::lengthened(double t, In q_bar, In v_bar, Weights w, Drift drift, I
     std::ranges::copy(a_part_, a.begin());
     std::ranges::copy(lambda_part_, lambda.begin());
     growth = part == 0 ? growth / 4 : std::sqrt(growth);
-    if (growth < (part == 0 ? shortest_part : least_growth)) return Status::retry;
+    if (part == 0 && growth < shortest_part) return Status::retry;
+    if (part > 0 && growth < least_growth) {
+      return drift == Drift::own ? followed(t, q_bar, v_bar, w, part, a, lambda)
+                                 : Status::retry;
+    }
   }
   return Status::ok;
 }

@@ -66,7 +66,12 @@ class Dynamics {
   /// the given state. Empty when the model finds nothing there.
   std::string culprit(double t, In q, In v);
   /// To be called after a successful step; the only cost while all is finite.
-  void forget() { lost_ = Lost::nowhere; }
+  void forget() {
+    lost_ = Lost::nowhere;
+    reached = 0;
+  }
+  /// The part of the step that failed at which its solution turned back; 0: not known.
+  double reached = 0;
 
   /// To be called before a run: resets the counts and all memory of the previous run.
   void begin() {

@@ -25,7 +25,7 @@ namespace tress::models {
 /// there is no SparseForm, whose pattern would be fixed. Contacts of points that move
 /// more than an eighth of the law's reach within one step may be missed in that step.
 /// Before a start from a state other than the initial one, accept() it.
-class CoupledStrands final : public StrandBlock {
+class CoupledStrands final : public StrandBlock, private History {
  public:
   /// Throws InputError, naming the strand, unless each has a sparse tangent, no
   /// constraints (their multipliers need a fixed pattern) and material points that are
@@ -38,16 +38,17 @@ class CoupledStrands final : public StrandBlock {
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
-  bool accept(double t, InOut q, InOut v) override;
-  void reset() override;
-  std::vector<double> memory() const override;
-  void recall(In memory) override;
+  History* history() override { return this; }
 
   const StrandContacts& contacts() const { return *contacts_; }
   /// The part of energy() that belongs to the contacts, J.
   double contact_potential(double t, In q, In v);
 
  private:
+  bool accept(double t, InOut q, InOut v) override;
+  void reset() override;
+  std::vector<double> memory() const override;
+  void recall(In memory) override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   std::optional<Mean> mean(int point) override;

@@ -53,7 +53,7 @@ class Elasticity {
   /// True if the equations changed.
   virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
   virtual void reset() {}                                    // undoes every rebase()
-  virtual std::vector<double> memory() const { return {}; }  // as System::memory()
+  virtual std::vector<double> memory() const { return {}; }  // as History::memory()
   virtual void recall(In /*memory*/) {}
   /// Null if the energy is not a function of strains.
   virtual StrainForm* strain_form() { return nullptr; }

@@ -58,7 +58,8 @@ class MaximalSystem final : public System,
                             private ExplicitForm,
                             private ComplianceForm,
                             private Energetics,
-                            private MaterialPoints {
+                            private MaterialPoints,
+                            private History {
  public:
   explicit MaximalSystem(MaximalStrand strand);
 
@@ -69,10 +70,6 @@ class MaximalSystem final : public System,
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
-  bool accept(double t, InOut q, InOut v) override;
-  void reset() override { strand_.elasticity->reset(); }
-  std::vector<double> memory() const override { return strand_.elasticity->memory(); }
-  void recall(In memory) override { strand_.elasticity->recall(memory); }
   double next_breakpoint(double t) const override {
     return std::min(strand_.root.next_breakpoint(t),
                     models::next_breakpoint(strand_.effects, t));
@@ -84,9 +81,15 @@ class MaximalSystem final : public System,
   ConstraintForm* constraint_form() override { return strand_.constraints.get(); }
   ComplianceForm* compliance_form() override;
   Energetics* energetics() override { return this; }
+  History* history() override { return this; }
   MaterialPoints* material_points() override { return this; }
 
  private:
+  bool accept(double t, InOut q, InOut v) override;
+  void reset() override { strand_.elasticity->reset(); }
+  std::vector<double> memory() const override { return strand_.elasticity->memory(); }
+  void recall(In memory) override { strand_.elasticity->recall(memory); }
+
   const Pattern& pattern() const override { return pattern_; }
   Status values(double t, In q, In v, In, Weights w, Out s) noexcept override {
     return assemble(t, q, v, w, s, false);

@@ -22,7 +22,8 @@ template <class Kernel, int dofs>
 class ReducedSystem : public System,
                       protected ExplicitForm,
                       protected Energetics,
-                      protected MaterialPoints {
+                      protected MaterialPoints,
+                      protected History {
  public:
   explicit ReducedSystem(ReducedStrand strand)
       : exact_(strand.tangent == ReducedTangent::exact),
@@ -107,24 +108,6 @@ class ReducedSystem : public System,
     return s == Status::ok ? finite(x) : s;
   }
 
-  bool accept(double, InOut q, InOut v) override {
-    return kinematics_.free() && kinematics_.free_root().rebase(q.last(6), v.last(6));
-  }
-
-  void reset() override {
-    if (kinematics_.free()) kinematics_.free_root().reset();
-  }
-
-  std::vector<double> memory() const override {
-    if (!kinematics_.free()) return {};
-    std::vector<double> reference(9);
-    store9(kinematics_.free_root().reference(), reference.data());
-    return reference;
-  }
-  void recall(In memory) override {
-    if (kinematics_.free()) kinematics_.free_root().recall(load9(memory.data()));
-  }
-
   double next_breakpoint(double t) const override {
     return std::min(kinematics_.next_breakpoint(t),
                     models::next_breakpoint(dynamics_.effects(0), t));
@@ -154,9 +137,25 @@ class ReducedSystem : public System,
 
   ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }
   Energetics* energetics() override { return this; }
+  /// Of a free root, whose frame turns as far as it likes.
+  History* history() override { return kinematics_.free() ? this : nullptr; }
   MaterialPoints* material_points() override { return this; }
 
- protected:  // for ForceTransport, which changes how accelerations enter
+ protected:
+  bool accept(double, InOut q, InOut v) override {
+    return kinematics_.free_root().rebase(q.last(6), v.last(6));
+  }
+  void reset() override { kinematics_.free_root().reset(); }
+  std::vector<double> memory() const override {
+    std::vector<double> reference(9);
+    store9(kinematics_.free_root().reference(), reference.data());
+    return reference;
+  }
+  void recall(In memory) override {
+    kinematics_.free_root().recall(load9(memory.data()));
+  }
+
+  // For ForceTransport, which changes how accelerations enter.
   using K = Kinematics<Kernel, dofs>;
   using Mass = MassShape<dofs>;
   using Exact = ExactShape<dofs>;

@@ -24,7 +24,7 @@ std::vector<int> material_points(const Scene& scene) {
   return points;
 }
 
-Snapshot::OfStrand initial_state_of(const System& system) {
+Snapshot::OfStrand initial_state_of(System& system) {
   const auto n = static_cast<std::size_t>(system.layout().coordinates);
   Snapshot::OfStrand state{std::vector<double>(n), std::vector<double>(n),
                            system.memory()};
@@ -229,7 +229,7 @@ void World::restore(const Snapshot& snapshot) {
   }
 }
 
-Snapshot World::snapshot() const {
+Snapshot World::snapshot() {
   Snapshot snapshot{.t = t_, .strands = {}, .guards = {}};
   for (const Body& body : bodies_) {
     append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),

@@ -60,7 +60,7 @@ class World {
   explicit World(const Scene& scene, int threads = 1);
 
   void restore(const Snapshot& snapshot);
-  Snapshot snapshot() const;
+  Snapshot snapshot();
 
   /// Advances all strands to t_end. A strand's step without a solution is divided into 2,
   /// 4 ... 64 shorter ones, after which the scene's step resumes. This may happen a

@@ -206,6 +206,66 @@ TEST(StageContinuation, FollowsTheMotionFromWhereTheStepBegins) {
   EXPECT_NEAR(result.q, 5, 1e-4);  // what the rises leave there
 }
 
+double exponential(double q) { return std::exp(q); }
+
+// a = exp(q) from rest: q = s^2 exp(q) for the part s of the step has solutions up to
+// s^2 = 1/e, where q = 1, and none beyond.
+TEST(StageContinuation, FindsWhereTheSolutionTurnsBack) {
+  Scalar system({[](double) { return 1.0; }, none, exponential, exponential});
+  const Options options;
+  Dynamics dynamics(system, options);
+  Stage stage(dynamics, options);
+  const std::vector<double> bar{0};
+  std::vector<double> a{0}, lambda;
+  EXPECT_EQ(stage.solve(0, bar, bar, {1, 1, 1}, a, lambda), Status::retry);
+  // The fold lies between two points a fifth apart at most, where the slope of the path
+  // is taken to be linear.
+  EXPECT_NEAR(dynamics.reached, std::exp(-0.5), 5e-3);
+}
+
+/// q = s^2 q/g(q), g = k (q^3/3 - 0.225 q^2 + 0.045 q): s^2 = g(q) rises up to q = 0.15,
+/// falls up to 0.3 and rises again, through 1.
+class TurnsTwice final : public System {
+ public:
+  explicit TurnsTwice(double k) : k_(k) {}
+  static double g(double k, double q) { return k * q * over(q); }
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {}; }
+  void initial_state(Out q, Out v) const override { q[0] = v[0] = 0; }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double, In q, In, In a, Out r) noexcept override {
+    r[0] = a[0] - 1 / (k_ * over(q[0]));
+    return Status::ok;
+  }
+  Status linearize(double, In q, In, In, Weights w) noexcept override {
+    s_ = w.acc + w.pos * (2 * q[0] / 3 - 0.225) / (k_ * over(q[0]) * over(q[0]));
+    return Status::ok;
+  }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0] / s_;
+    return Status::ok;
+  }
+
+ private:
+  static double over(double q) { return q * q / 3 - 0.225 * q + 0.045; }
+  double k_, s_ = 1;
+};
+
+// Without continuation two of these steps, at k = 54 and 91, end before the fold.
+TEST(StageContinuation, PassesWhereTheSolutionTurnsBackTwice) {
+  for (int k = 40; k < 100; ++k) {
+    TurnsTwice system(k);
+    const Options options;
+    Dynamics dynamics(system, options);
+    Stage stage(dynamics, options);
+    const std::vector<double> bar{0};
+    std::vector<double> a{0}, lambda;
+    ASSERT_EQ(stage.solve(0, bar, bar, {1, 1, 1}, a, lambda), Status::ok) << k;
+    // g' is below 10 at all these solutions, which are known to newton_tolerance.
+    EXPECT_NEAR(TurnsTwice::g(k, stage.q()[0]), 1, 10 * options.newton_tolerance) << k;
+  }
+}
+
 // ---- where the force jumps ---------------------------------------------------------
 
 /// r = a - f(q) of two coordinates; f is (1, y^2) below the parabola x = y^2/10 and

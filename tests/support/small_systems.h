@@ -26,7 +26,7 @@ inline constexpr double gravity = 9.81;  // m/s^2
 
 /// Pendulum of length 1 m in its angle: a + gravity sin q = 0, started at rest at 1 rad.
 /// What it does when asked wrongly, and its floor, are knobs of the tests.
-class AnglePendulum : public System, private ExplicitForm {
+class AnglePendulum : public System, private ExplicitForm, private History {
  public:
   bool offers_explicit_form = true;
   double fails_after = std::numeric_limits<double>::infinity();  // s
@@ -58,15 +58,19 @@ class AnglePendulum : public System, private ExplicitForm {
     x[0] = b[0] / s_;
     return Status::ok;
   }
+  ExplicitForm* explicit_form() override { return offers_explicit_form ? this : nullptr; }
+  History* history() override { return this; }
+
+ private:
   bool accept(double, InOut q, InOut v) override {
     if (!bounces || q[0] >= 0 || v[0] >= 0) return false;
     v[0] = -v[0];
     ++bounced;
     return true;
   }
-  ExplicitForm* explicit_form() override { return offers_explicit_form ? this : nullptr; }
-
- private:
+  void reset() override {}
+  std::vector<double> memory() const override { return {}; }
+  void recall(In) override {}
   Status acceleration(double t, In q, In, Out a) noexcept override {
     a[0] = -gravity * std::sin(q[0]);
     return outcome(t);

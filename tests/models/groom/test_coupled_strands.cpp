@@ -38,7 +38,7 @@ struct Case {
   explicit Case(std::string_view model, double viscosity)
       : system(crossing(model), strong(viscosity)), states(system) {
     states.shake(0.02);
-    (void)system.accept(t0, states.q, states.v);
+    (void)system.history()->accept(t0, states.q, states.v);
   }
   CoupledStrands system;
   States states;
@@ -80,7 +80,7 @@ TEST_P(Coupled, ForcesOfContactsSumToZero) {
   CoupledStrands system(std::move(strands), strong(1));
   States s(system);
   s.shake(0.02);
-  (void)system.accept(t0, s.q, s.v);
+  (void)system.history()->accept(t0, s.q, s.v);
   EXPECT_GT(contacts_of(system, s), 10);
   std::vector<double> r(s.n);
   ASSERT_EQ(system.residual(t0, s.q, s.v, s.a, r), Status::ok);
@@ -137,22 +137,22 @@ TEST(CoupledStrands, FollowPairsAndForgetAndRecallThem) {
   States s(system), start(system);
   s.shake(0.02);
   for (std::size_t i = 15; i < 33; i += 3) s.q[i + 2] += 0.05;  // the second goes away
-  EXPECT_TRUE(system.accept(t0, s.q, s.v));
-  EXPECT_FALSE(system.accept(t0, s.q, s.v));
+  EXPECT_TRUE(system.history()->accept(t0, s.q, s.v));
+  EXPECT_FALSE(system.history()->accept(t0, s.q, s.v));
   // Its pairs are gone and so are the factors.
   std::vector<double> x(s.n);
   EXPECT_NE(system.solve(s.a, x), Status::ok);
   const Weights w{1, 0.1, 0.01};
-  other.recall(system.memory());
+  other.history()->recall(system.history()->memory());
   std::vector<double> y(s.n);
   ASSERT_EQ(system.linearize(t0, s.q, s.v, s.a, w), Status::ok);
   ASSERT_EQ(other.linearize(t0, s.q, s.v, s.a, w), Status::ok);
   ASSERT_EQ(system.solve(s.a, x), Status::ok);
   ASSERT_EQ(other.solve(s.a, y), Status::ok);
   EXPECT_EQ(x, y);
-  system.reset();
+  system.history()->reset();
   CoupledStrands fresh(crossing("mass_spring"), strong(1));
-  EXPECT_EQ(system.memory(), fresh.memory());
+  EXPECT_EQ(system.history()->memory(), fresh.history()->memory());
   EXPECT_EQ(residual(system, start.q, start.v, start.a),
             residual(fresh, start.q, start.v, start.a));
 }
