@@ -9,7 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { must, number, percent, range, row_of, table, time } from '../../experiments/report/prose/markdown.mjs';
 import { answers, written_pages } from '../../experiments/report/prose/pages.mjs';
 import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
-import { citations } from '../../experiments/report/prose/queries/references.mjs';
+import { citations, match, works } from '../../experiments/report/prose/queries/references.mjs';
 import { fill, untraced_numbers } from '../../experiments/report/prose/template.mjs';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
@@ -37,8 +37,17 @@ test('every source has a line, once, with all places that cite it', () => {
   const lines = list.split('\n').filter((line) => line.startsWith('| Chung'));
   assert.equal(lines.length, 1, 'Chung-Hulbert is Chung, Hulbert');
   assert.match(lines[0], /1993 .*`integrators\/generalized_alpha.cpp`/);
-  assert.match(list, /Baraff \| 1996 .*`models\/catalogue.cpp`.*`models\/maximal\/mass_spring.cpp`/);
-  assert.match(list, /\| Swope et al\. \| 1982 \| J\. Chem\. Phys\. 76, 637 \|/);
+  assert.match(list, /Baraff 1996 .*`models\/catalogue.cpp`.*`models\/maximal\/mass_spring.cpp`/);
+  assert.match(list, /\| Swope et al\. 1982 \| W\. C\. Swope, .*J\. Chem\. Phys\. 76, 637-649 \|/);
+});
+
+test('a citation has its publication, and a publication its citation', () => {
+  const known = works('# comment\nKutta 1901\tW. Kutta: Beitrag\n');
+  assert.deepEqual([...known], [['Kutta 1901', 'W. Kutta: Beitrag']]);
+  match(['Kutta 1901'], known);
+  assert.throws(() => match(['Kutta 1901', 'Heun 1900'], known), /nothing stands there for Heun 1900/);
+  assert.throws(() => match([], known), /nothing cites Kutta 1901/);
+  assert.throws(() => works('Kutta 1901\n'), /references\.txt:1: expected/);
 });
 
 test('the README fits on three screens', () => {

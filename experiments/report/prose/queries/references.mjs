@@ -1,9 +1,11 @@
 // Sources that headers, catalogues, tests and scenes cite, gathered from their texts.
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { InputError } from '../../src/input.mjs';
 import { table } from '../markdown.mjs';
 
 const folders = ['math', 'contract', 'linear', 'models', 'integrators', 'simulation', 'experiments'];
+const bibliography = 'docs/templates/references.txt';
 const year = '(?:1[6-9]|20)\\d\\d';
 
 // Headers, sources and scenes, relative to the repository.
@@ -42,27 +44,42 @@ export function citations(text) {
 }
 
 // By which the same publication is known: catalogues write Chung-Hulbert.
-const surname = (authors) => authors.match(/\p{Lu}\p{L}{2,}/u)?.[0] ?? authors;
+const surname = (authors) => authors.match(/\p{Lu}\p{L}+/u)?.[0] ?? authors;
 
-// A journal or a title, without section or equation; empty where it is none.
-const work_of = (place) =>
-  /^\p{Lu}.{4,}\d/u.test(place) ? place.replace(/,? (section|chapter|eqs?\.|figure) .*$/, '') : '';
+// Publications by surname and year, and the line on which each stands.
+export function works(text) {
+  const lines = text.split('\n').map((line, i) => [line, i + 1]).filter(([line]) => line !== '' && !line.startsWith('#'));
+  return new Map(lines.map(([line, number]) => {
+    const [key, work, ...rest] = line.split('\t');
+    if (work === undefined || rest.length > 0) throw new InputError(`${bibliography}:${number}: expected "Surname year<tab>publication"`);
+    return [key, work];
+  }));
+}
+
+// Citations without a publication, or publications that nothing cites, as an error.
+export function match(cited_keys, known) {
+  const missing = cited_keys.filter((key) => !known.has(key));
+  const unused = [...known.keys()].filter((key) => !cited_keys.includes(key));
+  if (missing.length > 0) throw new InputError(`${bibliography}: nothing stands there for ${missing.join(', ')}: add a line`);
+  if (unused.length > 0) throw new InputError(`${bibliography}: nothing cites ${unused.join(', ')}: remove the line`);
+}
 
 export function list(_, root) {
   const all = new Map();
   for (const path of files(root)) {
     for (const text of cited(path, readFileSync(join(root, path), 'utf8'))) {
-      for (const { authors, year: when, place } of citations(text)) {
+      for (const { authors, year: when } of citations(text)) {
         const key = `${surname(authors)} ${when}`;
-        const entry = all.get(key) ?? { authors, when, work: '', where: new Set() };
+        const entry = all.get(key) ?? { authors, when, where: new Set() };
         if (authors.length > entry.authors.length) entry.authors = authors;
-        if (work_of(place).length > entry.work.length) entry.work = work_of(place);
         entry.where.add(`\`${path}\``);
         all.set(key, entry);
       }
     }
   }
+  const known = works(readFileSync(join(root, bibliography), 'utf8'));
+  match([...all.keys()], known);
   const rows = [...all].sort(([a], [b]) => a.localeCompare(b, 'en'))
-    .map(([, { authors, when, work, where }]) => [authors, when, work, [...where].join(', ')]);
-  return table(['authors', 'year', 'work', 'cited in'], rows);
+    .map(([key, { authors, when, where }]) => [`${authors} ${when}`, known.get(key), [...where].join(', ')]);
+  return table(['cited as', 'publication', 'cited in'], rows);
 }
