@@ -40,7 +40,7 @@ class FixedEsdirk final : public FixedStep {
 /// order one, so that a hundredth of the tolerance is not seen in it.
 constexpr double newton_part = 1e-2;
 /// Newton's tolerance has this margin already.
-constexpr double remaining = 1;
+constexpr double whole_newton_part = 1;
 
 Options with_control(Options options) {
   options.newton_tolerance = newton_part * options.tolerance;
@@ -53,7 +53,7 @@ class ControlledEsdirk final : public ErrorControlled {
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         table.share * std::pow(options.tolerance, table.power)),
-        stages_(dynamics(), with_control(options), table, remaining) {}
+        stages_(dynamics(), with_control(options), table, whole_newton_part) {}
 
  private:
   Status try_step(const State& from, double h, State& to, Out error_q,

@@ -54,8 +54,9 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
   const std::size_t strands = reference.tips.tip.size() / 3 / (reference.frames + 1);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < reference.tips.tip.size(); i += 3) {
+    const std::size_t frame = i / 3 / strands;
     Row row;
-    row.set("t_s", static_cast<double>(i / 3 / strands) / comparison.rate);
+    row.set("t_s", static_cast<double>(frame) / comparison.rate);
     row.set("strand", i / 3 % strands);
     for (std::size_t k = 0; k < 3; ++k) {
       row.set(columns[2 + k], reference.tips.tip[i + k]);
@@ -199,7 +200,7 @@ SceneReference kept_sides(const Scene& given, const Comparison& comparison,
   const std::string key = reference_key(given, comparison, cut);
   if (auto found = load_reference(folder, name, key)) return *found;
   tell("{}: computing the reference, {} elements\n", name, cut.elements);
-  const SceneReference made = make(given, comparison, cut);
+  SceneReference made = make(given, comparison, cut);
   save_reference(folder, name, key, made, comparison, cut, sides);
   return made;
 }

@@ -36,8 +36,8 @@ double largest_ratio(const std::vector<int>& ladder) {
 
 }  // namespace
 
-double ladder_slack(const SearchPlan& plan, double noise) {
-  return largest_ratio(plan.elements) * largest_ratio(plan.substeps) * noise;
+double ladder_slack(const SearchPlan& plan, double run_noise) {
+  return largest_ratio(plan.elements) * largest_ratio(plan.substeps) * run_noise;
 }
 
 Search::Search(SearchPlan plan, std::size_t methods, Measure measure, Changed changed,
@@ -183,6 +183,7 @@ std::vector<std::size_t> Search::promising_first() {
   }
   std::ranges::sort(order);
   std::vector<std::size_t> methods;
+  methods.reserve(order.size());
   for (const auto& [price, method] : order) methods.push_back(method);
   return methods;
 }

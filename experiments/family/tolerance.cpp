@@ -165,6 +165,7 @@ Row compared(const Subject& subject, Row row, const Claim& claim, const Outcome&
 
 std::vector<Outcome> outcomes_of(const Subject& subject) {
   std::vector<Outcome> all;
+  all.reserve(std::size(by_tolerance));
   for (const std::string_view integrator : by_tolerance) {
     all.push_back({run_by_tolerance(subject, integrator, subject.tolerance,
                                     subject.most_calls, repeats)});

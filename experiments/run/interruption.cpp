@@ -30,7 +30,7 @@ Interruption::Interruption(std::string_view program) : program_(program) {
 
 Interruption::~Interruption() {
   over_ = true;
-  pthread_kill(thread_.native_handle(), SIGTERM);
+  pthread_kill(thread_.native_handle(), SIGINT);
   thread_.join();
   const sigset_t set = both_signals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);

@@ -9,7 +9,7 @@
 namespace tress::experiments::scene_runs {
 namespace {
 
-constexpr Column outcome_columns_[] = {
+constexpr Column columns_of_outcome[] = {
     {"scene", "name of the scene"},
     {"frames", "frames written"},
     {"simulated_s", "simulated time"},
@@ -64,7 +64,7 @@ void set_frame(std::string_view part, const ErrorBar& bar, std::size_t frame, Ro
 
 }  // namespace
 
-std::span<const Column> outcome_columns() { return outcome_columns_; }
+std::span<const Column> outcome_columns() { return columns_of_outcome; }
 
 Row outcome(const Scene& scene, const SceneRun& run) {
   Row row;

@@ -91,7 +91,10 @@ std::vector<ValidationTest> vibration_tests() {
           .judged_from = 40,
           .claimed = rods,
           .reference =
-              [](double mode) { return heavy_rod_mode(0, static_cast<int>(mode)); },
+              [](double mode) {
+                const auto number = static_cast<int>(mode);
+                return heavy_rod_mode(0.0, number);
+              },
           .measure = measure_beam,
       },
       {

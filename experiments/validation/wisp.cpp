@@ -33,7 +33,7 @@ struct Pressed {
 };
 
 /// The clamp goes down by each of `moves` (m), one after the other.
-Pressed pressed(const ModelTrial& trial, std::vector<double> moves) {
+Pressed pressed(const ModelTrial& trial, const std::vector<double>& moves) {
   // Tilted, so that it bows out to one side.
   Strand strand =
       TestRod().strand(trial.elements, rotation({0, 1, 0}, 1e-4) * hanging_clamp());

@@ -28,11 +28,12 @@ class CoupledSolver {
   /// `uncoupled` must outlive this; `means` are the contact points, over all coordinates.
   CoupledSolver(std::vector<const Pattern*> uncoupled, std::vector<Mean> means);
 
-  /// A range of FourPoints, whose contacts may be added. If they are not the points of
-  /// before, allocates and analyses again.
-  template <class Range>
-  void touch(const Range& points) {
-    touching_.assign(points.begin(), points.end());
+  /// Contacts may be added for the points that `points_of` gives for each entry of `all`.
+  /// If they are not the points of before, allocates and analyses again.
+  template <class Entries, class PointsOf>
+  void touch(const Entries& all, PointsOf points_of) {
+    touching_.clear();
+    for (const auto& entry : all) touching_.push_back(points_of(entry));
     follow();
   }
 

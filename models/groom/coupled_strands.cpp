@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -77,7 +78,7 @@ void CoupledStrands::couple() {
       touching.push_back({own, own + 1, other, other + 1});
     }
   }
-  solver_->touch(touching);
+  solver_->touch(touching, std::identity());
   factored_ = Status::retry;
 }
 

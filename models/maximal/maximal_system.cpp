@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 
 #include "linear/finite.h"
 #include "linear/sparse_pattern.h"
@@ -245,7 +244,7 @@ Status MaximalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
     for (const auto& effect : strand_.effects) effect->add_couplings(t, p, contacts_);
   }
   if (contacts_.empty()) return solver_->factor(values_);
-  coupled_solver_->touch(std::views::transform(contacts_, points_of));
+  coupled_solver_->touch(contacts_, points_of);
   coupled_solver_->clear();
   coupled_solver_->add(0, values_);
   for (const Coupling& contact : contacts_) coupled_solver_->add(contact, w);

@@ -20,7 +20,7 @@
 namespace tress::models {
 namespace {
 
-enum Coordinate { beta, theta, gamma_, phi, delta, omega, epsilon, coordinates };
+enum Coordinate { beta, theta, gamma_angle, phi, delta, omega, epsilon, coordinates };
 
 // Data of the Test Set, problem "andrews": masses (kg), moments of inertia (kg m^2),
 // lengths (m), spring (N/m, m), drive (N m). Names are the Test Set's.
@@ -76,8 +76,8 @@ struct Mechanism {
   template <class T>
   T spring_stretch(const T* q, T& x, T& y, T& length) const {
     using std::cos, std::sin, std::sqrt;
-    x = sd * cos(q[gamma_]) + sc * sin(q[gamma_]) + (xb - xc);
-    y = sd * sin(q[gamma_]) - sc * cos(q[gamma_]) + (yb - yc);
+    x = sd * cos(q[gamma_angle]) + sc * sin(q[gamma_angle]) + (xb - xc);
+    y = sd * sin(q[gamma_angle]) - sc * cos(q[gamma_angle]) + (yb - yc);
     length = sqrt(x * x + y * y);
     return length - spring_length;
   }
@@ -88,9 +88,10 @@ struct Mechanism {
     T x, y, length;
     const T stretch = spring_stretch(q, x, y, length);
     const T pull = spring_stiffness * stretch / length;
-    const T dx = sc * cos(q[gamma_]) - sd * sin(q[gamma_]);  // d(x, y) / d gamma
-    const T dy = sd * cos(q[gamma_]) + sc * sin(q[gamma_]);
-    r[gamma_] += pull * (x * dx + y * dy);
+    const T dx =
+        sc * cos(q[gamma_angle]) - sd * sin(q[gamma_angle]);  // d(x, y) / d gamma
+    const T dy = sd * cos(q[gamma_angle]) + sc * sin(q[gamma_angle]);
+    r[gamma_angle] += pull * (x * dx + y * dy);
   }
 
   template <class T>
@@ -107,15 +108,15 @@ struct Mechanism {
   }
 };
 
-constexpr auto cosine = LoopTerm::cosine;
-constexpr auto sine = LoopTerm::sine;
+constexpr auto cosine = LoopTerm::Trig::cosine;
+constexpr auto sine = LoopTerm::Trig::sine;
 constexpr std::array<LoopTerm, 22> closure = {{
     {0, rr, cosine, beta},
     {0, -d, cosine, beta, theta},
-    {0, -ss, sine, gamma_},
+    {0, -ss, sine, gamma_angle},
     {1, rr, sine, beta},
     {1, -d, sine, beta, theta},
-    {1, ss, cosine, gamma_},
+    {1, ss, cosine, gamma_angle},
     {2, rr, cosine, beta},
     {2, -d, cosine, beta, theta},
     {2, -e, sine, phi, delta},

@@ -15,7 +15,7 @@ double along(const LoopTerm& term, In x) {
 // Derivative of the given order of length * trig(angle) with respect to the angle.
 double turned(const LoopTerm& term, In q, int order) {
   const double angle = along(term, q);
-  const int quarter = term.trig == LoopTerm::sine ? order + 3 : order;
+  const int quarter = term.trig == LoopTerm::Trig::sine ? order + 3 : order;
   switch (quarter % 4) {
     case 0:
       return term.length * std::cos(angle);

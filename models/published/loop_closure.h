@@ -9,7 +9,7 @@ namespace tress::models {
 
 /// One link of a planar loop: length * trig(angle) with angle q_i or q_i + q_j.
 struct LoopTerm {
-  enum Trig { cosine, sine };
+  enum class Trig { cosine, sine };
   int constraint;
   double length;  // m, signed
   Trig trig;

@@ -17,8 +17,8 @@ struct Turned {
 
 constexpr Vec e0{1, 0, 0}, e1{0, 1, 0}, e2{0, 0, 1};
 
-HelixFunctions<double> functions(const Vec& darboux, double s) {
-  return helix_functions(s, dot(darboux, darboux), s);
+HelixFunctions<double> functions(const Vec& turning, double s) {
+  return helix_functions(s, dot(turning, turning), s);
 }
 
 /// The end of a helix of constant Darboux vector (math/helix.h) that starts at `from`.
@@ -64,9 +64,7 @@ void check_unbranched(const Strand& strand, const std::string& model) {
   check(strand);
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
-    const Vec& e0 = segment.mount.e0;
-    const Vec& e1 = segment.mount.e1;
-    const bool straight_on = e0.x == 1 && e1.y == 1;
+    const bool straight_on = segment.mount.e0.x == 1 && segment.mount.e1.y == 1;
     if (segment.parent != static_cast<int>(i) - 1 || !straight_on) {
       throw InputError("segment " + std::to_string(i) + " branches off", model,
                        "give a chain of segments, or use super_helix_tree");

@@ -49,7 +49,8 @@ Lumps lumps(const Strand& strand) {
   all.length = all.mass;
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
-    const auto start = static_cast<std::size_t>(segment.parent + 1);
+    const std::size_t start =
+        segment.parent < 0 ? 0 : static_cast<std::size_t>(segment.parent) + 1;
     for (const std::size_t end : {start, i + 1}) {
       all.length[end] += segment.length / 2;
       all.mass[end] +=

@@ -133,6 +133,7 @@ Scene thinned(Scene scene, std::size_t most) {
 
 Scene only(Scene scene, const std::vector<std::size_t>& strands) {
   std::vector<Strand> chosen;
+  chosen.reserve(strands.size());
   for (const std::size_t i : strands) chosen.push_back(scene.strands[i]);
   return with_strands(std::move(scene), std::move(chosen));
 }

@@ -73,7 +73,7 @@ std::string value_text(const Parameter& p, const toml::node& node,
   if (p.text || !p.choices.empty()) {
     const bool flag = p.choices == "true|false" && node.is_boolean();
     if (!node.is_string() && !flag) wrong_type(p, node, file);
-    const std::string text = one_line(scalar_text(node));
+    std::string text = one_line(scalar_text(node));
     if (!p.text || !p.name.ends_with("file") || text.empty()) return text;
     return (std::filesystem::path(file).parent_path() / text).string();
   }

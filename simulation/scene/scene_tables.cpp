@@ -119,6 +119,7 @@ std::span<const Use> integrator_uses() {
   }();
   static const auto uses = [] {
     std::vector<Use> list;
+    list.reserve(keys_of.size());
     for (const auto& [id, keys] : keys_of) list.push_back({id, keys});
     return list;
   }();

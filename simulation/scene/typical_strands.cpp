@@ -83,6 +83,7 @@ std::vector<std::size_t> typical_strands(const std::vector<Strand>& strands,
   std::iota(order.begin(), order.end(), 0u);
   if (strands.size() <= most) return order;
   std::vector<Features> all;
+  all.reserve(strands.size());
   for (const Strand& strand : strands) all.push_back(features_of(strand));
   standardize(all, order);
   const Features axis = principal_axis(all);

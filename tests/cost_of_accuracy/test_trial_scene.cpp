@@ -180,9 +180,10 @@ TEST(Methods, DifferInOneWord) {
   const Method method{{&find_model("super_helix"),
                        {{"modes", "bend"}, {"tangent", "stiff"}},
                        "implicit_midpoint"}};
-  EXPECT_TRUE(same(method, {&find_model("super_helix"),
-                            {{"tangent", "stiff"}, {"modes", "bend"}},
-                            "implicit_midpoint"}));
+  const Method reordered{{&find_model("super_helix"),
+                          {{"tangent", "stiff"}, {"modes", "bend"}},
+                          "implicit_midpoint"}};
+  EXPECT_TRUE(same(method, reordered));
   const auto others = with_other_words(given, method, "modes");
   ASSERT_EQ(others.size(), 1u);  // bend_planar refuses a curl
   EXPECT_EQ(others.front().word("modes"), "bend_twist");

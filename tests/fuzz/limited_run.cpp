@@ -29,6 +29,7 @@ pid_t start(std::vector<std::string>& command, const std::string& stem) {
   posix_spawn_file_actions_addopen(&files, 1, (stem + ".out").c_str(), flags, 0644);
   posix_spawn_file_actions_addopen(&files, 2, (stem + ".err").c_str(), flags, 0644);
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (std::string& argument : command) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   pid_t process = 0;

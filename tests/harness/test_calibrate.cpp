@@ -207,6 +207,7 @@ LeastSquares straight_line(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> error(0, 0.1);
   std::vector<double> y;
+  y.reserve(10);
   for (int k = 0; k < 10; ++k) y.push_back(2 - 3 * (k - 4.5) + error(random));
   const ResidualAt residual = [&](In x, Out r) {
     for (std::size_t k = 0; k < 10; ++k) {

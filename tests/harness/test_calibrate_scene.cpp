@@ -45,7 +45,7 @@ drag_kg_m_s = 2e-5
 }
 
 std::string file_of(const std::string& name, const std::string& text) {
-  const std::string path = testing::TempDir() + name;
+  std::string path = testing::TempDir() + name;
   std::ofstream(path) << text;
   return path;
 }

@@ -99,7 +99,7 @@ std::string curls(const std::string& more = "") {
     scene += fmt::format(
         "[[strand]]\nlength_m = 0.1\nelements = 12\nshape = \"helix\"\n"
         "curl_radius_m = 0.004\ncurl_pitch_m = 0.01\nposition_m = [{}, {}, 0]\n",
-        k % 2 * 0.02, k / 2 * 0.02);
+        k % 2 * 0.02, k < 2 ? 0.0 : 0.02);
   }
   return scene;
 }

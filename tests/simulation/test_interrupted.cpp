@@ -167,11 +167,12 @@ TEST(Interrupted, AStateOfNoStrandsIsRefused) {
 }
 
 TEST(Interrupted, AStateOfAnotherCommitIsRefused) {
-  const std::string message = message_after("out/scene.state", [](std::string bytes) {
-    std::string content(unsealed(bytes));
-    content.insert(content.find("commit") + 9, "0");
-    return sealed(content);
-  });
+  const std::string message =
+      message_after("out/scene.state", [](const std::string& bytes) {
+        std::string content(unsealed(bytes));
+        content.insert(content.find("commit") + 9, "0");
+        return sealed(content);
+      });
   EXPECT_THAT(message, HasSubstr("it had other commit ('0"));
 }
 

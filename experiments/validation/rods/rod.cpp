@@ -7,7 +7,7 @@
 namespace tress::experiments::validation {
 namespace {
 
-constexpr CrossSection section{40e-6, 40e-6};
+constexpr CrossSection round_section{40e-6, 40e-6};
 constexpr double youngs_modulus = 3e9, density = 1300;
 
 constexpr std::array<std::string_view, 2> points = {"mass_spring", "inextensible_strand"};
@@ -18,11 +18,11 @@ bool among(std::span<const std::string_view> models, const ModelVariant& variant
 
 }  // namespace
 
-double TestRod::bending() const { return youngs_modulus * section.inertia1(); }
+double TestRod::bending() const { return youngs_modulus * round_section.inertia1(); }
 
 double TestRod::twisting() const { return bending() / (1 + poisson_ratio); }
 
-double TestRod::line_mass() const { return density * section.area(); }
+double TestRod::line_mass() const { return density * round_section.area(); }
 
 double TestRod::rate() const {
   return std::sqrt(bending() / line_mass()) / (length * length);
@@ -40,8 +40,8 @@ Strand TestRod::strand(int elements, const Frame& clamp) const {
   material.youngs_modulus = youngs_modulus;
   material.shear_modulus = Material::shear_modulus_of(youngs_modulus, poisson_ratio);
   Strand strand = make_strand(
-      material, section, {.elements = elements, .length = length, .grading = grading},
-      natural, initial);
+      material, round_section,
+      {.elements = elements, .length = length, .grading = grading}, natural, initial);
   strand.root.frame = clamp;
   return strand;
 }

@@ -39,6 +39,7 @@ const ModelSettings curly = with(ten, {{"natural_curvature_1_m", "40"},
 std::vector<Way> ways(const std::vector<StrandCase>& strands,
                       const std::vector<StrandCase>& twisting) {
   std::vector<Way> all;
+  all.reserve(twisting.size() + 2 * strands.size());
   for (const StrandCase& strand : twisting) all.push_back({"implicit_midpoint", strand});
   for (const StrandCase& strand : strands) {
     for (const std::string integrator : {"implicit_midpoint", "generalized_alpha"}) {

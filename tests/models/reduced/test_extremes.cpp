@@ -84,15 +84,15 @@ class ManyTurns : public testing::TestWithParam<Winding> {
  protected:
   /// Three elements that each wind by `angle`, at rest in that shape.
   std::unique_ptr<System> wound(double angle) const {
-    const Vec kappa = angle / element_ * GetParam().direction;
+    const Vec kappa = angle / element_m * GetParam().direction;
     return make_model("super_helix", {{"modes", GetParam().modes},
                                       {"elements", "3"},
-                                      {"length_m", text(3 * element_)},
+                                      {"length_m", text(3 * element_m)},
                                       {"natural_twist_1_m", text(kappa.x)},
                                       {"natural_curvature_1_m", text(kappa.y)},
                                       {"natural_curvature2_1_m", text(kappa.z)}});
   }
-  static constexpr double element_ = 0.03;  // m
+  static constexpr double element_m = 0.03;  // m
   static constexpr double angles[] = {pi / 2, 2 * pi, 3.7 * pi, 6 * pi};
 };
 
@@ -101,8 +101,8 @@ TEST_P(ManyTurns, EndWhereHelicesEnd) {
     const auto system = wound(angle);
     const State start = initial_state(*system);
     const std::vector<double> x = points({wound(angle), start.q});
-    const Vec kappa = angle / element_ * GetParam().direction;
-    const Vec step = helix_tip(kappa, element_);
+    const Vec kappa = angle / element_m * GetParam().direction;
+    const Vec step = helix_tip(kappa, element_m);
     const Frame turn = rotation(GetParam().direction, angle);
     Frame frame;  // root_tangent x: the axes of space
     Vec tip;
@@ -111,7 +111,7 @@ TEST_P(ManyTurns, EndWhereHelicesEnd) {
       frame = frame * turn;
       const Vec off = load3(&x[3 * (i + 1)]) - tip;
       // Sines of up to 6 pi round by 6 pi eps; some ten such terms an element.
-      EXPECT_LE(norm(off), 10 * 6 * pi * eps * 3 * element_) << angle;
+      EXPECT_LE(norm(off), 10 * 6 * pi * eps * 3 * element_m) << angle;
     }
   }
 }
