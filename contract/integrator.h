@@ -49,6 +49,8 @@ struct Options {
   double newton_tolerance = 1e-10;  // largest correction over System::scale
   int newton_iterations = 20;
   Refresh refresh = Refresh::every_iteration;
+  double contact_tolerance = 1e-8;  // m/s, ContactForm::improve() at the end of a stage
+  int contact_iterations = 30;
   /// IDA, CVODE, ARKODE: Newton tolerance relative to the error test. SUNDIALS' own
   /// defaults (0.33, 0.1, 0.1; selected by 0) leave stale-matrix errors that break the
   /// error test: on the pendulum 1e-2 is both more accurate and faster.
@@ -81,6 +83,11 @@ struct Stats {
   std::string_view solver = "none";           // the linear solver in use
   int rank_deficiency = 0;                    // redundant constraints found and handled
   double condition = 0;  // largest condition estimate; 0: not estimated
+  // Of exact contact: solutions and improvements of the multipliers, stages that ended
+  // short of Options::contact_tolerance, and the largest violation of the law there.
+  long contact_iterations = 0;
+  long contact_unfinished = 0;
+  double contact_violation = 0;  // m/s
 };
 
 /// Clock-independent cost of a run: every residual, matrix, solve, sweep and step counts

@@ -201,8 +201,35 @@ class History {
   virtual void recall(In memory) = 0;
 };
 
+/// Contact forces that obey the laws of Signorini and Coulomb without regularisation.
+/// Each is given by a multiplier, a penalty and the state, so that the equations are
+/// functions of the state as ever; the multipliers at which the law holds are found by
+/// solving the equations and improving the multipliers in turn (augmented Lagrangian).
+/// The law is that of the state at which the equations are solved: methods use it at
+/// states that are ends of steps or stages.
+class ContactForm {
+ public:
+  virtual ~ContactForm() = default;
+  /// Before the equations of a state that lies `tau` (s) ahead are solved: q = q0 + tau
+  /// v, where q0 and v0 are the state from which the motion goes on.
+  virtual void begin(double t, double tau, In q0, In v0) noexcept = 0;
+  /// After they are solved, at the solution: takes the forces found as the multipliers.
+  /// The largest speed (m/s) by which the solution violates the law.
+  virtual double improve(double t, In q, In v) noexcept = 0;
+  /// Largest speed (m/s) at which points whose rigid contact is closed approach their
+  /// surface: where it is not 0 velocities jump, and forces are an impulse over tau.
+  virtual double approach(double t, In q, In v) noexcept = 0;
+  /// After an impact: the contacts stay closed, without the forces of the impulse.
+  virtual void release() noexcept = 0;
+  /// Whether points may rebound: v0 must then be the velocity before the impact.
+  virtual bool rebounds() const = 0;
+  /// The multipliers, of fixed number; 0 at first.
+  virtual std::vector<double> multipliers() const = 0;
+  virtual void set_multipliers(In values) = 0;
+};
+
 /// One mechanical system. `residual` is pure; `linearize` prepares `solve`; nothing
-/// allocates after the first call of each; only History::accept may
+/// allocates after the first call of each; only History::accept and ContactForm may
 /// change what it remembers.
 class System {
  public:
@@ -236,19 +263,31 @@ class System {
   virtual Energetics* energetics() { return nullptr; }
   virtual MaterialPoints* material_points() { return nullptr; }
   virtual History* history() { return nullptr; }
+  virtual ContactForm* contact_form() { return nullptr; }
 
-  // Of the history, where there is one.
+  // Of the history and of the multipliers of contacts, where there are any.
   bool accept(double t, InOut q, InOut v) {
     return history() != nullptr && history()->accept(t, q, v);
   }
   void reset() {
     if (history() != nullptr) history()->reset();
+    if (contact_form() == nullptr) return;
+    const std::vector<double> none(contact_form()->multipliers().size());
+    contact_form()->set_multipliers(none);
   }
   std::vector<double> memory() {
-    return history() == nullptr ? std::vector<double>{} : history()->memory();
+    auto all = history() == nullptr ? std::vector<double>{} : history()->memory();
+    if (contact_form() == nullptr) return all;
+    const std::vector<double> multipliers = contact_form()->multipliers();
+    all.insert(all.end(), multipliers.begin(), multipliers.end());
+    return all;
   }
   void recall(In memory) {
-    if (history() != nullptr) history()->recall(memory);
+    const std::size_t multipliers =
+        contact_form() == nullptr ? 0 : contact_form()->multipliers().size();
+    const std::size_t of_history = memory.size() - multipliers;
+    if (history() != nullptr) history()->recall(memory.first(of_history));
+    if (multipliers > 0) contact_form()->set_multipliers(memory.last(multipliers));
   }
 };
 

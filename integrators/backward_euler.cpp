@@ -34,6 +34,7 @@ IntegratorEntry backward_euler_entry() {
           .source = "Hairer-Wanner IV.3",
           .tangent = true,
           .stages = 1,
+          .contact = Contact::exact_rebounding,
           .formulations = of_order(1, stage_formulations),
           .make = make_method<BackwardEuler>};
 }

@@ -58,6 +58,7 @@ IntegratorEntry bdf2_entry() {
           .source = "Gear 1971",
           .tangent = true,
           .stages = 1,
+          .contact = Contact::exact,
           .formulations = of_order(2, stage_formulations),
           .make = make_method<Bdf2>};
 }

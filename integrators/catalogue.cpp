@@ -58,6 +58,26 @@ const IntegratorEntry& find_integrator(std::string_view id) {
                    suggestion(id, ids, "--list shows the integrators"));
 }
 
+namespace {
+
+/// Why a method cannot drive a system with these contacts; empty: it can.
+std::string refusal(Contact of_method, const ContactForm& contacts) {
+  const Contact needed = contacts.rebounds() ? Contact::exact_rebounding : Contact::exact;
+  if (of_method >= needed) return {};
+  std::string able;
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
+    if (entry.contact < needed) continue;
+    able += (able.empty() ? "" : ", ") + std::string(entry.id);
+  }
+  return (contacts.rebounds()
+              ? "restitution needs the speed before an impact in the step's one solution"
+              : "exact friction holds at the end of a step, for which it does not "
+                "solve") +
+         std::string(": use ") + able;
+}
+
+}  // namespace
+
 std::string refusal(const IntegratorEntry& entry, System& system,
                     Formulation formulation) {
   const bool constrained = system.layout().constraints > 0;
@@ -70,6 +90,10 @@ std::string refusal(const IntegratorEntry& entry, System& system,
   if (!entry.order(formulation)) return std::string(entry.gap(formulation));
   if (constrained && system.sparse_form() == nullptr) {
     return "constraints need the model's sparse form";
+  }
+  if (ContactForm* contacts = system.contact_form()) {
+    std::string reason = refusal(entry.contact, *contacts);
+    if (!reason.empty()) return reason;
   }
   return entry.objection(system, formulation);
 }

@@ -27,6 +27,13 @@ struct Gap {
   std::string_view reason;
 };
 
+/// The contact forces that a method can drive.
+enum class Contact {
+  regular,          // given by the state
+  exact,            // ContactForm: equations are solved at ends of stages, by Stage
+  exact_rebounding  // the same, in one stage from the velocity of the step's start
+};
+
 /// The default objection: none.
 std::string any_system(System& system, Formulation formulation);
 
@@ -39,6 +46,7 @@ struct IntegratorEntry {
   bool error_controlled = false;  // takes Options::tolerance as well as step
   bool tangent = false;           // solves with the model's tangent
   int stages = 0;                 // solutions by Newton's method in a step (Stage)
+  Contact contact = Contact::regular;
   std::vector<Treatment> formulations;
   std::vector<Gap> gaps = {};
   /// Options that only this method reads, by own_options().

@@ -17,6 +17,9 @@ namespace {
 /// Higher polynomials amplify what the fast modes left in them.
 constexpr std::size_t guessed_from = 3;
 
+/// Acceleration (m/s^2) by which what rests falls in a step, and makes no impact.
+constexpr double falling = 9.81;
+
 class FixedEsdirk final : public FixedStep {
  public:
   FixedEsdirk(System& system, const Options& options, const EsdirkTable& table)
@@ -26,7 +29,7 @@ class FixedEsdirk final : public FixedStep {
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
 
   Status step(double t, double h) override {
-    const Status s = stages_.step(t, h, q_, v_, a_, lambda_);
+    const Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * falling);
     take(stages_.q(), stages_.v());
     std::ranges::copy(stages_.a(), a_.begin());
     std::ranges::copy(stages_.lambda(), lambda_.begin());
@@ -39,6 +42,9 @@ class FixedEsdirk final : public FixedStep {
 /// Newton's tolerance over that of the run. Stages enter the estimate with weights of
 /// order one, so that a hundredth of the tolerance is not seen in it.
 constexpr double newton_part = 1e-2;
+/// A jump of velocities below this part of what the tolerance sees needs no step of its
+/// own.
+constexpr double unseen_part = 0.1;
 /// Newton's tolerance has this margin already.
 constexpr double whole_newton_part = 1;
 
@@ -58,7 +64,8 @@ class ControlledEsdirk final : public ErrorControlled {
  private:
   Status try_step(const State& from, double h, State& to, Out error_q,
                   Out error_v) override {
-    const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda);
+    const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda,
+                                  unseen_part * seen_speed());
     if (s != Status::ok) return s;
     std::ranges::copy(stages_.q(), to.q.begin());
     std::ranges::copy(stages_.v(), to.v.begin());
@@ -81,6 +88,7 @@ double EsdirkTable::c(std::size_t i) const {
 EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
                            const EsdirkTable& table, double remaining)
     : table_(table),
+      dynamics_(dynamics),
       stage_(dynamics, options, remaining),
       v_(table.stages, std::vector<double>(static_cast<std::size_t>(dynamics.n()))),
       a_(v_),
@@ -122,8 +130,17 @@ void EsdirkStages::guess(std::size_t i, double h) noexcept {
   }
 }
 
-Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda) noexcept {
+/// Whether contacts that are closed now stop points that moved on at the step's start.
+bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
+  ContactForm* contacts = dynamics_.system().contact_form();
+  return contacts != nullptr && contacts->approach(t, q, v) > gently;
+}
+
+Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda,
+                          double gently) noexcept {
   look_back(t);
+  impact_ = stopped(t, q, v, gently);
+  if (impact_) return impact(t, h, q, v);
   t_ = t;
   h_ = h;
   std::ranges::copy(v, v_[0].begin());
@@ -145,12 +162,29 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda) noexc
     if (s != Status::ok) return s;
     std::ranges::copy(stage_.v(), v_[i].begin());
   }
-  return Status::ok;
+  impact_ = stopped(t, q, v, gently);
+  return impact_ ? impact(t, h, q, v) : Status::ok;
+}
+
+Status EsdirkStages::impact(double t, double h, In q, In v) noexcept {
+  forget();
+  shifted(q_bar_, q, h, v);
+  std::ranges::fill(a_[last()], 0.0);
+  Status s = stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_[last()], lambda_);
+  if (s != Status::ok) return s;
+  for (std::size_t i = 0; i < q.size(); ++i) v_[0][i] = stage_.q()[i] - q_bar_[i];
+  std::ranges::copy(stage_.v(), v_[last()].begin());
+  dynamics_.system().contact_form()->release();
+  return dynamics_.accelerate(t + h, stage_.q(), stage_.v(), a_[last()], lambda_);
 }
 
 void EsdirkStages::difference(double h, Out dq, Out dv) const noexcept {
   std::ranges::fill(dq, 0.0);
   std::ranges::fill(dv, 0.0);
+  if (impact_) {
+    std::ranges::copy(v_[0], dq.begin());
+    return;
+  }
   for (std::size_t i = 0; i < table_.stages; ++i) {
     const double weight = h * (table_.a[last()][i] - table_.embedded[i]);
     add(dq, weight, v_[i]);

@@ -38,14 +38,20 @@ struct EsdirkTable {
 ///
 /// so that every stage hands the same weights (1, h gamma, (h gamma)^2) to Stage, and one
 /// matrix serves all of them (Refresh::every_step: one a step).
+///
+/// A step in which a rigid contact stops points (ContactForm) is one of backward Euler:
+/// velocities jump, whose impulse the stages of a method of higher order would weigh with
+/// coefficients of either sign. Its difference is that to the free motion of the
+/// positions, which falls with the step, and none of velocities, which does not.
 class EsdirkStages {
  public:
   /// `remaining`: see Stage.
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                double remaining = 0.1);
 
-  /// From (q, v) at t with its acceleration a and multipliers over h.
-  Status step(double t, double h, In q, In v, In a, In lambda) noexcept;
+  /// From (q, v) at t with its acceleration a and multipliers over h. Points that come
+  /// upon a rigid surface at less than `gently` (m/s) make no jump.
+  Status step(double t, double h, In q, In v, In a, In lambda, double gently) noexcept;
 
   /// The next step does not guess from the last one.
   void forget() { h_ = 0; }
@@ -60,18 +66,22 @@ class EsdirkStages {
   void difference(double h, Out dq, Out dv) const noexcept;
 
  private:
+  bool stopped(double t, In q, In v, double gently) noexcept;
+  Status impact(double t, double h, In q, In v) noexcept;
   std::size_t last() const { return table_.stages - 1; }
   /// Whether the last step ended, or began, where this one begins.
   void look_back(double t) noexcept;
   void guess(std::size_t i, double h) noexcept;
 
   const EsdirkTable& table_;
+  Dynamics& dynamics_;
   Stage stage_;
   std::vector<std::vector<double>> v_, a_;  // of the stages
   std::vector<double> q_bar_, v_bar_, lambda_;
   double t_ = 0, h_ = 0;          // of the last step, h_ = 0: none
   double h_before_ = 0;           // of the step before, 0: none
   std::vector<double> a_before_;  // at its start
+  bool impact_ = false;           // the last step was that of an impact
 };
 
 /// The method with a fixed step, or with Options::tolerance. `table` must outlive it.

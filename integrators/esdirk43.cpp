@@ -47,6 +47,7 @@ IntegratorEntry esdirk43_entry() {
           .error_controlled = true,
           .tangent = true,
           .stages = 5,
+          .contact = Contact::exact,
           // Index 3 differentiates twice what the stages, of order 2, leave in g.
           .formulations = {{Formulation::parametric, table.order},
                            {Formulation::acceleration, table.order},

@@ -24,6 +24,9 @@ constexpr int most_grown = 2;
 
 Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
     : dynamics_(dynamics),
+      contacts_(dynamics.system().contact_form()),
+      contact_tolerance_(options.contact_tolerance),
+      contact_iterations_(options.contact_iterations),
       tolerance_(options.newton_tolerance),
       remaining_(remaining * tolerance_),
       rounding_(
@@ -40,6 +43,8 @@ Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
       lambda_kept_(c_.size()),
       a_step_(q_.size()),
       lambda_step_(c_.size()),
+      a_held_(q_.size()),
+      lambda_held_(c_.size()),
       q_start_(q_.size()),
       a_part_(q_.size()),
       lambda_part_(c_.size()),
@@ -97,6 +102,48 @@ Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
 
 Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                     Matrix matrix) noexcept {
+  if (contacts_ == nullptr) return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix);
+  std::ranges::copy(a, a_held_.begin());
+  std::ranges::copy(lambda, lambda_held_.begin());
+  Status s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix);
+  if (s == Status::retry) {  // the penalty starts anew
+    std::ranges::copy(a_held_, a.begin());
+    std::ranges::copy(lambda_held_, lambda.begin());
+    s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix);
+  }
+  if (s != Status::ok) return s;
+  double violation = 0;
+  for (int i = 1;; ++i) {
+    violation = contacts_->improve(t, q_, v_);
+    ++dynamics_.stats.contact_iterations;
+    if (violation <= contact_tolerance_ || i == contact_iterations_) break;
+    std::ranges::copy(a, a_held_.begin());
+    std::ranges::copy(lambda, lambda_held_.begin());
+    s = solve_smooth(t, q_bar, v_bar, w, a, lambda, Matrix::own);
+    if (s == Status::ok) continue;
+    if (s == Status::fatal) return s;
+    std::ranges::copy(a_held_, a.begin());
+    std::ranges::copy(lambda_held_, lambda.begin());
+    place(q_bar, v_bar, w, a);
+    break;
+  }
+  if (violation <= contact_tolerance_) return Status::ok;
+  ++dynamics_.stats.contact_unfinished;
+  double& worst = dynamics_.stats.contact_violation;
+  worst = std::max(worst, violation);
+  return Status::ok;
+}
+
+Status Stage::first_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
+                            InOut lambda, Matrix matrix) noexcept {
+  const double tau = w.pos / w.vel;
+  shifted(q_start_, q_bar, -tau, v_bar);
+  contacts_->begin(t, tau, q_start_, v_bar);
+  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix);
+}
+
+Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                           Matrix matrix) noexcept {
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, refresh_, matrix, a, lambda);

@@ -42,6 +42,10 @@ class Stage {
   enum class Matrix { own, shared };
 
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
+  /// With exact contact (ContactForm): repeats solution and improvement of its
+  /// multipliers until the law holds within Options::contact_tolerance; where a later
+  /// solution fails, or after Options::contact_iterations, the one before stands, and
+  /// stats tell by how much the law is violated.
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                Matrix matrix = Matrix::own) noexcept;
 
@@ -63,6 +67,12 @@ class Stage {
     double size = 0;  // of a_step
   };
 
+  /// The first solution, with multipliers of contact as they are at the start.
+  Status first_contact(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                       Matrix matrix) noexcept;
+  /// The equations with multipliers of contact as they are.
+  Status solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                      Matrix matrix) noexcept;
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh, Matrix matrix,
@@ -102,6 +112,9 @@ class Stage {
                  InOut lambda, double& correction) noexcept;
 
   Dynamics& dynamics_;
+  ContactForm* contacts_;  // null: none
+  double contact_tolerance_;
+  int contact_iterations_;
   double tolerance_, remaining_;
   double rounding_;  // corrections below it may be rounding errors
   int iterations_;
@@ -113,6 +126,7 @@ class Stage {
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
+  std::vector<double> a_held_, lambda_held_;                         // of contacts
   std::vector<double> q_start_, a_part_, lambda_part_, a_before_;    // of short ones
   Side here_, there_, middle_;                                       // of a jump
   OnPath path_, next_;

@@ -32,6 +32,7 @@ IntegratorEntry tr_bdf2_entry() {
           .error_controlled = true,
           .tangent = true,
           .stages = 2,
+          .contact = Contact::exact,
           .formulations = of_order(table.order, stage_formulations),
           .make = [](System& system, const Options& options) {
             return make_esdirk(table, system, options);

@@ -41,7 +41,9 @@ std::unique_ptr<System> together(std::span<const Strand> strands,
                                  std::vector<Effects> effects) {
   const ReducedOptions options = reduced_options(parameters);
   const bool can = options.tangent == ReducedTangent::stiff &&
-                   options.method == TreeMethod::recursive && !strands.front().free_root;
+                   options.method == TreeMethod::recursive &&
+                   !strands.front().free_root &&
+                   std::ranges::none_of(effects, hold_contacts);
   return can ? make(strands, options, std::move(effects)) : nullptr;
 }
 

@@ -2,6 +2,7 @@
 
 #include "experiments/hard_cases/gauges.h"
 #include "models/effects/body.h"
+#include "models/effects/exact_body.h"
 #include "models/effects/self_contact.h"
 #include "models/effects/tether.h"
 
@@ -28,8 +29,16 @@ StabilityBounds coil_bounds(const Situation& s, double) {
   return {.reach = 1.001 * s.length};
 }
 
-Body plane(const Vec& at, const Vec& axis, double angle, const BodyContact& law) {
-  return {Plane{}, StrandPlace{at, rotation(axis, angle)}, law};
+enum class Friction { regularised, exact };
+
+std::shared_ptr<const Effect> plane(const Vec& at, const Vec& axis, double angle,
+                                    const BodyContact& law, Friction friction) {
+  const StrandPlace place{at, rotation(axis, angle)};
+  if (friction == Friction::regularised) {
+    return std::make_shared<Body>(Plane{}, place, law);
+  }
+  return std::make_shared<ExactBody>(Plane{}, place,
+                                     ExactContact{law.normal(), true, law.friction});
 }
 
 constexpr double radius = 40e-6;  // m, of the strand
@@ -39,19 +48,20 @@ constexpr BodyContact cone_contact{
     .stiffness = 1e5, .damping = 1, .friction = 0.5, .offset = radius};
 
 /// Tilted by 5 degrees across the path of the root, which drags the strand along it.
+template <Friction friction>
 void slope(const Strand&, Effects& effects) {
-  effects.push_back(std::make_shared<Body>(
-      plane({0, 0, -5e-3}, {1, 0, 0}, 5 * std::numbers::pi / 180, floor_contact)));
+  effects.push_back(plane({0, 0, -5e-3}, {1, 0, 0}, 5 * std::numbers::pi / 180,
+                          floor_contact, friction));
 }
 
 /// Three planes at 45 degrees that meet below the middle of the strand.
+template <Friction friction>
 void cone(const Strand& strand, Effects& effects) {
   const Vec apex{strand.length() / 2, 0, -0.06};
   for (int side = 0; side < 3; ++side) {
     const double around = side * 2 * std::numbers::pi / 3;
     const Vec level{-std::sin(around), std::cos(around), 0};
-    effects.push_back(
-        std::make_shared<Body>(plane(apex, level, -std::numbers::pi / 4, cone_contact)));
+    effects.push_back(plane(apex, level, -std::numbers::pi / 4, cone_contact, friction));
   }
 }
 
@@ -59,6 +69,15 @@ void cone(const Strand& strand, Effects& effects) {
 StabilityBounds cone_bounds(const Situation& s, double) {
   constexpr double depth = 0.06;
   return {.energy = 0.01 * s.mass * s.parameters.number("gravity_m_s2") * depth};
+}
+
+/// The same motion under Coulomb's law itself.
+HardCase with_exact_friction(HardCase given, std::string_view name, std::string_view why,
+                             decltype(HardCase::act) act) {
+  given.name = name;
+  given.why = why;
+  given.act = act;
+  return given;
 }
 
 }  // namespace
@@ -106,7 +125,11 @@ std::vector<HardCase> contact_cases() {
                  .horizon = 0.2,
                  .bounds = driven_bounds,
                  .gauge = penetration_gauge,
-                 .act = slope});
+                 .act = slope<Friction::regularised>});
+  all.push_back(with_exact_friction(
+      all.back(), "grazing_exact",
+      "the same with exact friction: what sticks or turns round does so within a step",
+      slope<Friction::exact>));
   all.push_back(
       {.name = "cone",
        .why = "a free strand falls into a cone of three planes with friction 0.5: "
@@ -121,7 +144,12 @@ std::vector<HardCase> contact_cases() {
        .horizon = 0.08,
        .bounds = cone_bounds,
        .gauge = penetration_gauge,
-       .act = cone});
+       .act = cone<Friction::regularised>});
+  all.push_back(with_exact_friction(
+      all.back(), "cone_exact",
+      "the same with exact friction: ends hit head-on, and all that is in contact may "
+      "stick or slip",
+      cone<Friction::exact>));
   return all;
 }
 

@@ -29,6 +29,9 @@ constexpr Column columns_of_outcome[] = {
     {"linearizations", "matrices built and factored"},
     {"solves", "linear solves"},
     {"newton_iterations", "Newton iterations"},
+    {"contact_iterations", "with exact friction: solutions of steps until its law held"},
+    {"contact_unfinished", "steps or stages that ended before the law held"},
+    {"contact_violation_m_s", "the largest speed by which they violate it"},
     {"time_error_max_rel",
      "estimated error in time: largest of a point of the strand with the largest, over "
      "its length, at the frames before the two runs part"},
@@ -87,6 +90,11 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   }
   row.set("residuals", work.residuals).set("linearizations", work.linearizations);
   row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
+  if (work.contact_iterations > 0) {
+    row.set("contact_iterations", work.contact_iterations);
+    row.set("contact_unfinished", work.contact_unfinished);
+    row.set("contact_violation_m_s", work.contact_violation);
+  }
   row.set("wall_s", run.wall_s);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
   return row;
@@ -119,20 +127,31 @@ std::string shortest_in_words(double h, double at, std::string_view cause) {
   return fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", h, at, cause);
 }
 
+std::string contact_in_words(const Stats& work) {
+  if (work.contact_unfinished == 0) return {};
+  return fmt::format(
+      "; exact friction: {} stages of {} steps end before its law holds, by up to {:.2g} "
+      "m/s",
+      work.contact_unfinished, work.steps, work.contact_violation);
+}
+
 }  // namespace
 
 std::string control_in_words(const Scene& scene, const SceneRun& run) {
   const Stats& work = run.work;
   if (scene.options.tolerance == 0) {
-    return run.rejected == 0
-               ? ""
-               : fmt::format("; {} steps tried again with shorter ones", run.rejected);
+    const std::string again =
+        run.rejected == 0
+            ? ""
+            : fmt::format("; {} steps tried again with shorter ones", run.rejected);
+    return again + contact_in_words(work);
   }
   std::string words =
       fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration{}",
                   work.steps, work.rejected_by_error, work.rejected_by_newton,
                   shortest_in_words(work.smallest_step, work.smallest_step_at,
                                     work.smallest_step_cause));
+  words += contact_in_words(work);
   const Exchanges& exchanges = run.exchanges;
   if (exchanges.accepted + exchanges.rejected == 0) return words;
   return words +

@@ -107,6 +107,10 @@ Status ErrorControlled::next_step(double t_end) {
     const Status s = restart();
     if (s != Status::ok) return fail(s, "restart after an event failed");
   }
+  // Every attempt starts from the contact forces at the step's start.
+  ContactForm* contacts = dynamics_.system().contact_form();
+  const std::vector<double> held =
+      contacts == nullptr ? std::vector<double>{} : contacts->multipliers();
   const double longest =
       options_.max_step > 0 ? options_.max_step : std::numeric_limits<double>::infinity();
   for (;;) {
@@ -118,6 +122,7 @@ Status ErrorControlled::next_step(double t_end) {
       now = control_.next(stop - begin_.t, longest);
     }
     end_.t = now.whole ? stop : begin_.t + now.h;
+    if (contacts != nullptr) contacts->set_multipliers(held);
     const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
     if (s == Status::retry) {

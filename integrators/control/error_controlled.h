@@ -59,6 +59,9 @@ class ErrorControlled : public Integrator, public Rewindable {
 
   Dynamics& dynamics() { return dynamics_; }
 
+  /// Speed (m/s) of a point whose error is as large as one step may have.
+  double seen_speed() const { return threshold_ * norm_.typical_speed(); }
+
  private:
   Status end_run(Status status, const std::string& what);
   /// As above for a step that cannot be taken; adds its number and what was not finite.

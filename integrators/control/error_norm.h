@@ -30,6 +30,8 @@ class ErrorNorm {
 
   /// Time (s) in which the body falls about its own size.
   double typical_time() const { return time_; }
+  /// Speed (m/s) whose size is 1.
+  double typical_speed() const { return norm_.length() / time_; }
 
  private:
   enum class From { points, coordinates, velocities };

@@ -77,6 +77,8 @@ Node ParticleScene::add_anchor(std::shared_ptr<const Curve> motion) {
 
 ParticleSystem::ParticleSystem(ParticleScene scene)
     : scene_(std::move(scene)),
+      held_contacts_(scene_.effects, scene_.particles.size(),
+                     [this](double, In q, In v) { return points(q, v); }),
       particles_(static_cast<int>(scene_.particles.size())),
       coordinates_(3 * particles_ + static_cast<int>(scene_.parameters.size())),
       extent_(extent_of(scene_)),

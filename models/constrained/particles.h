@@ -5,6 +5,7 @@
 
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
+#include "models/effects/held_contacts.h"
 
 namespace tress::models {
 
@@ -83,6 +84,7 @@ class ParticleSystem final : public System,
   ConstraintForm* constraint_form() override;
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
+  ContactForm* contact_form() override { return held_contacts_.form(); }
 
  private:
   const Pattern& pattern() const override { return pattern_; }
@@ -102,6 +104,7 @@ class ParticleSystem final : public System,
   void blocks(double t, In q, In v, Weights w) noexcept;
 
   ParticleScene scene_;
+  HeldContacts held_contacts_;
   int particles_;
   int coordinates_;
   double extent_;  // m, > 0

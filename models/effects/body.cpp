@@ -1,9 +1,9 @@
 #include "models/effects/body.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "contract/input_error.h"
+#include "models/effects/exact_body.h"
 
 namespace tress::models {
 namespace {
@@ -65,8 +65,22 @@ constexpr Parameter parameters_of_body[] = {
      .number = 0.3,
      .min = 0,
      .max = 1e3},
+    {.name = "friction_law",
+     .help = "regularised: what sticks creeps below slip_speed_m_s; exact: it stays "
+             "(Signorini-Coulomb), for methods that solve at the end of a step",
+     .choices = "regularised|exact"},
+    {.name = "normal",
+     .help = "friction_law = exact: the surface gives way as stiffness_n_m2 says, or is "
+             "rigid",
+     .choices = "compliant|rigid"},
+    {.name = "restitution",
+     .help = "normal = rigid: speed after an impact over that before, for backward_euler",
+     .min = 0,
+     .max = 1},
     {.name = "slip_speed_m_s",
-     .help = "speed below which friction fades: the most that sticking creeps (m/s)",
+     .help =
+         "friction_law = regularised: speed below which friction fades: the most that "
+         "sticking creeps (m/s)",
      .number = 1e-3,
      .min = 1e-12,
      .max = 1e3},
@@ -98,57 +112,6 @@ Frame turned_by(const Vec& turn) {
   return angle > 0 ? rotation((1 / angle) * turn, angle) : Frame{};
 }
 
-bool positive(double x) { return std::isfinite(x) && x > 0; }
-bool not_negative(double x) { return std::isfinite(x) && x >= 0; }
-
-bool has_size(const Plane&) { return true; }
-bool has_size(const Sphere& s) { return positive(s.radius); }
-bool has_size(const Capsule& c) {
-  return positive(c.radius) && not_negative(c.half_length);
-}
-bool has_size(const Ellipsoid& e) {
-  const Vec& a = e.half_axes();
-  return positive(a.x) && positive(a.y) && positive(a.z);
-}
-bool has_size(const DistanceGrid&) { return true; }
-
-/// The part of an outline that does not depend on the pose.
-struct Drawn {
-  std::string_view shape;
-  Vec half_axes;
-};
-Drawn drawn(const Plane&) { return {"plane", {}}; }
-Drawn drawn(const Sphere& s) { return {"sphere", {s.radius, s.radius, s.radius}}; }
-Drawn drawn(const Capsule& c) { return {"capsule", {c.radius, c.radius, c.half_length}}; }
-Drawn drawn(const Ellipsoid& e) { return {"ellipsoid", e.half_axes()}; }
-Drawn drawn(const DistanceGrid&) { return {}; }
-
-/// A point of the strand in the frame of a body.
-struct Seen {
-  Vec x, u;  // u: velocity relative to the surface
-};
-
-Vec place_in(const BodyPose& pose, const double* x) {
-  return pose.frame.back(load3(x) - pose.x);
-}
-
-/// The distance from a shape for points nearer than `reach`; most others are excluded
-/// without a search.
-template <class Shape>
-std::optional<Distance> near(const Shape& shape, const Vec& x, double reach) {
-  if constexpr (requires { shape.at_least(x); }) {
-    if (shape.at_least(x) >= reach) return {};
-  }
-  const Distance to = shape.distance(x);
-  if (to.value >= reach) return {};
-  return to;
-}
-
-Seen see(const BodyPose& pose, const Points& p, std::size_t i) {
-  const Vec x = load3(&p.x[3 * i]), v = load3(&p.v[3 * i]);
-  return {place_in(pose, &p.x[3 * i]), pose.frame.back(v - pose.surface_velocity(x))};
-}
-
 }  // namespace
 
 std::span<const Parameter> body_parameters() { return parameters_of_body; }
@@ -164,132 +127,77 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                           turned_by(parameters.vec("rotation_rad"))};
   std::optional<RootMotion> follows;
   if (parameters.word("moves") == "head") follows = head;
+  const bool rigid = parameters.word("normal") == "rigid";
+  if (parameters.word("friction_law") == "exact") {
+    return std::make_unique<ExactBody>(
+        make_shape(parameters), place,
+        ExactContact{law.normal(), rigid, law.friction, parameters.number("restitution")},
+        std::move(follows));
+  }
+  if (rigid || parameters.number("restitution") > 0) {
+    throw InputError("a rigid surface and restitution belong to the exact law",
+                     "effect body", "set friction_law = \"exact\" or leave them out");
+  }
   return std::make_unique<Body>(make_shape(parameters), place, law, std::move(follows));
 }
 
 Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
            std::optional<RootMotion> head)
-    : shape_(std::move(shape)), place_(place), law_(law), head_(std::move(head)) {
-  if (!std::visit([](const auto& one) { return has_size(one); }, shape_)) {
-    throw InputError("its size is not positive or not finite", "effect body",
-                     "give radius and half axes > 0, length >= 0 in m");
+    : body_(std::move(shape), place, law.offset, std::move(head)), law_(law) {
+  check(law.normal(), law.friction);
+  if (!(std::isfinite(law.slip) && law.slip > 0)) {
+    throw InputError("its slip speed is not positive or not finite", "effect body",
+                     "give a slip speed > 0 in m/s");
   }
-  if (!not_negative(law.stiffness) || !not_negative(law.damping) ||
-      !not_negative(law.friction) || !not_negative(law.offset) || !positive(law.slip)) {
-    throw InputError(
-        "a number of the contact is negative or not finite", "effect body",
-        "give stiffness, damping, friction and strand radius >= 0, slip > 0");
-  }
-  if (!is_rotation(place.frame) || !is_finite(place.x)) {
-    throw InputError("its place is not finite or its frame no rotation", "effect body",
-                     "give a finite place and orthogonal axes of length 1");
-  }
-  if (head_) check(*head_, "effect body");
-  if (const auto* grid = std::get_if<DistanceGrid>(&shape_)) {
-    // Between points the interpolant may lie 1.2 spacings below the least value: the
-    // negative weights of two directions sum to 0.28, the values differ by 3 sqrt(2).
-    const double needed = law.offset + 2 * grid->samples().spacing;
-    if (grid->clearance() < needed) {
-      throw InputError("the surface comes too near to the end of the grid", "effect body",
-                       "let the two outermost layers be " + std::to_string(needed) +
-                           " m and more from it");
-    }
-  }
-}
-
-std::optional<Outline> Body::outline(double t) const {
-  const Drawn of = std::visit([](const auto& shape) { return drawn(shape); }, shape_);
-  if (of.shape.empty()) return {};
-  const BodyPose now = pose(t);
-  return Outline{of.shape, of.half_axes, now.x, now.frame};
-}
-
-BodyPose Body::pose(double t) const {
-  if (!head_) return {place_.x, place_.frame, {}, {}};
-  const RootPose head = head_->at(t);
-  const auto carry = [&](const Vec& a) { return head.frame * head_->frame.back(a); };
-  const Vec arm = carry(place_.x - head_->position);
-  const Frame& f = place_.frame;
-  return {head.x + arm,
-          {carry(f.e0), carry(f.e1), carry(f.e2)},
-          head.v + cross(head.omega, arm),
-          head.omega};
 }
 
 void Body::add_load(double t, const Points& p, InOut f) const noexcept {
-  const BodyPose now = pose(t);
-  const auto add = [&](const auto& shape) {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      const Seen at = see(now, p, i);
-      const auto to = near(shape, at.x, law_.offset);
-      if (!to) continue;
-      double* load = &f[3 * i];
-      store3(load3(load) + p.length[i] * (now.frame * law_.load(*to, at.u)), load);
-    }
-  };
-  std::visit(add, shape_);
+  const BodyPose now = body_.pose(t);
+  body_.for_near<RigidBody::With::velocity>(
+      now, p, [&](std::size_t) { return law_.offset; },
+      [&](const RigidBody::Near& at) {
+        double* load = &f[3 * at.point];
+        store3(load3(load) + p.length[at.point] * (now.frame * law_.load(at.to, at.u)),
+               load);
+      });
 }
 
 void Body::add_derivatives(double t, const Points& p, double pos, double vel,
                            InOut blocks) const noexcept {
-  const BodyPose now = pose(t);
+  const BodyPose now = body_.pose(t);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
-  const auto add = [&](const auto& shape) {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      const Seen at = see(now, p, i);
-      const auto to = near(shape, at.x, law_.offset);
-      if (!to) continue;
-      const auto [by_x, by_u] = law_.slopes(*to, shape.curvature(at.x), at.u);
-      // The surface moves faster further out: du/dx = -omega x.
-      const Mat3 block = pos * (by_x - by_u * spin) + vel * by_u;
-      add9(turned(now.frame, p.length[i] * block), &blocks[9 * i]);
-    }
-  };
-  std::visit(add, shape_);
+  body_.for_near<RigidBody::With::curvature>(
+      now, p, [&](std::size_t) { return law_.offset; },
+      [&](const RigidBody::Near& at) {
+        const auto [by_x, by_u] = law_.slopes(at.to, at.curvature, at.u);
+        // The surface moves faster further out: du/dx = -omega x.
+        const Mat3 block = pos * (by_x - by_u * spin) + vel * by_u;
+        add9(turned(now.frame, p.length[at.point] * block), &blocks[9 * at.point]);
+      });
 }
 
 double Body::potential(double t, const Points& p) const noexcept {
-  const BodyPose now = pose(t);
   double sum = 0;
-  const auto add = [&](const auto& shape) {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      const auto to = near(shape, place_in(now, &p.x[3 * i]), law_.offset);
-      if (to) sum += p.length[i] * law_.energy(*to);
-    }
-  };
-  std::visit(add, shape_);
+  body_.for_near<RigidBody::With::position>(
+      body_.pose(t), p, [&](std::size_t) { return law_.offset; },
+      [&](const RigidBody::Near& at) {
+        sum += p.length[at.point] * law_.normal().energy(at.to);
+      });
   return sum;
 }
 
 double Body::power(double t, const Points& p) const noexcept {
-  const BodyPose now = pose(t);
+  const BodyPose now = body_.pose(t);
   double sum = 0;
-  const auto add = [&](const auto& shape) {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      const Seen at = see(now, p, i);
-      const auto to = near(shape, at.x, law_.offset);
-      if (!to) continue;
-      // f.v - f_elastic.(v - w), the second being the rate of the potential.
-      const Vec v = now.frame.back(load3(&p.v[3 * i]));
-      sum += p.length[i] *
-             (dot(law_.load(*to, at.u), v) - dot(law_.elastic_load(*to), at.u));
-    }
-  };
-  std::visit(add, shape_);
+  body_.for_near<RigidBody::With::velocity>(
+      now, p, [&](std::size_t) { return law_.offset; },
+      [&](const RigidBody::Near& at) {
+        // f.v - f_elastic.(v - w), the second being the rate of the potential.
+        const Vec v = now.frame.back(load3(&p.v[3 * at.point]));
+        sum += p.length[at.point] * (dot(law_.load(at.to, at.u), v) -
+                                     dot(law_.normal().elastic_load(at.to), at.u));
+      });
   return sum;
-}
-
-std::optional<double> Body::penetration(double t, In x) const {
-  const BodyPose now = pose(t);
-  double deepest = 0;
-  const auto look = [&](const auto& shape) {
-    for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
-      const auto to = near(shape, place_in(now, &x[i]), law_.offset);
-      if (to) deepest = std::max(deepest, law_.depth(*to));
-    }
-  };
-  std::visit(look, shape_);
-  return deepest;
 }
 
 }  // namespace tress::models

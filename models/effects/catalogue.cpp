@@ -25,7 +25,7 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"quadratic_drag", "drag of still air in the square of the speed, across and along the strand", "Ablow & Schechter 1983; White, Viscous Fluid Flow", quadratic_drag_parameters(), make_quadratic_drag},
       EffectEntry{"wind", "load of moving air: steady, sine or gusts", "Ablow & Schechter 1983; Bridson et al. 2007; Kraichnan 1970", wind_parameters(), make_wind},
       EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
-      EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15", body_parameters(), make_body, true, true},
+      EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15; Alart & Curnier 1991", body_parameters(), make_body, true, true},
       EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact, false, true},
       EffectEntry{"strand_interaction", "strands repel and drag each other", "Wang, thesis, NCTU", strand_interaction_parameters(), nullptr, false, true},
   };

@@ -17,11 +17,12 @@ namespace tress::models {
 /// The material points on which an effect acts; spans that it does not need may be empty.
 struct Points {
   int count = 0;
-  In x;        // (3 count) position, m
-  In v;        // (3 count) velocity, m/s
-  In tangent;  // (3 count) unit tangent
-  In mass;     // (count) mass carried by the point, kg
-  In length;   // (count) strand length carried by the point, m
+  In x;          // (3 count) position, m
+  In v;          // (3 count) velocity, m/s
+  In tangent;    // (3 count) unit tangent
+  In mass;       // (count) mass carried by the point, kg
+  In length;     // (count) strand length carried by the point, m
+  int held = 0;  // the first so many move as the root prescribes, whatever their load
 };
 
 /// What a model must compute before it calls add_load, add_derivatives or power; the
@@ -47,6 +48,19 @@ struct Outline {
   Vec half_axes;           // m; a capsule's z without the caps, a plane has none
   Vec x;                   // of its origin, m
   Frame frame;             // its axes
+};
+
+/// Contact forces that an effect holds between the steps of one strand: the part of
+/// ContactForm (contract/system.h) that concerns its points.
+class Multipliers {
+ public:
+  virtual ~Multipliers() = default;
+  virtual void begin(double t, double tau, const Points& p) noexcept = 0;
+  virtual double improve(double t, const Points& p) noexcept = 0;
+  virtual double approach(double t, const Points& p) noexcept = 0;
+  virtual void release() noexcept = 0;
+  virtual bool rebounds() const = 0;
+  virtual InOut values() noexcept = 0;
 };
 
 /// A force on material points, independent of the degrees of freedom. Called once per
@@ -88,10 +102,20 @@ class Effect {
   virtual std::optional<double> penetration(double /*t*/, In /*x*/) const { return {}; }
   /// Empty if there is nothing to draw.
   virtual std::optional<Outline> outline(double /*t*/) const { return {}; }
+  /// Set if the load depends on contact forces that the effect holds: a copy for one
+  /// strand with so many points, which must not be shared (see HeldContacts).
+  virtual std::unique_ptr<Effect> for_strand(std::size_t /*points*/) const { return {}; }
+  virtual Multipliers* multipliers() { return nullptr; }
 };
 
-/// Effects are stateless, so strands may share them.
+/// Strands may share effects, which are stateless but for those of for_strand().
 using Effects = std::vector<std::shared_ptr<const Effect>>;
+
+/// Whether some of them hold contact forces, so that a strand needs its own.
+inline bool hold_contacts(const Effects& effects) {
+  return std::ranges::any_of(
+      effects, [](const auto& effect) { return effect->for_strand(0) != nullptr; });
+}
 
 inline double next_breakpoint(const Effects& effects, double t) {
   double next = std::numeric_limits<double>::infinity();

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "math/closest.h"
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
 #include "models/effects/coupling.h"
 
 namespace tress::models {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "contract/parameters.h"
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
 #include "models/effects/effect.h"
 #include "models/effects/piece_contact.h"
 #include "models/motion/root_motion.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
-#include "models/effects/nearest_pieces.h"
+#include "models/contact/nearest_pieces.h"
 
 namespace tress::models {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "contract/parameters.h"
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
+#include "models/contact/segment_grid.h"
 #include "models/effects/effect.h"
 #include "models/effects/point_motion.h"
-#include "models/effects/segment_grid.h"
 
 namespace tress::models {
 

@@ -36,6 +36,7 @@ CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
     tangents.push_back(&strand(k).sparse_form()->pattern());
     strand_values_.emplace_back(static_cast<std::size_t>(tangents.back()->nonzeros()));
     points.push_back(strand(k).material_points()->count());
+    if (strand(k).contact_form() != nullptr) held_contacts_.push_back(k);
   }
   solver_ = std::make_unique<CoupledSolver>(std::move(tangents), means_);
   x_.resize(3 * means_.size());
@@ -148,6 +149,39 @@ Status CoupledStrands::solve(In b, Out x) noexcept {
   }
   std::ranges::copy(b, x.begin());
   return solver_->solve(x);
+}
+
+void CoupledStrands::begin(double t, double tau, In q0, In v0) noexcept {
+  for (const std::size_t k : held_contacts_) {
+    strand(k).contact_form()->begin(t, tau, part(q0, k), part(v0, k));
+  }
+}
+
+double CoupledStrands::improve(double t, In q, In v) noexcept {
+  double worst = 0;
+  for (const std::size_t k : held_contacts_) {
+    worst = std::max(worst, strand(k).contact_form()->improve(t, part(q, k), part(v, k)));
+  }
+  return worst;
+}
+
+double CoupledStrands::approach(double t, In q, In v) noexcept {
+  double fastest = 0;
+  for (const std::size_t k : held_contacts_) {
+    fastest =
+        std::max(fastest, strand(k).contact_form()->approach(t, part(q, k), part(v, k)));
+  }
+  return fastest;
+}
+
+void CoupledStrands::release() noexcept {
+  for (const std::size_t k : held_contacts_) strand(k).contact_form()->release();
+}
+
+bool CoupledStrands::rebounds() const {
+  return std::ranges::any_of(held_contacts_, [this](std::size_t k) {
+    return strand(k).contact_form()->rebounds();
+  });
 }
 
 bool CoupledStrands::accept(double t, InOut q, InOut v) {

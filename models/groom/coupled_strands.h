@@ -25,7 +25,7 @@ namespace tress::models {
 /// there is no SparseForm, whose pattern would be fixed. Contacts of points that move
 /// more than an eighth of the law's reach within one step may be missed in that step.
 /// Before a start from a state other than the initial one, accept() it.
-class CoupledStrands final : public StrandBlock, private History {
+class CoupledStrands final : public StrandBlock, private History, private ContactForm {
  public:
   /// Throws InputError, naming the strand, unless each has a sparse tangent, no
   /// constraints (their multipliers need a fixed pattern) and material points that are
@@ -39,6 +39,7 @@ class CoupledStrands final : public StrandBlock, private History {
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override;
   Status solve(In b, Out x) noexcept override;
   History* history() override { return this; }
+  ContactForm* contact_form() override { return held_contacts_.empty() ? nullptr : this; }
 
   const StrandContacts& contacts() const { return *contacts_; }
   /// The part of energy() that belongs to the contacts, J.
@@ -49,6 +50,14 @@ class CoupledStrands final : public StrandBlock, private History {
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
+  void begin(double t, double tau, In q0, In v0) noexcept override;
+  double improve(double t, In q, In v) noexcept override;
+  double approach(double t, In q, In v) noexcept override;
+  void release() noexcept override;
+  bool rebounds() const override;
+  /// None: they are in the strands' memory.
+  std::vector<double> multipliers() const override { return {}; }
+  void set_multipliers(In) override {}
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   std::optional<Mean> mean(int point) override;
@@ -58,7 +67,8 @@ class CoupledStrands final : public StrandBlock, private History {
   void place_at_start();
   void couple();
 
-  std::vector<Mean> means_;  // all points, over all coordinates
+  std::vector<Mean> means_;                 // all points, over all coordinates
+  std::vector<std::size_t> held_contacts_;  // strands with a ContactForm
   std::unique_ptr<StrandContacts> contacts_;
   std::vector<double> x_, u_;                       // all points
   std::vector<std::vector<double>> strand_values_;  // tangents

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
+#include "models/contact/segment_grid.h"
 #include "models/effects/piece_contact.h"
-#include "models/effects/segment_grid.h"
 
 namespace tress::models {
 

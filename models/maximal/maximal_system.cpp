@@ -47,6 +47,11 @@ void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
 
 MaximalSystem::MaximalSystem(MaximalStrand strand)
     : strand_(std::move(strand)),
+      held_contacts_(strand_.effects, strand_.mass.size(),
+                     [this](double t, In q, In v) {
+                       place(t, q, v);
+                       return points(needs_);
+                     }),
       needs_(needs(strand_.effects)),
       elastic_(strand_.elasticity->groups(), static_cast<int>(held())),
       massive_(groups_of_mass(strand_), static_cast<int>(held())),
@@ -125,6 +130,7 @@ void MaximalSystem::place(double t, In q, In v) noexcept {
 
 Points MaximalSystem::points(Needs wanted) noexcept {
   Points p{static_cast<int>(mass_.size()), {}, {}, {}, mass_, length_};
+  p.held = strand_.clamped && strand_.mass.front().at.nodes == 1 ? 1 : 0;
   const auto fill = [&](In of_nodes, std::vector<double>& to) {
     for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
       store3(strand_.mass[i].at.of(of_nodes), &to[3 * i]);

@@ -10,6 +10,7 @@
 #include "models/constrained/constraint_set.h"
 #include "models/effects/coupled_solver.h"
 #include "models/effects/effect.h"
+#include "models/effects/held_contacts.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/point_directions.h"
 
@@ -83,6 +84,7 @@ class MaximalSystem final : public System,
   Energetics* energetics() override { return this; }
   History* history() override { return this; }
   MaterialPoints* material_points() override { return this; }
+  ContactForm* contact_form() override { return held_contacts_.form(); }
 
  private:
   bool accept(double t, InOut q, InOut v) override;
@@ -128,6 +130,7 @@ class MaximalSystem final : public System,
   double root_power(double t, In q, In v);
 
   MaximalStrand strand_;
+  HeldContacts held_contacts_;
   Needs needs_;
   bool regular_mass_ = true;
   Groups elastic_, massive_, inert_;  // for energies, mass points, other coordinates

@@ -54,6 +54,11 @@ std::size_t edge_of(std::size_t node, std::size_t nodes) {
 
 NodalSystem::NodalSystem(NodalParts parts)
     : parts_(std::move(parts)),
+      held_contacts_(parts_.effects, parts_.rod.mass.size(),
+                     [this](double t, In q, In v) {
+                       place(t, q, v);
+                       return points(needs_);
+                     }),
       needs_(needs(parts_.effects)),
       motion_(parts_.rod),
       moved_(parts_.rod),
@@ -87,6 +92,7 @@ void NodalSystem::place(double t, In q, In v) noexcept {
 
 Points NodalSystem::points(Needs wanted) noexcept {
   Points p{count(), {}, {}, {}, parts_.rod.mass, parts_.node_length};
+  p.held = 2;  // the first edge is clamped
   const std::size_t nodes = motion_.x.size();
   const auto fill = [nodes](std::vector<double>& to, auto&& of_node) {
     for (std::size_t i = 0; i < nodes; ++i) store3(of_node(i), &to[3 * i]);

@@ -6,6 +6,7 @@
 #include "linear/linear_solver.h"
 #include "math/dual.h"
 #include "models/effects/effect.h"
+#include "models/effects/held_contacts.h"
 #include "models/maximal/staggered_rod.h"
 
 namespace tress::models {
@@ -45,6 +46,7 @@ class NodalSystem final : public System,
   ExplicitForm* explicit_form() override { return this; }
   Energetics* energetics() override { return this; }
   MaterialPoints* material_points() override { return this; }
+  ContactForm* contact_form() override { return held_contacts_.form(); }
 
  private:
   /// Number of simultaneous directions, chosen to fill the registers.
@@ -70,6 +72,7 @@ class NodalSystem final : public System,
   void find_leading_terms();
 
   NodalParts parts_;
+  HeldContacts held_contacts_;
   Needs needs_;
   RootPose pose_;  // at the last requested time
   StaggeredMotion<double> motion_;

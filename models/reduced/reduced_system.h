@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "models/effects/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
@@ -37,6 +38,11 @@ class ReducedSystem : public System,
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
                                      : std::nullopt,
                     strand.root_rotor),
+        held_contacts_(strand.effects, kinematics_.points(),
+                       [this](double t, In q, In v) {
+                         kinematics_.move(t, q, v, zero_);
+                         return placed();
+                       }),
         dynamics_(kinematics_, {std::move(strand.effects)}),
         exact_tangent_(kinematics_, dynamics_),
         mass_(kinematics_, dynamics_),
@@ -140,6 +146,7 @@ class ReducedSystem : public System,
   /// Of a free root, whose frame turns as far as it likes.
   History* history() override { return kinematics_.free() ? this : nullptr; }
   MaterialPoints* material_points() override { return this; }
+  ContactForm* contact_form() override { return held_contacts_.form(); }
 
  protected:
   bool accept(double, InOut q, InOut v) override {
@@ -322,6 +329,7 @@ class ReducedSystem : public System,
   double unknown_scale_, length_, rate_;
   Frame to_tip_;
   K kinematics_;
+  HeldContacts held_contacts_;
   InverseDynamics<Kernel, dofs> dynamics_;
   ExactTangent<Kernel, dofs> exact_tangent_;
   StiffTangent<Kernel, dofs> mass_, acceleration_;

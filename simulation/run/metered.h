@@ -12,7 +12,7 @@ class Metered final : public Effect {
  public:
   explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}
 
-  double last() const { return last_; }  // J
+  double last() const { return *last_; }  // J
 
   std::string_view name() const override { return effect_->name(); }
   Needs needs() const override { return effect_->needs(); }
@@ -35,7 +35,7 @@ class Metered final : public Effect {
     effect_->add_couplings(t, p, all);
   }
   double potential(double t, const Points& p) const noexcept override {
-    return last_ = effect_->potential(t, p);
+    return *last_ = effect_->potential(t, p);
   }
   double power(double t, const Points& p) const noexcept override {
     return effect_->power(t, p);
@@ -47,10 +47,23 @@ class Metered final : public Effect {
     return effect_->penetration(t, x);
   }
   std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
+  /// Its energy is known to this one too.
+  std::unique_ptr<Effect> for_strand(std::size_t points) const override {
+    std::shared_ptr<Effect> own = effect_->for_strand(points);
+    if (own == nullptr) return {};
+    auto metered = std::make_unique<Metered>(own);
+    metered->last_ = last_;
+    metered->holds_ = std::move(own);
+    return metered;
+  }
+  Multipliers* multipliers() override {
+    return holds_ == nullptr ? nullptr : holds_->multipliers();
+  }
 
  private:
   std::shared_ptr<const Effect> effect_;
-  mutable double last_ = 0;
+  std::shared_ptr<Effect> holds_;  // effect_, if it holds contact forces
+  std::shared_ptr<double> last_ = std::make_shared<double>(0.0);
 };
 
 }  // namespace tress::simulation

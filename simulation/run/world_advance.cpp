@@ -38,6 +38,9 @@ void add_work(const Stats& from, Stats& to) {
   to.condition = std::max(to.condition, from.condition);
   to.rejected_by_error += from.rejected_by_error;
   to.rejected_by_newton += from.rejected_by_newton;
+  to.contact_iterations += from.contact_iterations;
+  to.contact_unfinished += from.contact_unfinished;
+  to.contact_violation = std::max(to.contact_violation, from.contact_violation);
   if (from.smallest_step == 0) return;
   if (to.smallest_step != 0 && to.smallest_step <= from.smallest_step) return;
   to.smallest_step = from.smallest_step;

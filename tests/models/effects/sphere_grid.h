@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "models/effects/distance_grid.h"
+#include "models/contact/distance_grid.h"
 
 namespace tress::testing_support {
 

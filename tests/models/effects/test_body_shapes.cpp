@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "models/effects/body_shapes.h"
+#include "models/contact/body_shapes.h"
 #include "tests/models/effects/cloud.h"
 
 namespace tress::test_body_shapes {

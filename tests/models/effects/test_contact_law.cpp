@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
 #include "tests/support/catalogue_cases.h"
 
 namespace tress::test_contact_law {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/input_error.h"
-#include "models/effects/distance_grid.h"
+#include "models/contact/distance_grid.h"
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
 

@@ -109,15 +109,33 @@ std::vector<Case> cases() {
       }
       of_entry = std::move(longer);
     }
-    all.insert(all.end(), of_entry.begin(), of_entry.end());
+    for (Case& one : of_entry) {
+      // Refused: test_exact_contact.cpp.
+      if (one.words.contains("normal") && one.words["normal"] == "rigid" &&
+          one.words["friction_law"] == "regularised") {
+        continue;
+      }
+      all.push_back(std::move(one));
+    }
   }
   return all;
 }
 
 class EffectContract : public testing::TestWithParam<Case> {
  protected:
-  std::unique_ptr<const Effect> effect = GetParam().make();
+  /// With contact forces, where the effect holds them.
+  EffectContract() {
+    std::unique_ptr<Effect> own = effect->for_strand(200);
+    if (own == nullptr) return;
+    Cloud away = cloud;  // no overlap at first
+    for (std::size_t i = 0; i < away.x.size(); i += 3) away.x[i] -= 10;
+    own->multipliers()->begin(now, 0.01, away.points());
+    own->multipliers()->improve(now, cloud.points());
+    effect = std::move(own);
+  }
+
   Cloud cloud{200};
+  std::unique_ptr<const Effect> effect = GetParam().make();
 };
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, testing::ValuesIn(cases()),
@@ -208,16 +226,18 @@ Cloud alone(const Cloud& cloud, std::size_t i) {
 template <class Member>
 void expect_blocks(const Effect& effect, const Cloud& cloud, Member member,
                    const std::vector<double>& blocks) {
+  const bool remembers = effect.for_strand(0) != nullptr;  // forces of each point
   for (std::size_t i = 0; i < cloud.count(); ++i) {
-    const Cloud one = alone(cloud, i);
+    const Cloud one = remembers ? cloud : alone(cloud, i);
+    const std::size_t at = remembers ? 3 * i : 0;
     const auto f0 = load(effect, now, one.points());
-    const double size = 1 + std::sqrt(f0[0] * f0[0] + f0[1] * f0[1] + f0[2] * f0[2]);
+    const double size = 1 + norm(load3(&f0[at]));
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t r = 0; r < 3; ++r) {
         const auto component = [&](double h) {
           Cloud moved = one;
-          (moved.*member)[k] += h;
-          return load(effect, now, moved.points())[r];
+          (moved.*member)[at + k] += h;
+          return load(effect, now, moved.points())[at + r];
         };
         const Difference d = difference(component, size);
         EXPECT_NEAR(blocks[9 * i + 3 * r + k], d.value, d.bound)
@@ -313,6 +333,7 @@ TEST_P(EffectContract, WhatDissipatesInAFieldAtRestTakesEnergyFromEveryPoint) {
   const bool drag = entry->id == "linear_drag" || entry->id == "quadratic_drag";
   const bool fixed_body = entry->id == "body" && words.at("moves") == "fixed";
   if (!drag && !fixed_body) return;
+  if (effect->for_strand(0) != nullptr) return;  // only where its law holds
   double all = 0;
   for (std::size_t i = 0; i < cloud.count(); ++i) {
     Points one{1,

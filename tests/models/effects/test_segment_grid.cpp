@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "models/effects/segment_grid.h"
+#include "models/contact/segment_grid.h"
 #include "tests/models/effects/polylines.h"
 
 namespace tress::test_segment_grid {

@@ -1,4 +1,4 @@
-#include "models/effects/body_shapes.h"
+#include "models/contact/body_shapes.h"
 
 #include <algorithm>
 #include <array>

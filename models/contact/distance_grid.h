@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/effects/body_shapes.h"
+#include "models/contact/body_shapes.h"
 
 namespace tress::models {
 

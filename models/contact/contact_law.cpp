@@ -1,4 +1,4 @@
-#include "models/effects/contact_law.h"
+#include "models/contact/contact_law.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "models/effects/distance_grid.h"
+#include "models/contact/distance_grid.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "models/effects/segment_grid.h"
+#include "models/contact/segment_grid.h"
 
 namespace tress::models {
 

@@ -1,4 +1,4 @@
-#include "models/effects/segment_grid.h"
+#include "models/contact/segment_grid.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "models/contact/body_contact.h"
+
+namespace tress::models {
+
+/// What a contact holds between states; vectors in the components of the body.
+struct HeldContact {
+  double normal = 0;  // lambda_n, N
+  Vec tangential;     // lambda_t, N
+  /// Gap that counts as none, m: that of a strand which overlaps the body at first; of a
+  /// closed contact what the tolerance left in the last step, which divided by a much
+  /// shorter one would be a speed.
+  double rest_gap = 0;
+  double gap = 0;  // of the last solution, m
+};
+
+/// Contact force on a point of a strand by the laws of Signorini and Coulomb:
+///
+///     f = N n + T,   |T| <= mu N,   u_t = 0 if |T| < mu N, else u_t = -|u_t| T/|T|
+///
+/// as an augmented Lagrangian [Alart & Curnier 1991] with multipliers
+/// lambda and a penalty rho (kg/s), P the projection onto the disc of radius mu N:
+///
+///     T = P(lambda_t - rho u_t),   lambda_t and u_t in the tangent plane
+///     N = l k d |g| h(1 - c u_n)          compliant: NormalContact on the length l
+///     N = max(0, lambda_n - rho w)        rigid
+///
+/// w is the gap less rest_gap over tau, the time in which velocities move the point, or
+/// the excess u_n + e u_0 of the speed at which a point rebounds that came at u_0 < 0.
+/// The law holds where the multipliers are the forces.
+struct ExactContact {
+  NormalContact compliance;
+  bool rigid = false;
+  double friction = 0;     // mu
+  double restitution = 0;  // e, of a rigid surface
+
+  /// Of a point, while the equations of one state are solved.
+  struct Penalty {
+    double length = 0;              // l, m
+    double rho = 0;                 // kg/s
+    double tau = 0;                 // s
+    std::optional<double> rebound;  // -e u_0, m/s
+  };
+
+  /// Distance from the surface (m) from which on the force is 0.
+  double reach(const HeldContact& held, const Penalty& penalty) const {
+    if (!rigid || penalty.rho == 0) return compliance.offset;
+    if (penalty.rebound) return std::numeric_limits<double>::infinity();
+    const double pulls = held.normal * penalty.tau / penalty.rho;
+    return compliance.offset + held.rest_gap + pulls;
+  }
+
+  class State {
+   public:
+    State(const ExactContact& law, const HeldContact& held, const Penalty& penalty,
+          const Distance& to, const Vec& u)
+        : law_(law),
+          held_(held),
+          penalty_(penalty),
+          to_(to),
+          u_(u),
+          normal_(law.compliance, to, u),
+          gap_rate_(law.gap_rate(held, penalty, normal_)),
+          load_(law.rigid ? std::max(0.0, held.normal - penalty.rho * gap_rate_)
+                          : penalty.length * normal_.load),
+          slide_(normal_.slide(u)),
+          pull_(in_plane(held.tangential) - penalty.rho * slide_),
+          slips_(norm(pull_) > law.friction * load_) {
+      tangential_ = slips_ ? (law.friction * load_ / norm(pull_)) * pull_ : pull_;
+    }
+    double gap() const { return -normal_.depth; }          // m
+    double normal() const { return load_; }                // N
+    const Vec& tangential() const { return tangential_; }  // T
+    bool slips() const { return slips_; }
+    Vec load() const { return load_ * normal_.n + tangential_; }
+
+    /// The largest speed by which u and the force violate the law, m/s.
+    double violation() const {
+      double worst = 0;
+      if (law_.rigid) worst = load_ > 0 ? std::abs(gap_rate_) : std::max(0.0, -gap_rate_);
+      if (load_ == 0 || law_.friction == 0) return worst;
+      const double speed = norm(slide_);
+      if (!slips_) return std::max(worst, speed);
+      return std::max(worst,
+                      norm(slide_ + (speed / (law_.friction * load_)) * tangential_));
+    }
+
+    ContactSlopes slopes(const Mat3& curvature) const {
+      if (normal_.steepness == 0 || load_ == 0) return {};
+      const Mat3 across = normal_.across(), n_by_x = normal_.n_by_x(curvature);
+      const double rho = penalty_.rho;
+      Vec load_by_x;
+      double by_speed = 0;
+      if (!law_.rigid) {
+        load_by_x =
+            penalty_.length * law_.compliance.by_x(normal_, to_, curvature, n_by_x, u_);
+        by_speed = penalty_.length * law_.compliance.by_speed(normal_);
+      } else if (penalty_.rebound) {
+        load_by_x = -rho * (u_ * n_by_x);
+        by_speed = -rho;
+      } else {
+        load_by_x = (-rho / penalty_.tau) * to_.gradient;
+      }
+      const Vec& held = held_.tangential;
+      const Mat3 pull_by_x =
+          (-1.0) * (outer(normal_.n, held * n_by_x) + dot(normal_.n, held) * n_by_x) -
+          rho * normal_.slide_by_x(u_, n_by_x);
+      // T = R d, d = s/|s|: dT = d dR + (R/|s|) (1 - d d^T) ds.
+      Vec w = normal_.n;
+      Mat3 turn = identity();
+      if (slips_) {
+        const double size = norm(pull_);
+        const Vec d = (1 / size) * pull_;
+        w = w + law_.friction * d;
+        turn = (law_.friction * load_ / size) * (identity() - outer(d, d));
+      }
+      return {outer(w, load_by_x) + load_ * n_by_x + turn * pull_by_x,
+              outer(w, by_speed * normal_.n) - rho * (turn * across)};
+    }
+
+   private:
+    Vec in_plane(const Vec& a) const { return a - dot(normal_.n, a) * normal_.n; }
+
+    const ExactContact& law_;
+    const HeldContact& held_;
+    const Penalty& penalty_;
+    Distance to_;
+    Vec u_;
+    NormalContact::State normal_;
+    double gap_rate_;  // w
+    double load_;      // N
+    Vec slide_;        // u_t
+    Vec pull_;         // lambda_t - rho u_t
+    bool slips_;
+    Vec tangential_;
+  };
+
+ private:
+  double gap_rate(const HeldContact& held, const Penalty& penalty,
+                  const NormalContact::State& at) const {
+    if (!rigid || penalty.rho == 0) return 0;
+    if (penalty.rebound) return at.speed_away - *penalty.rebound;
+    return (-at.depth - held.rest_gap) / penalty.tau;
+  }
+};
+
+}  // namespace tress::models

@@ -1,0 +1,229 @@
+#include "models/effects/exact_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "contract/input_error.h"
+
+namespace tress::models {
+namespace {
+
+// The first penalty, over the mass of a point per time: a free point is brought within a
+// hundredth of the law by one solution, and stays well scaled beside its inertia.
+constexpr double first_penalty = 100;
+// Penalties rise by this where a solution has not brought the violation down by as much,
+// up to a factor at which rounding errors of the gap still leave 1e-9 of a force.
+constexpr double rise = 10, largest_rise = 1e5;
+
+constexpr std::size_t per_point = 6;
+
+// Before the points in values_: how the last solutions ended, the penalty over its first
+// value, and how often the multipliers were improved.
+enum Header : std::size_t { phase, stiffer, improved, header };
+constexpr double not_begun = 0, unsettled = 1, settled = 2;  // of phase
+// Largest violation (m/s) after which what is left of gaps is due to the tolerance.
+constexpr double settled_below = 1e-6;
+
+}  // namespace
+
+ExactBody::ExactBody(BodyShape shape, const StrandPlace& place, const ExactContact& law,
+                     std::optional<RootMotion> head)
+    : body_(std::move(shape), place, law.compliance.offset, std::move(head)), law_(law) {
+  check(law.compliance, law.friction);
+  if (!(law.restitution >= 0 && law.restitution <= 1)) {
+    throw InputError("its restitution is outside [0, 1]", "effect body",
+                     "give a restitution from 0 to 1");
+  }
+  if (law.restitution > 0 && !law.rigid) {
+    throw InputError("restitution belongs to a rigid surface", "effect body",
+                     "set normal = \"rigid\", or damping_s_m for a compliant one");
+  }
+}
+
+std::unique_ptr<Effect> ExactBody::for_strand(std::size_t points) const {
+  auto own = std::make_unique<ExactBody>(*this);
+  own->values_.assign(header + per_point * points, 0.0);
+  own->penalties_.assign(points, {});
+  own->open_.assign(points, true);
+  return own;
+}
+
+ExactContact::Penalty ExactBody::penalty(const Points& p, std::size_t point) const {
+  ExactContact::Penalty own;
+  if (!values_.empty()) own = penalties_[point];
+  own.length = p.length[point];
+  return own;
+}
+
+double ExactBody::reach(const Points& p, std::size_t point) const {
+  const bool held_by_root = point < static_cast<std::size_t>(p.held);
+  if (held_by_root || p.length[point] == 0)
+    return -std::numeric_limits<double>::infinity();
+  return law_.reach(held(point), penalty(p, point));
+}
+
+HeldContact ExactBody::held(std::size_t point) const {
+  if (values_.empty()) return {};
+  const double* at = &values_[header + per_point * point];
+  return {at[0], load3(at + 1), at[4], at[5]};
+}
+
+void ExactBody::hold(std::size_t point, const HeldContact& contact) {
+  double* at = &values_[header + per_point * point];
+  at[0] = contact.normal;
+  store3(contact.tangential, at + 1);
+  at[4] = contact.rest_gap;
+  at[5] = contact.gap;
+}
+
+void ExactBody::set_penalties(const Points& p) noexcept {
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    penalties_[i].rho = values_[stiffer] * first_penalty * p.mass[i] / penalties_[i].tau;
+  }
+}
+
+void ExactBody::begin(double t, double tau, const Points& p) noexcept {
+  const double state = std::exchange(values_[phase], unsettled);
+  const double improvements = std::exchange(values_[improved], 0.0);
+  if (improvements == 0) values_[stiffer] = 1;  // the last solution failed
+  if (improvements == 1) values_[stiffer] = std::max(1.0, values_[stiffer] / rise);
+  violation_ = 0;
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    open_[i] = held(i).normal == 0;
+    penalties_[i] = {};
+    penalties_[i].tau = tau;
+  }
+  set_penalties(p);
+  if (!law_.rigid) return;
+  body_.for_near<RigidBody::With::velocity>(
+      body_.pose(t - tau), p,
+      [](std::size_t) { return std::numeric_limits<double>::infinity(); },
+      [&](const RigidBody::Near& at) {
+        const double gap = at.to.value - law_.compliance.offset;
+        HeldContact contact = held(at.point);
+        if (state == not_begun) {
+          contact.rest_gap = std::min(0.0, gap);
+        } else if (!open_[at.point]) {
+          if (state == settled) contact.rest_gap = contact.gap;
+        } else {  // an overlap is forgotten as far as it has been left
+          contact.rest_gap = std::min(0.0, std::max(contact.rest_gap, gap));
+        }
+        hold(at.point, contact);
+        const double away = dot(at.to.gradient, at.u);
+        if (law_.restitution > 0 && away < 0 && gap + tau * away < 0) {
+          penalties_[at.point].rebound = -law_.restitution * away;
+        }
+      });
+}
+
+double ExactBody::improve(double t, const Points& p) noexcept {
+  const double before = violation_;
+  violation_ = 0;
+  ++values_[improved];
+  std::size_t next = 0;
+  const auto open_until = [&](std::size_t point) {  // what is out of reach holds nothing
+    for (; next < point; ++next)
+      hold(next, {0, {}, std::min(0.0, held(next).rest_gap), 0});
+  };
+  for_touching<RigidBody::With::velocity>(
+      body_.pose(t), p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
+        open_until(at.point);
+        next = at.point + 1;
+        violation_ = std::max(violation_, state.violation());
+        hold(at.point,
+             {state.normal(), state.tangential(), held(at.point).rest_gap, state.gap()});
+      });
+  open_until(penalties_.size());
+  if (violation_ <= settled_below) values_[phase] = settled;
+  if (before > 0 && violation_ > before / rise && values_[stiffer] < largest_rise) {
+    values_[stiffer] *= rise;
+    set_penalties(p);
+  }
+  return violation_;
+}
+
+double ExactBody::approach(double t, const Points& p) noexcept {
+  if (!law_.rigid) return 0;
+  double fastest = 0;
+  body_.for_near<RigidBody::With::velocity>(
+      body_.pose(t), p,
+      [&](std::size_t point) {
+        return held(point).normal > 0 ? std::numeric_limits<double>::infinity()
+                                      : -std::numeric_limits<double>::infinity();
+      },
+      [&](const RigidBody::Near& at) {
+        fastest = std::max(fastest, -dot(at.to.gradient, at.u));
+      });
+  return fastest;
+}
+
+/// The least force marks a closed contact.
+void ExactBody::release() noexcept {
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    HeldContact contact = held(i);
+    contact.normal = contact.normal > 0 ? std::numeric_limits<double>::min() : 0;
+    contact.tangential = {};
+    hold(i, contact);
+    penalties_[i] = {};
+  }
+}
+
+template <RigidBody::With with, class See>
+void ExactBody::for_touching(const BodyPose& now, const Points& p, See see) const {
+  body_.for_near<with>(
+      now, p, [&](std::size_t point) { return reach(p, point); },
+      [&](const RigidBody::Near& at) {
+        const HeldContact contact = held(at.point);
+        const ExactContact::Penalty penalty = this->penalty(p, at.point);
+        see(at, ExactContact::State(law_, contact, penalty, at.to, at.u));
+      });
+}
+
+void ExactBody::add_load(double t, const Points& p, InOut f) const noexcept {
+  const BodyPose now = body_.pose(t);
+  for_touching<RigidBody::With::velocity>(
+      now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
+        double* load = &f[3 * at.point];
+        store3(load3(load) + now.frame * state.load(), load);
+      });
+}
+
+void ExactBody::add_derivatives(double t, const Points& p, double pos, double vel,
+                                InOut blocks) const noexcept {
+  const BodyPose now = body_.pose(t);
+  const Mat3 spin = cross_matrix(now.frame.back(now.omega));
+  for_touching<RigidBody::With::curvature>(
+      now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
+        const auto [by_x, by_u] = state.slopes(at.curvature);
+        const Mat3 block = pos * (by_x - by_u * spin) + vel * by_u;  // as in Body
+        add9(turned(now.frame, block), &blocks[9 * at.point]);
+      });
+}
+
+double ExactBody::potential(double t, const Points& p) const noexcept {
+  if (law_.rigid) return 0;
+  double sum = 0;
+  body_.for_near<RigidBody::With::position>(
+      body_.pose(t), p, [&](std::size_t) { return law_.compliance.offset; },
+      [&](const RigidBody::Near& at) {
+        sum += p.length[at.point] * law_.compliance.energy(at.to);
+      });
+  return sum;
+}
+
+double ExactBody::power(double t, const Points& p) const noexcept {
+  const BodyPose now = body_.pose(t);
+  double sum = 0;
+  for_touching<RigidBody::With::velocity>(
+      now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
+        const Vec v = now.frame.back(load3(&p.v[3 * at.point]));
+        sum += dot(state.load(), v);
+        if (law_.rigid) return;
+        sum -= p.length[at.point] * dot(law_.compliance.elastic_load(at.to), at.u);
+      });
+  return sum;
+}
+
+}  // namespace tress::models

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "models/contact/exact_contact.h"
+#include "models/effects/rigid_body.h"
+
+namespace tress::models {
+
+/// Contact of the strand with a rigid body by ExactContact: what sticks does not move.
+/// Points without length, and those that the root holds, receive no force. A compliant
+/// surface has the potential and the power of Body; a rigid one has no potential, and
+/// power is that of all its forces. Of one strand (for_strand). O(points).
+class ExactBody final : public Effect, private Multipliers {
+ public:
+  /// Throws InputError as Body does, and on a restitution outside [0, 1] or of a
+  /// compliant surface.
+  ExactBody(BodyShape shape, const StrandPlace& place, const ExactContact& law,
+            std::optional<RootMotion> head = {});
+
+  std::string_view name() const override { return "body"; }
+  Needs needs() const override {
+    return {.position = true, .velocity = true, .derivatives = true};
+  }
+  void add_load(double t, const Points& p, InOut f) const noexcept override;
+  void add_derivatives(double t, const Points& p, double pos, double vel,
+                       InOut blocks) const noexcept override;
+  double potential(double t, const Points& p) const noexcept override;
+  double power(double t, const Points& p) const noexcept override;
+  std::optional<double> penetration(double t, In x) const override {
+    return body_.penetration(t, x);
+  }
+  std::optional<Outline> outline(double t) const override { return body_.outline(t); }
+
+  std::unique_ptr<Effect> for_strand(std::size_t points) const override;
+  Multipliers* multipliers() override { return this; }
+
+ private:
+  void begin(double t, double tau, const Points& p) noexcept override;
+  double improve(double t, const Points& p) noexcept override;
+  double approach(double t, const Points& p) noexcept override;
+  void release() noexcept override;
+  bool rebounds() const override { return law_.restitution > 0; }
+  InOut values() noexcept override { return values_; }
+
+  double reach(const Points& p, std::size_t point) const;
+  ExactContact::Penalty penalty(const Points& p, std::size_t point) const;
+  HeldContact held(std::size_t point) const;
+  void hold(std::size_t point, const HeldContact& contact);
+  template <RigidBody::With with, class See>
+  void for_touching(const BodyPose& now, const Points& p, See see) const;
+  void set_penalties(const Points& p) noexcept;
+
+  RigidBody body_;
+  ExactContact law_;
+  // See Header in the source, then HeldContact of each point.
+  std::vector<double> values_;
+  std::vector<ExactContact::Penalty> penalties_;
+  double violation_ = 0;    // m/s, before the last improve(); 0: none
+  std::vector<bool> open_;  // at begin()
+};
+
+}  // namespace tress::models

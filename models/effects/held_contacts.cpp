@@ -1,0 +1,66 @@
+#include "models/effects/held_contacts.h"
+
+#include <algorithm>
+
+namespace tress::models {
+
+HeldContacts::HeldContacts(Effects& effects, std::size_t points, PointsAt points_at)
+    : points_at_(std::move(points_at)) {
+  for (auto& effect : effects) {
+    std::shared_ptr<Effect> own = effect->for_strand(points);
+    if (!own) continue;
+    held_.push_back(own);
+    effect = own;
+  }
+}
+
+void HeldContacts::begin(double t, double tau, In q0, In v0) noexcept {
+  const Points p = points_at_(t - tau, q0, v0);
+  for (const auto& effect : held_) effect->multipliers()->begin(t, tau, p);
+}
+
+double HeldContacts::improve(double t, In q, In v) noexcept {
+  const Points p = points_at_(t, q, v);
+  double worst = 0;
+  for (const auto& effect : held_) {
+    worst = std::max(worst, effect->multipliers()->improve(t, p));
+  }
+  return worst;
+}
+
+double HeldContacts::approach(double t, In q, In v) noexcept {
+  const Points p = points_at_(t, q, v);
+  double fastest = 0;
+  for (const auto& effect : held_) {
+    fastest = std::max(fastest, effect->multipliers()->approach(t, p));
+  }
+  return fastest;
+}
+
+void HeldContacts::release() noexcept {
+  for (const auto& effect : held_) effect->multipliers()->release();
+}
+
+bool HeldContacts::rebounds() const {
+  return std::ranges::any_of(
+      held_, [](const auto& effect) { return effect->multipliers()->rebounds(); });
+}
+
+std::vector<double> HeldContacts::multipliers() const {
+  std::vector<double> all;
+  for (const auto& effect : held_) {
+    const In own = effect->multipliers()->values();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+void HeldContacts::set_multipliers(In values) {
+  for (const auto& effect : held_) {
+    const InOut own = effect->multipliers()->values();
+    std::ranges::copy(values.first(own.size()), own.begin());
+    values = values.subspan(own.size());
+  }
+}
+
+}  // namespace tress::models

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "models/contact/body_shapes.h"
+#include "models/contact/distance_grid.h"
+#include "models/effects/effect.h"
+#include "models/motion/root_motion.h"
+
+namespace tress::models {
+
+using BodyShape = std::variant<Plane, Sphere, Capsule, Ellipsoid, DistanceGrid>;
+
+/// Position and motion of a body.
+struct BodyPose {
+  Vec x;        // of its origin, m
+  Frame frame;  // its axes
+  Vec v;        // m/s
+  Vec omega;    // rad/s
+
+  Vec surface_velocity(const Vec& at) const { return v + cross(omega, at - x); }
+};
+
+/// Shape and motion of a body that strands touch.
+class RigidBody {
+ public:
+  /// `offset`: radius of the strand (m). `head`: the motion that the body follows; the
+  /// body is at `place` while the head is at rest, and stays there if no head is given.
+  /// Throws InputError on numbers that are negative or not finite, a frame that is not a
+  /// rotation, and a grid whose surface comes within two spacings of contact with its
+  /// second layer, where contact would go undetected.
+  RigidBody(BodyShape shape, const StrandPlace& place, double offset,
+            std::optional<RootMotion> head);
+
+  BodyPose pose(double t) const;
+  /// Empty for a distance grid.
+  std::optional<Outline> outline(double t) const;
+  /// Largest depth (m) of the strand's surface in the body over the points at x.
+  double penetration(double t, In x) const;
+
+  /// A point of the strand near the surface, in the frame of the body.
+  struct Near {
+    std::size_t point = 0;
+    Vec x, u;  // u: velocity relative to the surface; 0 if velocities were not asked for
+    Distance to;
+    Mat3 curvature;  // of the distance; 0 unless asked for
+  };
+  enum class With { position, velocity, curvature };  // each with those before it
+  /// Calls see(Near) for the points whose distance is below reach(point), in order.
+  template <With with, class Reach, class See>
+  void for_near(const BodyPose& now, const Points& p, Reach reach, See see) const {
+    std::visit(
+        [&](const auto& shape) {
+          for (std::size_t i = 0; i < p.length.size(); ++i) {
+            const Vec world = load3(&p.x[3 * i]);
+            Near at;
+            at.point = i;
+            at.x = now.frame.back(world - now.x);
+            if (!distance(shape, at.x, reach(i), at.to)) continue;
+            if constexpr (with != With::position) {
+              at.u = now.frame.back(load3(&p.v[3 * i]) - now.surface_velocity(world));
+            }
+            if constexpr (with == With::curvature) at.curvature = shape.curvature(at.x);
+            see(at);
+          }
+        },
+        shape_);
+  }
+
+ private:
+  /// The distance from a shape, if it is below `reach`; most others are excluded without
+  /// a search.
+  template <class Shape>
+  static bool distance(const Shape& shape, const Vec& x, double reach, Distance& to) {
+    if constexpr (requires { shape.at_least(x); }) {
+      if (shape.at_least(x) >= reach) return false;
+    }
+    to = shape.distance(x);
+    return to.value < reach;
+  }
+
+  BodyShape shape_;
+  StrandPlace place_;
+  double offset_;  // m
+  std::optional<RootMotion> head_;
+};
+
+}  // namespace tress::models
