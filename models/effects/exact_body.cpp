@@ -26,11 +26,17 @@ constexpr double not_begun = 0, unsettled = 1, settled = 2;  // of phase
 // Largest violation (m/s) after which what is left of gaps is due to the tolerance.
 constexpr double settled_below = 1e-6;
 
+// Of points that are looked at wherever they are, and of those that are not.
+constexpr double everywhere = std::numeric_limits<double>::infinity();
+constexpr double nowhere = -everywhere;
+
 }  // namespace
 
 ExactBody::ExactBody(BodyShape shape, const StrandPlace& place, const ExactContact& law,
                      std::optional<RootMotion> head)
-    : body_(std::move(shape), place, law.compliance.offset, std::move(head)), law_(law) {
+    : body_(std::make_shared<RigidBody>(std::move(shape), place, law.compliance.offset,
+                                        std::move(head))),
+      law_(law) {
   check(law.compliance, law.friction);
   if (!(law.restitution >= 0 && law.restitution <= 1)) {
     throw InputError("its restitution is outside [0, 1]", "effect body",
@@ -47,6 +53,7 @@ std::unique_ptr<Effect> ExactBody::for_strand(std::size_t points) const {
   own->values_.assign(header + per_point * points, 0.0);
   own->penalties_.assign(points, {});
   own->open_.assign(points, true);
+  own->rest_gaps_.assign(points, 0.0);
   return own;
 }
 
@@ -59,8 +66,7 @@ ExactContact::Penalty ExactBody::penalty(const Points& p, std::size_t point) con
 
 double ExactBody::reach(const Points& p, std::size_t point) const {
   const bool held_by_root = point < static_cast<std::size_t>(p.held);
-  if (held_by_root || p.length[point] == 0)
-    return -std::numeric_limits<double>::infinity();
+  if (held_by_root || p.length[point] == 0) return nowhere;
   return law_.reach(held(point), penalty(p, point));
 }
 
@@ -92,25 +98,31 @@ void ExactBody::begin(double t, double tau, const Points& p) noexcept {
   violation_ = 0;
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     open_[i] = held(i).normal == 0;
+    rest_gaps_[i] = held(i).rest_gap;
     penalties_[i] = {};
     penalties_[i].tau = tau;
   }
   set_penalties(p);
   if (!law_.rigid) return;
-  body_.for_near<RigidBody::With::velocity>(
-      body_.pose(t - tau), p,
-      [](std::size_t) { return std::numeric_limits<double>::infinity(); },
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    HeldContact contact = held(i);
+    if (!open_[i] && state == settled) contact.rest_gap = contact.gap;
+    if (open_[i]) contact.rest_gap = 0;  // unless it overlaps still, below
+    hold(i, contact);
+  }
+  body_->for_near<RigidBody::With::velocity>(
+      body_->pose(t - tau), p,
+      [&](std::size_t) {
+        return law_.restitution > 0 ? everywhere : law_.compliance.offset;
+      },
       [&](const RigidBody::Near& at) {
         const double gap = at.to.value - law_.compliance.offset;
-        HeldContact contact = held(at.point);
-        if (state == not_begun) {
-          contact.rest_gap = std::min(0.0, gap);
-        } else if (!open_[at.point]) {
-          if (state == settled) contact.rest_gap = contact.gap;
-        } else {  // an overlap is forgotten as far as it has been left
-          contact.rest_gap = std::min(0.0, std::max(contact.rest_gap, gap));
+        if (open_[at.point]) {
+          HeldContact contact = held(at.point);
+          const double deepest = state == not_begun ? gap : rest_gaps_[at.point];
+          contact.rest_gap = std::min(0.0, std::max(deepest, gap));
+          hold(at.point, contact);
         }
-        hold(at.point, contact);
         const double away = dot(at.to.gradient, at.u);
         if (law_.restitution > 0 && away < 0 && gap + tau * away < 0) {
           penalties_[at.point].rebound = -law_.restitution * away;
@@ -128,7 +140,8 @@ double ExactBody::improve(double t, const Points& p) noexcept {
       hold(next, {0, {}, std::min(0.0, held(next).rest_gap), 0});
   };
   for_touching<RigidBody::With::velocity>(
-      body_.pose(t), p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
+      body_->pose(t), p,
+      [&](const RigidBody::Near& at, const ExactContact::State& state) {
         open_until(at.point);
         next = at.point + 1;
         violation_ = std::max(violation_, state.violation());
@@ -147,12 +160,9 @@ double ExactBody::improve(double t, const Points& p) noexcept {
 double ExactBody::approach(double t, const Points& p) noexcept {
   if (!law_.rigid) return 0;
   double fastest = 0;
-  body_.for_near<RigidBody::With::velocity>(
-      body_.pose(t), p,
-      [&](std::size_t point) {
-        return held(point).normal > 0 ? std::numeric_limits<double>::infinity()
-                                      : -std::numeric_limits<double>::infinity();
-      },
+  body_->for_near<RigidBody::With::velocity>(
+      body_->pose(t), p,
+      [&](std::size_t point) { return held(point).normal > 0 ? everywhere : nowhere; },
       [&](const RigidBody::Near& at) {
         fastest = std::max(fastest, -dot(at.to.gradient, at.u));
       });
@@ -172,7 +182,7 @@ void ExactBody::release() noexcept {
 
 template <RigidBody::With with, class See>
 void ExactBody::for_touching(const BodyPose& now, const Points& p, See see) const {
-  body_.for_near<with>(
+  body_->for_near<with>(
       now, p, [&](std::size_t point) { return reach(p, point); },
       [&](const RigidBody::Near& at) {
         const HeldContact contact = held(at.point);
@@ -182,7 +192,7 @@ void ExactBody::for_touching(const BodyPose& now, const Points& p, See see) cons
 }
 
 void ExactBody::add_load(double t, const Points& p, InOut f) const noexcept {
-  const BodyPose now = body_.pose(t);
+  const BodyPose now = body_->pose(t);
   for_touching<RigidBody::With::velocity>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
         double* load = &f[3 * at.point];
@@ -192,7 +202,7 @@ void ExactBody::add_load(double t, const Points& p, InOut f) const noexcept {
 
 void ExactBody::add_derivatives(double t, const Points& p, double pos, double vel,
                                 InOut blocks) const noexcept {
-  const BodyPose now = body_.pose(t);
+  const BodyPose now = body_->pose(t);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
   for_touching<RigidBody::With::curvature>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
@@ -205,8 +215,8 @@ void ExactBody::add_derivatives(double t, const Points& p, double pos, double ve
 double ExactBody::potential(double t, const Points& p) const noexcept {
   if (law_.rigid) return 0;
   double sum = 0;
-  body_.for_near<RigidBody::With::position>(
-      body_.pose(t), p, [&](std::size_t) { return law_.compliance.offset; },
+  body_->for_near<RigidBody::With::position>(
+      body_->pose(t), p, [&](std::size_t) { return law_.compliance.offset; },
       [&](const RigidBody::Near& at) {
         sum += p.length[at.point] * law_.compliance.energy(at.to);
       });
@@ -214,7 +224,7 @@ double ExactBody::potential(double t, const Points& p) const noexcept {
 }
 
 double ExactBody::power(double t, const Points& p) const noexcept {
-  const BodyPose now = body_.pose(t);
+  const BodyPose now = body_->pose(t);
   double sum = 0;
   for_touching<RigidBody::With::velocity>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {

@@ -29,9 +29,9 @@ class ExactBody final : public Effect, private Multipliers {
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
   std::optional<double> penetration(double t, In x) const override {
-    return body_.penetration(t, x);
+    return body_->penetration(t, x);
   }
-  std::optional<Outline> outline(double t) const override { return body_.outline(t); }
+  std::optional<Outline> outline(double t) const override { return body_->outline(t); }
 
   std::unique_ptr<Effect> for_strand(std::size_t points) const override;
   Multipliers* multipliers() override { return this; }
@@ -52,13 +52,15 @@ class ExactBody final : public Effect, private Multipliers {
   void for_touching(const BodyPose& now, const Points& p, See see) const;
   void set_penalties(const Points& p) noexcept;
 
-  RigidBody body_;
+  std::shared_ptr<const RigidBody> body_;  // of all strands
   ExactContact law_;
   // See Header in the source, then HeldContact of each point.
   std::vector<double> values_;
   std::vector<ExactContact::Penalty> penalties_;
-  double violation_ = 0;    // m/s, before the last improve(); 0: none
-  std::vector<bool> open_;  // at begin()
+  double violation_ = 0;  // m/s, before the last improve(); 0: none
+  // At begin(): contacts that are open, and rest gaps.
+  std::vector<bool> open_;
+  std::vector<double> rest_gaps_;
 };
 
 }  // namespace tress::models

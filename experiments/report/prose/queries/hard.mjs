@@ -67,6 +67,23 @@ export function super_helix(tables) {
     .join('; ');
 }
 
+// Cases with bodies under both laws of friction, by backward_euler at its longest step:
+// outcome and Newton's iterations of each model.
+export function friction_table(tables) {
+  const laws = [['grazing_contact', 'grazing_exact'], ['cone', 'cone_exact']];
+  const all = judged(tables).filter((row) => row.integrator === 'backward_euler' && !by_tolerance(row));
+  const longest = Math.max(...all.map((row) => row.dt_s));
+  const of = (name, model) => {
+    const row = all.find((one) => one.case === name && one.model === model && one.dt_s === longest);
+    if (row === undefined || row.outcome === 'refused') return '';
+    return survived(row) ? `${row.outcome} (${row.newton_iterations})` : row.outcome;
+  };
+  const models = distinct(all.filter((row) => row.case === 'grazing_exact').map((row) => row.model));
+  const rows = models.map((model) => [model, ...laws.flat().map((name) => of(name, model))]);
+  const kept = rows.filter((row) => row.slice(1).some((cell) => cell !== ''));
+  return table(['model', ...laws.flat().map((name) => `\`${name}\``)], kept);
+}
+
 // Combinations of case, model and integrator that break at a shorter step although they
 // hold at a longer one, and how many there are.
 function broken_at_shorter_groups(tables) {
