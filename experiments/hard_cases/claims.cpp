@@ -15,10 +15,10 @@ struct Known {
 
 constexpr Known limits[] = {
     {"t_s",
-     {"long_curl", 0.033, 0.034,
+     {"long_curl", 0.066, 0.067,
       "one curvature near the root swings two metres of curls farther than they fall in "
-      "a step: the first is solved short and made longer, of the second no solution is "
-      "found"}},
+      "a step: the first two are solved short and made longer, of the third no solution "
+      "is found"}},
     {"t_s",
      {"cone", 0, 0,
       "what sticks below 1 mm/s turns round within one of Newton's steps at 0.3 m/s: no "
