@@ -1,3 +1,4 @@
+#include "integrators/control/impulsive.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/stage.h"
@@ -9,12 +10,14 @@ namespace {
 /// v_{n+1} = v_n + h a_{n+1}, q_{n+1} = q_n + h v_{n+1}. The last acceleration is the
 /// initial guess. Order 1, L-stable, strongly damping. [Hairer, Wanner: Solving ODEs II,
 /// IV.3]
-class BackwardEuler final : public FixedStep {
+class BackwardEuler final : public FixedStep, public Impulsive {
  public:
   BackwardEuler(System& system, const Options& options)
       : FixedStep(system, options), stage_(dynamics_, options), q_bar_(vector_n()) {}
 
  private:
+  Status go_on(In q, In v) override { return replace(q, v); }
+
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h, v_);
     const Status s = stage_.solve(t + h, q_bar_, v_, {1, h, h * h}, a_, lambda_);
@@ -32,6 +35,7 @@ IntegratorEntry backward_euler_entry() {
   return {.id = "backward_euler",
           .summary = "L-stable, strong damping",
           .source = "Hairer-Wanner IV.3",
+          .impulsive = true,
           .tangent = true,
           .stages = 1,
           .contact = Contact::exact_rebounding,

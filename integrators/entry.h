@@ -44,6 +44,7 @@ struct IntegratorEntry {
   std::string_view source;
   bool adaptive = false;          // driven by rtol/atol instead of step
   bool error_controlled = false;  // takes Options::tolerance as well as step
+  bool impulsive = false;         // goes on after impulses at ends of steps (Impulsive)
   bool tangent = false;           // solves with the model's tangent
   int stages = 0;                 // solutions by Newton's method in a step (Stage)
   Contact contact = Contact::regular;

@@ -78,6 +78,12 @@ Status FixedStep::finish_step(double t) {
   return Status::ok;
 }
 
+Status FixedStep::replace(In q, In v) {
+  take(q, v);
+  dynamics_.lose_matrix();
+  return finish_step(t_);
+}
+
 Status FixedStep::advance(double t_end, const Observer& each_step) {
   const double t_begin = t_;
   const double span = t_end - t_begin;

@@ -34,6 +34,8 @@ class FixedStep : public Integrator {
 
   /// q_ = q, v_ = v.
   void take(In q, In v);
+  /// As above, between steps, by somebody who has used the system meanwhile.
+  Status replace(In q, In v);
 
   std::vector<double> vector_n() const { return std::vector<double>(q_.size()); }
 

@@ -1,3 +1,4 @@
+#include "integrators/control/impulsive.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/semi_implicit_step.h"
@@ -8,12 +9,14 @@ namespace {
 /// Backward Euler's first Newton step from constant velocity: one linear solve per step.
 /// Order 1, strongly damping. The model's Tangent option decides which terms S includes.
 /// [Baraff, Witkin 1998; Bertails et al. 2006]
-class SemiImplicitEuler final : public FixedStep {
+class SemiImplicitEuler final : public FixedStep, public Impulsive {
  public:
   SemiImplicitEuler(System& system, const Options& options)
       : FixedStep(system, options), step_(dynamics_, options) {}
 
  private:
+  Status go_on(In q, In v) override { return replace(q, v); }
+
   Status reset(double /*t*/) override {
     step_.reset();
     return Status::ok;
@@ -34,6 +37,7 @@ IntegratorEntry semi_implicit_euler_entry() {
   return {.id = "semi_implicit_euler",
           .summary = "one linear solve, strong damping",
           .source = "Baraff-Witkin 1998",
+          .impulsive = true,
           .tangent = true,
           .formulations = of_order(1, stage_formulations),
           .make = make_method<SemiImplicitEuler>};

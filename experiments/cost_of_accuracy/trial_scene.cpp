@@ -19,10 +19,10 @@ Scene read_open_scene(const std::string& file) {
         "the model brings its own geometry: no other model can do this scene", file,
         "give a scene with [strand] or [groom]");
   }
-  if (scene.interaction() != nullptr) {
+  if (scene.strands_touch()) {
     throw InputError(
         "strands that touch each other: no two models agree on them for long", file,
-        "leave out [effects.strand_interaction]");
+        "leave out effects between strands");
   }
   return scene;
 }

@@ -71,6 +71,7 @@ const ValidationTest& find_validation_test(std::string_view name);
 // The families of tests, each in its file.
 std::vector<ValidationTest> buckling_tests();
 std::vector<ValidationTest> cantilever_tests();
+std::vector<ValidationTest> capstan_tests();
 std::vector<ValidationTest> chain_tests();
 std::vector<ValidationTest> curl_tests();
 std::vector<ValidationTest> hanging_tests();

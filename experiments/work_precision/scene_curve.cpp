@@ -90,7 +90,8 @@ std::vector<Row> by_steps(const Curve& work, Scene scene, const Row& identity) {
 /// Strands that touch exchange forces at every fixed step.
 bool exchanges(const Scene& scene) {
   const Parameters* const between = scene.interaction();
-  return between != nullptr && between->word("coupling") != "monolithic";
+  return scene.friction() != nullptr ||
+         (between != nullptr && between->word("coupling") != "monolithic");
 }
 
 /// As above; a failure is a row of its own, for the next tolerance may do.
@@ -129,7 +130,7 @@ Study::Study(SceneFile file, const Settings& settings)
   scene_.duration = std::min(p.number("horizon_s"), scene_.duration);
   scene_.frame_rate = rate;
   const auto most = static_cast<std::size_t>(p.whole("strands"));
-  if (scene_.interaction() == nullptr && scene_.strands.size() > most) {
+  if (!scene_.strands_touch() && scene_.strands.size() > most) {
     chosen_ = typical_strands(scene_.strands, most);
   }
   const Scene used = cut(0);

@@ -34,7 +34,7 @@ class Study {
 
   const std::string& name() const { return name_; }
   double length() const { return length_; }  // mean, m
-  bool touching() const { return scene_.interaction() != nullptr; }
+  bool touching() const { return scene_.strands_touch(); }
   double duration() const { return scene_.duration; }
 
   /// Strands with this many elements, 0: the file's discretisation. The choice of strands

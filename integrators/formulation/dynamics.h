@@ -82,6 +82,8 @@ class Dynamics {
   /// Identifies the matrix that solve() uses: changes with every linearize(),
   /// accelerate(), begin().
   long matrix() const { return matrices_; }
+  /// Somebody else has factored the system's.
+  void lose_matrix() { ++matrices_; }
 
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
   In q_typ() const { return q_typ_; }

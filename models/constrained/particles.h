@@ -95,6 +95,9 @@ class ParticleSystem final : public System,
   int count() const override { return particles_; }
   void positions(double t, In q, Out x) override;
   void velocities(double t, In q, In v, Out u) override;
+  std::optional<Mean> mean(int point) override {
+    return Mean{.count = 1, .coordinate = {3 * point}, .weight = {1}};
+  }
 
   void validate() const;
   void build_pattern();

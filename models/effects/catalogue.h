@@ -18,8 +18,9 @@ struct EffectEntry {
   std::string_view summary;  // one line
   std::string_view source;
   std::span<const Parameter> parameters;
-  /// `head`: the rigid motion of all roots, for bodies that follow it. Null for the
-  /// effect between strands, which is made for all of them at once (StrandInteraction).
+  /// `head`: the rigid motion of all roots, for bodies that follow it. Null for
+  /// effects between strands, which are made for all of them at once (StrandInteraction,
+  /// StrandFriction).
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
   bool many = false;     // a scene may name several: [[effects.id]]
   bool contact = false;  // its load begins where parts meet

@@ -67,6 +67,7 @@ std::string state_text(const std::string& key, const Saved& saved) {
     for (const auto* x : {&strand.q, &strand.v, &strand.memory}) bytes.put_sized(*x);
   }
   bytes.put_sized(s.guards);
+  bytes.put_sized(s.rubs);
   return sealed(bytes.text());
 }
 
@@ -82,7 +83,7 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
   bool whole = bytes.take(head, 3) && bytes.take(t, 1);
   Saved saved;
   if (whole) {
-    saved = {head[0], head[1], {.t = t[0], .strands = {}, .guards = {}}};
+    saved = {head[0], head[1], {.t = t[0], .strands = {}, .guards = {}, .rubs = {}}};
     saved.snapshot.strands.resize(head[2]);
   }
   for (auto& strand : saved.snapshot.strands) {
@@ -90,7 +91,8 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
       whole = whole && bytes.take_sized(*x);
     }
   }
-  if (!whole || !bytes.take_sized(saved.snapshot.guards)) {
+  if (!whole || !bytes.take_sized(saved.snapshot.guards) ||
+      !bytes.take_sized(saved.snapshot.rubs)) {
     throw std::runtime_error("it ends too early");
   }
   return saved;

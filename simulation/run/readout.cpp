@@ -39,7 +39,8 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
   add("penetration_m", "largest depth of a strand in a body");
-  add("touching_pairs", "strands that come closer than the inner radius");
+  add("touching_pairs",
+      "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "from a strand to the nearest other one, mean");
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
@@ -69,8 +70,12 @@ Frame3d Readout::read(World& world) {
   }
   row.push_back(depth);
   const StrandInteraction* interaction = world.interaction();
-  row.push_back(
-      interaction != nullptr ? static_cast<double>(interaction->touching_pairs()) : 0);
+  double touching = 0;
+  if (interaction != nullptr) touching += static_cast<double>(interaction->touching_pairs());
+  if (world.friction() != nullptr) {
+    touching += static_cast<double>(world.friction()->contacts());
+  }
+  row.push_back(touching);
   row.push_back(interaction != nullptr ? interaction->mean_distance() : std::nan(""));
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
@@ -159,17 +164,24 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
                  lumps_[k].length};
   std::vector<double> load(3 * points);
   std::size_t channel = 2;
-  const auto read = [&](const Effect& effect) {
+  const auto read = [&](const auto& add_load) {
     std::ranges::fill(load, 0.0);
-    effect.add_load(world.time(), p, load);
+    add_load(load);
     for (std::size_t i = 0; i < points; ++i) {
       frame.channels[channel * count + first + i] =
           static_cast<float>(norm(load3(&load[3 * i])) / lumps_[k].length[i]);
     }
     ++channel;
   };
-  for (const auto& effect : effects_) read(*effect);
-  if (world.interaction() != nullptr) read(*world.interaction()->effect(k));
+  const auto read_effect = [&](const Effect& effect) {
+    read([&](InOut f) { effect.add_load(world.time(), p, f); });
+  };
+  for (const auto& effect : effects_) read_effect(*effect);
+  // Effects between strands come after the others, in alphabetical order.
+  if (world.friction() != nullptr) {
+    read([&](InOut f) { world.friction()->add_loads(k, f); });
+  }
+  if (world.interaction() != nullptr) read_effect(*world.interaction()->effect(k));
 }
 
 }  // namespace tress::simulation

@@ -59,14 +59,17 @@ Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
-  const double count =
-      interaction_ ? std::max(1.0, std::ceil(span / options_.step - 1e-9)) : 1.0;
+  const double count = interaction_ || friction_
+                           ? std::max(1.0, std::ceil(span / options_.step - 1e-9))
+                           : 1.0;
   const double begin = t_;
   for (long i = 1; i <= static_cast<long>(count); ++i) {
     const double t = i == static_cast<long>(count)
                          ? t_end
                          : begin + static_cast<double>(i) * (span / count);
     const bool last = i == static_cast<long>(count);
+    const double h = t - t_;
+    if (friction_) before_step();
     crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
     t_ = t;
     x_.done = u_.done = false;
@@ -74,6 +77,9 @@ Status World::advance(double t_end) {
       if (body.status == Status::ok) continue;
       failure_ = failure_of(body);
       return body.status;
+    }
+    if (friction_) {
+      if (const Status s = rub(h); s != Status::ok) return s;
     }
     exchange();
   }
@@ -177,7 +183,7 @@ Stats World::Body::stats() const {
 }
 
 Stats World::stats() const {
-  Stats sum;
+  Stats sum = rubbed_;
   for (const Body& body : bodies_) add_work(body.stats(), sum);
   return sum;
 }

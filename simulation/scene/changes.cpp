@@ -125,7 +125,7 @@ Scene bare(Scene scene) {
 }
 
 Scene thinned(Scene scene, std::size_t most) {
-  if (scene.interaction() != nullptr) return scene;
+  if (scene.strands_touch()) return scene;
   if (scene.strands.size() <= most) return scene;
   const auto typical = typical_strands(scene.strands, most);
   return only(std::move(scene), typical);

@@ -265,10 +265,11 @@ std::vector<std::string> effect_names(const Scene& scene) {
   return names;
 }
 
-const Parameters* Scene::interaction() const {
-  const auto between = std::ranges::find_if(
-      effects, [](const EffectChoice& choice) { return choice.entry->make == nullptr; });
-  return between == effects.end() ? nullptr : &between->parameters;
+const Parameters* Scene::parameters_of(std::string_view effect) const {
+  const auto found = std::ranges::find_if(effects, [effect](const EffectChoice& choice) {
+    return choice.entry->id == effect;
+  });
+  return found == effects.end() ? nullptr : &found->parameters;
 }
 
 std::size_t Scene::last_frame() const {

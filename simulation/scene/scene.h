@@ -51,8 +51,10 @@ struct Scene {
   std::uint64_t seed = 1;
   bool guard = true;  // impossible states end the run (simulation/run/guard.h)
 
-  /// Of the effect between strands; null if the scene names none.
-  const Parameters* interaction() const;
+  // Of effects between strands; null if the scene names none.
+  const Parameters* interaction() const { return parameters_of("strand_interaction"); }
+  const Parameters* friction() const { return parameters_of("strand_friction"); }
+  bool strands_touch() const { return interaction() != nullptr || friction() != nullptr; }
 
   /// The first frame is 0, at t = 0; the last is at the end, which may cut the last
   /// interval short.
@@ -60,6 +62,9 @@ struct Scene {
   double time_of(std::size_t frame) const {
     return std::min(static_cast<double>(frame) / frame_rate, duration);
   }
+
+ private:
+  const Parameters* parameters_of(std::string_view effect) const;
 };
 
 /// Throws InputError with file:line:column, what is wrong and what is accepted.

@@ -28,14 +28,35 @@ Effects effects_of(const Scene& scene, const ScenePlaces& places) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectChoice& choice = scene.effects[i];
     at_place(places.effects[i], [&] {
-      if (choice.entry->make == nullptr) {
+      if (&choice.parameters == scene.interaction()) {
         StrandInteraction(choice.parameters, {});
-      } else {
+      } else if (choice.entry->make != nullptr) {
         all.push_back(choice.entry->make(choice.parameters, scene.head));
       }
     });
   }
   return all;
+}
+
+/// Whether the scene's method can have strands that rub.
+void check_friction(const Scene& scene, const ScenePlaces& places) {
+  if (scene.friction() == nullptr) return;
+  const Parameters* interaction = scene.interaction();
+  if (interaction != nullptr && interaction->word("coupling") == "monolithic") {
+    throw InputError("strands that are one system have no steps of their own",
+                     places.integrator,
+                     "use coupling = \"lagged\", or leave out [effects.strand_friction]");
+  }
+  std::string able;
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
+    if (!entry.impulsive) continue;
+    if (entry.id == scene.integrator) return;
+    able += (able.empty() ? "" : " or ") + std::string(entry.id);
+  }
+  throw InputError(
+      fmt::format("{} cannot go on after the impulses of [effects.strand_friction]",
+                  scene.integrator),
+      places.integrator, "use " + able);
 }
 
 void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
@@ -67,6 +88,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
     check_integrator(scene, *system, places);
     return;
   }
+  check_friction(scene, places);
   const Parameters* interaction = scene.interaction();
   if (!places.tolerance.empty() && interaction != nullptr &&
       interaction->word("coupling") != "monolithic" &&

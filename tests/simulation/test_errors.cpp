@@ -117,6 +117,13 @@ const Wrong wrong_scenes[] = {
     {"TwoOfThree", "[strand]\nroot_tangent = [1, 0]\n", "3:16", "2 numbers instead of 3"},
     {"NumberForTable", "strand = 3\n", "2:10", "write [strand]"},
     {"TwoOfOne", strand + "[[effects.gravity]]\n", "3:1", "give one [effects.gravity]"},
+    {"FrictionOfAnotherMethod",
+     strand + "[integrator]\nid = \"rk4\"\n[effects.strand_friction]\n", "4:6",
+     "use semi_implicit_euler or backward_euler"},
+    {"FrictionOfOneSystem",
+     strand + "[integrator]\nid = \"backward_euler\"\n[effects.strand_interaction]\n"
+              "coupling = \"monolithic\"\n[effects.strand_friction]\n",
+     "4:6", "leave out [effects.strand_friction]"},
     {"TwoInteractions", strand + "[[effects.strand_interaction]]\n", "3:1",
      "give one [effects.strand_interaction]"},
     {"RadiiOfInteraction",

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "integrators/control/impulsive.h"
+#include "integrators/formulation/dynamics.h"
+
+namespace tress::integrators {
+
+/// How a strand responds to forces f on its material points that act during a step of h
+/// and are known at its end:
+///
+///     v = v* + h a,   q = q* + h^2 a,   S(1, h, h^2) a = J^T f,   J = du/dv
+///
+/// S at the state (q*, v*) at the end of the step without them, with the acceleration
+/// that led there; constraints of the strand are held. J comes from
+/// MaterialPoints::mean(), or where points are not means of coordinates column by column
+/// from velocities(), O(n^2) for n coordinates.
+class ImpulseResponse {
+ public:
+  /// Throws InputError if the method cannot go on after impulses.
+  ImpulseResponse(System& system, Integrator& method, const Options& options);
+
+  /// At the end of a step; v_before: at its start. `retry` if S is singular.
+  Status prepare(double h, In v_before) noexcept;
+  /// Of those points: velocities per force (m/s per N), row-major 3x3 blocks, those of
+  /// the force on the first point, of the second ...
+  Status compliance(std::span<const int> points, std::vector<double>& blocks);
+  /// The state after forces on those points (3 numbers each, N).
+  Status respond(std::span<const int> points, In forces) noexcept;
+  In q() const { return q_; }
+  In v() const { return v_; }
+  /// The method goes on from there.
+  Status go_on() { return impulsive_.go_on(q_, v_); }
+
+  const Stats& stats() const { return dynamics_.stats; }
+
+ private:
+  void differentiate() noexcept;
+  void pull_back(int point, const double* force, InOut r) const noexcept;
+  void velocity(int point, In v, double* u) const noexcept;
+
+  System& system_;
+  Integrator& method_;
+  Impulsive& impulsive_;
+  Dynamics dynamics_;
+  double h_ = 0;
+  std::vector<std::optional<MaterialPoints::Mean>> means_;
+  bool linear_;                   // every point is a mean of coordinates
+  std::vector<double> jacobian_;  // (3 points x coordinates), otherwise
+  std::vector<double> a_, lambda_, r_, c_, q_, v_, u_, u_rest_;
+};
+
+}  // namespace tress::integrators

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "contract/system.h"
+
+namespace tress::integrators {
+
+/// A method whose state may be changed between steps, as impulses do; an optional
+/// capability of methods that solve for the state at the end of a step and keep none of
+/// the steps before it.
+class Impulsive {
+ public:
+  virtual ~Impulsive() = default;
+  /// Goes on from (q, v) at the present time.
+  virtual Status go_on(In q, In v) = 0;
+};
+
+}  // namespace tress::integrators

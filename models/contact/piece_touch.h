@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "math/closest.h"
+
+namespace tress::models {
+
+/// Two straight pieces, x_0 x_1 and x_2 x_3, whose ends move straight on during a step.
+struct MovingPieces {
+  std::array<Vec, 4> from, to;  // m
+};
+
+/// Where the pieces touch, and the direction from the second to the first one there.
+struct PieceTouch {
+  double s, t;  // of the first, of the second piece, in [0, 1]
+  Vec normal;   // of length 1
+
+  /// Weights of the four ends in the vector from the second to the first point.
+  std::array<double, 4> weights() const { return {1 - s, s, t - 1, -t}; }
+};
+
+/// If one piece passes through the other during the step, the place and the side where it
+/// came from: axes of no thickness that cross at a time are coplanar then, which is a
+/// root of a cubic polynomial [Provot 1997]. Otherwise the nearest points at the end of
+/// the step, if they are closer than `reach`. Empty: neither.
+std::optional<PieceTouch> touch(const MovingPieces& pieces, double reach);
+
+}  // namespace tress::models

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "contract/parameters.h"
+#include "models/contact/contact_problem.h"
+#include "models/contact/piece_touch.h"
+#include "models/contact/segment_grid.h"
+
+namespace tress::models {
+
+/// The table [effects.strand_friction] of a scene.
+std::span<const Parameter> strand_friction_parameters();
+
+/// Exact contact with friction (Signorini and Coulomb) between strands and between parts
+/// of one strand, as impulses at the ends of steps [Moreau 1999; Jean 1999]: strands have
+/// moved as if they were alone, and forces are found at which no pair of segments has
+/// passed through another or is nearer than their radii, with the velocities after them:
+///
+///     x = x* + h W r,   u = u* + W r,   W = h J S^-1 J^T   (of each strand)
+///
+/// S is the matrix of the strand's own step, so forces act as if they had been among its
+/// loads. Each pair of segments has its contact where its axes would cross, or at the
+/// nearest points of their ends of steps (PieceTouch), and its forces on the four points
+/// about it sum to zero. Where forces drive other pairs into each other, these are added
+/// and all are solved again.
+///
+/// Points move on curves, u is a straight line: gaps are corrected by what points have
+/// moved beyond it when forces act (place()), and solved again.
+///
+/// Use: begin(), then while find(): respond() for stale() strands, solve(), and place()
+/// for touching() ones. forces() are then to be applied. O(segments) for the search,
+/// O(touching) for the rest.
+class StrandFriction {
+ public:
+  struct Law {
+    double friction;   // Coulomb's coefficient
+    double thickness;  // distance of axes that touch, m; 0: the sum of radii
+    bool own;          // parts of one strand touch each other too
+    double tolerance;  // largest violation, m/s
+    int sweeps;        // at most
+  };
+  /// A strand without branches.
+  struct OfStrand {
+    int points;      // material points, a polyline
+    double radius;   // m
+    double longest;  // segment at rest, m
+  };
+  StrandFriction(const Parameters& parameters, std::span<const OfStrand> strands);
+  StrandFriction(const Law& law, std::span<const OfStrand> strands);
+
+  /// A step of h (s) from points `from` to where they are without contact, with the
+  /// velocities u there; 3 numbers each, strand after strand.
+  void begin(double h, In from, In to, In u);
+  /// Looks for pairs that touch with the forces found so far. False: none beyond those.
+  bool find();
+  /// Strands whose compliance at points_of() is to be given before solve().
+  std::span<const std::size_t> stale() const { return stale_; }
+  /// Points of a strand, from its root, that contacts act on; ascending.
+  const std::vector<int>& points_of(std::size_t strand) const {
+    return strands_[strand].touched;
+  }
+  /// Velocities (m/s) of those points per force (N) on each, row-major 3x3 blocks: those
+  /// of the force on the first point, of the second ...
+  void respond(std::size_t strand, In compliance);
+  void solve();
+  /// Where all points of a strand are with the forces found, 3 numbers each.
+  void place(std::size_t strand, In x);
+
+  /// Of the step: strands with contacts, ascending, and the forces (N) on points_of().
+  std::span<const std::size_t> touching() const { return touching_; }
+  std::vector<double> forces(std::size_t strand) const;
+  /// f += the forces on all points of a strand, 3 numbers each, N.
+  void add_loads(std::size_t strand, InOut f) const;
+
+  /// Of the step: sweeps, and by how much the law was violated at last, m/s.
+  const ContactProblem::Outcome& outcome() const { return outcome_; }
+  double tolerance() const { return law_.tolerance; }
+  /// Pairs of segments that touched in the step.
+  std::size_t contacts() const { return known_.size(); }
+
+  /// Forces of the last step, from which the next one starts: pairs and vectors.
+  std::vector<double> memory() const;
+  void recall(In memory);
+
+ private:
+  struct Piece {
+    int strand, first;  // first: point of the strand
+    Vec least, most;    // box of the step, m
+  };
+  struct Known {
+    int first, second;  // pieces
+    PieceTouch at;
+    Vec force;          // world, N
+    double closed = 0;  // gap by the velocities found, m
+    double beyond = 0;  // gap where points are, less `closed`, m
+  };
+  struct Touched {
+    std::size_t first_point;
+    double radius;             // m
+    std::vector<int> touched;  // its points
+    std::vector<int> place;    // of each of its points among them, -1: none
+    std::vector<Mat3> compliance;
+    int body = -1;  // of the problem
+  };
+
+  MovingPieces pieces(int first, int second) const;
+  double thickness(int first, int second) const;
+  bool apart(int first, int second, double thick) const;
+  /// Of a place on a piece along its strand, m.
+  double arc(int piece, double part) const;
+  bool one_place(const Known& a, const Known& b) const;
+  std::vector<Known>::iterator seen(const Known& found, std::vector<Known>& all) const;
+  void place_boxes();
+  double farthest(In from) const;
+  void gather();
+  void look(int first, int second);
+  double gap(const Known& known, In x) const;
+  double deepest(const Known& known) const;
+  bool overlap() const;
+  void touch_points();
+  ContactProblem::Contact contact(const Known& known) const;
+
+  Law law_;
+  std::vector<Touched> strands_;
+  std::vector<Piece> pieces_;
+  SegmentGrid grid_;
+  double widest_;  // thickness, m
+  double h_ = 0;
+  int rounds_ = 0;
+  std::vector<double> from_, to_, u_, now_;
+  std::vector<double> arc_;    // of points, m
+  std::vector<Known> known_;   // of this step, by pair
+  std::vector<Known> before_;  // of the last one
+  std::vector<Known> found_;
+  // Pairs of pieces that may touch while points are up to room_ from gathered_.
+  std::vector<std::pair<int, int>> near_;
+  std::vector<double> gathered_;
+  double room_ = 0;  // m
+  std::vector<std::size_t> stale_, touching_;
+  ContactProblem problem_;
+  ContactProblem::Outcome outcome_;
+};
+
+}  // namespace tress::models

@@ -1,0 +1,139 @@
+// The laws of Signorini and Coulomb, at one contact and at many.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/contact/cone.h"
+#include "tests/models/contact/random_contacts.h"
+
+namespace tress::test_contact_problem {
+
+using namespace models;
+using namespace test_contact;
+
+double tangential(const Vec& a) { return std::hypot(a.y, a.z); }
+
+TEST(ContactForce, ObeysTheLawsOfARandomContact) {
+  std::mt19937 random(1);
+  int open = 0, sticking = 0, sliding = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Mat3 w = random_compliance(random);
+    const Vec b = random_vec(random);
+    const double mu = std::uniform_real_distribution<double>(0, 0.5)(random);
+    const Vec r = contact_force(w, b, mu), u = w * r + b;
+    // Rounding of w r, whose terms cancel against b.
+    const double rounding = 1e-11 * (norm(b) + trace(w) * norm(r));
+    if (norm(r) == 0) {
+      ++open;
+      EXPECT_GE(u.x, 0);
+      continue;
+    }
+    EXPECT_GT(r.x, 0);
+    EXPECT_NEAR(u.x, 0, rounding);
+    if (tangential(r) < (1 - 1e-9) * mu * r.x) {
+      ++sticking;
+      EXPECT_LE(tangential(u), rounding);
+    } else {
+      // Where W couples strongly there may be no slide: the measure tells.
+      if (contact_violation(w, u, r, mu) > 1e-6 * (1 + norm(b))) continue;
+      ++sliding;
+      EXPECT_NEAR(tangential(r), mu * r.x, 1e-11 * r.x);
+      // u_t = -s r_t with s >= 0.
+      EXPECT_NEAR(u.y * r.y + u.z * r.z, -tangential(u) * tangential(r),
+                  1e-7 * norm(r) * (norm(b) + rounding));
+    }
+  }
+  EXPECT_GT(open, 5000);
+  EXPECT_GT(sticking, 200);
+  EXPECT_GT(sliding, 5000);
+  // What is left has no solution or none was found.
+  EXPECT_GE(open + sticking + sliding, 19990);
+}
+
+TEST(ContactForce, DoesNotDependOnTheGuess) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 2000; ++i) {
+    const Mat3 w = random_compliance(random);
+    const Vec b = random_vec(random), guess = random_vec(random);
+    const Vec r = contact_force(w, b, 0.3), again = contact_force(w, b, 0.3, guess);
+    EXPECT_LE(norm(r - again), 1e-7 * (1 + norm(r))) << i;
+  }
+}
+
+TEST(ContactViolation, IsZeroWhereTheLawsHoldAndASpeedWhereNot) {
+  const Mat3 w = diagonal({2, 2, 2});
+  const double mu = 0.5;
+  EXPECT_NEAR(contact_violation(w, {1, 0.3, 0}, {}, mu), 0, 1e-15);          // open
+  EXPECT_NEAR(contact_violation(w, {}, {1, 0.2, 0.1}, mu), 0, 1e-15);        // sticks
+  EXPECT_NEAR(contact_violation(w, {0, 3, 0}, {1, -0.5, 0}, mu), 0, 1e-14);  // slides
+  // One speed too much, in proportion.
+  for (const double speed : {1e-8, 1e-3}) {
+    const double creeps = contact_violation(w, {0, speed, 0}, {1, 0.2, 0}, mu);
+    EXPECT_GT(creeps, 0.1 * speed);
+    EXPECT_LT(creeps, 10 * speed);
+    const double sinks = contact_violation(w, {-speed, 0, 0}, {}, mu);
+    EXPECT_GT(sinks, speed);
+    EXPECT_LT(sinks, 10 * speed);
+  }
+  EXPECT_GT(contact_violation(w, {}, {1, 0.6, 0}, mu), 0.01);        // beyond the cone
+  EXPECT_GT(contact_violation(w, {0, 3, 0}, {1, 0.5, 0}, mu), 0.1);  // pushes along
+  EXPECT_GT(contact_violation(w, {1, 0, 0}, {1, 0, 0}, mu), 0.1);    // pulls away
+}
+
+TEST(ContactProblem, SolvesContactsOfRegularCompliance) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const RandomContacts all = random_contacts(4, 4, 40, 6, seed);
+    ContactProblem problem = all.problem();
+    const auto outcome = problem.solve(0.3, 1e-2, 1e-10, 2000);
+    EXPECT_LE(outcome.violation, 1e-10) << seed;
+    for (const auto& contact : problem.contacts()) {
+      EXPECT_LE(
+          contact_violation(contact.local, problem.velocity(contact), contact.force, 0.3),
+          1e-10);
+    }
+  }
+}
+
+TEST(ContactProblem, SolvesMoreContactsThanUnknowns) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    // Two bodies of 6 unknowns each, 36 components of contacts.
+    const RandomContacts all = random_contacts(2, 5, 6, 12, seed);
+    ContactProblem problem = all.problem();
+    const auto outcome = problem.solve(0.3, 1e-2, 1e-6, 20000);
+    EXPECT_LE(outcome.violation, 1e-6) << seed;
+  }
+}
+
+TEST(ContactProblem, ForcesOfItsContactsChangeTheVelocities) {
+  const RandomContacts all = random_contacts(3, 4, 30, 5, 7);
+  ContactProblem problem = all.problem();
+  problem.solve(0.4, 1e-2, 1e-10, 2000);
+  Vec sum;
+  double size = 0;
+  for (std::size_t body = 0; body < 3; ++body) {
+    const auto forces = problem.forces(body);
+    for (std::size_t p = 0; p < 4; ++p) {
+      sum = sum + forces[p];
+      size += norm(forces[p]);
+      Vec expected;
+      for (std::size_t of = 0; of < 4; ++of) {
+        expected = expected + all.bodies[body].compliance[4 * of + p] * forces[of];
+      }
+      EXPECT_LE(norm(problem.change(body)[p] - expected), 1e-11 * (1 + norm(expected)));
+    }
+  }
+  EXPECT_GT(size, 0.01);
+  EXPECT_LE(norm(sum), 1e-14 * size);  // action is reaction
+}
+
+TEST(ContactProblem, GoesOnFromForcesThatAreRight) {
+  const RandomContacts all = random_contacts(4, 4, 40, 8, 3);
+  ContactProblem problem = all.problem();
+  problem.solve(0.3, 1e-2, 1e-10, 2000);
+  ContactProblem again;
+  for (const auto& body : all.bodies) again.add_body(body.compliance, body.points);
+  for (const auto& contact : problem.contacts()) again.add(contact);
+  EXPECT_EQ(again.solve(0.3, 1e-2, 1e-9, 2000).sweeps, 0);
+}
+
+}  // namespace tress::test_contact_problem

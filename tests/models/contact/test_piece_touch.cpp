@@ -1,0 +1,101 @@
+// Where moving pieces touch: against the distance by search, and crossings of known time.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "models/contact/piece_touch.h"
+#include "tests/models/contact/random_contacts.h"
+
+namespace tress::test_piece_touch {
+
+using namespace models;
+using test_contact::random_vec;
+
+double least_distance(const StraightPiece& a, const StraightPiece& b) {
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int parts = 400;
+  for (int i = 0; i <= parts; ++i) {
+    const Vec x = a.at(static_cast<double>(i) / parts);
+    least = std::min(least, norm(x - b.at(b.nearest(x))));
+  }
+  return least;
+}
+
+TEST(NearestPoints, AreNoFartherApartThanAnyOthers) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec x = random_vec(random), y = random_vec(random), z = random_vec(random);
+    // Every fourth pair is parallel.
+    const Vec end = i % 4 == 0 ? z + 0.7 * (y - x) : random_vec(random);
+    const StraightPiece a(x, y), b(z, end);
+    const NearestPoints near = nearest(a, b);
+    const double distance = norm(a.at(near.of_first) - b.at(near.of_second));
+    EXPECT_LE(distance, least_distance(a, b) + 1e-12) << i;
+  }
+}
+
+/// A rod along y that moves through one along x from above to below, or towards it.
+MovingPieces falling(double from, double to) {
+  MovingPieces p;
+  p.from = {Vec{0.3, -1, from}, Vec{0.3, 1, from}, Vec{0, 0, 0}, Vec{1, 0, 0}};
+  p.to = {Vec{0.3, -1, to}, Vec{0.3, 1, to}, Vec{0, 0, 0}, Vec{1, 0, 0}};
+  return p;
+}
+
+TEST(PieceTouch, OfPiecesThatPassThroughIsTheSideTheyCameFrom) {
+  for (const double to : {-1e-9, -0.01, -5.0}) {
+    const auto at = touch(falling(1, to), 1e-3);
+    ASSERT_TRUE(at.has_value());
+    EXPECT_NEAR(at->normal.z, 1, 1e-12) << to;
+    EXPECT_NEAR(at->s, 0.5, 1e-9);
+    EXPECT_NEAR(at->t, 0.3, 1e-9);
+  }
+}
+
+TEST(PieceTouch, OfPiecesNearEachOtherIsTheirDirection) {
+  EXPECT_FALSE(touch(falling(1, 0.01), 0.009).has_value());
+  const auto at = touch(falling(1, 0.01), 0.011);
+  ASSERT_TRUE(at.has_value());
+  EXPECT_NEAR(at->normal.z, 1, 1e-12);
+  EXPECT_FALSE(touch(falling(1, 2), 0.1).has_value());
+}
+
+TEST(PieceTouch, MissesNoRandomCrossing) {
+  // Lines that meet at a given time and place, with random motions.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> part(0.05, 0.95);
+  for (int i = 0; i < 2000; ++i) {
+    const double time = part(random), s = part(random), t = part(random);
+    const Vec place = random_vec(random), along = random_vec(random),
+              across = random_vec(random);
+    const std::array<Vec, 4> meet{place - s * along, place + (1 - s) * along,
+                                  place - t * across, place + (1 - t) * across};
+    MovingPieces p;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Vec move = random_vec(random);
+      p.from[a] = meet[a] - time * move;
+      p.to[a] = meet[a] + (1 - time) * move;
+    }
+    const auto at = touch(p, 0);
+    ASSERT_TRUE(at.has_value()) << i;
+    // The side is that of the start, at the place where they meet first.
+    const auto weights = at->weights();
+    Vec start;
+    for (std::size_t a = 0; a < 4; ++a) start = start + weights[a] * p.from[a];
+    EXPECT_GE(dot(at->normal, start), 0) << i;
+    EXPECT_NEAR(norm(at->normal), 1, 1e-12);
+  }
+}
+
+TEST(PieceTouch, OfPiecesThatPassEachOthersEndsIsNone) {
+  MovingPieces p = falling(1, -1);
+  for (auto* x : {&p.from, &p.to}) {
+    (*x)[0].x += 0.8;  // beyond the end of the other
+    (*x)[1].x += 0.8;
+  }
+  EXPECT_FALSE(touch(p, 0.05).has_value());
+}
+
+}  // namespace tress::test_piece_touch

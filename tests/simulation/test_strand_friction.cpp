@@ -1,0 +1,256 @@
+// Exact contact between strands: nothing passes through, momentum is kept, and friction
+// is Coulomb's; for every strand model and both methods.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "contract/input_error.h"
+#include "math/closest.h"
+#include "models/catalogue.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::test_strand_friction {
+
+using namespace simulation;
+
+struct Set {
+  std::string model = "der";
+  std::string integrator = "backward_euler";
+  std::string strands = {};
+  std::string effects = "[effects.gravity]\n";
+  std::string friction = "thickness_m = 1e-3\n";
+  std::string root = "fixed";
+  std::string material = "ellipticity = 1\n";
+  double step = 2e-3;
+};
+
+std::string formulation_of(const std::string& model) {
+  const bool constrained = model == "inextensible_strand" || model == "dynamic_spline";
+  return constrained ? "formulation = \"index3\"\n" : "";
+}
+
+Scene scene(const Set& set) {
+  const bool none = set.friction == "none";
+  return parse_scene(
+      fmt::format("title = \"t\"\nduration_s = 1\nguard = false\n[model]\nid = \"{}\"\n"
+                  "[integrator]\nid = \"{}\"\ndt_s = {}\n{}[material]\n"
+                  "name = \"hair.asian\"\n{}{}[root]\nmotion = \"{}\"\n{}{}",
+                  set.model, set.integrator, set.step, formulation_of(set.model),
+                  set.material, set.strands, set.root, set.effects,
+                  none ? "" : "[effects.strand_friction]\n" + set.friction),
+      "t.toml");
+}
+
+/// A hair along x, and one across it that hangs from a root beside it and falls onto it.
+std::string crossing(const std::string& more = {}) {
+  return "[[strand]]\nlength_m = 0.06\nelements = 6\nroot_tangent = [1, 0, 0]\n" + more +
+         "[[strand]]\nlength_m = 0.06\nelements = 6\nposition_m = [0.02, -0.03, 0.003]\n"
+         "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n" +
+         more;
+}
+
+Vec point(World& world, std::size_t i) { return load3(&world.positions()[3 * i]); }
+
+/// Least distance of the axes of two strands, or of parts of one that are more than
+/// `apart` segments from each other.
+double distance(World& world, std::size_t first, std::size_t second,
+                std::size_t apart = 0) {
+  std::vector<std::size_t> from{0};
+  for (const int points : world.points()) {
+    from.push_back(from.back() + static_cast<std::size_t>(points));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = from[first]; i + 1 < from[first + 1]; ++i) {
+    for (std::size_t j = from[second]; j + 1 < from[second + 1]; ++j) {
+      if (first == second && j <= i + apart) continue;
+      const StraightPiece a(point(world, i), point(world, i + 1)),
+          b(point(world, j), point(world, j + 1));
+      const NearestPoints near = nearest(a, b);
+      least = std::min(least, norm(a.at(near.of_first) - b.at(near.of_second)));
+    }
+  }
+  return least;
+}
+
+struct Case {
+  std::string model, integrator;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const ModelEntry& model : model_catalogue()) {
+    if (model.on_strand == nullptr) continue;
+    for (const char* const method : {"backward_euler", "semi_implicit_euler"}) {
+      all.push_back({std::string(model.id), method});
+    }
+  }
+  return all;
+}
+
+class StrandFriction : public testing::TestWithParam<Case> {};
+
+TEST_P(StrandFriction, NothingFallsThroughAnother) {
+  Set set{.model = GetParam().model,
+          .integrator = GetParam().integrator,
+          .strands = crossing()};
+  // Where a soft strand is not stable at 2 ms without contact, with shorter steps.
+  if (set.integrator == "semi_implicit_euler") set.step = 5e-4;
+  World world(scene(set));
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 1; i <= 60; ++i) {
+    ASSERT_EQ(world.advance(5e-3 * i), Status::ok) << world.failure();
+    least = std::min(least, distance(world, 0, 1));
+  }
+  EXPECT_GT(least, 0.94e-3);
+  EXPECT_LT(least, 1.01e-3);
+  EXPECT_GT(world.friction()->contacts(), 0u);
+  const Stats stats = world.stats();
+  EXPECT_EQ(stats.contact_unfinished, 0);
+  EXPECT_GT(stats.contact_iterations, 0);
+
+  // Alone it falls through.
+  set.friction = "none";
+  World alone(scene(set));
+  double nearest_alone = std::numeric_limits<double>::infinity();
+  for (int i = 1; i <= 60; ++i) {
+    ASSERT_EQ(alone.advance(5e-3 * i), Status::ok) << alone.failure();
+    nearest_alone = std::min(nearest_alone, distance(alone, 0, 1));
+  }
+  EXPECT_LT(nearest_alone, 0.5e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, StrandFriction, testing::ValuesIn(cases()),
+                         [](const auto& info) {
+                           return info.param.model + "_" + info.param.integrator;
+                         });
+
+/// A stiff rod across two stiff rails, thrown along them: it loses mu g of its speed per
+/// second, stops, and stays.
+class Sled : public testing::TestWithParam<const char*> {};
+
+TEST_P(Sled, SlidesAsCoulombSaysAndStays) {
+  const double mu = 0.3, g = 9.81, speed = 0.1;
+  Set set{.model = GetParam(),
+          .strands =
+              "[[strand]]\nlength_m = 0.03\nelements = 4\nposition_m = [0, 0.02, 0]\n"
+              "[[strand]]\nlength_m = 0.03\nelements = 4\n"
+              "position_m = [0, -0.02, 0]\n"
+              "[[strand]]\nlength_m = 0.06\nelements = 4\nposition_m = [0.015, "
+              "-0.03, 0.002]\nroot_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n",
+          .friction = "friction = 0.3\ntolerance_m_s = 1e-12\nsweeps = 10000\n",
+          .material = "ellipticity = 1\nradius_m = 1e-3\n"};
+  Scene made = scene(set);
+  const RootPose at = made.strands[2].root.at(0);
+  made.strands[2].free_root = FreeRoot{at.x, at.frame, {speed, 0, 0}, {}};
+  World world(made);
+  const std::size_t tip = world.positions().size() / 3 - 1, middle = tip - 2;
+  const double start = point(world, middle).x;
+  // Steps of backward Euler lose mu g h of speed each, and go on with what is left.
+  const double stop = speed / (mu * g);
+  ASSERT_EQ(world.advance(0.6 * stop), Status::ok) << world.failure();
+  const double half = load3(&world.velocities()[3 * middle]).x;
+  EXPECT_NEAR(half, 0.4 * speed, 0.03 * speed);
+  ASSERT_EQ(world.advance(1.5 * stop), Status::ok) << world.failure();
+  const Vec stopped = point(world, middle);
+  // The rails bend under the rod first, by 40 um.
+  const double way = speed * speed / (2 * mu * g) - 0.5 * speed * set.step;
+  EXPECT_NEAR(stopped.x - start, way, 0.01 * way);
+  ASSERT_EQ(world.advance(0.3), Status::ok) << world.failure();
+  const Vec rested = point(world, middle);
+  ASSERT_EQ(world.advance(0.8), Status::ok) << world.failure();
+  // It sticks: what creeps is the tolerance over half a second.
+  EXPECT_LT(norm(point(world, middle) - rested), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Sled,
+                         testing::Values("super_helix", "der", "corde", "mass_spring",
+                                         "inextensible_strand"));
+
+TEST(StrandFriction, KeepsMomentumOfFreeStrands) {
+  for (const char* const model : {"der", "mass_spring", "corde"}) {
+    Set set{.model = model,
+            .strands = crossing(),
+            .effects = "",
+            .root = "free\"\nvelocity_m_s = [0, 0, 0]\nspin_rad_s = [0, 0, 0]\n#\""};
+    Scene made = scene(set);
+    made.strands[1].free_root->velocity = {0.05, 0, -0.5};
+    const auto momentum = [&](World& world) {
+      Vec sum;
+      const Snapshot now = world.snapshot();
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto twin = made.model->on_strand(made.strands[k], made.model_options, {});
+        twin->recall(now.strands[k].memory);
+        const auto of_one =
+            twin->energetics()->momentum(now.t, now.strands[k].q, now.strands[k].v);
+        sum = sum + load3(of_one->linear.data());
+      }
+      return sum;
+    };
+    World world(made);
+    const Vec before = momentum(world);
+    ASSERT_EQ(world.advance(0.05), Status::ok) << world.failure();
+    EXPECT_GT(world.stats().contact_iterations, 0);
+    EXPECT_GT(distance(world, 0, 1), 0.9e-3);
+    // Newton's tolerance, 1e-10 of typical speeds of 1 m/s or more, times mass and steps.
+    EXPECT_LT(norm(momentum(world) - before), 1e-7 * norm(before)) << model;
+    // The lower one moves now.
+    EXPECT_LT(load3(&world.velocities()[3 * 2]).z, -1e-3);
+  }
+}
+
+TEST(StrandFriction, HoldsAStrandOffItself) {
+  // A turn and three quarters that rise by 4 mm in a turn, and sink under their weight.
+  std::string coil = "[strand]\nelements = 40\npoints = [";
+  for (int k = 0; k <= 14; ++k) {
+    const double angle = k * std::numbers::pi / 4;
+    coil += fmt::format("{}[{}, {}, {}]", k == 0 ? "" : ", ", 0.01 * std::sin(angle),
+                        0.01 * (1 - std::cos(angle)), 0.0005 * k);
+  }
+  coil += "]\nnormal = [0, 1, 0.1]\n";
+  Set set{.strands = coil,
+          .material = "ellipticity = 1\nyoungs_modulus_pa = 1e8\n",
+          .step = 1e-3};
+  const auto least = [](World& world) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 1; i <= 40; ++i) {
+      EXPECT_EQ(world.advance(5e-3 * i), Status::ok) << world.failure();
+      nearest = std::min(nearest, distance(world, 0, 0, 8));
+    }
+    return nearest;
+  };
+  World held(scene(set));
+  EXPECT_GT(least(held), 0.94e-3);
+  EXPECT_GT(held.friction()->contacts(), 0u);
+  set.friction = "thickness_m = 1e-3\nown = \"no\"\n";
+  World through(scene(set));
+  EXPECT_LT(least(through), 0.5e-3);
+}
+
+TEST(StrandFriction, ContinuesASnapshotBitByBitOnAnyThreads) {
+  for (const char* const model : {"super_helix", "der"}) {
+    const Scene made = scene({.model = model, .strands = crossing()});
+    World whole(made), half(made, 2), rest(made, 3);
+    for (int i = 1; i <= 20; ++i) {
+      ASSERT_EQ(whole.advance(0.01 * i), Status::ok);
+      if (i <= 10) {
+        ASSERT_EQ(half.advance(0.01 * i), Status::ok);
+      }
+      if (i == 10) {
+        whole.restore(whole.snapshot());
+        rest.restore(half.snapshot());
+      }
+      if (i > 10) {
+        ASSERT_EQ(rest.advance(0.01 * i), Status::ok);
+      }
+    }
+    EXPECT_GT(whole.friction()->contacts(), 0u);
+    EXPECT_EQ(whole.positions(), rest.positions()) << model;
+  }
+}
+
+}  // namespace tress::test_strand_friction
