@@ -53,7 +53,7 @@ constexpr double kept = 0.8;
 
 // Part of the thickness by which a pair that has a contact may be nearer than that at
 // another place before it gets a second one.
-constexpr double second_place = 0.05;
+constexpr double second_place = 0.1;
 
 // Of the thickness: contacts nearer than this along both strands are one.
 constexpr double joint = 0.25;
@@ -344,8 +344,7 @@ void StrandFriction::touch_points() {
     }
   }
   std::ranges::sort(stale_);
-  const auto repeated = std::ranges::unique(stale_);
-  stale_.erase(repeated.begin(), repeated.end());
+  stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
   for (const std::size_t k : stale_) {
     Touched& strand = strands_[k];
     std::ranges::sort(strand.touched);

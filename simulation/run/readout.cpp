@@ -71,7 +71,8 @@ Frame3d Readout::read(World& world) {
   row.push_back(depth);
   const StrandInteraction* interaction = world.interaction();
   double touching = 0;
-  if (interaction != nullptr) touching += static_cast<double>(interaction->touching_pairs());
+  if (interaction != nullptr)
+    touching += static_cast<double>(interaction->touching_pairs());
   if (world.friction() != nullptr) {
     touching += static_cast<double>(world.friction()->contacts());
   }

@@ -56,8 +56,8 @@ inline RandomContacts random_contacts(int bodies, int points, int rank, int cont
     RandomContacts::Body body{
         std::vector<Mat3>(static_cast<std::size_t>(points * points)), points};
     for (int mode = 0; mode < rank; ++mode) {
-      std::vector<Vec> u;
-      for (int p = 0; p < points; ++p) u.push_back(random_vec(random));
+      std::vector<Vec> u(static_cast<std::size_t>(points));
+      for (Vec& of_point : u) of_point = random_vec(random);
       for (int of = 0; of < points; ++of) {
         for (int on = 0; on < points; ++on) {
           Mat3& block = body.compliance[static_cast<std::size_t>(of * points + on)];
