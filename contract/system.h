@@ -165,6 +165,9 @@ class MaterialPoints {
   virtual int before(int i) const { return i - 1; }
   virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
   virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
+  /// du/dv, (3 count x n) by rows. False: not known in closed form; it can be had from
+  /// mean() or velocities().
+  virtual bool jacobian(double /*t*/, In /*q*/, Out /*j*/) { return false; }
   /// Largest |length/rest - 1| over the segments of the body. Empty: not available.
   virtual std::optional<double> stretch(double /*t*/, In /*q*/) { return {}; }
 

@@ -54,6 +54,7 @@ Status ImpulseResponse::prepare(double h, In v_before) noexcept {
 void ImpulseResponse::differentiate() noexcept {
   MaterialPoints& points = *system_.material_points();
   const std::size_t n = a_.size();
+  if (points.jacobian(method_.time(), q_, jacobian_)) return;
   std::ranges::fill(r_, 0.0);
   points.velocities(method_.time(), q_, r_, u_rest_);
   for (std::size_t k = 0; k < n; ++k) {

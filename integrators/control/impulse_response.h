@@ -16,8 +16,7 @@ namespace tress::integrators {
 ///
 /// S at the state (q*, v*) at the end of the step without them, with the acceleration
 /// that led there; constraints of the strand are held. J comes from
-/// MaterialPoints::mean(), or where points are not means of coordinates column by column
-/// from velocities(), O(n^2) for n coordinates.
+/// MaterialPoints::mean() or jacobian(), or column by column from velocities().
 class ImpulseResponse {
  public:
   /// Throws InputError if the method cannot go on after impulses.

@@ -39,9 +39,9 @@ constexpr Parameter parameters_of_friction[] = {
 // unknowns, with ten times as much they converge at half the rate where they are not.
 constexpr double proximal = 1e-2;
 
-// Of what points move in a step: by so much forces may move them farther before pairs
-// are gathered again.
-constexpr double more_room = 0.5;
+// Of the thickness and of what points move in a step: by so much forces may move them
+// farther before pairs are gathered again.
+constexpr double more_room = 0.25;
 
 // A step ends where forces drive no further pairs into each other; a heap settles what
 // is left in the next step.
@@ -54,6 +54,10 @@ constexpr double kept = 0.8;
 // Part of the thickness by which a pair that has a contact may be nearer than that at
 // another place before it gets a second one.
 constexpr double second_place = 0.1;
+
+// Of the thickness: so much farther apart a pair that touched in the last step counts
+// still, since forces of others may close it again.
+constexpr double stays = 0.5;
 
 // Of the thickness: contacts nearer than this along both strands are one.
 constexpr double joint = 0.25;
@@ -253,10 +257,15 @@ void StrandFriction::look(int first, int second) {
   const bool same = a.strand == b.strand;
   if (same && (!law_.own || b.first - a.first < 2)) return;
   const double thick = thickness(first, second);
-  if (apart(first, second, thick)) return;
-  const std::optional<PieceTouch> at = touch(pieces(first, second), thick);
+  Known found{first, second, {}, {}};
+  const auto last = std::lower_bound(before_.begin(), before_.end(), found, by_pair);
+  const bool touched = last != before_.end() && !by_pair(found, *last) &&
+                       dot(last->force, last->force) > 0;
+  const double reach = touched ? (1 + stays) * thick : thick;
+  if (apart(first, second, reach)) return;
+  const std::optional<PieceTouch> at = touch(pieces(first, second), reach);
   if (!at) return;
-  Known found{first, second, *at, {}};
+  found.at = *at;
   // Along a bend a strand is near itself by its thickness.
   if (same && arc(second, at->t) - arc(first, at->s) < half_turn * thick) return;
   if (seen(found, known_) != known_.end()) return;
@@ -267,9 +276,7 @@ void StrandFriction::look(int first, int second) {
   }
   const bool again = std::binary_search(known_.begin(), known_.end(), found, by_pair);
   if (again && gap(found, now_) > -second_place * thick) return;
-  const auto last = std::lower_bound(before_.begin(), before_.end(), found, by_pair);
-  if (!again && last != before_.end() && !by_pair(found, *last))
-    found.force = last->force;
+  if (!again && touched) found.force = last->force;
   found_.push_back(found);
 }
 
@@ -286,7 +293,7 @@ double StrandFriction::farthest(In from) const {
 /// Pairs whose boxes of the step are near each other, with room for forces to move them.
 void StrandFriction::gather() {
   const double moved = farthest(from_);
-  room_ = widest_ + more_room * moved;
+  room_ = more_room * (widest_ + moved);
   gathered_ = now_;
   grid_.update(from_, 2 * (moved + room_));
   near_.clear();

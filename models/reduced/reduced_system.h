@@ -315,6 +315,48 @@ class ReducedSystem : public System,
       store3(tip.frame * tip.v, &u[3 * (i + 1)]);
     }
   }
+  /// A point moves by the slope of every segment before it, and turns about its tip.
+  bool jacobian(double t, In q, Out j) override {
+    kinematics_.move(t, q, zero_, zero_);
+    std::ranges::fill(j, 0.0);
+    const std::size_t n = q.size();
+    const auto set = [&](std::size_t point, std::size_t column, const Vec& u) {
+      j[(3 * point) * n + column] = u.x;
+      j[(3 * point + 1) * n + column] = u.y;
+      j[(3 * point + 2) * n + column] = u.z;
+    };
+    const auto& segments = kinematics_.segments();
+    for (std::size_t p = 1; p <= segments.size(); ++p) {
+      const Vec& x = kinematics_.motion(p - 1).tip.x;
+      for (int before = static_cast<int>(p) - 1; before >= 0;) {
+        const auto i = static_cast<std::size_t>(before);
+        const Frame& from = kinematics_.start(i).frame;
+        const Vec arm = x - kinematics_.motion(i).tip.x;
+        for (std::size_t k = 0; k < dofs; ++k) {
+          const auto& g = kinematics_.geometry(i);
+          set(p, dofs * i + k, from * g.slope[k] + cross(from * g.turn[k], arm));
+        }
+        before = segments[i].parent;
+      }
+    }
+    if (kinematics_.free()) add_free_root(n - 6, set);
+    return true;
+  }
+  /// Columns of the root's position and rotation.
+  template <class Set>
+  void add_free_root(std::size_t first, Set set) const {
+    const FreeRootFrame& root = kinematics_.free_root();
+    const Vec& at = kinematics_.root().x;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec axis{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
+      const Vec turn = root.frame() * root.joint().W_transposed(root.at(), axis);
+      for (std::size_t p = 0; p <= kinematics_.segments().size(); ++p) {
+        const Vec& x = p == 0 ? at : kinematics_.motion(p - 1).tip.x;
+        set(p, first + k, axis);
+        set(p, first + 3 + k, cross(turn, x - at));
+      }
+    }
+  }
   /// Lengths are no unknowns.
   std::optional<double> stretch(double, In) override { return 0; }
 

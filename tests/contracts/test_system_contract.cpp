@@ -140,6 +140,38 @@ TEST_P(SystemContract, MeansOfCoordinatesMoveThePoints) {
   }
 }
 
+TEST_P(SystemContract, JacobianIsThatOfTheVelocities) {
+  MaterialPoints* points = system_->material_points();
+  States s(*system_);
+  std::vector<double> u(
+      points == nullptr ? 0 : 3 * static_cast<std::size_t>(points->count())),
+      rest(u.size()), jacobian(u.size() * s.n, std::nan(""));
+  if (points == nullptr || !points->jacobian(t0, s.q, jacobian)) {
+    GTEST_SKIP() << "no Jacobian in closed form";
+  }
+  s.shake(0.1);
+  ASSERT_TRUE(points->jacobian(t0, s.q, jacobian));
+  const std::vector<double> zero(s.n);
+  points->velocities(t0, s.q, s.v, u);
+  points->velocities(t0, s.q, zero, rest);
+  // Components mix in the frames that both go through, and cancel in sums of n products.
+  double size = 0;
+  std::vector<double> sum = rest;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    double terms = std::abs(rest[i]);
+    for (std::size_t k = 0; k < s.n; ++k) {
+      sum[i] += jacobian[i * s.n + k] * s.v[k];
+      terms += std::abs(jacobian[i * s.n + k] * s.v[k]);
+    }
+    size = std::max(size, terms);
+  }
+  const double rounding =
+      10 * static_cast<double>(s.n) * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    EXPECT_NEAR(u[i], sum[i], rounding * size) << i;
+  }
+}
+
 TEST_P(SystemContract, SparseFormHoldsTheTangent) {
   SparseForm* form = system_->sparse_form();
   if (form == nullptr) GTEST_SKIP() << "no sparse form";
