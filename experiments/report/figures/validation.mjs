@@ -106,7 +106,7 @@ export const validation = {
     const known = Object.entries(outcomes).filter(([id]) =>
       rows.some((row) => row.outcome === id),
     );
-    const step = Math.max(33, Math.min(64, Math.floor((width - 215) / tests.length)));
+    const step = Math.max(28, Math.min(64, Math.floor((width - 215) / tests.length)));
     const x = {
       field: 'test',
       type: 'nominal',
