@@ -125,8 +125,8 @@ TEST_P(StrandFriction, NothingFallsThroughAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, StrandFriction, testing::ValuesIn(cases()),
-                         [](const auto& info) {
-                           return info.param.model + "_" + info.param.integrator;
+                         [](const auto& tested) {
+                           return tested.param.model + "_" + tested.param.integrator;
                          });
 
 /// A stiff rod across two stiff rails, thrown along them: it loses mu g of its speed per
