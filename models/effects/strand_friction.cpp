@@ -309,13 +309,12 @@ void StrandFriction::gather() {
 
 bool StrandFriction::find() {
   if (rounds_++ == most_rounds) return false;
-  for (Known& known : known_) known.beyond += gap(known, now_) - known.closed;
   place_boxes();
   if (rounds_ == 1 || farthest(gathered_) > room_) gather();
   found_.clear();
   for (const auto& [first, second] : near_) look(first, second);
   stale_.clear();
-  if (found_.empty()) return overlap();
+  if (found_.empty()) return false;
   known_.insert(known_.end(), found_.begin(), found_.end());
   std::ranges::stable_sort(known_, by_pair);
   touch_points();
@@ -325,14 +324,6 @@ bool StrandFriction::find() {
 /// The gap that the step may leave, <= 0.
 double StrandFriction::deepest(const Known& known) const {
   return std::min(0.0, kept * gap(known, from_));
-}
-
-/// Whether contacts are nearer than they may be where points are.
-bool StrandFriction::overlap() const {
-  return std::ranges::any_of(known_, [this](const Known& known) {
-    return gap(known, now_) <
-           deepest(known) - second_place * thickness(known.first, known.second);
-  });
 }
 
 /// Takes the points of contacts found last.
@@ -397,7 +388,7 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
     }
   }
   contact.free = contact.axes * u;
-  contact.free.x = (gap(known, to_) + known.beyond - deepest(known)) / h_;
+  contact.free.x = (gap(known, to_) - deepest(known)) / h_;
   contact.force = contact.axes * known.force;
   return contact;
 }
@@ -425,7 +416,6 @@ void StrandFriction::solve() {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const ContactProblem::Contact& solved = problem_.contacts()[i];
     known_[i].force = solved.force * solved.axes;
-    known_[i].closed = h_ * problem_.velocity(solved).x + deepest(known_[i]);
   }
 }
 

@@ -25,11 +25,9 @@ std::span<const Parameter> strand_friction_parameters();
 /// S is the matrix of the strand's own step, so forces act as if they had been among its
 /// loads. Each pair of segments has its contact where its axes would cross, or at the
 /// nearest points of their ends of steps (PieceTouch), and its forces on the four points
-/// about it sum to zero. Where forces drive other pairs into each other, these are added
-/// and all are solved again.
-///
-/// Points move on curves, u is a straight line: gaps are corrected by what points have
-/// moved beyond it when forces act (place()), and solved again.
+/// about it sum to zero. Where forces drive other pairs into each other, as seen where
+/// points are then (place()), these are added and all are solved again. What points move
+/// off their straight lines within a step is left to the next one.
 ///
 /// Use: begin(), then while find(): respond() for stale() strands, solve(), and place()
 /// for touching() ones. forces() are then to be applied. O(segments) for the search,
@@ -94,9 +92,7 @@ class StrandFriction {
   struct Known {
     int first, second;  // pieces
     PieceTouch at;
-    Vec force;          // world, N
-    double closed = 0;  // gap by the velocities found, m
-    double beyond = 0;  // gap where points are, less `closed`, m
+    Vec force;  // world, N
   };
   struct Touched {
     std::size_t first_point;
@@ -120,7 +116,6 @@ class StrandFriction {
   void look(int first, int second);
   double gap(const Known& known, In x) const;
   double deepest(const Known& known) const;
-  bool overlap() const;
   void touch_points();
   ContactProblem::Contact contact(const Known& known) const;
 
