@@ -201,12 +201,31 @@ void CoupledStrands::reset() {
   if (contacts_->renew(x_)) couple();
 }
 
+std::vector<double> CoupledStrands::multipliers() const {
+  std::vector<double> all;
+  for (const std::size_t k : held_contacts_) {
+    const std::vector<double> own = strand(k).contact_form()->multipliers();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+void CoupledStrands::set_multipliers(In values) {
+  for (const std::size_t k : held_contacts_) {
+    ContactForm& own = *strand(k).contact_form();
+    const std::size_t size = own.multipliers().size();
+    own.set_multipliers(values.first(size));
+    values = values.subspan(size);
+  }
+}
+
 /// Positions at which the pairs were found, then per strand the size and data of its
-/// memory.
+/// history.
 std::vector<double> CoupledStrands::memory() const {
   std::vector<double> all = contacts_->made_at();
   for (std::size_t k = 0; k < strands(); ++k) {
-    const std::vector<double> own = strand(k).memory();
+    const History* history = strand(k).history();
+    const auto own = history == nullptr ? std::vector<double>{} : history->memory();
     all.push_back(static_cast<double>(own.size()));
     all.insert(all.end(), own.begin(), own.end());
   }
@@ -218,7 +237,7 @@ void CoupledStrands::recall(In memory) {
   std::size_t at = x_.size();
   for (std::size_t k = 0; k < strands(); ++k) {
     const auto size = static_cast<std::size_t>(memory[at]);
-    strand(k).recall(memory.subspan(at + 1, size));
+    if (size > 0) strand(k).history()->recall(memory.subspan(at + 1, size));
     at += 1 + size;
   }
 }

@@ -55,9 +55,8 @@ class CoupledStrands final : public StrandBlock, private History, private Contac
   double approach(double t, In q, In v) noexcept override;
   void release() noexcept override;
   bool rebounds() const override;
-  /// None: they are in the strands' memory.
-  std::vector<double> multipliers() const override { return {}; }
-  void set_multipliers(In) override {}
+  std::vector<double> multipliers() const override;
+  void set_multipliers(In values) override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   std::optional<Mean> mean(int point) override;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contract/input_error.h"
+#include "models/effects/exact_body.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "tests/models/groom/strands.h"
@@ -155,6 +156,37 @@ TEST(CoupledStrands, FollowPairsAndForgetAndRecallThem) {
   EXPECT_EQ(system.history()->memory(), fresh.history()->memory());
   EXPECT_EQ(residual(system, start.q, start.v, start.a),
             residual(fresh, start.q, start.v, start.a));
+}
+
+/// A step that is tried again starts from the contact forces that it began with.
+TEST(CoupledStrands, GiveAndTakeTheContactForcesOfTheirStrands) {
+  const NormalContact normal{.stiffness = 10, .offset = 40e-6};
+  const auto made = [&] {
+    std::vector<std::unique_ptr<System>> strands;
+    for (const double y : {0.0, 0.02}) {
+      strands.push_back(
+          make_strand_of("der", {.at = {0, y, 20e-6}, .velocity = {0.1, 0, -0.1}},
+                         {std::make_shared<ExactBody>(
+                             Plane{}, StrandPlace{}, ExactContact{normal, false, 0.3})}));
+    }
+    return std::make_unique<CoupledStrands>(std::move(strands), strong(1));
+  };
+  const std::unique_ptr<System> first = made(), second = made();
+  System &system = *first, &other = *second;
+  States s(system);
+  ContactForm& contacts = *system.contact_form();
+  contacts.begin(t0, 1e-3, s.q, s.v);
+  (void)contacts.improve(t0, s.q, s.v);
+  const std::vector<double> held = contacts.multipliers(), memory = system.memory();
+  EXPECT_GT(largest(held), 0);
+  (void)contacts.improve(t0, s.q, s.v);
+  contacts.set_multipliers(held);
+  EXPECT_EQ(contacts.multipliers(), held);
+  other.recall(memory);
+  EXPECT_EQ(other.contact_form()->multipliers(), held);
+  EXPECT_EQ(other.memory(), memory);
+  system.reset();
+  EXPECT_EQ(largest(contacts.multipliers()), 0);
 }
 
 TEST(CoupledStrands, TellTheirPointsAsMeansOfAllCoordinates) {
