@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/test.h"
 #include "models/effects/exact_body.h"
@@ -77,14 +78,11 @@ double measured_ratio(const ModelTrial& trial) {
   const auto slid = [&](double ratio) {
     return slides(trial.variant, strand, trial.parameter, ratio);
   };
-  double low = ratio_of(trial.parameter) / 1.1, high = ratio_of(trial.parameter) * 1.1;
+  const double low = ratio_of(trial.parameter) / 1.1,
+               high = ratio_of(trial.parameter) * 1.1;
   if (slid(low)) throw std::runtime_error("slides at much less pull");
   if (!slid(high)) throw std::runtime_error("holds against much more pull");
-  while (high - low > 1e-3 * high) {
-    const double middle = (low + high) / 2;
-    (slid(middle) ? high : low) = middle;
-  }
-  return (low + high) / 2;
+  return threshold(slid, low, high, 1e-3);
 }
 
 }  // namespace

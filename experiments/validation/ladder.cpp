@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/test.h"
 #include "models/effects/exact_body.h"
@@ -66,11 +67,7 @@ double measured_slope(const ModelTrial& trial) {
          high = least_slope(trial.parameter) * 1.1;
   if (!falls(trial, low)) throw std::runtime_error("holds where it is much too flat");
   if (falls(trial, high)) throw std::runtime_error("falls where it is steep enough");
-  while (high - low > 2e-3 * high) {
-    const double middle = (low + high) / 2;
-    (falls(trial, middle) ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  return threshold([&](double slope) { return !falls(trial, slope); }, low, high, 2e-3);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 
 #include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/numerics.h"
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/test.h"
 #include "models/effects/body.h"
@@ -87,14 +88,10 @@ double measured_friction(const ModelTrial& trial, double span, double width) {
     return slips<exact>(trial.variant, strand, height, friction);
   };
   const double least = least_friction(trial.parameter);
-  double low = least / span, high = least * span;
+  const double low = least / span, high = least * span;
   if (slipped(high)) throw std::runtime_error("slips at much more friction");
   if (!slipped(low)) throw std::runtime_error("sticks at much less friction");
-  while (high - low > width * high) {
-    const double middle = (low + high) / 2;
-    (slipped(middle) ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  return threshold([&](double friction) { return !slipped(friction); }, low, high, width);
 }
 
 }  // namespace

@@ -34,8 +34,6 @@ class ImpulseResponse {
   /// The method goes on from there.
   Status go_on() { return impulsive_.go_on(q_, v_); }
 
-  const Stats& stats() const { return dynamics_.stats; }
-
  private:
   void differentiate() noexcept;
   void pull_back(int point, const double* force, InOut r) const noexcept;

@@ -129,11 +129,9 @@ StrandFriction::StrandFriction(const Law& law, std::span<const OfStrand> strands
                         .place = std::vector<int>(points, -1),
                         .compliance = {},
                         .body = -1});
-    for (int i = 0; i + 1 < strands[k].points; ++i) {
-      pieces_.push_back({static_cast<int>(k), i, {}, {}});
-    }
     first_point += points;
   }
+  boxes_.resize(grid_.segments());
   arc_.resize(first_point);
 }
 
@@ -164,19 +162,17 @@ void StrandFriction::begin(double h, In from, In to, In u) {
 
 double StrandFriction::thickness(int first, int second) const {
   if (law_.thickness > 0) return law_.thickness;
-  const auto radius = [&](int piece) {
-    return strands_[static_cast<std::size_t>(
-                        pieces_[static_cast<std::size_t>(piece)].strand)]
-        .radius;
-  };
-  return radius(first) + radius(second);
+  return strands_[strand_of(first)].radius + strands_[strand_of(second)].radius;
 }
 
-/// The boxes of pieces during the step.
+std::array<std::size_t, 4> StrandFriction::ends(int first, int second) const {
+  const std::size_t a = point_of(first), b = point_of(second);
+  return {a, a + 1, b, b + 1};
+}
+
 void StrandFriction::place_boxes() {
-  for (Piece& piece : pieces_) {
-    const std::size_t at = strands_[static_cast<std::size_t>(piece.strand)].first_point +
-                           static_cast<std::size_t>(piece.first);
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const std::size_t at = point_of(static_cast<int>(i));
     Vec least = load3(&from_[3 * at]), most = least;
     for (const std::size_t point : {at, at + 1}) {
       for (const double* x : {&from_[3 * point], &now_[3 * point]}) {
@@ -185,14 +181,13 @@ void StrandFriction::place_boxes() {
         most = {std::max(most.x, x[0]), std::max(most.y, x[1]), std::max(most.z, x[2])};
       }
     }
-    piece.least = least;
-    piece.most = most;
+    boxes_[i] = {least, most};
   }
 }
 
 bool StrandFriction::apart(int first, int second, double thick) const {
-  const Piece& a = pieces_[static_cast<std::size_t>(first)];
-  const Piece& b = pieces_[static_cast<std::size_t>(second)];
+  const Box& a = boxes_[static_cast<std::size_t>(first)];
+  const Box& b = boxes_[static_cast<std::size_t>(second)];
   return a.least.x > b.most.x + thick || b.least.x > a.most.x + thick ||
          a.least.y > b.most.y + thick || b.least.y > a.most.y + thick ||
          a.least.z > b.most.z + thick || b.least.z > a.most.z + thick;
@@ -200,24 +195,16 @@ bool StrandFriction::apart(int first, int second, double thick) const {
 
 MovingPieces StrandFriction::pieces(int first, int second) const {
   MovingPieces all;
-  std::size_t end = 0;
-  for (const int index : {first, second}) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(index)];
-    const std::size_t at = strands_[static_cast<std::size_t>(piece.strand)].first_point +
-                           static_cast<std::size_t>(piece.first);
-    for (const std::size_t point : {at, at + 1}) {
-      all.from[end] = load3(&from_[3 * point]);
-      all.to[end] = load3(&now_[3 * point]);
-      ++end;
-    }
+  const std::array<std::size_t, 4> points = ends(first, second);
+  for (std::size_t end = 0; end < 4; ++end) {
+    all.from[end] = load3(&from_[3 * points[end]]);
+    all.to[end] = load3(&now_[3 * points[end]]);
   }
   return all;
 }
 
 double StrandFriction::arc(int piece, double part) const {
-  const Piece& at = pieces_[static_cast<std::size_t>(piece)];
-  const double* from = &arc_[strands_[static_cast<std::size_t>(at.strand)].first_point +
-                             static_cast<std::size_t>(at.first)];
+  const double* from = &arc_[point_of(piece)];
   return (1 - part) * from[0] + part * from[1];
 }
 
@@ -233,17 +220,14 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
     const Known& found, std::vector<Known>& all) const {
   for (int i = found.first - 1; i <= found.first + 1; ++i) {
     // A piece before the first or after the last is that of another strand.
-    if (i < 0 || i == static_cast<int>(pieces_.size()) ||
-        pieces_[static_cast<std::size_t>(i)].strand !=
-            pieces_[static_cast<std::size_t>(found.first)].strand) {
+    if (i < 0 || i == static_cast<int>(boxes_.size()) ||
+        strand_of(i) != strand_of(found.first)) {
       continue;
     }
     Known from{i, found.second - 1, {}, {}};
     auto at = std::lower_bound(all.begin(), all.end(), from, by_pair);
     for (; at != all.end() && at->first == i && at->second <= found.second + 1; ++at) {
-      if (pieces_[static_cast<std::size_t>(at->second)].strand ==
-              pieces_[static_cast<std::size_t>(found.second)].strand &&
-          one_place(*at, found)) {
+      if (strand_of(at->second) == strand_of(found.second) && one_place(*at, found)) {
         return at;
       }
     }
@@ -252,10 +236,8 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
 }
 
 void StrandFriction::look(int first, int second) {
-  const Piece& a = pieces_[static_cast<std::size_t>(first)];
-  const Piece& b = pieces_[static_cast<std::size_t>(second)];
-  const bool same = a.strand == b.strand;
-  if (same && (!law_.own || b.first - a.first < 2)) return;
+  const bool same = strand_of(first) == strand_of(second);
+  if (same && (!law_.own || second - first < 2)) return;
   const double thick = thickness(first, second);
   Known found{first, second, {}, {}};
   const auto last = std::lower_bound(before_.begin(), before_.end(), found, by_pair);
@@ -297,7 +279,7 @@ void StrandFriction::gather() {
   gathered_ = now_;
   grid_.update(from_, 2 * (moved + room_));
   near_.clear();
-  for (int i = 0; i < static_cast<int>(pieces_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
     int last = i;
     for (const SegmentGrid::Entry& entry : grid_.near(grid_.piece(i).at(0.5))) {
       if (entry.segment <= last) continue;  // they ascend, some appear twice
@@ -329,43 +311,39 @@ double StrandFriction::deepest(const Known& known) const {
 /// Takes the points of contacts found last.
 void StrandFriction::touch_points() {
   for (const Known& known : found_) {
-    for (const int index : {known.first, known.second}) {
-      const Piece& piece = pieces_[static_cast<std::size_t>(index)];
-      Touched& strand = strands_[static_cast<std::size_t>(piece.strand)];
-      for (const int point : {piece.first, piece.first + 1}) {
-        int& place = strand.place[static_cast<std::size_t>(point)];
-        if (place >= 0) continue;
-        place = 0;
-        strand.touched.push_back(point);
-        stale_.push_back(static_cast<std::size_t>(piece.strand));
+    for (const int piece : {known.first, known.second}) {
+      const std::size_t k = strand_of(piece);
+      Touched& strand = strands_[k];
+      const std::size_t first = point_of(piece) - strand.first_point;
+      for (const std::size_t point : {first, first + 1}) {
+        if (strand.place[point] >= 0) continue;
+        strand.place[point] = 0;
+        strand.touched.push_back(static_cast<int>(point));
+        stale_.push_back(k);
       }
     }
   }
-  std::ranges::sort(stale_);
-  stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
+  touching_.insert(touching_.end(), stale_.begin(), stale_.end());
+  for (auto* strands : {&stale_, &touching_}) {
+    std::ranges::sort(*strands);
+    strands->erase(std::unique(strands->begin(), strands->end()), strands->end());
+  }
   for (const std::size_t k : stale_) {
     Touched& strand = strands_[k];
     std::ranges::sort(strand.touched);
     for (std::size_t i = 0; i < strand.touched.size(); ++i) {
       strand.place[static_cast<std::size_t>(strand.touched[i])] = static_cast<int>(i);
     }
-    if (std::ranges::find(touching_, k) == touching_.end()) touching_.push_back(k);
   }
-  std::ranges::sort(touching_);
 }
 
 /// Less the thickness, m.
 double StrandFriction::gap(const Known& known, In x) const {
   const std::array<double, 4> weights = known.at.weights();
+  const std::array<std::size_t, 4> points = ends(known.first, known.second);
   Vec sum;
-  std::size_t end = 0;
-  for (const int index : {known.first, known.second}) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(index)];
-    const std::size_t at =
-        3 * (strands_[static_cast<std::size_t>(piece.strand)].first_point +
-             static_cast<std::size_t>(piece.first));
-    sum = sum + weights[end] * load3(&x[at]) + weights[end + 1] * load3(&x[at + 3]);
-    end += 2;
+  for (std::size_t end = 0; end < 4; ++end) {
+    sum = sum + weights[end] * load3(&x[3 * points[end]]);
   }
   return dot(known.at.normal, sum) - thickness(known.first, known.second);
 }
@@ -374,18 +352,13 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
   ContactProblem::Contact contact{};
   contact.axes = axes_of(known.at.normal);
   const std::array<double, 4> weights = known.at.weights();
+  const std::array<std::size_t, 4> points = ends(known.first, known.second);
   Vec u;
-  std::size_t end = 0;
-  for (const int index : {known.first, known.second}) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(index)];
-    const Touched& strand = strands_[static_cast<std::size_t>(piece.strand)];
-    for (const int point : {piece.first, piece.first + 1}) {
-      const std::size_t at = strand.first_point + static_cast<std::size_t>(point);
-      u = u + weights[end] * load3(&u_[3 * at]);
-      contact.ends[end] = {strand.body, strand.place[static_cast<std::size_t>(point)],
-                           weights[end]};
-      ++end;
-    }
+  for (std::size_t end = 0; end < 4; ++end) {
+    const Touched& strand = strands_[strand_of(end < 2 ? known.first : known.second)];
+    u = u + weights[end] * load3(&u_[3 * points[end]]);
+    contact.ends[end] = {strand.body, strand.place[points[end] - strand.first_point],
+                         weights[end]};
   }
   contact.free = contact.axes * u;
   contact.free.x = (gap(known, to_) - deepest(known)) / h_;

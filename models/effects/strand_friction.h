@@ -85,9 +85,9 @@ class StrandFriction {
   void recall(In memory);
 
  private:
-  struct Piece {
-    int strand, first;  // first: point of the strand
-    Vec least, most;    // box of the step, m
+  /// The box of a piece during the step, m; its strand and points are those of grid_.
+  struct Box {
+    Vec least, most;
   };
   struct Known {
     int first, second;  // pieces
@@ -103,6 +103,15 @@ class StrandFriction {
     int body = -1;  // of the problem
   };
 
+  /// Of a piece: its strand, and its first point among all points.
+  std::size_t strand_of(int piece) const {
+    return static_cast<std::size_t>(grid_.polyline(piece));
+  }
+  std::size_t point_of(int piece) const {
+    return static_cast<std::size_t>(grid_.point(piece));
+  }
+  /// The two points of either piece, among all points.
+  std::array<std::size_t, 4> ends(int first, int second) const;
   MovingPieces pieces(int first, int second) const;
   double thickness(int first, int second) const;
   bool apart(int first, int second, double thick) const;
@@ -121,9 +130,9 @@ class StrandFriction {
 
   Law law_;
   std::vector<Touched> strands_;
-  std::vector<Piece> pieces_;
   SegmentGrid grid_;
-  double widest_;  // thickness, m
+  std::vector<Box> boxes_;  // of pieces
+  double widest_;           // thickness, m
   double h_ = 0;
   int rounds_ = 0;
   std::vector<double> from_, to_, u_, now_;

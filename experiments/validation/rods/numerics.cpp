@@ -73,4 +73,13 @@ double find_root(const std::function<double(double)>& f, double low, double high
   return gsl_root_fsolver_root(solver.get());
 }
 
+double threshold(const std::function<bool(double)>& above, double low, double high,
+                 double width) {
+  while (high - low > width * high) {
+    const double middle = (low + high) / 2;
+    (above(middle) ? high : low) = middle;
+  }
+  return (low + high) / 2;
+}
+
 }  // namespace tress::experiments::validation

@@ -23,4 +23,9 @@ std::vector<double> integrate_scaled(const Slope& slope, double from, double to,
 double find_root(const std::function<double(double)>& f, double low, double high,
                  double accuracy = 1e-14);
 
+/// The threshold between `low` and `high` from which on `above` is true, by bisection:
+/// the middle of an interval of relative `width`. Both ends are known to the caller.
+double threshold(const std::function<bool(double)>& above, double low, double high,
+                 double width);
+
 }  // namespace tress::experiments::validation
