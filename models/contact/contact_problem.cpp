@@ -84,6 +84,7 @@ ContactProblem::Outcome ContactProblem::solve(double friction, double proximal,
   const auto visit = [&](Contact& contact) {
     const Vec u = velocity(contact);
     const double violation = contact_violation(contact.local, u, contact.force, friction);
+    if (violation <= quiet * tolerance) return violation;
     const double near = proximal * trace(contact.local) / 3;
     const Mat3 local = contact.local + diagonal({near, near, near});
     const Vec force =

@@ -85,6 +85,21 @@ std::optional<PieceTouch> crossing(const MovingPieces& p, double part) {
 
 }  // namespace
 
+bool may_come_within(double reach, const MovingPieces& p) {
+  double square = 0;
+  for (const std::size_t a : {0u, 1u}) {
+    for (const std::size_t b : {2u, 3u}) {
+      const Vec relative = (p.to[a] - p.from[a]) - (p.to[b] - p.from[b]);
+      square = std::fmax(square, dot(relative, relative));
+    }
+  }
+  const Pieces middle = at(p, 0.5);
+  const NearestPoints near = nearest(middle.first, middle.second);
+  const Vec gap = middle.first.at(near.of_first) - middle.second.at(near.of_second);
+  const double far = reach + 0.5 * std::sqrt(square);
+  return dot(gap, gap) <= far * far;
+}
+
 std::optional<PieceTouch> touch(const MovingPieces& p, double reach) {
   const std::array<double, 4> y{volume(at(p, 0)), volume(at(p, 1.0 / 3)),
                                 volume(at(p, 2.0 / 3)), volume(at(p, 1))};

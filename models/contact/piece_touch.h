@@ -12,6 +12,10 @@ struct MovingPieces {
   std::array<Vec, 4> from, to;  // m
 };
 
+/// False: they are never nearer to each other than `reach` (m). A bound, by where they
+/// are at half of the step and how far they move relative to each other.
+bool may_come_within(double reach, const MovingPieces& pieces);
+
 /// Where the pieces touch, and the direction from the second to the first one there.
 struct PieceTouch {
   double s, t;  // of the first, of the second piece, in [0, 1]

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <array>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "contract/parameters.h"
 #include "models/contact/contact_problem.h"
-#include "models/contact/piece_touch.h"
-#include "models/contact/segment_grid.h"
+#include "models/contact/piece_search.h"
 
 namespace tress::models {
 
@@ -41,20 +38,16 @@ class StrandFriction {
     double tolerance;  // largest violation, m/s
     int sweeps;        // at most
   };
-  /// A strand without branches.
-  struct OfStrand {
-    int points;      // material points, a polyline
-    double radius;   // m
-    double longest;  // segment at rest, m
-  };
-  StrandFriction(const Parameters& parameters, std::span<const OfStrand> strands);
-  StrandFriction(const Law& law, std::span<const OfStrand> strands);
+  /// Of strands without branches, their material points.
+  StrandFriction(const Parameters& parameters,
+                 std::span<const PieceSearch::Strand> strands);
+  StrandFriction(const Law& law, std::span<const PieceSearch::Strand> strands);
 
   /// A step of h (s) from points `from` to where they are without contact, with the
   /// velocities u there; 3 numbers each, strand after strand.
   void begin(double h, In from, In to, In u);
   /// Looks for pairs that touch with the forces found so far. False: none beyond those.
-  bool find();
+  bool find(const Loop& loop);
   /// Strands whose compliance at points_of() is to be given before solve().
   std::span<const std::size_t> stale() const { return stale_; }
   /// Points of a strand, from its root, that contacts act on; ascending.
@@ -85,65 +78,34 @@ class StrandFriction {
   void recall(In memory);
 
  private:
-  /// The box of a piece during the step, m; its strand and points are those of grid_.
-  struct Box {
-    Vec least, most;
-  };
-  struct Known {
-    int first, second;  // pieces
-    PieceTouch at;
+  struct Known : PieceSearch::Found {
     Vec force;  // world, N
   };
   struct Touched {
-    std::size_t first_point;
-    double radius;             // m
     std::vector<int> touched;  // its points
     std::vector<int> place;    // of each of its points among them, -1: none
     std::vector<Mat3> compliance;
     int body = -1;  // of the problem
   };
 
-  /// Of a piece: its strand, and its first point among all points.
-  std::size_t strand_of(int piece) const {
-    return static_cast<std::size_t>(grid_.polyline(piece));
-  }
-  std::size_t point_of(int piece) const {
-    return static_cast<std::size_t>(grid_.point(piece));
-  }
-  /// The two points of either piece, among all points.
-  std::array<std::size_t, 4> ends(int first, int second) const;
-  MovingPieces pieces(int first, int second) const;
-  double thickness(int first, int second) const;
-  bool apart(int first, int second, double thick) const;
-  /// Of a place on a piece along its strand, m.
-  double arc(int piece, double part) const;
+  std::size_t strand_of(int piece) const { return search_.strand_of(piece); }
   bool one_place(const Known& a, const Known& b) const;
   std::vector<Known>::iterator seen(const Known& found, std::vector<Known>& all) const;
-  void place_boxes();
-  double farthest(In from) const;
-  void gather();
-  void look(int first, int second);
-  double gap(const Known& known, In x) const;
+  const Known* last_of(int first, int second) const;
+  void admit(const PieceSearch::Found& found);
   double deepest(const Known& known) const;
   void touch_points();
   ContactProblem::Contact contact(const Known& known) const;
 
   Law law_;
+  PieceSearch search_;
   std::vector<Touched> strands_;
-  SegmentGrid grid_;
-  std::vector<Box> boxes_;  // of pieces
-  double widest_;           // thickness, m
   double h_ = 0;
   int rounds_ = 0;
-  std::vector<double> from_, to_, u_, now_;
-  std::vector<double> arc_;    // of points, m
+  std::vector<double> u_;
   std::vector<Known> known_;   // of this step, by pair
   std::vector<Known> before_;  // of the last one
-  std::vector<Known> found_;
-  // Pairs of pieces that may touch while points are up to room_ from gathered_.
-  std::vector<std::pair<int, int>> near_;
-  std::vector<double> gathered_;
-  double room_ = 0;  // m
+  std::vector<Known> found_;   // by this search
   std::vector<std::size_t> stale_, touching_;
   ContactProblem problem_;
   ContactProblem::Outcome outcome_;

@@ -11,9 +11,9 @@
 namespace tress::simulation {
 
 void World::make_friction(const std::vector<Strand>& strands, const Parameters& rubs) {
-  std::vector<StrandFriction::OfStrand> all;
+  std::vector<PieceSearch::Strand> all;
   for (std::size_t k = 0; k < strands.size(); ++k) {
-    StrandFriction::OfStrand& own = all.emplace_back();
+    PieceSearch::Strand& own = all.emplace_back();
     own.points = static_cast<int>(strands[k].segments.size()) + 1;
     for (std::size_t i = 0; i < strands[k].segments.size(); ++i) {
       const Segment& segment = strands[k].segments[i];
@@ -22,7 +22,6 @@ void World::make_friction(const std::vector<Strand>& strands, const Parameters& 
                          "effects.strand_friction", "give strands without branches");
       }
       own.radius = std::max({own.radius, segment.section.a1, segment.section.a2});
-      own.longest = std::max(own.longest, segment.length);
     }
   }
   friction_ = std::make_unique<StrandFriction>(rubs, all);
@@ -50,8 +49,12 @@ Status World::rub(double h) {
     }
     return Status::ok;
   };
+  const models::Loop loop = [&](std::size_t count,
+                                const std::function<void(std::size_t)>& work) {
+    crew_.run(count, work);
+  };
   std::vector<char> prepared(bodies_.size());  // its matrix is that of this step
-  while (friction_->find()) {
+  while (friction_->find(loop)) {
     const Status s = each(friction_->stale(), [&](Body& body, std::size_t k) -> Status {
       const std::vector<int>& points = friction_->points_of(k);
       std::vector<double> blocks;

@@ -1,0 +1,222 @@
+#include "models/contact/piece_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace tress::models {
+namespace {
+
+// Of the thickness: by so much forces may move a piece before its pairs are gathered
+// again.
+constexpr double more_room = 1;
+
+// Of the thickness: so much farther apart a pair may still count, since forces of others
+// may close it again.
+constexpr double stays = 0.5;
+
+/// The bend of a strand that touches itself is a half turn at least.
+constexpr double half_turn = 0.5 * std::numbers::pi;
+
+// Of the thickness: strands that forces move by less need not be looked at again.
+constexpr double still = 1e-3;
+
+// So many pieces at most are gathered again by looking at all others.
+constexpr std::size_t most_one_by_one = 100;
+
+constexpr std::size_t group = 256;  // of pairs that one thread takes at a time
+
+constexpr auto pair_of = [](const PieceSearch::Found& found) {
+  return std::pair(found.first, found.second);
+};
+
+}  // namespace
+
+PieceSearch::PieceSearch(std::span<const Strand> strands, double thickness, bool own)
+    : own_(own), thickness_(thickness), widest_(thickness), first_(1) {
+  for (std::size_t k = 0; k < strands.size(); ++k) {
+    const auto points = static_cast<std::size_t>(strands[k].points);
+    radius_.push_back(strands[k].radius);
+    first_.push_back(first_.back() + points);
+    strand_.insert(strand_.end(), points - 1, k);
+    if (!(thickness > 0)) widest_ = std::max(widest_, 2 * strands[k].radius);
+  }
+  room_ = more_room * widest_;
+  boxes_.resize(strand_.size());
+  roomy_.resize(strand_.size());
+  arc_.resize(first_.back());
+}
+
+void PieceSearch::begin(In from, In to) {
+  from_.assign(from.begin(), from.end());
+  to_.assign(to.begin(), to.end());
+  now_ = to_;
+  looked_ = to_;
+  moved_.assign(radius_.size(), 1);
+  gathered_.clear();
+  for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+    arc_[first_[k]] = 0;
+    for (std::size_t i = first_[k] + 1; i < first_[k + 1]; ++i) {
+      arc_[i] = arc_[i - 1] + norm(load3(&from_[3 * i]) - load3(&from_[3 * i - 3]));
+    }
+  }
+}
+
+void PieceSearch::place(std::size_t strand, In x) {
+  const std::size_t first = 3 * first_[strand];
+  std::ranges::copy(x, now_.begin() + static_cast<std::ptrdiff_t>(first));
+  const double far = still * widest_;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    const Vec moved = load3(&x[i]) - load3(&looked_[first + i]);
+    if (dot(moved, moved) > far * far) moved_[strand] = 1;
+  }
+}
+
+double PieceSearch::thickness(int first, int second) const {
+  if (thickness_ > 0) return thickness_;
+  return radius_[strand_of(first)] + radius_[strand_of(second)];
+}
+
+std::array<std::size_t, 4> PieceSearch::ends(int first, int second) const {
+  const std::size_t a = point_of(first), b = point_of(second);
+  return {a, a + 1, b, b + 1};
+}
+
+double PieceSearch::arc(int piece, double part) const {
+  const double* from = &arc_[point_of(piece)];
+  return (1 - part) * from[0] + part * from[1];
+}
+
+double PieceSearch::gap(const Found& pair, In x) const {
+  const std::array<double, 4> weights = pair.at.weights();
+  const std::array<std::size_t, 4> points = ends(pair.first, pair.second);
+  Vec sum;
+  for (std::size_t end = 0; end < 4; ++end) {
+    sum = sum + weights[end] * load3(&x[3 * points[end]]);
+  }
+  return dot(pair.at.normal, sum) - thickness(pair.first, pair.second);
+}
+
+MovingPieces PieceSearch::moving(int first, int second) const {
+  MovingPieces all;
+  const std::array<std::size_t, 4> points = ends(first, second);
+  for (std::size_t end = 0; end < 4; ++end) {
+    all.from[end] = load3(&from_[3 * points[end]]);
+    all.to[end] = load3(&now_[3 * points[end]]);
+  }
+  return all;
+}
+
+void PieceSearch::place_boxes() {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const std::size_t at = 3 * point_of(static_cast<int>(i));
+    Box box{load3(&from_[at]), load3(&from_[at])};
+    box.include(load3(&from_[at + 3]));
+    box.include(load3(&now_[at]));
+    box.include(load3(&now_[at + 3]));
+    boxes_[i] = box;
+  }
+}
+
+/// Whether two pieces whose boxes overlap may touch in the step, with room for forces to
+/// move both.
+bool PieceSearch::may_touch(int first, int second) const {
+  if (strand_of(first) == strand_of(second) && (!own_ || second - first < 2)) {
+    return false;
+  }
+  return may_come_within((1 + stays) * widest_ + 2 * room_, moving(first, second));
+}
+
+/// The box of the step with what may touch it, and room.
+void PieceSearch::make_room(std::size_t piece) {
+  roomy_[piece] = boxes_[piece];
+  roomy_[piece].grow(0.5 * (1 + stays) * widest_ + room_);
+}
+
+void PieceSearch::gather(const Loop& loop) {
+  gathered_ = now_;
+  for (std::size_t i = 0; i < roomy_.size(); ++i) make_room(i);
+  near_ = broad_.find(roomy_, loop,
+                      [this](int first, int second) { return may_touch(first, second); });
+}
+
+/// Gathers pairs of those pieces again that forces have moved beyond their room.
+void PieceSearch::gather_moved(const Loop& loop) {
+  std::vector<std::size_t> beyond;
+  for (std::size_t i = 0; i < roomy_.size(); ++i) {
+    const std::size_t first = point_of(static_cast<int>(i));
+    for (const std::size_t k : {first, first + 1}) {
+      const Vec moved = load3(&now_[3 * k]) - load3(&gathered_[3 * k]);
+      if (dot(moved, moved) <= room_ * room_) continue;
+      beyond.push_back(i);
+      break;
+    }
+  }
+  if (beyond.empty()) return;
+  if (beyond.size() > most_one_by_one) return gather(loop);
+  for (const std::size_t i : beyond) make_room(i);
+  for (const std::size_t i : beyond) {
+    const std::size_t at = 3 * point_of(static_cast<int>(i));
+    std::copy_n(&now_[at], 6, &gathered_[at]);
+    for (std::size_t k = 0; k < roomy_.size(); ++k) {
+      if (k == i || apart(roomy_[i], roomy_[k])) continue;
+      const auto first = static_cast<int>(std::min(i, k));
+      const auto second = static_cast<int>(std::max(i, k));
+      if (may_touch(first, second)) near_.emplace_back(first, second);
+    }
+  }
+}
+
+bool PieceSearch::look(int first, int second, bool wider, Found& found) const {
+  const double thick = thickness(first, second);
+  const double reach = wider ? (1 + stays) * thick : thick;
+  Box box = boxes_[static_cast<std::size_t>(first)];
+  box.grow(reach);
+  if (apart(box, boxes_[static_cast<std::size_t>(second)])) return false;
+  const MovingPieces pieces = moving(first, second);
+  if (!may_come_within(reach, pieces)) return false;
+  const std::optional<PieceTouch> at = touch(pieces, reach);
+  if (!at) return false;
+  found = {first, second, *at};
+  // Along a bend a strand is near itself by its thickness.
+  return strand_of(first) != strand_of(second) ||
+         arc(second, at->t) - arc(first, at->s) >= half_turn * thick;
+}
+
+const std::vector<PieceSearch::Found>& PieceSearch::find(
+    const Loop& loop, const std::function<bool(int, int)>& wider) {
+  place_boxes();
+  gathered_.empty() ? gather(loop) : gather_moved(loop);
+  found_of_.resize((near_.size() + group - 1) / group);
+  loop(found_of_.size(), [&](std::size_t g) {
+    found_of_[g].clear();
+    for (std::size_t i = g * group; i < std::min(near_.size(), (g + 1) * group); ++i) {
+      const auto [first, second] = near_[i];
+      if (moved_[strand_of(first)] == 0 && moved_[strand_of(second)] == 0) continue;
+      Found found{};
+      if (look(first, second, wider(first, second), found)) {
+        found_of_[g].push_back(found);
+      }
+    }
+  });
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (std::exchange(moved_[k], 0) == 0) continue;
+    const auto first = static_cast<std::ptrdiff_t>(3 * first_[k]);
+    const auto last = static_cast<std::ptrdiff_t>(3 * first_[k + 1]);
+    std::copy(now_.begin() + first, now_.begin() + last, looked_.begin() + first);
+  }
+  found_.clear();
+  for (const std::vector<Found>& some : found_of_) {
+    found_.insert(found_.end(), some.begin(), some.end());
+  }
+  // A pair gathered again is there twice.
+  std::ranges::sort(found_, {}, pair_of);
+  const auto same = [](const Found& a, const Found& b) {
+    return pair_of(a) == pair_of(b);
+  };
+  found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
+  return found_;
+}
+
+}  // namespace tress::models

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "contract/system.h"
+#include "models/contact/box_pairs.h"
+#include "models/contact/piece_touch.h"
+
+namespace tress::models {
+
+/// Which straight pieces of many polylines ("strands") touch or would pass through each
+/// other while their points move straight on during a step. Pairs that may touch are
+/// gathered once a step, with room for points to be moved by contact forces, and looked
+/// at again where these have moved them.
+///
+/// Use: begin(), then find(), and place() and find() again while forces are sought.
+class PieceSearch {
+ public:
+  struct Strand {
+    int points;     // >= 2
+    double radius;  // m
+  };
+  /// Two pieces, the first before the second, and where they touch.
+  struct Found {
+    int first, second;
+    PieceTouch at;
+  };
+  /// thickness: distance of axes that touch, m; 0: the sum of radii. own: parts of one
+  /// strand touch each other too.
+  PieceSearch(std::span<const Strand> strands, double thickness, bool own);
+
+  /// A step from points `from` to `to`, 3 numbers each, strand after strand.
+  void begin(In from, In to);
+  /// Where the points of a strand are at its end, changed by forces.
+  void place(std::size_t strand, In x);
+  /// Pairs that touch, in order. wider(first, second): whether a pair counts when it is
+  /// up to half its thickness apart (called at once from several threads).
+  const std::vector<Found>& find(const Loop& loop,
+                                 const std::function<bool(int, int)>& wider);
+
+  std::size_t pieces() const { return strand_.size(); }
+  std::size_t strand_of(int piece) const {
+    return strand_[static_cast<std::size_t>(piece)];
+  }
+  std::size_t first_point(std::size_t strand) const { return first_[strand]; }
+  /// Number of points of a strand.
+  std::size_t points(std::size_t strand) const {
+    return first_[strand + 1] - first_[strand];
+  }
+  /// The first of the two points of a piece, among all points.
+  std::size_t point_of(int piece) const {
+    return static_cast<std::size_t>(piece) + strand_of(piece);
+  }
+  /// The two points of either piece, among all points.
+  std::array<std::size_t, 4> ends(int first, int second) const;
+  /// Distance of the axes of two pieces that touch, m.
+  double thickness(int first, int second) const;
+  /// How far two pieces are apart along the normal, less their thickness, m.
+  double gap(const Found& pair, In x) const;
+  double gap_before(const Found& pair) const { return gap(pair, from_); }
+  double gap_without(const Found& pair) const { return gap(pair, to_); }
+  double gap_now(const Found& pair) const { return gap(pair, now_); }
+  /// Of a place on a piece along its strand at the start of the step, m.
+  double arc(int piece, double part) const;
+
+ private:
+  MovingPieces moving(int first, int second) const;
+  void place_boxes();
+  void make_room(std::size_t piece);
+  void gather(const Loop& loop);
+  void gather_moved(const Loop& loop);
+  bool may_touch(int first, int second) const;
+  bool look(int first, int second, bool wider, Found& found) const;
+
+  bool own_;
+  double thickness_;
+  double widest_ = 0;                // of thicknesses, m
+  std::vector<double> radius_;       // of strands, m
+  std::vector<std::size_t> first_;   // points of strands, and the number of all
+  std::vector<std::size_t> strand_;  // of pieces
+  std::vector<double> from_, to_, now_;
+  std::vector<double> arc_;  // of points, m
+  std::vector<Box> boxes_;   // of pieces during the step
+  std::vector<Box> roomy_;   // the same with room
+  BoxPairs broad_;
+  std::vector<BoxPairs::Pair> near_;  // may touch while points are up to room_ from
+  std::vector<double> gathered_;      // here; empty: not gathered in this step
+  double room_;                       // m
+  std::vector<double> looked_;        // points when pairs were looked at last, m
+  std::vector<char> moved_;           // strands since then
+  std::vector<std::vector<Found>> found_of_;  // groups of pairs
+  std::vector<Found> found_;
+};
+
+}  // namespace tress::models
