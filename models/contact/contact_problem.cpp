@@ -54,17 +54,18 @@ void ContactProblem::push(const Contact& contact, const Vec& force) {
   }
 }
 
-double ContactProblem::worst(double friction) const {
+double ContactProblem::worst() const {
   double most = 0;
   for (const Contact& contact : contacts_) {
+    if (trace(contact.local) == 0) continue;
     most = std::max(most, contact_violation(contact.local, velocity(contact),
-                                            contact.force, friction));
+                                            contact.force, contact.friction));
   }
   return most;
 }
 
-ContactProblem::Outcome ContactProblem::solve(double friction, double proximal,
-                                              double tolerance, int most_sweeps) {
+ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
+                                              int most_sweeps) {
   for (Body& body : bodies_) std::ranges::fill(body.change, Vec());
   for (Contact& contact : contacts_) {
     Mat3 world{};
@@ -79,23 +80,26 @@ ContactProblem::Outcome ContactProblem::solve(double friction, double proximal,
       }
     }
     contact.local = contact.axes * world * transposed(contact.axes);
+    if (trace(contact.local) == 0) contact.force = {};
     push(contact, contact.force);
   }
   const auto visit = [&](Contact& contact) {
+    if (trace(contact.local) == 0) return 0.0;
     const Vec u = velocity(contact);
-    const double violation = contact_violation(contact.local, u, contact.force, friction);
+    const double violation =
+        contact_violation(contact.local, u, contact.force, contact.friction);
     if (violation <= quiet * tolerance) return violation;
     const double near = proximal * trace(contact.local) / 3;
     const Mat3 local = contact.local + diagonal({near, near, near});
     const Vec force =
-        contact_force(local, u - local * contact.force, friction, contact.force);
+        contact_force(local, u - local * contact.force, contact.friction, contact.force);
     const Vec change = force - contact.force;
     contact.force = force;
     if (dot(change, change) > 0) push(contact, change);
     return violation;
   };
   Outcome outcome;
-  outcome.violation = worst(friction);
+  outcome.violation = worst();
   std::vector<Contact*> busy;
   while (outcome.violation > tolerance && outcome.sweeps < most_sweeps) {
     busy.clear();
@@ -113,7 +117,7 @@ ContactProblem::Outcome ContactProblem::solve(double friction, double proximal,
     }
     // What each saw at its visit is an estimate; at the end it is what is left.
     if (outcome.violation <= tolerance || outcome.sweeps == most_sweeps) {
-      outcome.violation = worst(friction);
+      outcome.violation = worst();
     }
   }
   for (Body& body : bodies_) std::ranges::fill(body.forces, Vec());

@@ -27,10 +27,11 @@ class ContactProblem {
   };
   struct Contact {
     std::array<End, 4> ends;
-    Mat3 axes;   // normal, two tangents
-    Vec free;    // velocity without any force of this problem, in these axes, m/s
-    Vec force;   // a guess, then the solution, in these axes, N
-    Mat3 local;  // set by solve()
+    double friction;  // Coulomb's coefficient
+    Mat3 axes;        // normal, two tangents
+    Vec free;         // velocity without any force of this problem, in these axes, m/s
+    Vec force;        // a guess, then the solution, in these axes, N
+    Mat3 local;       // set by solve()
   };
   struct Outcome {
     int sweeps = 0;
@@ -43,9 +44,9 @@ class ContactProblem {
   int add_body(std::vector<Mat3> compliance, int points);
   void add(const Contact& contact) { contacts_.push_back(contact); }
 
-  /// Until no contact violates the laws by more than `tolerance` (m/s), or so many
-  /// sweeps.
-  Outcome solve(double friction, double proximal, double tolerance, int most_sweeps);
+  /// Contacts of points that nothing moves hold no forces. Until no other contact
+  /// violates the laws by more than `tolerance` (m/s), or so many sweeps.
+  Outcome solve(double proximal, double tolerance, int most_sweeps);
 
   std::span<const Contact> contacts() const { return contacts_; }
   /// With the forces, in the contact's axes, m/s.
@@ -63,7 +64,7 @@ class ContactProblem {
   };
 
   void push(const Contact& contact, const Vec& force);
-  double worst(double friction) const;
+  double worst() const;
 
   std::vector<Body> bodies_;
   std::vector<Contact> contacts_;

@@ -51,6 +51,15 @@ class PieceSearch {
   std::size_t points(std::size_t strand) const {
     return first_[strand + 1] - first_[strand];
   }
+  int piece_of(std::size_t strand, std::size_t segment) const {
+    return static_cast<int>(first_[strand] - strand + segment);
+  }
+  /// Points at the start of the step, at its end without forces, and with them.
+  In from() const { return from_; }
+  In to() const { return to_; }
+  In now() const { return now_; }
+  /// Whether forces have moved a strand since find() looked at it.
+  bool moved(std::size_t strand) const { return moved_[strand] != 0; }
   /// The first of the two points of a piece, among all points.
   std::size_t point_of(int piece) const {
     return static_cast<std::size_t>(piece) + strand_of(piece);
@@ -62,7 +71,6 @@ class PieceSearch {
   /// How far two pieces are apart along the normal, less their thickness, m.
   double gap(const Found& pair, In x) const;
   double gap_before(const Found& pair) const { return gap(pair, from_); }
-  double gap_without(const Found& pair) const { return gap(pair, to_); }
   double gap_now(const Found& pair) const { return gap(pair, now_); }
   /// Of a place on a piece along its strand at the start of the step, m.
   double arc(int piece, double part) const;

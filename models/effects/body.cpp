@@ -66,8 +66,10 @@ constexpr Parameter parameters_of_body[] = {
      .min = 0,
      .max = 1e3},
     {.name = "friction_law",
-     .help = "regularised: what sticks creeps below slip_speed_m_s; exact: it stays "
-             "(Signorini-Coulomb), for methods that solve at the end of a step",
+     .help =
+         "regularised: what sticks creeps below slip_speed_m_s; exact: it stays "
+         "(Signorini-Coulomb), for methods that solve at the end of a step; rigid and "
+         "beside [effects.strand_friction] it is solved with the contact of strands",
      .choices = "regularised|exact"},
     {.name = "normal",
      .help = "friction_law = exact: the surface gives way as stiffness_n_m2 says, or is "

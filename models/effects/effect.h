@@ -42,6 +42,8 @@ struct Needs {
   }
 };
 
+class Obstacle;
+
 /// A body for drawing.
 struct Outline {
   std::string_view shape;  // "plane", "sphere", "capsule" or "ellipsoid"
@@ -106,6 +108,9 @@ class Effect {
   /// strand with so many points, which must not be shared (see HeldContacts).
   virtual std::unique_ptr<Effect> for_strand(std::size_t /*points*/) const { return {}; }
   virtual Multipliers* multipliers() { return nullptr; }
+  /// Set if its contact may be solved together with that between strands
+  /// (StrandFriction): what then takes its place among the strand's effects.
+  virtual std::shared_ptr<const Obstacle> obstacle() const { return {}; }
 };
 
 /// Strands may share effects, which are stateless but for those of for_strand().

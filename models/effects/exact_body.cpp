@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "models/effects/obstacle.h"
 
 namespace tress::models {
 namespace {
@@ -55,6 +56,11 @@ std::unique_ptr<Effect> ExactBody::for_strand(std::size_t points) const {
   own->open_.assign(points, true);
   own->rest_gaps_.assign(points, 0.0);
   return own;
+}
+
+std::shared_ptr<const Obstacle> ExactBody::obstacle() const {
+  if (!law_.rigid || law_.restitution > 0) return {};
+  return std::make_shared<Obstacle>(body_, law_.compliance.offset, law_.friction);
 }
 
 ExactContact::Penalty ExactBody::penalty(const Points& p, std::size_t point) const {

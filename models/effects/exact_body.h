@@ -35,6 +35,8 @@ class ExactBody final : public Effect, private Multipliers {
 
   std::unique_ptr<Effect> for_strand(std::size_t points) const override;
   Multipliers* multipliers() override { return this; }
+  /// Of a rigid surface without restitution.
+  std::shared_ptr<const Obstacle> obstacle() const override;
 
  private:
   void begin(double t, double tau, const Points& p) noexcept override;

@@ -83,6 +83,13 @@ std::optional<Outline> RigidBody::outline(double t) const {
   return Outline{of.shape, of.half_axes, now.x, now.frame};
 }
 
+std::optional<Distance> RigidBody::distance(const Vec& x, double reach) const {
+  Distance to;
+  const auto look = [&](const auto& shape) { return distance(shape, x, reach, to); };
+  if (!std::visit(look, shape_)) return {};
+  return to;
+}
+
 double RigidBody::penetration(double t, In x) const {
   const BodyPose now = pose(t);
   double deepest = 0;

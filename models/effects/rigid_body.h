@@ -39,6 +39,9 @@ class RigidBody {
   /// Largest depth (m) of the strand's surface in the body over the points at x.
   double penetration(double t, In x) const;
 
+  /// From a place in its frame, if it is below `reach`.
+  std::optional<Distance> distance(const Vec& x, double reach) const;
+
   /// A point of the strand near the surface, in the frame of the body.
   struct Near {
     std::size_t point = 0;

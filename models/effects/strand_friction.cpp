@@ -50,6 +50,10 @@ constexpr double kept = 0.8;
 // another place before it gets a second one.
 constexpr double second_place = 0.1;
 
+// Of the thickness: so much farther from an obstacle a point that it pushed in the last
+// step has its contact still, since forces of others may close it again.
+constexpr double stays = 0.5;
+
 // Of the thickness: contacts nearer than this along both strands are one.
 constexpr double joint = 0.25;
 
@@ -79,12 +83,11 @@ constexpr auto by_pair = [](const auto& a, const auto& b) {
 std::span<const Parameter> strand_friction_parameters() { return parameters_of_friction; }
 
 StrandFriction::StrandFriction(const Parameters& parameters,
-                               std::span<const PieceSearch::Strand> strands)
-    : StrandFriction(law_of(parameters), strands) {}
-
-StrandFriction::StrandFriction(const Law& law,
-                               std::span<const PieceSearch::Strand> strands)
-    : law_(law), search_(strands, law.thickness, law.own) {
+                               std::span<const PieceSearch::Strand> strands,
+                               std::vector<std::shared_ptr<const Obstacle>> obstacles)
+    : law_(law_of(parameters)),
+      search_(strands, law_.thickness, law_.own),
+      obstacles_(std::move(obstacles)) {
   for (const PieceSearch::Strand& strand : strands) {
     strands_.push_back(
         {.touched = {},
@@ -94,7 +97,8 @@ StrandFriction::StrandFriction(const Law& law,
   }
 }
 
-void StrandFriction::begin(double h, In from, In to, In u) {
+void StrandFriction::begin(double t, double h, In from, In to, In u) {
+  t_ = t;
   h_ = h;
   search_.begin(from, to);
   u_.assign(u.begin(), u.end());
@@ -128,7 +132,7 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
         strand_of(i) != strand_of(found.first)) {
       continue;
     }
-    const Known from{{i, found.second - 1, {}}, {}};
+    const Known from{{i, found.second - 1, {}}, {}, {}};
     auto at = std::lower_bound(all.begin(), all.end(), from, by_pair);
     for (; at != all.end() && at->first == i && at->second <= found.second + 1; ++at) {
       if (strand_of(at->second) == strand_of(found.second) && one_place(*at, found)) {
@@ -141,14 +145,14 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
 
 /// The contact of that pair in the last step; null: none.
 const StrandFriction::Known* StrandFriction::last_of(int first, int second) const {
-  const Known pair{{first, second, {}}, {}};
+  const Known pair{{first, second, {}}, {}, {}};
   const auto last = std::lower_bound(before_.begin(), before_.end(), pair, by_pair);
   return last != before_.end() && !by_pair(pair, *last) ? &*last : nullptr;
 }
 
 /// Adds to found_ what is no contact yet.
 void StrandFriction::admit(const PieceSearch::Found& at) {
-  Known found{at, {}};
+  Known found{at, {}, {}};
   if (seen(found, known_) != known_.end()) return;
   // Of two pieces at a joint the nearer one has the normal; the other is met at its end.
   if (const auto same_place = seen(found, found_); same_place != found_.end()) {
@@ -165,15 +169,51 @@ void StrandFriction::admit(const PieceSearch::Found& at) {
   found_.push_back(found);
 }
 
+/// Points of a strand that are in an obstacle and have no contact with it yet.
+void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
+                          std::size_t strand, std::vector<Known>& found) const {
+  for (std::size_t i = 0; i < search_.points(strand); ++i) {
+    // A point is the far end of a piece, the root the near end of the first one.
+    const End end = i == 0 ? near_end : far_end;
+    const int piece = search_.piece_of(strand, end == near_end ? 0 : i - 1);
+    Known at{{piece, code(obstacle, end), {}}, {}, {}};
+    if (std::binary_search(known_.begin(), known_.end(), at, by_pair)) continue;
+    const Known* const last = last_of(at.first, at.second);
+    const bool pushed = last != nullptr && dot(last->force, last->force) > 0;
+    const std::size_t x = 3 * (search_.first_point(strand) + i);
+    const auto plane = step.touch(load3(&search_.from()[x]), load3(&search_.now()[x]),
+                                  pushed ? stays * search_.thickness(piece, piece) : 0);
+    if (!plane) continue;
+    at.plane = *plane;
+    if (pushed) at.force = last->force;
+    found.push_back(at);
+  }
+}
+
+void StrandFriction::find_on_obstacles(const Loop& loop) {
+  on_obstacles_.resize(strands_.size());
+  for (std::vector<Known>& found : on_obstacles_) found.clear();
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const Obstacle::Step step(*obstacles_[o], t_, h_);
+    loop(strands_.size(), [&](std::size_t k) {
+      if (search_.moved(k)) look(step, o, k, on_obstacles_[k]);
+    });
+  }
+}
+
 bool StrandFriction::find(const Loop& loop) {
   if (rounds_++ == most_rounds) return false;
   found_.clear();
+  find_on_obstacles(loop);
   // A pair that pushed in the last step counts a little farther apart.
   const auto pushed = [this](int first, int second) {
     const Known* const last = last_of(first, second);
     return last != nullptr && dot(last->force, last->force) > 0;
   };
   for (const PieceSearch::Found& at : search_.find(loop, pushed)) admit(at);
+  for (const std::vector<Known>& found : on_obstacles_) {
+    found_.insert(found_.end(), found.begin(), found.end());
+  }
   stale_.clear();
   if (found_.empty()) return false;
   known_.insert(known_.end(), found_.begin(), found_.end());
@@ -182,24 +222,27 @@ bool StrandFriction::find(const Loop& loop) {
   return true;
 }
 
-/// The gap that the step may leave, <= 0.
-double StrandFriction::deepest(const Known& known) const {
-  return std::min(0.0, kept * search_.gap_before(known));
+/// The points on which a contact acts, among all points, and their weights.
+StrandFriction::OnPoints StrandFriction::on_points(const Known& known) const {
+  if (known.second >= 0) {
+    return {search_.ends(known.first, known.second), known.at.weights(), 4};
+  }
+  const std::size_t first = search_.point_of(known.first);
+  return {{code_end(known.second) == far_end ? first + 1 : first}, {1}, 1};
 }
 
 /// Takes the points of contacts found last.
 void StrandFriction::touch_points() {
   for (const Known& known : found_) {
-    for (const int piece : {known.first, known.second}) {
-      const std::size_t k = strand_of(piece);
+    const OnPoints on = on_points(known);
+    for (std::size_t end = 0; end < on.count; ++end) {
+      const std::size_t k = strand_of(end < 2 ? known.first : known.second);
       Touched& strand = strands_[k];
-      const std::size_t first = search_.point_of(piece) - search_.first_point(k);
-      for (const std::size_t point : {first, first + 1}) {
-        if (strand.place[point] >= 0) continue;
-        strand.place[point] = 0;
-        strand.touched.push_back(static_cast<int>(point));
-        stale_.push_back(k);
-      }
+      const std::size_t point = on.point[end] - search_.first_point(k);
+      if (strand.place[point] >= 0) continue;
+      strand.place[point] = 0;
+      strand.touched.push_back(static_cast<int>(point));
+      stale_.push_back(k);
     }
   }
   touching_.insert(touching_.end(), stale_.begin(), stale_.end());
@@ -217,20 +260,37 @@ void StrandFriction::touch_points() {
 }
 
 ContactProblem::Contact StrandFriction::contact(const Known& known) const {
+  const bool on_obstacle = known.second < 0;
+  const Vec& normal = on_obstacle ? known.plane.normal : known.at.normal;
   ContactProblem::Contact contact{};
-  contact.axes = axes_of(known.at.normal);
-  const std::array<double, 4> weights = known.at.weights();
-  const std::array<std::size_t, 4> points = search_.ends(known.first, known.second);
-  Vec u;
-  for (std::size_t end = 0; end < 4; ++end) {
+  contact.axes = axes_of(normal);
+  contact.friction =
+      on_obstacle ? obstacles_[code_obstacle(known.second)]->friction() : law_.friction;
+  const OnPoints on = on_points(known);
+  Vec u, x;
+  for (std::size_t end = 0; end < on.count; ++end) {
     const std::size_t k = strand_of(end < 2 ? known.first : known.second);
-    const Touched& strand = strands_[k];
-    u = u + weights[end] * load3(&u_[3 * points[end]]);
-    contact.ends[end] = {strand.body, strand.place[points[end] - search_.first_point(k)],
-                         weights[end]};
+    const std::size_t point = on.point[end];
+    u = u + on.weight[end] * load3(&u_[3 * point]);
+    x = x + on.weight[end] * load3(&search_.to()[3 * point]);
+    contact.ends[end] = {strands_[k].body,
+                         strands_[k].place[point - search_.first_point(k)],
+                         on.weight[end]};
+  }
+  for (std::size_t end = on.count; end < 4; ++end) {
+    contact.ends[end] = {contact.ends[0].body, contact.ends[0].point, 0};
+  }
+  double gap = 0, before = 0;
+  if (on_obstacle) {
+    gap = known.plane.gap(x);
+    before = known.plane.gap_before;
+    u = u - known.plane.velocity;
+  } else {
+    gap = dot(normal, x) - search_.thickness(known.first, known.second);
+    before = search_.gap_before(known);
   }
   contact.free = contact.axes * u;
-  contact.free.x = (search_.gap_without(known) - deepest(known)) / h_;
+  contact.free.x = (gap - std::min(0.0, kept * before)) / h_;
   contact.force = contact.axes * known.force;
   return contact;
 }
@@ -253,7 +313,7 @@ void StrandFriction::solve() {
   }
   for (const Known& known : known_) problem_.add(contact(known));
   const ContactProblem::Outcome outcome =
-      problem_.solve(law_.friction, proximal, law_.tolerance, law_.sweeps);
+      problem_.solve(proximal, law_.tolerance, law_.sweeps);
   outcome_ = {outcome_.sweeps + outcome.sweeps, outcome.violation};
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const ContactProblem::Contact& solved = problem_.contacts()[i];
@@ -296,7 +356,8 @@ void StrandFriction::recall(In memory) {
   known_.clear();
   for (std::size_t i = 0; i < memory.size(); i += 5) {
     known_.push_back({{static_cast<int>(memory[i]), static_cast<int>(memory[i + 1]), {}},
-                      load3(&memory[i + 2])});
+                      load3(&memory[i + 2]),
+                      {}});
   }
 }
 

@@ -1,30 +1,36 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "contract/parameters.h"
 #include "models/contact/contact_problem.h"
 #include "models/contact/piece_search.h"
+#include "models/effects/obstacle.h"
 
 namespace tress::models {
 
 /// The table [effects.strand_friction] of a scene.
 std::span<const Parameter> strand_friction_parameters();
 
-/// Exact contact with friction (Signorini and Coulomb) between strands and between parts
-/// of one strand, as impulses at the ends of steps [Moreau 1999; Jean 1999]: strands have
-/// moved as if they were alone, and forces are found at which no pair of segments has
-/// passed through another or is nearer than their radii, with the velocities after them:
+/// Exact contact with friction (Signorini and Coulomb) between strands, between parts of
+/// one strand and with rigid bodies, as impulses at the ends of steps [Moreau 1999; Jean
+/// 1999]: strands have moved as if they were alone, and forces are found at which no pair
+/// of segments has passed through another or is nearer than their radii, with the
+/// velocities after them:
 ///
 ///     x = x* + h W r,   u = u* + W r,   W = h J S^-1 J^T   (of each strand)
 ///
 /// S is the matrix of the strand's own step, so forces act as if they had been among its
 /// loads. Each pair of segments has its contact where its axes would cross, or at the
 /// nearest points of their ends of steps (PieceTouch), and its forces on the four points
-/// about it sum to zero. Where forces drive other pairs into each other, as seen where
-/// points are then (place()), these are added and all are solved again. What points move
-/// off their straight lines within a step is left to the next one.
+/// about it sum to zero. The points of strands touch obstacles too, at the planes that
+/// are tangent to these (Obstacle::Plane). Where forces drive other pairs into each
+/// other, as seen where points are then (place()), these are added and all are solved
+/// again. What points move off their straight lines within a step is left to the next
+/// one.
 ///
 /// Use: begin(), then while find(): respond() for stale() strands, solve(), and place()
 /// for touching() ones. forces() are then to be applied. O(segments) for the search,
@@ -40,12 +46,12 @@ class StrandFriction {
   };
   /// Of strands without branches, their material points.
   StrandFriction(const Parameters& parameters,
-                 std::span<const PieceSearch::Strand> strands);
-  StrandFriction(const Law& law, std::span<const PieceSearch::Strand> strands);
+                 std::span<const PieceSearch::Strand> strands,
+                 std::vector<std::shared_ptr<const Obstacle>> obstacles);
 
-  /// A step of h (s) from points `from` to where they are without contact, with the
-  /// velocities u there; 3 numbers each, strand after strand.
-  void begin(double h, In from, In to, In u);
+  /// A step of h (s) that ends at time t, from points `from` to where they are without
+  /// contact, with the velocities u there; 3 numbers each, strand after strand.
+  void begin(double t, double h, In from, In to, In u);
   /// Looks for pairs that touch with the forces found so far. False: none beyond those.
   bool find(const Loop& loop);
   /// Strands whose compliance at points_of() is to be given before solve().
@@ -78,8 +84,24 @@ class StrandFriction {
   void recall(In memory);
 
  private:
+  /// A pair of pieces, or a piece at one of its ends and an obstacle, both of which
+  /// `second` then tells, by code().
   struct Known : PieceSearch::Found {
-    Vec force;  // world, N
+    Vec force;              // world, N
+    Obstacle::Plane plane;  // of an obstacle
+  };
+  enum End { near_end, far_end };
+  static int code(std::size_t obstacle, End end) {
+    return -1 - 2 * static_cast<int>(obstacle) - end;
+  }
+  static std::size_t code_obstacle(int code) {
+    return static_cast<std::size_t>((-1 - code) / 2);
+  }
+  static End code_end(int code) { return (-1 - code) % 2 == 0 ? near_end : far_end; }
+  struct OnPoints {
+    std::array<std::size_t, 4> point;
+    std::array<double, 4> weight;
+    std::size_t count;
   };
   struct Touched {
     std::vector<int> touched;  // its points
@@ -93,19 +115,24 @@ class StrandFriction {
   std::vector<Known>::iterator seen(const Known& found, std::vector<Known>& all) const;
   const Known* last_of(int first, int second) const;
   void admit(const PieceSearch::Found& found);
-  double deepest(const Known& known) const;
+  void look(const Obstacle::Step& step, std::size_t obstacle, std::size_t strand,
+            std::vector<Known>& found) const;
+  void find_on_obstacles(const Loop& loop);
+  OnPoints on_points(const Known& known) const;
   void touch_points();
   ContactProblem::Contact contact(const Known& known) const;
 
   Law law_;
   PieceSearch search_;
   std::vector<Touched> strands_;
-  double h_ = 0;
+  double t_ = 0, h_ = 0;
   int rounds_ = 0;
   std::vector<double> u_;
   std::vector<Known> known_;   // of this step, by pair
   std::vector<Known> before_;  // of the last one
   std::vector<Known> found_;   // by this search
+  std::vector<std::shared_ptr<const Obstacle>> obstacles_;
+  std::vector<std::vector<Known>> on_obstacles_;  // of each strand, found last
   std::vector<std::size_t> stale_, touching_;
   ContactProblem problem_;
   ContactProblem::Outcome outcome_;

@@ -24,7 +24,13 @@ void World::make_friction(const std::vector<Strand>& strands, const Parameters& 
       own.radius = std::max({own.radius, segment.section.a1, segment.section.a2});
     }
   }
-  friction_ = std::make_unique<StrandFriction>(rubs, all);
+  std::vector<std::shared_ptr<const Obstacle>> obstacles;
+  for (const auto& effect : effects_) {
+    if (auto obstacle = std::dynamic_pointer_cast<const Obstacle>(effect)) {
+      obstacles.push_back(std::move(obstacle));
+    }
+  }
+  friction_ = std::make_unique<StrandFriction>(rubs, all, obstacles);
 }
 
 void World::before_step() {
@@ -35,7 +41,7 @@ void World::before_step() {
 }
 
 Status World::rub(double h) {
-  friction_->begin(h, x_before_, positions(), velocities());
+  friction_->begin(t_, h, x_before_, positions(), velocities());
   const auto each = [&](std::span<const std::size_t> strands, const auto& act) {
     crew_.run(strands.size(), [&](std::size_t i) {
       Body& body = bodies_[strands[i]];

@@ -10,6 +10,7 @@
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 #include "integrators/integrator_options.h"
+#include "models/effects/obstacle.h"
 #include "simulation/files/parse.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/read_table.h"
@@ -242,11 +243,20 @@ class Reader {
 
 }  // namespace
 
+std::shared_ptr<const Effect> make_effect(const Scene& scene,
+                                          const EffectChoice& choice) {
+  if (choice.entry->make == nullptr) return {};
+  std::shared_ptr<const Effect> made = choice.entry->make(choice.parameters, scene.head);
+  if (scene.friction() == nullptr) return made;
+  auto obstacle = made->obstacle();
+  if (obstacle != nullptr) return obstacle;
+  return made;
+}
+
 Effects make_effects(const Scene& scene) {
   Effects all;
   for (const EffectChoice& choice : scene.effects) {
-    if (choice.entry->make == nullptr) continue;
-    all.push_back(choice.entry->make(choice.parameters, scene.head));
+    if (auto made = make_effect(scene, choice)) all.push_back(std::move(made));
   }
   return all;
 }

@@ -75,6 +75,9 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
 
+/// An effect on each strand; null: it acts between strands. Where strands rub, bodies are
+/// obstacles that may be (Effect::obstacle).
+std::shared_ptr<const Effect> make_effect(const Scene& scene, const EffectChoice& choice);
 /// The effects on each strand, constructed for one.
 Effects make_effects(const Scene& scene);
 /// Their ids, the second body being body_2, the third body_3; then that of the effect

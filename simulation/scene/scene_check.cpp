@@ -30,8 +30,8 @@ Effects effects_of(const Scene& scene, const ScenePlaces& places) {
     at_place(places.effects[i], [&] {
       if (&choice.parameters == scene.interaction()) {
         StrandInteraction(choice.parameters, {});
-      } else if (choice.entry->make != nullptr) {
-        all.push_back(choice.entry->make(choice.parameters, scene.head));
+      } else if (auto made = make_effect(scene, choice)) {
+        all.push_back(std::move(made));
       }
     });
   }

@@ -38,10 +38,13 @@ struct RandomContacts {
   std::vector<Body> bodies;
   std::vector<ContactProblem::Contact> contacts;
 
-  ContactProblem problem() const {
+  ContactProblem problem(double friction = 0.3) const {
     ContactProblem all;
     for (const Body& body : bodies) all.add_body(body.compliance, body.points);
-    for (const auto& contact : contacts) all.add(contact);
+    for (auto contact : contacts) {
+      contact.friction = friction;
+      all.add(contact);
+    }
     return all;
   }
 };
@@ -77,6 +80,7 @@ inline RandomContacts random_contacts(int bodies, int points, int rank, int cont
     const int i = any_point(random), j = any_point(random);
     all.contacts.push_back(
         {.ends = {{{a, i, 1 - s}, {a, i + 1, s}, {b, j, t - 1}, {b, j + 1, -t}}},
+         .friction = 0,
          .axes = random_axes(random),
          .free = random_vec(random),
          .force = {},

@@ -84,7 +84,7 @@ TEST(ContactProblem, SolvesContactsOfRegularCompliance) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const RandomContacts all = random_contacts(4, 4, 40, 6, seed);
     ContactProblem problem = all.problem();
-    const auto outcome = problem.solve(0.3, 1e-2, 1e-10, 2000);
+    const auto outcome = problem.solve(1e-2, 1e-10, 2000);
     EXPECT_LE(outcome.violation, 1e-10) << seed;
     for (const auto& contact : problem.contacts()) {
       EXPECT_LE(
@@ -99,15 +99,15 @@ TEST(ContactProblem, SolvesMoreContactsThanUnknowns) {
     // Two bodies of 6 unknowns each, 36 components of contacts.
     const RandomContacts all = random_contacts(2, 5, 6, 12, seed);
     ContactProblem problem = all.problem();
-    const auto outcome = problem.solve(0.3, 1e-2, 1e-6, 20000);
+    const auto outcome = problem.solve(1e-2, 1e-6, 20000);
     EXPECT_LE(outcome.violation, 1e-6) << seed;
   }
 }
 
 TEST(ContactProblem, ForcesOfItsContactsChangeTheVelocities) {
   const RandomContacts all = random_contacts(3, 4, 30, 5, 7);
-  ContactProblem problem = all.problem();
-  problem.solve(0.4, 1e-2, 1e-10, 2000);
+  ContactProblem problem = all.problem(0.4);
+  problem.solve(1e-2, 1e-10, 2000);
   Vec sum;
   double size = 0;
   for (std::size_t body = 0; body < 3; ++body) {
@@ -129,11 +129,11 @@ TEST(ContactProblem, ForcesOfItsContactsChangeTheVelocities) {
 TEST(ContactProblem, GoesOnFromForcesThatAreRight) {
   const RandomContacts all = random_contacts(4, 4, 40, 8, 3);
   ContactProblem problem = all.problem();
-  problem.solve(0.3, 1e-2, 1e-10, 2000);
+  problem.solve(1e-2, 1e-10, 2000);
   ContactProblem again;
   for (const auto& body : all.bodies) again.add_body(body.compliance, body.points);
   for (const auto& contact : problem.contacts()) again.add(contact);
-  EXPECT_EQ(again.solve(0.3, 1e-2, 1e-9, 2000).sweeps, 0);
+  EXPECT_EQ(again.solve(1e-2, 1e-9, 2000).sweeps, 0);
 }
 
 }  // namespace tress::test_contact_problem

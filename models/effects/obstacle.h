@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "models/effects/rigid_body.h"
+
+namespace tress::models {
+
+/// A body that strands touch by the impulses of StrandFriction instead of by loads: it is
+/// drawn and measured as Body, and exerts no load. Rigid; Coulomb's coefficient of its
+/// own.
+class Obstacle final : public Effect {
+ public:
+  Obstacle(std::shared_ptr<const RigidBody> body, double offset, double friction);
+
+  std::string_view name() const override { return "body"; }
+  Needs needs() const override { return {}; }
+  void add_load(double, const Points&, InOut) const noexcept override {}
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  double potential(double, const Points&) const noexcept override { return 0; }
+  double power(double, const Points&) const noexcept override { return 0; }
+  std::optional<double> penetration(double t, In x) const override {
+    return body_->penetration(t, x);
+  }
+  std::optional<Outline> outline(double t) const override { return body_->outline(t); }
+
+  double friction() const { return friction_; }
+
+  /// The tangent plane at which a point meets the surface, at the end of a step.
+  struct Plane {
+    Vec normal;     // outwards, of length 1
+    double height;  // of points that just touch, along the normal, m
+    Vec velocity;   // by which the surface carries a point that sticks through the step
+    double gap_before;  // of the point at the start of the step, m
+    double gap(const Vec& x) const { return dot(normal, x) - height; }
+  };
+  /// The step of h (s) that ends at time t.
+  class Step {
+   public:
+    Step(const Obstacle& of, double t, double h);
+    /// Where a point that moves straight on from x0 to x1 is nearer to the surface at the
+    /// end than `reach`, or was inside on its way: where it came through it, or the place
+    /// under its end.
+    std::optional<Plane> touch(const Vec& x0, const Vec& x1, double reach) const;
+
+   private:
+    const Obstacle& of_;
+    double h_;
+    BodyPose before_, after_;
+  };
+
+ private:
+  /// Distance of a point's surface from the body's, from a place in its frame.
+  bool near(const Vec& x, double reach, Distance& to) const;
+
+  std::shared_ptr<const RigidBody> body_;
+  double offset_;  // m, of the strand's axis
+  double friction_;
+};
+
+}  // namespace tress::models
