@@ -76,8 +76,10 @@ std::vector<ValidationTest> chain_tests();
 std::vector<ValidationTest> curl_tests();
 std::vector<ValidationTest> hanging_tests();
 std::vector<ValidationTest> ladder_tests();
+std::vector<ValidationTest> plane_tests();
 std::vector<ValidationTest> ringing_tests();
 std::vector<ValidationTest> stick_slip_tests();
+std::vector<ValidationTest> touching_tests();
 std::vector<ValidationTest> vibration_tests();
 std::vector<ValidationTest> wisp_tests();
 
