@@ -52,7 +52,7 @@ std::optional<Obstacle::Plane> Obstacle::Step::touch(const Vec& x0, const Vec& x
   plane.normal = after_.frame * n;
   const Vec world = after_.x + after_.frame * place;
   plane.height = dot(plane.normal, world) - at.value;
-  plane.velocity = (1 / h_) * (world - (before_.x + before_.frame * place));
+  plane.velocity = (1 / h_) * (after_.x + after_.frame * from - x0);
   plane.gap_before = start.value;
   return plane;
 }

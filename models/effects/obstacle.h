@@ -30,9 +30,9 @@ class Obstacle final : public Effect {
 
   /// The tangent plane at which a point meets the surface, at the end of a step.
   struct Plane {
-    Vec normal;     // outwards, of length 1
-    double height;  // of points that just touch, along the normal, m
-    Vec velocity;   // by which the surface carries a point that sticks through the step
+    Vec normal;         // outwards, of length 1
+    double height;      // of points that just touch, along the normal, m
+    Vec velocity;       // of the surface in the step, where the point was at its start
     double gap_before;  // of the point at the start of the step, m
     double gap(const Vec& x) const { return dot(normal, x) - height; }
   };

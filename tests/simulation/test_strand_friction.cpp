@@ -54,6 +54,8 @@ std::string crossing(const std::string& more = {}) {
          more;
 }
 
+constexpr double earth = 9.81;  // m/s^2
+
 Vec point(World& world, std::size_t i) { return load3(&world.positions()[3 * i]); }
 
 /// Least distance of the axes of two strands, or of parts of one that are more than
@@ -128,6 +130,100 @@ INSTANTIATE_TEST_SUITE_P(Models, StrandFriction, testing::ValuesIn(cases()),
                          [](const auto& tested) {
                            return tested.param.model + "_" + tested.param.integrator;
                          });
+
+/// Clamped above a ball, onto which it falls: no point enters it, and friction lets it
+/// come to rest on it.
+TEST_P(StrandFriction, NoPointEntersABody) {
+  Set set{.model = GetParam().model,
+          .integrator = GetParam().integrator,
+          .strands =
+              "[strand]\nlength_m = 0.06\nelements = 12\n"
+              "root_tangent = [1, 0, 0]\n",
+          .effects =
+              "[effects.gravity]\n[effects.linear_drag]\nmass_damping_1_s = 10\n"
+              "[effects.body]\nshape = \"sphere\"\nradius_m = 0.01\n"
+              "centre_m = [0.03, 0.001, -0.015]\nstrand_radius_m = 1e-3\n"
+              "friction_law = \"exact\"\nnormal = \"rigid\"\n",
+          .friction = "own = \"no\"\n"};
+  if (set.integrator == "semi_implicit_euler") set.step = 5e-4;
+  World world(scene(set));
+  double deepest = 0;
+  for (int i = 1; i <= 60; ++i) {
+    ASSERT_EQ(world.advance(5e-3 * i), Status::ok) << world.failure();
+    for (std::size_t k = 0; k < 13; ++k) {
+      const Vec from_centre = point(world, k) - Vec{0.03, 0.001, -0.015};
+      deepest = std::max(deepest, 0.011 - norm(from_centre));
+    }
+  }
+  EXPECT_GT(world.stats().contact_iterations, 0);
+  EXPECT_EQ(world.stats().contact_unfinished, 0);
+  // A point that slides by d leaves the tangent plane by d^2/(2 R), 2 um for 0.2 mm.
+  EXPECT_LT(deepest, 1e-5);
+}
+
+/// By one linear solve a step: what Coulomb's law says of n steps of backward Euler.
+TEST(StrandFriction, OnASlopeSticksOrSlidesByHand) {
+  for (const char* const model : {"super_helix", "der", "corde", "mass_spring"}) {
+    for (const double tangent : {0.29, 0.29997, 0.30003, 0.35}) {
+      const double angle = std::atan(tangent), mu = 0.3;
+      const double down = earth * std::sin(angle), onto = earth * std::cos(angle);
+      Set set{.model = model,
+              .integrator = "semi_implicit_euler",
+              .strands =
+                  "[strand]\nlength_m = 0.1\nelements = 6\n"
+                  "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n"
+                  "position_m = [0, 0, 1e-3]\n",
+              .effects = fmt::format("[effects.gravity]\ngravity_m_s2 = [{}, 0, {}]\n"
+                                     "[effects.body]\nfriction_law = \"exact\"\n"
+                                     "normal = \"rigid\"\nstrand_radius_m = 1e-3\n",
+                                     down, -onto),
+              .friction = "tolerance_m_s = 1e-12\nsweeps = 10000\n",
+              .root = "free",
+              .material = "ellipticity = 1\nradius_m = 1e-3\n",
+              .step = 1e-3};
+      World world(scene(set));
+      constexpr int steps = 500;
+      ASSERT_EQ(world.advance(set.step * steps), Status::ok) << world.failure();
+      const double slides =
+          std::max(0.0, down - mu * onto) * set.step * set.step * steps * (steps + 1) / 2;
+      EXPECT_NEAR(point(world, 3).x, slides, 1e-9 * (1e-3 + slides)) << model << tangent;
+      EXPECT_NEAR(point(world, 3).z, 1e-3, 1e-12);
+    }
+  }
+}
+
+/// It turns with a plate on which it lies, without creeping.
+TEST(StrandFriction, SticksToABodyThatTurns) {
+  Set set{.strands =
+              "[strand]\nlength_m = 0.05\nelements = 6\n"
+              "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n"
+              "position_m = [0.01, 0, 1e-3]\n",
+          .effects =
+              "[effects.gravity]\n[effects.body]\nfriction_law = \"exact\"\n"
+              "normal = \"rigid\"\nstrand_radius_m = 1e-3\nmoves = \"head\"\n"
+              "friction = 0.9\n",
+          .friction = "tolerance_m_s = 1e-12\nsweeps = 10000\n",
+          .root = "free",
+          .material = "ellipticity = 1\nradius_m = 1e-3\n"};
+  Scene made = scene(set);
+  const double rate = 2;  // rad/s, half a g at 10 cm would take 7
+  made.head.rotations.push_back({{0, 0, 1}, [rate](double t) {
+                                   return SignalValue{rate * t, rate, 0};
+                                 }});
+  World world(made);
+  const Vec start = point(world, 6);
+  // The plate turns at full speed at once; friction takes the strand along within a step
+  // or two, by a slide that is over at 0.1 s.
+  ASSERT_EQ(world.advance(0.1), Status::ok) << world.failure();
+  const auto on_plate = [&](double t) {
+    return rotation({0, 0, 1}, -rate * t) * point(world, 6);
+  };
+  const Vec first = on_plate(0.1);
+  EXPECT_LT(norm(first - start), 0.01);
+  ASSERT_EQ(world.advance(0.6), Status::ok) << world.failure();
+  EXPECT_LT(norm(on_plate(0.6) - first), 1e-9);
+  EXPECT_GT(norm(point(world, 6) - start), 0.03);
+}
 
 /// A stiff rod across two stiff rails, thrown along them: it loses mu g of its speed per
 /// second, stops, and stays.
