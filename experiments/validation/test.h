@@ -75,6 +75,7 @@ std::vector<ValidationTest> capstan_tests();
 std::vector<ValidationTest> chain_tests();
 std::vector<ValidationTest> curl_tests();
 std::vector<ValidationTest> hanging_tests();
+std::vector<ValidationTest> knot_tests();
 std::vector<ValidationTest> ladder_tests();
 std::vector<ValidationTest> plane_tests();
 std::vector<ValidationTest> ringing_tests();

@@ -340,6 +340,17 @@ void StrandFriction::add_loads(std::size_t strand, InOut f) const {
   }
 }
 
+std::vector<StrandFriction::Touch> StrandFriction::touches() const {
+  std::vector<Touch> all;
+  for (const Known& known : known_) {
+    if (known.second < 0) continue;
+    all.push_back({strand_of(known.first), strand_of(known.second),
+                   search_.arc(known.first, known.at.s),
+                   search_.arc(known.second, known.at.t), known.force});
+  }
+  return all;
+}
+
 std::vector<double> StrandFriction::memory() const {
   std::vector<double> all;
   for (const Known& known : known_) {

@@ -76,6 +76,14 @@ class StrandFriction {
   /// Of the step: sweeps, and by how much the law was violated at last, m/s.
   const ContactProblem::Outcome& outcome() const { return outcome_; }
   double tolerance() const { return law_.tolerance; }
+  /// Where strands touched in the step, and the force on the first one (N).
+  struct Touch {
+    std::size_t first_strand, second_strand;
+    double first, second;  // arc length at the start of the step, m
+    Vec force;
+  };
+  std::vector<Touch> touches() const;
+
   /// Pairs of segments that touched in the step.
   std::size_t contacts() const { return known_.size(); }
 
