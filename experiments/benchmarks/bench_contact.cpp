@@ -1,0 +1,173 @@
+// Exact contact by impulses: how a strand responds to forces on its points (assembly),
+// the contacts of one strand with a plane, and a sweep over the contacts of a head of
+// hair.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "experiments/benchmarks/fixture.h"
+#include "integrators/control/impulse_response.h"
+#include "models/contact/contact_problem.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::experiments::benchmarks {
+namespace {
+
+constexpr std::array<std::string_view, 3> models = {"super_helix", "der", "mass_spring"};
+constexpr int elements = 10;
+constexpr double h = 3e-3;  // s
+
+/// A hair of 10 elements some steps into its fall, with the matrix of its last step.
+struct Falling {
+  explicit Falling(std::string_view model) {
+    const simulation::Scene scene = simulation::parse_scene(
+        fmt::format("title = \"falling\"\nduration_s = 1\n[model]\nid = \"{}\"\n"
+                    "[integrator]\nid = \"semi_implicit_euler\"\ndt_s = {}\n"
+                    "[strand]\nlength_m = 0.2\nelements = {}\n[effects.gravity]\n",
+                    model, h, elements),
+        "falling.toml");
+    system = scene.model->on_strand(scene.strands.front(), scene.model_options,
+                                    make_effects(scene));
+    method = integrators::find_integrator(scene.integrator).make(*system, scene.options);
+    response =
+        std::make_unique<integrators::ImpulseResponse>(*system, *method, scene.options);
+    const State start = initial_state(*system);
+    v_before.assign(start.v.begin(), start.v.end());
+    (void)method->start(0, start.q, start.v);
+    (void)method->advance(10 * h, [&](double, In, In v) {
+      v_before.assign(v.begin(), v.end());
+      return true;
+    });
+    for (int i = 1; i <= elements; ++i) points.push_back(i);
+  }
+  Status assemble() {
+    const Status s = response->prepare(h, v_before);
+    return s == Status::ok ? response->compliance(points, blocks) : s;
+  }
+  std::unique_ptr<System> system;
+  std::unique_ptr<Integrator> method;
+  std::unique_ptr<integrators::ImpulseResponse> response;
+  std::vector<double> v_before, blocks;
+  std::vector<int> points;
+};
+
+std::vector<Mat3> compliance_of(std::string_view model) {
+  Falling strand(model);
+  if (strand.assemble() != Status::ok) return {};
+  std::vector<Mat3> all;
+  for (std::size_t i = 0; i < strand.blocks.size(); i += 9) {
+    const double* row = &strand.blocks[i];
+    all.push_back({load3(row), load3(row + 3), load3(row + 6)});
+  }
+  return all;
+}
+
+void assembly(benchmark::State& state, std::string_view model) {
+  Falling strand(model);
+  measure(state, [&] { return strand.assemble(); });
+}
+
+/// A place along a strand, as the two points about it.
+void put(ContactProblem::Contact& contact, std::size_t end, int body, double along,
+         double sign) {
+  const int from = std::min(static_cast<int>(along), elements - 2);
+  const double part = along - from;
+  contact.ends[end] = {body, from, sign * (1 - part)};
+  contact.ends[end + 1] = {body, from + 1, sign * part};
+}
+
+ContactProblem::Contact thrown(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  ContactProblem::Contact contact{};
+  contact.friction = 0.3;
+  contact.axes = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+  contact.free = {-0.03 * (1 + 0.2 * normal(random)), 0.02 * normal(random), 0.01};
+  return contact;
+}
+
+/// To the tolerance that is the default, from nothing or from the forces of a step
+/// before, since when velocities have changed by 1 %.
+void on_plane(benchmark::State& state, std::string_view model, bool warm) {
+  const auto contacts = static_cast<int>(state.range(0));
+  std::mt19937 random(1);
+  std::vector<ContactProblem::Contact> all;
+  for (int i = 0; i < contacts; ++i) {
+    ContactProblem::Contact contact = thrown(random);
+    put(contact, 0, 0, (elements - 1) * (i + 0.5) / contacts, 1);
+    put(contact, 2, 0, 0, 0);
+    all.push_back(contact);
+  }
+  const std::vector<Mat3> compliance = compliance_of(model);
+  ContactProblem problem;
+  ContactProblem::Outcome outcome;
+  const auto solve = [&] {
+    problem.clear();
+    problem.add_body(compliance, elements);
+    for (const auto& contact : all) problem.add(contact);
+    outcome = problem.solve(1e-2, 1e-6, 10'000);
+  };
+  if (warm) {
+    solve();
+    all.assign(problem.contacts().begin(), problem.contacts().end());
+    for (auto& contact : all) contact.free = 1.01 * contact.free;
+  }
+  for ([[maybe_unused]] auto _ : state) {
+    solve();
+    benchmark::ClobberMemory();
+  }
+  if (outcome.violation > 1e-6) state.SkipWithError("not solved");
+  state.counters["sweeps"] = outcome.sweeps;
+}
+
+/// Contacts between neighbours of a thousand strands; time per contact and sweep.
+void between_strands(benchmark::State& state, std::string_view model) {
+  constexpr int strands = 1000, contacts = 5000, sweeps = 10;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(0, elements - 1);
+  std::uniform_int_distribution<int> any(0, strands - 1), apart(1, 8);
+  const std::vector<Mat3> compliance = compliance_of(model);
+  ContactProblem problem;
+  for (int k = 0; k < strands; ++k) problem.add_body(compliance, elements);
+  for (int i = 0; i < contacts; ++i) {
+    ContactProblem::Contact contact = thrown(random);
+    const int first = any(random);
+    put(contact, 0, first, part(random), 1);
+    put(contact, 2, (first + apart(random)) % strands, part(random), -1);
+    problem.add(contact);
+  }
+  for ([[maybe_unused]] auto _ : state) {
+    const auto outcome = problem.solve(1e-2, 0, sweeps);
+    benchmark::DoNotOptimize(outcome.violation);
+  }
+  state.counters["per_contact_sweep_s"] = benchmark::Counter(
+      static_cast<double>(contacts) * sweeps,
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void register_all() {
+  for (const std::string_view model : models) {
+    const auto add = [model](std::string_view name, auto call) {
+      return benchmark::RegisterBenchmark(
+          fmt::format("{}/{}", name, model).c_str(),
+          [=](benchmark::State& state) { call(state, model); });
+    };
+    add("assembly", assembly);
+    for (const bool warm : {false, true}) {
+      const auto call = [warm](benchmark::State& state, std::string_view name) {
+        on_plane(state, name, warm);
+      };
+      add(warm ? "on_plane_warm" : "on_plane", call)->Arg(11)->Arg(40);
+    }
+    add("between_strands", between_strands);
+  }
+}
+
+}  // namespace
+}  // namespace tress::experiments::benchmarks
+
+int main(int argc, char** argv) {
+  tress::experiments::benchmarks::register_all();
+  return tress::experiments::benchmarks::run_benchmarks(argc, argv).exit_code;
+}
