@@ -21,8 +21,9 @@ namespace tress::models {
 class PieceSearch {
  public:
   struct Strand {
-    int points;     // >= 2
-    double radius;  // m
+    int points;      // >= 2
+    double radius;   // m
+    double longest;  // of its pieces at rest, m
   };
   /// Two pieces, the first before the second, and where they touch.
   struct Found {

@@ -27,6 +27,8 @@ class Obstacle final : public Effect {
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
 
   double friction() const { return friction_; }
+  /// Distance of points (m) that may not miss it between them.
+  double spacing() const { return body_->least_radius() + offset_; }
 
   /// The tangent plane at which a point meets the surface, at the end of a step.
   struct Plane {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "contract/input_error.h"
@@ -22,6 +23,17 @@ bool has_size(const Ellipsoid& e) {
   return positive(a.x) && positive(a.y) && positive(a.z);
 }
 bool has_size(const DistanceGrid&) { return true; }
+
+double least_radius_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
+double least_radius_of(const Sphere& s) { return s.radius; }
+double least_radius_of(const Capsule& c) { return c.radius; }
+double least_radius_of(const Ellipsoid& e) {
+  const Vec& a = e.half_axes();
+  const double least = std::min({a.x, a.y, a.z}), most = std::max({a.x, a.y, a.z});
+  return least * least / most;
+}
+// What is smaller than some cells is not in the grid.
+double least_radius_of(const DistanceGrid& g) { return 4 * g.samples().spacing; }
 
 /// The part of an outline that does not depend on the pose.
 struct Drawn {
@@ -81,6 +93,10 @@ std::optional<Outline> RigidBody::outline(double t) const {
   if (of.shape.empty()) return {};
   const BodyPose now = pose(t);
   return Outline{of.shape, of.half_axes, now.x, now.frame};
+}
+
+double RigidBody::least_radius() const {
+  return std::visit([](const auto& shape) { return least_radius_of(shape); }, shape_);
 }
 
 std::optional<Distance> RigidBody::distance(const Vec& x, double reach) const {

@@ -39,6 +39,8 @@ class RigidBody {
   /// Largest depth (m) of the strand's surface in the body over the points at x.
   double penetration(double t, In x) const;
 
+  /// Its least radius of curvature where that is known, m; infinity: flat.
+  double least_radius() const;
   /// From a place in its frame, if it is below `reach`.
   std::optional<Distance> distance(const Vec& x, double reach) const;
 

@@ -88,12 +88,18 @@ StrandFriction::StrandFriction(const Parameters& parameters,
     : law_(law_of(parameters)),
       search_(strands, law_.thickness, law_.own),
       obstacles_(std::move(obstacles)) {
+  double longest = 0;
   for (const PieceSearch::Strand& strand : strands) {
+    longest = std::max(longest, strand.longest);
     strands_.push_back(
         {.touched = {},
          .place = std::vector<int>(static_cast<std::size_t>(strand.points), -1),
          .compliance = {},
          .body = -1});
+  }
+  for (const auto& obstacle : obstacles_) {
+    const double parts = std::ceil(longest / obstacle->spacing());
+    parts_.push_back(static_cast<int>(std::clamp(parts, 1.0, double{most_parts})));
   }
 }
 
@@ -169,24 +175,32 @@ void StrandFriction::admit(const PieceSearch::Found& at) {
   found_.push_back(found);
 }
 
-/// Points of a strand that are in an obstacle and have no contact with it yet.
+/// Places on a strand that are in an obstacle and have no contact with it yet.
 void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
                           std::size_t strand, std::vector<Known>& found) const {
-  for (std::size_t i = 0; i < search_.points(strand); ++i) {
-    // A point is the far end of a piece, the root the near end of the first one.
-    const End end = i == 0 ? near_end : far_end;
-    const int piece = search_.piece_of(strand, end == near_end ? 0 : i - 1);
-    Known at{{piece, code(obstacle, end), {}}, {}, {}};
-    if (std::binary_search(known_.begin(), known_.end(), at, by_pair)) continue;
-    const Known* const last = last_of(at.first, at.second);
-    const bool pushed = last != nullptr && dot(last->force, last->force) > 0;
-    const std::size_t x = 3 * (search_.first_point(strand) + i);
-    const auto plane = step.touch(load3(&search_.from()[x]), load3(&search_.now()[x]),
-                                  pushed ? stays * search_.thickness(piece, piece) : 0);
-    if (!plane) continue;
-    at.plane = *plane;
-    if (pushed) at.force = last->force;
-    found.push_back(at);
+  const int parts = parts_[obstacle];
+  const auto pieces = static_cast<int>(search_.points(strand)) - 1;
+  const int first = search_.piece_of(strand, 0);
+  for (int piece = first; piece < first + pieces; ++piece) {
+    const std::size_t x = 3 * search_.point_of(piece);
+    const auto place = [&](In all, double s) {
+      return (1 - s) * load3(&all[x]) + s * load3(&all[x + 3]);
+    };
+    // A piece begins where the one before ends.
+    for (int part = piece == first ? 0 : 1; part <= parts; ++part) {
+      Known at{{piece, code(obstacle, part), {}}, {}, {}};
+      if (std::binary_search(known_.begin(), known_.end(), at, by_pair)) continue;
+      const Known* const last = last_of(at.first, at.second);
+      const bool pushed = last != nullptr && dot(last->force, last->force) > 0;
+      at.at.s = static_cast<double>(part) / parts;
+      const auto plane =
+          step.touch(place(search_.from(), at.at.s), place(search_.now(), at.at.s),
+                     pushed ? stays * search_.thickness(piece, piece) : 0);
+      if (!plane) continue;
+      at.plane = *plane;
+      if (pushed) at.force = last->force;
+      found.push_back(at);
+    }
   }
 }
 
@@ -228,7 +242,10 @@ StrandFriction::OnPoints StrandFriction::on_points(const Known& known) const {
     return {search_.ends(known.first, known.second), known.at.weights(), 4};
   }
   const std::size_t first = search_.point_of(known.first);
-  return {{code_end(known.second) == far_end ? first + 1 : first}, {1}, 1};
+  const double s = known.at.s;
+  if (s == 0) return {{first}, {1}, 1};
+  if (s == 1) return {{first + 1}, {1}, 1};
+  return {{first, first + 1}, {1 - s, s}, 2};
 }
 
 /// Takes the points of contacts found last.
@@ -338,6 +355,25 @@ void StrandFriction::add_loads(std::size_t strand, InOut f) const {
     double* to = &f[3 * static_cast<std::size_t>(strands_[strand].touched[i])];
     store3(load3(to) + load3(&all[3 * i]), to);
   }
+}
+
+std::vector<double> StrandFriction::friction_used(std::size_t strand) const {
+  std::vector<double> used(search_.points(strand));
+  if (strands_[strand].body < 0) return used;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    const ContactProblem::Contact& contact = problem_.contacts()[i];
+    const double most = contact.friction * contact.force.x;
+    if (!(most > 0)) continue;
+    const double part =
+        std::min(1.0, std::hypot(contact.force.y, contact.force.z) / most);
+    const OnPoints on = on_points(known_[i]);
+    for (std::size_t end = 0; end < on.count; ++end) {
+      if (strand_of(end < 2 ? known_[i].first : known_[i].second) != strand) continue;
+      double& of_point = used[on.point[end] - search_.first_point(strand)];
+      of_point = std::max(of_point, part);
+    }
+  }
+  return used;
 }
 
 std::vector<StrandFriction::Touch> StrandFriction::touches() const {

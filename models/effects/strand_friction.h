@@ -26,7 +26,7 @@ std::span<const Parameter> strand_friction_parameters();
 /// S is the matrix of the strand's own step, so forces act as if they had been among its
 /// loads. Each pair of segments has its contact where its axes would cross, or at the
 /// nearest points of their ends of steps (PieceTouch), and its forces on the four points
-/// about it sum to zero. The points of strands touch obstacles too, at the planes that
+/// about it sum to zero. Places along strands touch obstacles too, at the planes that
 /// are tangent to these (Obstacle::Plane). Where forces drive other pairs into each
 /// other, as seen where points are then (place()), these are added and all are solved
 /// again. What points move off their straight lines within a step is left to the next
@@ -73,6 +73,10 @@ class StrandFriction {
   /// f += the forces on all points of a strand, 3 numbers each, N.
   void add_loads(std::size_t strand, InOut f) const;
 
+  /// How much of the friction that its contacts can bear each point of a strand uses: 0
+  /// without any, below 1 where it sticks, 1 where it slides.
+  std::vector<double> friction_used(std::size_t strand) const;
+
   /// Of the step: sweeps, and by how much the law was violated at last, m/s.
   const ContactProblem::Outcome& outcome() const { return outcome_; }
   double tolerance() const { return law_.tolerance; }
@@ -92,20 +96,20 @@ class StrandFriction {
   void recall(In memory);
 
  private:
-  /// A pair of pieces, or a piece at one of its ends and an obstacle, both of which
-  /// `second` then tells, by code().
+  /// A pair of pieces, or a place on a piece (at.s) and an obstacle, of which `second`
+  /// then is the code().
   struct Known : PieceSearch::Found {
     Vec force;              // world, N
     Obstacle::Plane plane;  // of an obstacle
   };
-  enum End { near_end, far_end };
-  static int code(std::size_t obstacle, End end) {
-    return -1 - 2 * static_cast<int>(obstacle) - end;
+  /// A piece is looked at in so many parts at most, at the end of each.
+  static constexpr int most_parts = 15;
+  static int code(std::size_t obstacle, int part) {
+    return -1 - (most_parts + 1) * static_cast<int>(obstacle) - part;
   }
   static std::size_t code_obstacle(int code) {
-    return static_cast<std::size_t>((-1 - code) / 2);
+    return static_cast<std::size_t>((-1 - code) / (most_parts + 1));
   }
-  static End code_end(int code) { return (-1 - code) % 2 == 0 ? near_end : far_end; }
   struct OnPoints {
     std::array<std::size_t, 4> point;
     std::array<double, 4> weight;
@@ -140,6 +144,7 @@ class StrandFriction {
   std::vector<Known> before_;  // of the last one
   std::vector<Known> found_;   // by this search
   std::vector<std::shared_ptr<const Obstacle>> obstacles_;
+  std::vector<int> parts_;                        // of a piece, by obstacle
   std::vector<std::vector<Known>> on_obstacles_;  // of each strand, found last
   std::vector<std::size_t> stale_, touching_;
   ContactProblem problem_;

@@ -48,6 +48,8 @@ Readout::Readout(const Scene& scene, const World& world)
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
 
+  if (scene.friction() != nullptr) channels_.push_back({"friction used (1: slides)", ""});
+
   for (const Strand& strand : scene.strands) {
     lumps_.push_back(lumps(strand));
   }
@@ -183,6 +185,10 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     read([&](InOut f) { world.friction()->add_loads(k, f); });
   }
   if (world.interaction() != nullptr) read_effect(*world.interaction()->effect(k));
+  if (world.friction() == nullptr) return;
+  const std::vector<double> used = world.friction()->friction_used(k);
+  std::ranges::copy(used, frame.channels.begin() +
+                              static_cast<std::ptrdiff_t>(channel * count + first));
 }
 
 }  // namespace tress::simulation

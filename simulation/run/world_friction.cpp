@@ -22,6 +22,7 @@ void World::make_friction(const std::vector<Strand>& strands, const Parameters& 
                          "effects.strand_friction", "give strands without branches");
       }
       own.radius = std::max({own.radius, segment.section.a1, segment.section.a2});
+      own.longest = std::max(own.longest, segment.length);
     }
   }
   std::vector<std::shared_ptr<const Obstacle>> obstacles;

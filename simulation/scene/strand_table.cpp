@@ -43,6 +43,11 @@ constexpr Parameter own_parameters[] = {
      .max = 1e3,
      .components = 3,
      .rows = true},
+    {.name = "natural",
+     .help =
+         "points: they are the shape at rest; straight: a straight strand is bent into "
+         "them at t = 0, as in a knot",
+     .choices = "points|straight"},
 };
 
 void refuse_beside_points(const Table& table) {
@@ -84,12 +89,12 @@ std::span<const Parameter> strand_table_parameters() {
 std::span<const Use> strand_uses() { return shape_uses(); }
 
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
-                  const Shape& natural) {
+                  const Shape& natural, const Shape& initial) {
   const Parameters& p = table.values();
   const Discretisation cut{p.whole("elements"), length, p.number("grading")};
   const bool straight = p.word("initial") == "straight";
   Strand strand = make_strand(material.material, material.section, cut, natural,
-                              straight ? uniform_shape({}) : Shape{});
+                              straight ? uniform_shape({}) : initial);
   for (const Segment& segment : strand.segments) {
     const Vec& darboux = segment.natural;
     const double turns = norm(darboux) * segment.length / turn;
@@ -112,9 +117,20 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
     const PointCurve curve =
         through_points(p.numbers("points"), p.whole("elements"), p.number("grading"),
                        direction(table, "normal"), table.place("points"));
-    Strand strand = cut_strand(table, material, curve.length, curve.shape);
+    const bool tied = p.word("natural") == "straight";
+    if (tied && p.word("initial") == "straight") {
+      throw InputError("naturally and initially straight beside points",
+                       table.place("natural"), "leave one of them out");
+    }
+    Strand strand =
+        cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,
+                   tied ? curve.shape : Shape{});
     set_root(strand, common.head, common.free_root, curve.position, curve.frame);
     return strand;
+  }
+  if (p.word("natural") == "straight") {
+    throw InputError("natural = \"straight\" without points", table.place("natural"),
+                     "give points, or leave it out");
   }
   Strand strand = cut_strand(table, material, p.number("length_m"),
                              natural_shape(table, material, common.seed, stream));

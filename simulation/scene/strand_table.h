@@ -31,8 +31,9 @@ std::span<const Use> strand_uses();
 Strand scene_strand(const Table& table, const Table* own_material, const Common& common,
                     std::uint64_t stream);
 
-/// A strand from cut_parameters() and this natural shape.
+/// A strand from cut_parameters(), this natural shape and, unless they say otherwise,
+/// that initial one; empty: the natural one.
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
-                  const Shape& natural);
+                  const Shape& natural, const Shape& initial = {});
 
 }  // namespace tress::simulation

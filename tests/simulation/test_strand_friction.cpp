@@ -161,6 +161,36 @@ TEST_P(StrandFriction, NoPointEntersABody) {
   EXPECT_LT(deepest, 1e-5);
 }
 
+/// A wire that crosses pieces far from their ends holds a strand, too.
+TEST(StrandFriction, NoWireSlipsBetweenPoints) {
+  for (const char* const model : {"super_helix", "der"}) {
+    Set set{.model = model,
+            .strands =
+                "[strand]\nlength_m = 0.06\nelements = 4\n"
+                "root_tangent = [1, 0, 0]\n",
+            .effects =
+                "[effects.gravity]\n[effects.body]\nshape = \"capsule\"\n"
+                "radius_m = 5e-4\nlength_m = 0.04\nstrand_radius_m = 1e-3\n"
+                "centre_m = [0.0375, 0, -0.004]\nrotation_rad = [1.5707963, 0, 0]\n"
+                "friction_law = \"exact\"\nnormal = \"rigid\"\n",
+            .friction = "own = \"no\"\n"};
+    World world(scene(set));
+    const StraightPiece wire({0.0375, -0.02, -0.004}, {0.0375, 0.02, -0.004});
+    double least = 1;
+    for (int i = 1; i <= 60; ++i) {
+      ASSERT_EQ(world.advance(5e-3 * i), Status::ok) << world.failure();
+      for (std::size_t k = 0; k < 4; ++k) {
+        const StraightPiece piece(point(world, k), point(world, k + 1));
+        const NearestPoints near = nearest(piece, wire);
+        least = std::min(least, norm(piece.at(near.of_first) - wire.at(near.of_second)));
+      }
+    }
+    // Pieces are looked at every 1.5 mm, between which they may come nearer by 0.2 mm.
+    EXPECT_GT(least, 1.25e-3) << model;
+    EXPECT_LT(least, 1.55e-3) << model;
+  }
+}
+
 /// By one linear solve a step: what Coulomb's law says of n steps of backward Euler.
 TEST(StrandFriction, OnASlopeSticksOrSlidesByHand) {
   for (const char* const model : {"super_helix", "der", "corde", "mass_spring"}) {

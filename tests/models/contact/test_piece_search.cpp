@@ -74,7 +74,7 @@ Tangle tangle(std::mt19937& random, double far) {
   std::uniform_int_distribution<int> length(2, 12);
   for (int k = 0; k < 25; ++k) {
     const int points = length(random);
-    all.strands.push_back({points, 0.005 * (1 + k % 3)});
+    all.strands.push_back({points, 0.005 * (1 + k % 3), 1});
     Vec x = 0.4 * random_vec(random);
     const Vec drift = far * random_vec(random);
     for (int i = 0; i < points; ++i, x = x + 0.15 * random_vec(random)) {
