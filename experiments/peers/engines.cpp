@@ -8,16 +8,16 @@ namespace tress::experiments::peers {
 std::span<const Engine> engines() {
   static const std::vector<Engine> found = {
 #ifdef TRESS_PEERS_SIMBODY
-      {"simbody", TRESS_PEERS_SIMBODY, simbody_methods()},
+      {"simbody", TRESS_PEERS_SIMBODY, simbody_methods(), simbody_rubbing()},
 #endif
 #ifdef TRESS_PEERS_BULLET
-      {"bullet", TRESS_PEERS_BULLET, bullet_methods()},
+      {"bullet", TRESS_PEERS_BULLET, bullet_methods(), bullet_rubbing()},
 #endif
 #ifdef TRESS_PEERS_MUJOCO
-      {"mujoco", TRESS_PEERS_MUJOCO, mujoco_methods()},
+      {"mujoco", TRESS_PEERS_MUJOCO, mujoco_methods(), mujoco_rubbing()},
 #endif
 #ifdef TRESS_PEERS_ODE
-      {"ode", TRESS_PEERS_ODE, ode_methods()},
+      {"ode", TRESS_PEERS_ODE, ode_methods(), ode_rubbing()},
 #endif
   };
   return found;

@@ -5,12 +5,11 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "experiments/peers/mujoco_model.h"
 #include "experiments/peers/peer.h"
 
 namespace tress::experiments::peers {
@@ -46,50 +45,29 @@ std::string description(const Swing& swing, double dt, Joint joint,
   return text + "</worldbody></mujoco>";
 }
 
-struct Free {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, Free> compile(const std::string& text) {
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  constexpr const char* name = "strand.xml";
-  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size()));
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], text.data(),
-              text.size());
-  char error[500] = "";
-  std::unique_ptr<mjModel, Free> model(
-      mj_loadXML(name, files.get(), error, sizeof error));
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(fmt::format("MuJoCo: {}", error));
-  return model;
-}
-
 class Mujoco : public Peer {
  public:
   Mujoco(const Swing& swing, double dt, Joint joint, std::string_view integrator)
       : swing_(swing),
-        model_(compile(description(swing, dt, joint, integrator))),
-        data_(mj_makeData(model_.get())),
-        momentum_(static_cast<std::size_t>(model_->nv)) {
-    mju_user_warning = [](const char*) {};  // else it writes a log file where it stands
-  }
+        made_(description(swing, dt, joint, integrator)),
+        model_(&made_.model()),
+        data_(&made_.data()),
+        momentum_(static_cast<std::size_t>(model_->nv)) {}
 
   void step(double t) override {
     const Vec g = Swing::gravity(t);
     store3(g, model_->opt.gravity);
-    mj_step1(model_.get(), data_.get());
+    mj_step1(model_, data_);
     // Damping of every body by its mass and moment is damping by the mass matrix.
-    mj_mulM(model_.get(), data_.get(), momentum_.data(), data_->qvel);
+    mj_mulM(model_, data_, momentum_.data(), data_->qvel);
     mju_scl(data_->qfrc_applied, momentum_.data(), -Swing::damping, model_->nv);
-    mj_step2(model_.get(), data_.get());
+    mj_step2(model_, data_);
   }
 
   Motion motion() override {
     if (gave_up()) return {.tip = {std::numeric_limits<double>::quiet_NaN(), 0, 0}};
-    mj_fwdPosition(model_.get(), data_.get());
-    mj_mulM(model_.get(), data_.get(), momentum_.data(), data_->qvel);
+    mj_fwdPosition(model_, data_);
+    mj_mulM(model_, data_, momentum_.data(), data_->qvel);
     const double energy = mju_dot(momentum_.data(), data_->qvel, model_->nv) / 2;
     const mjtNum end[3] = {swing_.link_length(), 0, 0};
     mjtNum tip[3];
@@ -108,8 +86,9 @@ class Mujoco : public Peer {
   }
 
   const Swing swing_;
-  const std::unique_ptr<mjModel, Free> model_;
-  const std::unique_ptr<mjData, Free> data_;
+  const MujocoModel made_;
+  mjModel* model_;
+  mjData* data_;
   std::vector<mjtNum> momentum_;
 };
 

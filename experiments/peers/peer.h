@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "contract/layers.h"
+#include "experiments/peers/rubbing.h"
 #include "math/vec3.h"
 
 namespace tress::experiments::peers {
@@ -79,6 +80,7 @@ struct Method {
 struct Engine {
   std::string_view id, version;
   std::span<const Method> methods;
+  std::span<const RubbingMethod> rubbing;
 };
 
 /// Those that were found when this was built; `missing()` names the packages of the

@@ -261,7 +261,7 @@ void derive(std::vector<Row>& rows) {
   add_distances(all);
 }
 
-void check(const std::vector<Row>& rows, Verdicts& verdicts) {
+void check_peers(const std::vector<Row>& rows, Verdicts& verdicts) {
   double apart = 0;
   int compared = 0;
   for (const Row& row : rows) {
@@ -301,7 +301,7 @@ int main(int argc, char** argv) {
       .unused = unused,
       .cases = cases,
       .derive = derive,
-      .checks = check,
+      .checks = check_peers,
       .finding = finding};
   return run_experiment(experiment, argc, argv);
 }
