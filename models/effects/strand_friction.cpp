@@ -357,10 +357,11 @@ void StrandFriction::add_loads(std::size_t strand, InOut f) const {
   }
 }
 
-std::vector<double> StrandFriction::friction_used(std::size_t strand) const {
-  std::vector<double> used(search_.points(strand));
-  if (strands_[strand].body < 0) return used;
+std::vector<double> StrandFriction::friction_used() const {
+  std::vector<double> used(search_.to().size() / 3);
   for (std::size_t i = 0; i < known_.size(); ++i) {
+    // Before the first step there are forces without contacts (recall()).
+    if (i == problem_.contacts().size()) break;
     const ContactProblem::Contact& contact = problem_.contacts()[i];
     const double most = contact.friction * contact.force.x;
     if (!(most > 0)) continue;
@@ -368,9 +369,7 @@ std::vector<double> StrandFriction::friction_used(std::size_t strand) const {
         std::min(1.0, std::hypot(contact.force.y, contact.force.z) / most);
     const OnPoints on = on_points(known_[i]);
     for (std::size_t end = 0; end < on.count; ++end) {
-      if (strand_of(end < 2 ? known_[i].first : known_[i].second) != strand) continue;
-      double& of_point = used[on.point[end] - search_.first_point(strand)];
-      of_point = std::max(of_point, part);
+      used[on.point[end]] = std::max(used[on.point[end]], part);
     }
   }
   return used;

@@ -73,9 +73,9 @@ class StrandFriction {
   /// f += the forces on all points of a strand, 3 numbers each, N.
   void add_loads(std::size_t strand, InOut f) const;
 
-  /// How much of the friction that its contacts can bear each point of a strand uses: 0
-  /// without any, below 1 where it sticks, 1 where it slides.
-  std::vector<double> friction_used(std::size_t strand) const;
+  /// How much of the friction that its contacts can bear each point of all strands uses:
+  /// 0 without any, below 1 where it sticks, 1 where it slides.
+  std::vector<double> friction_used() const;
 
   /// Of the step: sweeps, and by how much the law was violated at last, m/s.
   const ContactProblem::Outcome& outcome() const { return outcome_; }

@@ -138,6 +138,12 @@ void Readout::read_points(World& world, Frame3d& frame) {
     }
     first += points;
   }
+  if (world.friction() != nullptr) {
+    // The last channel; before the first step there is none.
+    const std::vector<double> used = world.friction()->friction_used();
+    std::ranges::copy(used,
+                      frame.channels.end() - static_cast<std::ptrdiff_t>(drawn_.size()));
+  }
   Vec tip;
   std::size_t end = 0;
   for (std::size_t k = 0; k < world.strands(); ++k) {
@@ -185,10 +191,6 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     read([&](InOut f) { world.friction()->add_loads(k, f); });
   }
   if (world.interaction() != nullptr) read_effect(*world.interaction()->effect(k));
-  if (world.friction() == nullptr) return;
-  const std::vector<double> used = world.friction()->friction_used(k);
-  std::ranges::copy(used, frame.channels.begin() +
-                              static_cast<std::ptrdiff_t>(channel * count + first));
 }
 
 }  // namespace tress::simulation
