@@ -88,10 +88,7 @@ double slowed(const ModelTrial& trial) {
 }
 
 bool pile_falls(const ModelTrial& trial, double friction) {
-  std::vector<Strand> strands;
-  for (int k = 0; k < 3; ++k) {
-    strands.push_back(loose_rod(trial.elements, {}, {1, 0, 0}));
-  }
+  std::vector<Strand> strands(3, loose_rod(trial.elements, {}, {1, 0, 0}));
   const double radius = strands.front().segments.front().section.a1;
   strands[0].free_root->position = {0, -radius, radius};
   strands[1].free_root->position = {0, radius, radius};
