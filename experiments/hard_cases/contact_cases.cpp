@@ -11,18 +11,23 @@ namespace {
 
 constexpr double touch = 1.2e-3, separation = 0.02;  // m, of the coil's turns
 
-/// Turns 1.6 mm apart are pressed together until they touch, at 1.2 mm, by 2.5 times the
-/// force that closes the coil, k = GJ/(L R^2) [Love] over the 1.2 mm that its 3.2 turns
-/// can close. That drives it to 0.3 m/s at most, which the contact stops within v
-/// sqrt(rho A/K) = 0.2 mm, a third of full penetration.
-void close_coil(const Strand&, Effects& effects) {
+/// By 2.5 times the force that closes the coil, k = GJ/(L R^2) [Love] over the 1.2 mm
+/// that its 3.2 turns can close.
+void pull_coil(const Strand&, Effects& effects) {
+  effects.push_back(std::make_shared<Tether>(
+      Tether::Settings{.pull = 5e-6, .target = {}, .off = never_off, .ramp = 0.05}));
+}
+
+/// Turns 1.6 mm apart are pressed together until they touch, at 1.2 mm. The pull drives
+/// them to 0.3 m/s at most, which the contact stops within v sqrt(rho A/K) = 0.2 mm, a
+/// third of full penetration.
+void close_coil(const Strand& strand, Effects& effects) {
   effects.push_back(std::make_shared<SelfContact>(
       ContactLaw(
           {.stiffness = 10, .viscosity = 1e-3, .inner = touch, .outer = 1.5 * touch},
           "case coil_contact"),
       separation));
-  effects.push_back(std::make_shared<Tether>(
-      Tether::Settings{.pull = 5e-6, .target = {}, .off = never_off, .ramp = 0.05}));
+  pull_coil(strand, effects);
 }
 
 StabilityBounds coil_bounds(const Situation& s, double) {
@@ -80,6 +85,16 @@ HardCase with_exact_friction(HardCase given, std::string_view name, std::string_
   return given;
 }
 
+/// The same, with forces that are found after the step of the strand alone.
+HardCase by_impulses(HardCase given, std::string_view name, ModelSettings law) {
+  given.name = name;
+  given.why =
+      "the same law by impulses at the end of the step, of which the strand's own step "
+      "knows nothing: one linear solve is enough for it, and for semi-implicit Euler";
+  given.impulses = std::move(law);
+  return given;
+}
+
 }  // namespace
 
 std::vector<HardCase> contact_cases() {
@@ -107,6 +122,9 @@ std::vector<HardCase> contact_cases() {
                    return std::make_unique<OverlapGauge>(s, touch, separation);
                  },
                  .act = close_coil});
+  all.push_back(by_impulses(all.back(), "coil_impulse", {{"thickness_m", "1.2e-3"}}));
+  all.back().act = pull_coil;
+  all.back().horizon = 0;
   all.push_back({.name = "grazing_contact",
                  .why =
                      "a strand comes upon a plane at 5 degrees and 0.3 m/s, sliding with "
@@ -130,6 +148,7 @@ std::vector<HardCase> contact_cases() {
       all.back(), "grazing_exact",
       "the same with exact friction: what sticks or turns round does so within a step",
       slope<Friction::exact>));
+  all.push_back(by_impulses(all.back(), "grazing_impulse", {}));
   all.push_back(
       {.name = "cone",
        .why = "a free strand falls into a cone of three planes with friction 0.5: "
@@ -150,6 +169,7 @@ std::vector<HardCase> contact_cases() {
       "the same with exact friction: ends hit head-on, and all that is in contact may "
       "stick or slip",
       cone<Friction::exact>));
+  all.push_back(by_impulses(all.back(), "cone_impulse", {}));
   return all;
 }
 

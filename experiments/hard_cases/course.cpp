@@ -34,6 +34,42 @@ double work(const Stats& stats, double unknowns, bool dense) {
          factors * static_cast<double>(stats.linearizations);
 }
 
+/// Steps of the same length, each followed by the impulses that it needs.
+Simulation run_rubbing(Integrator& method, Situation& s, const Course& c,
+                       const Observer& each_step) {
+  MaterialPoints& points = *s.system->material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(points.count())), u(x.size());
+  const Loop loop = [](std::size_t count, const std::function<void(std::size_t)>& work) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+  };
+  s.system->reset();
+  Status status = method.start(0, s.start.q, s.start.v);
+  s.rubbing->add(*s.system, method, c.options);
+  double t = 0;
+  const double end = c.stops.back();
+  const double count = std::max(1.0, std::ceil(end / c.options.step - 1e-9));
+  for (double i = 1; i <= count && status == Status::ok; ++i) {
+    const double next = end * i / count;
+    points.positions(t, method.q(), x);
+    s.rubbing->before_step(x);
+    status = method.advance(next, {});
+    if (status != Status::ok) break;
+    points.positions(next, method.q(), x);
+    points.velocities(next, method.q(), method.v(), u);
+    status = s.rubbing->after_step(next, next - t, x, u, loop);
+    t = next;
+    if (!each_step(t, method.q(), method.v())) status = Status::fatal;
+  }
+  const std::string& why = s.rubbing->failure();
+  return {
+      status,
+      why.empty() ? method.failure() : why,
+      t,
+      {{method.q().begin(), method.q().end()}, {method.v().begin(), method.v().end()}},
+      method.stats(),
+      method.limit()};
+}
+
 }  // namespace
 
 Options Pace::applied(Options options) const {
@@ -80,12 +116,13 @@ Watched watch(std::string_view integrator, const HardCase& hard, const Subject& 
   const bool full = dense(s, subject.model->id);
   const auto method = make_integrator(integrator, *s.system, c.options);
   bool cut = false;
-  Simulation end =
-      run_method(*method, *s.system, s.start, c.stops, {}, [&](double t, In q, In v) {
-        if (tip) tip->step_to(t, q, v);
-        cut = work(method->stats(), unknowns, full) > limit.most;
-        return !cut && each_step(t, q, v);
-      });
+  const Observer each = [&](double t, In q, In v) {
+    if (tip) tip->step_to(t, q, v);
+    cut = work(method->stats(), unknowns, full) > limit.most;
+    return !cut && each_step(t, q, v);
+  };
+  Simulation end = s.rubbing ? run_rubbing(*method, s, c, each)
+                             : run_method(*method, *s.system, s.start, c.stops, {}, each);
   return {std::move(end), tip ? std::move(tip->tips) : std::vector<double>(), cut};
 }
 

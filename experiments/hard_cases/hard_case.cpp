@@ -3,6 +3,7 @@
 #include "contract/input_error.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
+#include "models/effects/obstacle.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress::experiments::hard_cases {
@@ -32,6 +33,15 @@ double hanging(const Situation& s) {
   return energy;
 }
 
+void touch_by_impulses(const ModelSettings& settings, Situation& s) {
+  for (auto& effect : s.effects) {
+    if (auto obstacle = effect->obstacle()) effect = std::move(obstacle);
+  }
+  Parameters rubs(models::strand_friction_parameters(), "case");
+  for (const auto& [key, value] : settings) rubs.set(key, value);
+  s.rubbing = std::make_unique<Rubbing>(std::vector{s.strand}, rubs, s.effects);
+}
+
 }  // namespace
 
 std::span<const HardCase> hard_case_catalogue() {
@@ -41,7 +51,7 @@ std::span<const HardCase> hard_case_catalogue() {
 
 Situation situation(const HardCase& hard, const Subject& subject,
                     const Parameters& defaults) {
-  Situation s{defaults, {}, {}, 0, 0, nullptr, {}};
+  Situation s{defaults, {}, {}, 0, 0, nullptr, {}, nullptr};
   set_known(s.parameters, subject.settings);
   if (subject.model->on_strand != nullptr) {
     set_known(s.parameters, hard.settings);
@@ -49,6 +59,7 @@ Situation situation(const HardCase& hard, const Subject& subject,
     if (hard.shape != nullptr) hard.shape(s.strand);
     s.effects = strand_effects(s.parameters);
     if (hard.act != nullptr) hard.act(s.strand, s.effects);
+    if (hard.impulses) touch_by_impulses(*hard.impulses, s);
     s.length = s.strand.length();
     s.mass = s.strand.mass();
     s.system = subject.model->on_strand(s.strand, s.parameters, s.effects);

@@ -10,6 +10,7 @@
 #include "experiments/numerics/stability.h"
 #include "models/effects/effect.h"
 #include "models/strand/strand.h"
+#include "simulation/run/rubbing.h"
 #include "simulation/run/simulation.h"
 
 namespace tress::experiments::hard_cases {
@@ -30,6 +31,7 @@ struct Situation {
   double mass;    // kg
   std::unique_ptr<System> system;
   State start;
+  std::unique_ptr<Rubbing> rubbing;  // null: without impulses
 };
 
 /// The measure of a case beyond the bounds of every run; sees every step.
@@ -89,6 +91,10 @@ struct HardCase {
   /// state.
   std::vector<double> (*stops)(double dt, double t_end) = nullptr;
   double (*error_scale)(const Situation&) = nullptr;  // m; null: the length
+  /// Contact by impulses at the ends of steps with bodies that allow it and with the
+  /// strand itself, with these values of [effects.strand_friction]. References have the
+  /// bodies' own forces instead.
+  std::optional<ModelSettings> impulses = {};
 };
 
 std::span<const HardCase> hard_case_catalogue();

@@ -92,6 +92,7 @@ Reference reference(const HardCase& hard, const Subject& subject,
                     const Parameters& defaults, const Options& options, double coarser,
                     const WorkLimit& limit) {
   HardCase finer = hard;
+  finer.impulses.reset();
   Subject whose = subject;
   Parameters parameters = defaults;
   if (hard.rod_elements > 0) {
@@ -151,11 +152,17 @@ Survival survive(const Attempt& attempt, const WorkLimit& limit,
   StabilityJudge judge(*s.system, bounds, s.start);
   const std::unique_ptr<Gauge> gauge = hard.gauge != nullptr ? hard.gauge(s) : nullptr;
   const auto began = std::chrono::steady_clock::now();
-  const Watched run = watch(attempt.integrator, hard, attempt.subject, s, c, limit,
-                            [&](double t, In q, In v) {
-                              if (gauge) gauge->see(t, q, v);
-                              return judge(t, q, v);
-                            });
+  Watched run;
+  try {
+    run = watch(attempt.integrator, hard, attempt.subject, s, c, limit,
+                [&](double t, In q, In v) {
+                  if (gauge) gauge->see(t, q, v);
+                  return judge(t, q, v);
+                });
+  } catch (const InputError& error) {
+    result.why = error.what();
+    return result;
+  }
   result.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 

@@ -124,7 +124,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
   if (const Parameters* rubs = scene.friction(); rubs != nullptr) {
-    make_friction(strands, *rubs);
+    rubbing_ = std::make_unique<Rubbing>(strands, *rubs, effects_);
   }
   std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
   const auto effects_of = [&](std::size_t k) {
@@ -138,7 +138,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
            strands[end].segments.size() == strands[k].segments.size()) {
       ++end;
     }
-    if (scene.model->on_strands != nullptr && end > k + 1 && !friction_) {
+    if (scene.model->on_strands != nullptr && end > k + 1 && !rubbing_) {
       std::vector<Effects> effects;
       for (std::size_t i = k; i < end; ++i) effects.push_back(effects_of(i));
       auto system = scene.model->on_strands(std::span(strands).subspan(k, end - k),
@@ -189,10 +189,7 @@ void World::ready(const Scene& scene) {
   for (Body& body : bodies_) {
     body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
     body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
-    if (friction_) {
-      body.response = std::make_unique<ImpulseResponse>(*body.system, *body.integrator,
-                                                        scene.options);
-    }
+    if (rubbing_) rubbing_->add(*body.system, *body.integrator, scene.options);
     const Snapshot::OfStrand all = initial_state_of(*body.system);
     append_strands(all.q, all.v, all.memory, body.coordinates, body.memory, begin);
   }
@@ -224,8 +221,7 @@ void World::restore(const Snapshot& snapshot) {
   }
   failure_.clear();
   x_.done = u_.done = false;
-  rubbed_ = {};
-  if (friction_) friction_->recall(snapshot.rubs);
+  if (rubbing_) rubbing_->restart(snapshot.rubs);
   exchange();
   if (interaction_ && options_.tolerance > 0) start_control();
   for (Body& body : bodies_) {
@@ -241,7 +237,7 @@ void World::restore(const Snapshot& snapshot) {
 
 Snapshot World::snapshot() {
   Snapshot snapshot{.t = t_, .strands = {}, .guards = {}, .rubs = {}};
-  if (friction_) snapshot.rubs = friction_->memory();
+  if (rubbing_) snapshot.rubs = rubbing_->memory();
   for (const Body& body : bodies_) {
     append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),
                    body.coordinates, body.memory, snapshot);

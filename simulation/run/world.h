@@ -5,16 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "integrators/control/impulse_response.h"
 #include "integrators/control/point_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
-#include "models/effects/strand_friction.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/run/crew.h"
 #include "simulation/run/guard.h"
 #include "simulation/run/metered.h"
+#include "simulation/run/rubbing.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
@@ -56,7 +55,7 @@ struct Energies {
 /// between two exchanges, during which it sees the others move as the last pass has found
 /// them; the intervals are under the same error control (world_exchange.cpp). With
 /// coupling = monolithic they are one system. Exact contact between them acts by impulses
-/// at the ends of steps (StrandFriction; world_friction.cpp). Strands of equal
+/// at the ends of steps (Rubbing). Strands of equal
 /// discretisation run four at a time if the model supports it (ModelEntry::on_strands).
 class World {
  public:
@@ -91,7 +90,9 @@ class World {
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
   const StrandInteraction* interaction() const { return interaction_.get(); }
-  const StrandFriction* friction() const { return friction_.get(); }
+  const StrandFriction* friction() const {
+    return rubbing_ ? &rubbing_->friction() : nullptr;
+  }
   /// The point that point i is attached to, -1: none.
   const std::vector<int>& before() const { return before_; }
 
@@ -125,9 +126,6 @@ class World {
     bool gave_up = false;  // shorter steps did not help
     // Where exchanges are under error control: the start of the interval.
     Rewindable* rewindable = nullptr;
-    // Where strands rub: how it responds to impulses, and its velocities before the step.
-    std::unique_ptr<ImpulseResponse> response;
-    std::vector<double> v_before;
     Snapshot::OfStrand marked;
     double marked_t = 0;
     Guard::Memory marked_guard{};
@@ -161,9 +159,6 @@ class World {
   void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();
 
-  // Exact contact between strands.
-  void make_friction(const std::vector<Strand>& strands, const Parameters& rubs);
-  void before_step();
   Status rub(double h);
 
   // With a tolerance, by intervals.
@@ -182,9 +177,7 @@ class World {
   Options options_;
   const Effects effects_;  // on each strand
   std::unique_ptr<StrandInteraction> interaction_;
-  std::unique_ptr<StrandFriction> friction_;
-  std::vector<double> x_before_;        // the step, of all points
-  Stats rubbed_;                        // its work since restore()
+  std::unique_ptr<Rubbing> rubbing_;
   std::optional<StepControl> control_;  // of the exchanges, with a tolerance
   Exchanges exchanges_;
   std::vector<Body> bodies_;

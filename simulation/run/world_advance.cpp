@@ -59,7 +59,7 @@ Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
-  const double count = interaction_ || friction_
+  const double count = interaction_ || rubbing_
                            ? std::max(1.0, std::ceil(span / options_.step - 1e-9))
                            : 1.0;
   const double begin = t_;
@@ -69,7 +69,7 @@ Status World::advance(double t_end) {
                          : begin + static_cast<double>(i) * (span / count);
     const bool last = i == static_cast<long>(count);
     const double h = t - t_;
-    if (friction_) before_step();
+    if (rubbing_) rubbing_->before_step(positions());
     crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
     t_ = t;
     x_.done = u_.done = false;
@@ -78,12 +78,26 @@ Status World::advance(double t_end) {
       failure_ = failure_of(body);
       return body.status;
     }
-    if (friction_) {
+    if (rubbing_) {
       if (const Status s = rub(h); s != Status::ok) return s;
     }
     exchange();
   }
   return Status::ok;
+}
+
+Status World::rub(double h) {
+  const Status done = rubbing_->after_step(
+      t_, h, positions(), velocities(),
+      [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+        crew_.run(count, work);
+      });
+  for (const std::size_t k : rubbing_->friction().touching()) {
+    bodies_[k].keep(t_, bodies_[k].integrator->q(), bodies_[k].integrator->v());
+  }
+  if (done != Status::ok) failure_ = rubbing_->failure();
+  x_.done = u_.done = false;
+  return done;
 }
 
 /// The guard always checks the last state, even if the method failed there.
@@ -183,7 +197,7 @@ Stats World::Body::stats() const {
 }
 
 Stats World::stats() const {
-  Stats sum = rubbed_;
+  Stats sum = rubbing_ ? rubbing_->stats() : Stats{};
   for (const Body& body : bodies_) add_work(body.stats(), sum);
   return sum;
 }

@@ -207,6 +207,27 @@ TEST(HardCaseJudge, RefusesInTheWordsOfTheLibrary) {
             Outcome::refused);
 }
 
+// Without them turns overlap by half of their radius; methods that cannot go on after
+// them say so.
+TEST(HardCaseJudge, ImpulsesKeepTurnsApart) {
+  HardCase coil = named("coil_impulse");
+  const auto run = [&](std::string_view integrator) {
+    const Attempt attempt{
+        &coil, subject("super_helix"), defaults("super_helix"), integrator, {1.0 / 300},
+        {}};
+    return survive(attempt, {}, [] { return Reference{}; });
+  };
+  for (const std::string_view able : {"semi_implicit_euler", "backward_euler"}) {
+    const Survival s = run(able);
+    EXPECT_EQ(s.outcome, Outcome::stable) << s.why;
+    EXPECT_LT(*s.measure, 0.01) << *s.measure;
+  }
+  EXPECT_EQ(run("bdf2").outcome, Outcome::refused);
+  EXPECT_THAT(run("bdf2").why, HasSubstr("cannot go on after the impulses"));
+  coil.impulses.reset();
+  EXPECT_GT(*run("backward_euler").measure, 0.5);
+}
+
 // However long that takes: five steps of one iteration at least do not fit.
 TEST(HardCaseJudge, StopsWhenItsWorkIsDone) {
   const Attempt attempt{&named("one_element"),
@@ -422,10 +443,10 @@ Row claimed(std::string_view hard, std::string_view passed, std::string_view out
 Verdicts::Verdict judged(const Row& row, std::string_view of) {
   Verdicts verdicts;
   check_hard_cases({row}, verdicts);
-  // One of each case, and three about tolerances.
+  // One of each case, three about tolerances, and one of exact contact.
   EXPECT_EQ(
       std::ranges::count(verdicts.all(), State::not_judged, &Verdicts::Verdict::state),
-      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1 + 3);
+      static_cast<std::ptrdiff_t>(hard_case_catalogue().size()) - 1 + 4);
   for (const auto& verdict : verdicts.all()) {
     if (verdict.claim.starts_with(of)) return verdict;
   }
@@ -494,6 +515,37 @@ TEST(HardCaseClaims, LongCurlAndConeAreAccurateByTolerance) {
     EXPECT_EQ(state_of(by_tolerance(hard, "not finished", none), claim),
               State::not_judged);
   }
+}
+
+// Of each of so many steps: one that falls by the regularised law and holds by impulses.
+std::vector<Row> risen(int count) {
+  std::vector<Row> rows;
+  for (int i = 1; i <= count; ++i) {
+    rows.push_back(claimed("coil_contact", "false", "unstable").set("dt_s", 1e-3 * i));
+    rows.push_back(claimed("coil_impulse", "true", "stable").set("dt_s", 1e-3 * i));
+  }
+  return rows;
+}
+
+TEST(HardCaseClaims, ExactContactHoldsWhatFellOnlyForTheSameRun) {
+  const auto of = [](const std::vector<Row>& rows) {
+    Verdicts verdicts;
+    check_hard_cases(rows, verdicts);
+    return verdicts.all().back();
+  };
+  EXPECT_EQ(of(risen(15)).state, State::held);
+  EXPECT_EQ(of(risen(15)).value, 15);
+  EXPECT_EQ(of(risen(14)).state, State::broken);
+  std::vector<Row> other = risen(15);
+  other.back().set("integrator", "semi_implicit_euler");
+  EXPECT_EQ(of(other).state, State::broken);
+  other = risen(15);
+  other.front().set("outcome", "stable");  // did not fall
+  EXPECT_EQ(of(other).state, State::broken);
+  other = risen(15);
+  other[1].set("passed", "false");  // fell again
+  EXPECT_EQ(of(other).state, State::broken);
+  EXPECT_EQ(of({claimed("straight", "true", "stable")}).state, State::not_judged);
 }
 
 // What is known to fail is no alarm as long as it fails as it is known to.

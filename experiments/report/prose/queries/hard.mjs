@@ -67,10 +67,16 @@ export function super_helix(tables) {
     .join('; ');
 }
 
-// Cases with bodies under both laws of friction, by backward_euler at its longest step:
-// outcome and Newton's iterations of each model.
+// Cases of contact by a regularised law, and the same by the exact one: within the step of
+// the strand, and by impulses after it.
+const contact_cases = [
+  ['grazing_contact', 'grazing_exact', 'grazing_impulse'],
+  ['cone', 'cone_exact', 'cone_impulse'],
+  ['coil_contact', 'coil_impulse'],
+];
+
+// Their outcomes by backward_euler at its longest step, with Newton's iterations.
 export function friction_table(tables) {
-  const laws = [['grazing_contact', 'grazing_exact'], ['cone', 'cone_exact']];
   const all = judged(tables).filter((row) => row.integrator === 'backward_euler' && !by_tolerance(row));
   const longest = Math.max(...all.map((row) => row.dt_s));
   const of = (name, model) => {
@@ -78,10 +84,78 @@ export function friction_table(tables) {
     if (row === undefined || row.outcome === 'refused') return '';
     return survived(row) ? `${row.outcome} (${row.newton_iterations})` : row.outcome;
   };
-  const models = distinct(all.filter((row) => row.case === 'grazing_exact').map((row) => row.model));
-  const rows = models.map((model) => [model, ...laws.flat().map((name) => of(name, model))]);
+  const names = contact_cases.flat();
+  const models = distinct(all.filter((row) => names.includes(row.case)).map((row) => row.model));
+  const rows = models.map((model) => [model, ...names.map((name) => of(name, model))]);
   const kept = rows.filter((row) => row.slice(1).some((cell) => cell !== ''));
-  return table(['model', ...laws.flat().map((name) => `\`${name}\``)], kept);
+  return table(['model', ...names.map((name) => `\`${name}\``)], kept);
+}
+
+// Runs that a regularised law does not survive, each with its outcomes by the exact one.
+function fallen(tables) {
+  const all = judged(tables);
+  return contact_cases.flatMap(([regularised, ...exact]) =>
+    all
+      .filter((row) => row.case === regularised && ['unstable', 'not finished'].includes(row.outcome))
+      .map((row) => ({
+        row,
+        exact: exact
+          .map((name) =>
+            all.find(
+              (one) =>
+                one.case === name &&
+                one.model === row.model &&
+                one.integrator === row.integrator &&
+                pace(one) === pace(row),
+            ),
+          )
+          .filter((one) => one !== undefined),
+      })),
+  );
+}
+
+const rises = ({ exact }) => exact.some(survived);
+
+export const rising_count = (tables) => {
+  const all = fallen(tables);
+  return `${all.filter(rises).length} of ${all.length}`;
+};
+
+// Why the best of the exact laws does not survive, in few words.
+function why_not({ row, exact }) {
+  const tried = exact.filter((one) => one.outcome !== 'refused');
+  if (tried.length === 0) return `${row.integrator} takes no exact contact`;
+  const said = minimum_by(tried, rank);
+  const [, what] = /^(.*?)(?: at t = |: | = |$)/.exec(said.why);
+  const words = {
+    'its work was done': 'not finished within its work',
+    speed: 'faster than its root can make it',
+    reach: 'farther from its root than it is long',
+    energy: 'gains energy at the impact',
+    penetration_over_bound: 'deeper than allowed',
+    overlap_over_radius: 'parts pass through each other',
+  };
+  return `${said.case}: ${words[what] ?? what}`;
+}
+
+// What rises, and why the rest does not: models, by case, method and step.
+export function rising_table(tables) {
+  const groups = group_by(fallen(tables), (one) => {
+    const { row } = one;
+    return [row.case, row.integrator, pace(row), rises(one) ? '**survives**' : why_not(one)].join('|');
+  });
+  const rows = [...groups.values()].map((members) => {
+    const [one] = members;
+    const { row } = one;
+    return [
+      `\`${row.case}\``,
+      row.integrator,
+      by_tolerance(row) ? pace(row) : time(row.dt_s),
+      rises(one) ? '**survives**' : why_not(one),
+      distinct(members.map((member) => member.row.model)).join(', '),
+    ];
+  });
+  return table(['fails by a regularised law', 'integrator', 'step or tolerance', 'by the exact law', 'models'], rows);
 }
 
 // Combinations of case, model and integrator that break at a shorter step although they

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "integrators/control/impulse_response.h"
+#include "models/effects/strand_friction.h"
+#include "models/strand/strand.h"
+
+namespace tress::simulation {
+
+/// Strands that touch exactly, each advanced by a method of its own: they move as if they
+/// were alone, then impulses at the end of the step keep them from passing through each
+/// other and through obstacles (StrandFriction). A step: before_step(), all methods
+/// advance by h, after_step().
+class Rubbing {
+ public:
+  /// Obstacles are found among the effects. Throws InputError on strands with branches.
+  Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
+          const Effects& effects);
+  /// The system and the method of the next strand, which must outlive this. Throws
+  /// InputError if the method cannot go on after impulses.
+  void add(System& system, Integrator& method, const Options& options);
+
+  /// x: all points, 3 numbers each, strand after strand.
+  void before_step(In x);
+  /// After a step of h that ended at t, with points and their velocities there. Methods
+  /// of friction().touching() then go on from new states. Not ok: failure() tells why.
+  Status after_step(double t, double h, In x, In u, const Loop& loop);
+  const std::string& failure() const { return failure_; }
+
+  const StrandFriction& friction() const { return friction_; }
+  /// Sweeps, and steps that ended before the law held, since restart().
+  const Stats& stats() const { return stats_; }
+  std::vector<double> memory() const { return friction_.memory(); }
+  void restart(In memory);
+
+ private:
+  struct Rubbed {
+    System* system;
+    Integrator* method;
+    std::unique_ptr<ImpulseResponse> response;
+    std::size_t points;
+    std::vector<double> v_before;
+    bool prepared = false;  // its matrix is that of this step
+    Status status = Status::ok;
+  };
+  Status each(std::span<const std::size_t> strands, double t, const Loop& loop,
+              const std::function<Status(Rubbed&, std::size_t)>& act);
+
+  StrandFriction friction_;
+  std::vector<Rubbed> strands_;
+  std::vector<double> x_before_;
+  Stats stats_;
+  std::string failure_;
+};
+
+}  // namespace tress::simulation
