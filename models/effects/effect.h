@@ -104,6 +104,8 @@ class Effect {
   virtual std::optional<double> penetration(double /*t*/, In /*x*/) const { return {}; }
   /// Empty if there is nothing to draw.
   virtual std::optional<Outline> outline(double /*t*/) const { return {}; }
+  /// Whether its loads are forces of contact.
+  virtual bool contact() const { return outline(0).has_value(); }
   /// Set if the load depends on contact forces that the effect holds: a copy for one
   /// strand with so many points, which must not be shared (see HeldContacts).
   virtual std::unique_ptr<Effect> for_strand(std::size_t /*points*/) const { return {}; }

@@ -32,6 +32,7 @@ class SelfContact final : public Effect {
   SelfContact(const ContactLaw& law, double separation);
 
   std::string_view name() const override { return "self_contact"; }
+  bool contact() const override { return true; }
   Needs needs() const override {
     return {.position = true, .velocity = true, .derivatives = true, .couplings = true};
   }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "math/quaternion.h"
 #include "models/effects/effect.h"
@@ -55,6 +56,13 @@ std::vector<std::size_t> chosen_frames(std::size_t all, std::size_t most) {
   return chosen;
 }
 
+/// To four digits: enough for a picture.
+double rounded(double x) {
+  if (x == 0 || !std::isfinite(x)) return 0;
+  const double unit = std::pow(10, 3 - std::floor(std::log10(std::abs(x))));
+  return std::round(x * unit) / unit;
+}
+
 nlohmann::ordered_json number(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
@@ -78,6 +86,34 @@ nlohmann::ordered_json bodies(const Scene& scene, const std::vector<double>& tim
          {"poses", std::move(poses)}});
   }
   return all;
+}
+
+/// Contact forces of the frames, of each the largest ones: a picture of more is none.
+nlohmann::ordered_json contacts(std::span<const Frame3d> frames,
+                                std::span<const std::size_t> chosen) {
+  constexpr std::size_t most = 300;
+  constexpr std::size_t numbers = 6;  // of a contact
+  auto all = nlohmann::ordered_json::array();
+  bool any = false;
+  for (const std::size_t f : chosen) {
+    const std::vector<float>& x = frames[f].contacts;
+    const auto size = [&](std::size_t i) {
+      return std::hypot(x[numbers * i + 3], x[numbers * i + 4], x[numbers * i + 5]);
+    };
+    std::vector<std::size_t> order(x.size() / numbers);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{}, size);
+    order.resize(std::min(order.size(), most));
+    auto frame = nlohmann::ordered_json::array();
+    for (const std::size_t i : order) {
+      for (std::size_t c = 0; c < numbers; ++c) {
+        frame.push_back(rounded(static_cast<double>(x[numbers * i + c])));
+      }
+    }
+    any = any || !order.empty();
+    all.push_back(std::move(frame));
+  }
+  return any ? all : nlohmann::ordered_json();
 }
 
 }  // namespace
@@ -173,6 +209,9 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
       {"channels", channels},
       {"bodies", bodies(scene, times)},
       {"series", {{"columns", columns}, {"rows", rows}}}};
+  if (auto touching = contacts(animation.frames, chosen); !touching.is_null()) {
+    page["contacts"] = std::move(touching);
+  }
   if (animation.guides > 0) page["guides"] = animation.guides;
   if (!animation.lines.empty()) {
     std::vector<int> ids;

@@ -21,7 +21,8 @@ class Bytes {
   void put(const std::vector<T>& x) {
     text_.append(reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size());
   }
-  void put_sized(const std::vector<double>& x) {
+  template <class T>
+  void put_sized(const std::vector<T>& x) {
     put(std::vector{static_cast<double>(x.size())});
     put(x);
   }
@@ -36,7 +37,8 @@ class Bytes {
     at_ += sizeof(T) * count;
     return true;
   }
-  bool take_sized(std::vector<double>& x) {
+  template <class T>
+  bool take_sized(std::vector<T>& x) {
     std::vector<double> size;
     return take(size, 1) && take(x, static_cast<std::size_t>(size[0]));
   }
@@ -154,7 +156,8 @@ void Recording::resume(const RunKey& key) {
     Frame3d frame;
     if (!bytes.take(frame.series, columns_.size()) ||
         !bytes.take(frame.positions, 3 * points_) ||
-        !bytes.take(frame.channels, channels_ * points_)) {
+        !bytes.take(frame.channels, channels_ * points_) ||
+        !bytes.take_sized(frame.contacts)) {
       throw InputError("frames are missing", frames, remedy);
     }
     sum_.add(record(frame));
@@ -188,6 +191,7 @@ std::string Recording::record(const Frame3d& frame) {
   bytes.put(frame.series);
   bytes.put(frame.positions);
   bytes.put(frame.channels);
+  bytes.put_sized(frame.contacts);
   return bytes.text();
 }
 

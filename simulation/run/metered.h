@@ -1,18 +1,33 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "models/effects/effect.h"
 
 namespace tress::simulation {
 
+/// A force of contact on a strand.
+struct ContactForce {
+  std::size_t strand;
+  std::size_t effect;  // in the scene's order
+  Vec place;           // m
+  Vec force;           // N
+};
+
 /// An effect that stores the last potential energy it returned: after a query of a
-/// model's energy, the part of each effect is known. One per strand.
+/// model's energy, the part of each effect is known, and on demand its contact forces at
+/// the points where the model has them act. One per strand.
 class Metered final : public Effect {
  public:
   explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}
 
-  double last() const { return *last_; }  // J
+  double last() const { return last_->potential; }  // J
+  /// Whether queries of the energy look for contact forces too.
+  void look(bool forces) const { last_->look = forces; }
+  /// Of the last query that looked: places (m) and forces (N), 3 numbers each.
+  In places() const { return last_->places; }
+  In forces() const { return last_->forces; }
 
   std::string_view name() const override { return effect_->name(); }
   Needs needs() const override { return effect_->needs(); }
@@ -35,7 +50,8 @@ class Metered final : public Effect {
     effect_->add_couplings(t, p, all);
   }
   double potential(double t, const Points& p) const noexcept override {
-    return *last_ = effect_->potential(t, p);
+    if (last_->look) see_forces(t, p);
+    return last_->potential = effect_->potential(t, p);
   }
   double power(double t, const Points& p) const noexcept override {
     return effect_->power(t, p);
@@ -47,6 +63,7 @@ class Metered final : public Effect {
     return effect_->penetration(t, x);
   }
   std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
+  bool contact() const override { return effect_->contact(); }
   /// Its energy is known to this one too.
   std::unique_ptr<Effect> for_strand(std::size_t points) const override {
     std::shared_ptr<Effect> own = effect_->for_strand(points);
@@ -61,9 +78,29 @@ class Metered final : public Effect {
   }
 
  private:
+  struct Last {
+    double potential = 0;
+    bool look = false;
+    std::vector<double> places, forces;
+  };
+
+  void see_forces(double t, const Points& p) const {
+    std::vector<double> load(3 * static_cast<std::size_t>(p.count));
+    effect_->add_load(t, p, load);
+    last_->places.clear();
+    last_->forces.clear();
+    for (std::size_t i = 0; i < load.size(); i += 3) {
+      if (norm(load3(&load[i])) == 0) continue;
+      for (std::size_t c = i; c < i + 3; ++c) {
+        last_->places.push_back(p.x[c]);
+        last_->forces.push_back(load[c]);
+      }
+    }
+  }
+
   std::shared_ptr<const Effect> effect_;
   std::shared_ptr<Effect> holds_;  // effect_, if it holds contact forces
-  std::shared_ptr<double> last_ = std::make_shared<double>(0.0);
+  std::shared_ptr<Last> last_ = std::make_shared<Last>();
 };
 
 }  // namespace tress::simulation

@@ -15,6 +15,21 @@ double curvature(const Vec& a, const Vec& b) {
   return la + lb > 0 ? 2 * std::tan(angle / 2) / ((la + lb) / 2) : 0;
 }
 
+/// Of points with 3 numbers each.
+std::size_t nearest(const Vec& place, In x) {
+  std::size_t best = 0;
+  for (std::size_t i = 0; 3 * i < x.size(); ++i) {
+    if (norm(load3(&x[3 * i]) - place) < norm(load3(&x[3 * best]) - place)) best = i;
+  }
+  return best;
+}
+
+void add_contact(const Vec& place, const Vec& force, Frame3d& frame) {
+  for (const double c : {place.x, place.y, place.z, force.x, force.y, force.z}) {
+    frame.contacts.push_back(static_cast<float>(c));
+  }
+}
+
 }  // namespace
 
 Readout::Readout(const Scene& scene, const World& world)
@@ -144,13 +159,14 @@ void Readout::read_points(World& world, Frame3d& frame) {
     std::ranges::copy(used,
                       frame.channels.end() - static_cast<std::ptrdiff_t>(drawn_.size()));
   }
+  const std::vector<ContactForce> contacts = world.contact_forces();
   Vec tip;
   std::size_t end = 0;
   for (std::size_t k = 0; k < world.strands(); ++k) {
     const auto points = static_cast<std::size_t>(world.points()[k]);
     if (points == 0) continue;
     // Strands are separate lines.
-    if (!scene_.strands.empty()) read_loads(world, k, end, frame);
+    if (!scene_.strands.empty()) read_loads(world, k, end, contacts, frame);
     end += points;
     tip = tip + (1.0 / static_cast<double>(world.strands())) * load3(&x[3 * (end - 1)]);
   }
@@ -158,7 +174,9 @@ void Readout::read_points(World& world, Frame3d& frame) {
 }
 
 /// Loads of the effects on the material points, over the length that each represents.
-void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame) {
+/// Those of contact, which may act between the material points, on the nearest ones.
+void Readout::read_loads(World& world, std::size_t k, std::size_t first,
+                         std::span<const ContactForce> contacts, Frame3d& frame) {
   const std::size_t count = drawn_.size();
   const auto points = static_cast<std::size_t>(world.points()[k]);
   const In x = In(world.positions()).subspan(3 * first, 3 * points);
@@ -182,15 +200,36 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first, Frame3d
     }
     ++channel;
   };
-  const auto read_effect = [&](const Effect& effect) {
-    read([&](InOut f) { effect.add_load(world.time(), p, f); });
+  for (std::size_t e = 0; e < effects_.size(); ++e) {
+    if (!effects_[e]->contact()) {
+      read([&](InOut f) { effects_[e]->add_load(world.time(), p, f); });
+      continue;
+    }
+    read([&](InOut f) {
+      for (const ContactForce& contact :
+           std::ranges::equal_range(contacts, k, {}, &ContactForce::strand)) {
+        if (contact.effect != e) continue;
+        const std::size_t at = nearest(contact.place, x);
+        store3(load3(&f[3 * at]) + contact.force, &f[3 * at]);
+        add_contact(contact.place, contact.force, frame);
+      }
+    });
+  }
+  const auto read_between = [&](const auto& add_load) {
+    read(add_load);
+    for (std::size_t i = 0; i < points; ++i) {
+      const Vec force = load3(&load[3 * i]);
+      if (norm(force) > 0) add_contact(load3(&x[3 * i]), force, frame);
+    }
   };
-  for (const auto& effect : effects_) read_effect(*effect);
   // Effects between strands come after the others, in alphabetical order.
   if (world.friction() != nullptr) {
-    read([&](InOut f) { world.friction()->add_loads(k, f); });
+    read_between([&](InOut f) { world.friction()->add_loads(k, f); });
   }
-  if (world.interaction() != nullptr) read_effect(*world.interaction()->effect(k));
+  if (world.interaction() != nullptr) {
+    const auto effect = world.interaction()->effect(k);
+    read_between([&](InOut f) { effect->add_load(world.time(), p, f); });
+  }
 }
 
 }  // namespace tress::simulation

@@ -18,6 +18,7 @@ struct Frame3d {
   std::vector<double> series;    // as Readout::series()
   std::vector<float> positions;  // (3 points) m, points as Readout::lines()
   std::vector<float> channels;   // (points) of the first channel, of the second ...
+  std::vector<float> contacts;   // (6 contacts) place, m, and force on the strand, N
 };
 
 /// Output of a scene: positions and energies of its strands, loads of its effects.
@@ -40,7 +41,8 @@ class Readout {
  private:
   void find_lines(const World& world);
   void read_points(World& world, Frame3d& frame);
-  void read_loads(World& world, std::size_t k, std::size_t first, Frame3d& frame);
+  void read_loads(World& world, std::size_t k, std::size_t first,
+                  std::span<const ContactForce> contacts, Frame3d& frame);
 
   const Scene& scene_;
   std::vector<int> lines_;

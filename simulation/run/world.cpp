@@ -276,6 +276,29 @@ Energies World::energies() {
   return sum;
 }
 
+std::vector<ContactForce> World::contact_forces() {
+  std::vector<ContactForce> all;
+  for (const Body& body : bodies_) {
+    Energetics* energetics = body.system->energetics();
+    if (energetics == nullptr) continue;
+    const auto look = [&](bool forces) {
+      for (const auto& meter : body.meters) meter->look(forces && meter->contact());
+    };
+    look(true);
+    static_cast<void>(energetics->energy(t_, body.integrator->q(), body.integrator->v()));
+    look(false);
+    for (std::size_t i = 0; i < body.meters.size(); ++i) {
+      const Metered& meter = *body.meters[i];
+      if (!meter.contact()) continue;
+      for (std::size_t c = 0; c < meter.places().size(); c += 3) {
+        all.push_back({body.first + i / effects_.size(), i % effects_.size(),
+                       load3(&meter.places()[c]), load3(&meter.forces()[c])});
+      }
+    }
+  }
+  return all;
+}
+
 double World::stretch() {
   double most = 0;
   for (const Body& body : bodies_) {

@@ -87,6 +87,9 @@ class World {
   std::size_t systems() const { return bodies_.size(); }
   /// From the systems' Energetics.
   Energies energies();
+  /// Of effects on each strand that are contact, where the models have them act, by
+  /// strand; without those between strands.
+  std::vector<ContactForce> contact_forces();
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
   const StrandInteraction* interaction() const { return interaction_.get(); }

@@ -175,6 +175,28 @@ test('ColourBar_HasNameUnitAndRange', async () => {
   assert.equal(await browser.run("return document.getElementById('scene-bar').hidden"), true);
 });
 
+test('Forces_AreDrawnWhereAskedForAndTheAddressSaysSo', async () => {
+  await open('#scene=fixture_head&frame=20');
+  const hidden = (id) =>
+    browser.run("return document.getElementById('scene-' + arguments[0]).parentNode.hidden", id);
+  assert.equal(await hidden('forces'), false);
+  const without = await picture();
+  await choose('forces', 'arrows');
+  const shown = await picture();
+  assert.notEqual(shown, without);
+  const link = await address();
+  assert.match(link, /&forces=arrows/);
+  await open(link);
+  assert.equal(await picture(), shown);
+  await choose('forces', 'hidden');
+  assert.equal(await picture(), without);
+  // A scene without contacts has nothing to choose.
+  await open('#scene=fixture_wind&forces=arrows');
+  assert.equal(await hidden('forces'), true);
+  assert.doesNotMatch(await address(), /forces/);
+  await no_errors();
+});
+
 test('Series_HasAPlotForEveryColumnThatFollowsTheFrame', async () => {
   await open('#scene=fixture_head', 1400, 1800);
   const titles = await browser.run(`

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "simulation/files/csv.h"
+#include "simulation/files/files.h"
+#include "simulation/scene/scene.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_simulate {
@@ -119,6 +121,55 @@ TEST(Simulate, ThePageHasEveryFrameInItsBox) {
   EXPECT_EQ(static_cast<std::size_t>(offset), points);
   EXPECT_NE(toy.read("out/fall_vtk/fall.pvd").find("fall_00050.vtp"), std::string::npos);
   EXPECT_NE(toy.read("out/fall.usda").find("BasisCurves"), std::string::npos);
+}
+
+/// Of the last frame, by the text of a scene: the sum of all contact forces, N.
+Vec contact_forces(Toy& toy, const std::string& text) {
+  toy.write("touching.toml", text);
+  const Toy::Result run = toy.run("touching.toml --out out --progress none");
+  EXPECT_EQ(run.code, 0) << run.err;
+  const auto page = nlohmann::json::parse(toy.read("out/touching.json"));
+  Vec sum;
+  const auto& last = page["contacts"].back();
+  EXPECT_GE(last.size(), 12U);
+  for (std::size_t i = 0; i < last.size(); i += 6) {
+    sum = sum + Vec{last[i + 3], last[i + 4], last[i + 5]};
+  }
+  return sum;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+// Of a hair that rests on a slope: they bear its weight, whichever law finds them. They
+// are written with four digits.
+TEST(Simulate, ThePageHasTheContactForces) {
+  const std::string at_rest = read_file(TRESS_SOURCE_DIR "/scenes/strand_on_slope.toml");
+  const double mass = parse_scene(at_rest, "strand_on_slope.toml").strands.front().mass();
+  const double weight = mass * 9.81, digits = 1e-3 * weight;
+  for (const std::string model : {"super_helix", "der", "corde"}) {
+    const std::string scene = replaced(at_rest, "super_helix", model);
+    for (const std::string& law :
+         {scene, scene + "\n[effects.strand_friction]\nfriction = 0.3\n"}) {
+      Toy toy;
+      const Vec sum = contact_forces(toy, law);
+      EXPECT_NEAR(sum.x, 0, digits) << model;
+      EXPECT_NEAR(sum.y, 0, digits) << model;
+      EXPECT_NEAR(sum.z, weight, digits) << model;
+    }
+  }
+}
+
+// Hair on hair: what one does to the other, the other does to it.
+TEST(Simulate, ThePageHasForcesBetweenStrandsInPairs) {
+  Toy toy;
+  const Vec sum =
+      contact_forces(toy, read_file(TRESS_SOURCE_DIR "/scenes/hair_on_hair.toml"));
+  constexpr double digits = 1e-8;  // of forces of microneutons
+  EXPECT_LT(norm(sum), digits);
 }
 
 /// As groom(), each strand by steps of its own and exchanges under control.

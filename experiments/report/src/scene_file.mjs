@@ -67,6 +67,21 @@ function check_bodies(bodies, frames, { need }) {
   });
 }
 
+function check_contacts(contacts, frames, { need }) {
+  if (contacts === undefined) return;
+  need(
+    Array.isArray(contacts) && contacts.length === frames,
+    'contacts',
+    `must hold ${frames} arrays, one of each frame`,
+  );
+  const wrong = contacts.findIndex((one) => !is_numbers(one) || one.length % 6 !== 0);
+  need(
+    wrong < 0,
+    `contacts[${wrong}]`,
+    'must hold six numbers of each contact: place and force',
+  );
+}
+
 function check_series(series, { need }) {
   need(is_object(series), 'series', 'must be an object');
   const { columns, rows } = series;
@@ -152,6 +167,7 @@ export function check_scene(scene, file) {
     );
     check.bytes(channel.values, `${key}.values`, times.length * points, what);
   });
+  check_contacts(scene.contacts, times.length, check);
   check_bodies(scene.bodies, times.length, check);
   check_series(scene.series, check);
 }

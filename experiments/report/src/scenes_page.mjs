@@ -35,6 +35,10 @@ ${select_html(
   scenes.map(({ scene, title }) => [scene, `${scene}: ${title}`]),
 )}
 ${select_html('scene-colour', 'Colour')}
+${select_html('scene-forces', 'Contact forces', [
+  ['hidden', 'hidden'],
+  ['arrows', 'as arrows'],
+])}
 ${select_html('scene-strands', 'Strands', [
   ['all', 'all'],
   ['guides', 'simulated only'],

@@ -35,6 +35,7 @@ export function page_theme_colours() {
     background: card,
     text: css(text),
     muted: css(colour('--muted')),
+    force: dark ? '#ff8f6b' : '#c2370f',
     floor: `rgb(${mix(card, text, 0.25).map(Math.round).join(' ')} / 0.45)`,
     body_light: css(mix(card, text, dark ? 0.38 : 0.1)),
     body_dark: css(mix(card, text, dark ? 0.12 : 0.36)),

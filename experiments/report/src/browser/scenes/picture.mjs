@@ -1,4 +1,5 @@
 // The picture of one moment of a scene on a canvas.
+import { contacts_at, draw_arrows, usual_force } from './arrows.mjs';
 import { bodies_at, draw_body } from './bodies.mjs';
 import { Camera, add, profile_of } from './camera.mjs';
 import { bins, page_theme_colours } from './colours.mjs';
@@ -71,6 +72,8 @@ export class Picture {
     this.positions = new Float64Array(3 * scene.points);
     this.show_strands(false);
     this.channel = scene.channels[0];
+    this.usual_force = usual_force(scene);
+    this.arrows = false;
   }
 
   show_strands(guides_only) {
@@ -126,6 +129,13 @@ export class Picture {
       strands.draw(context, layer, style);
       if (layer < bodies.length) draw_body(context, bodies[layer], theme);
     }
+    if (this.arrows)
+      draw_arrows(context, contacts_at(scene, moment), {
+        view,
+        usual: this.usual_force,
+        radius: this.extent.radius,
+        theme,
+      });
     this.draw_scale(context, view, theme);
     return theme;
   }

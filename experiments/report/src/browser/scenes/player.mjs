@@ -36,6 +36,7 @@ export class Player {
     at('name').addEventListener('change', () => this.open(at('name').value));
     at('colour').addEventListener('change', () => this.colour(at('colour').value));
     at('strands').addEventListener('change', () => this.show_strands());
+    at('forces').addEventListener('change', () => this.show_forces(at('forces').value));
     at('scrub').addEventListener('input', () => this.go_to(Number(at('scrub').value)));
     at('play').addEventListener('click', () => this.play(!this.playing));
     at('full').addEventListener('click', () => this.fill(this.full === '' ? '1' : ''));
@@ -69,6 +70,8 @@ export class Player {
       ),
       new Option('one colour a strand', no_channel),
     );
+    at('forces').parentNode.hidden = this.picture.usual_force === 0;
+    at('forces').value = 'hidden';
     at('strands').value = 'all';
     at('strands').parentNode.hidden =
       (scene.guides ?? scene.strand_points.length) === scene.strand_points.length;
@@ -93,6 +96,12 @@ export class Player {
       part('low').textContent = format_number(channel.low);
       part('high').textContent = format_number(channel.high);
     }
+    this.changed();
+  }
+
+  show_forces(how) {
+    at('forces').value = how;
+    this.picture.arrows = how === 'arrows';
     this.changed();
   }
 
@@ -196,6 +205,7 @@ export class Player {
       view: this.picture.camera.text(),
       colour: this.picture.channel?.name ?? no_channel,
     });
+    if (this.picture.arrows) address.set('forces', 'arrows');
     if (at('strands').value !== 'all') address.set('strands', at('strands').value);
     if (this.full !== '') address.set('full', this.full);
     const text = `#${address.toString().replaceAll('%2C', ',')}`;
@@ -213,6 +223,8 @@ export class Player {
     );
     if (index >= 0) this.colour(String(index));
     else if (address.get('colour') === no_channel) this.colour(no_channel);
+    if (address.get('forces') === 'arrows' && !at('forces').parentNode.hidden)
+      this.show_forces('arrows');
     if (address.get('strands') === 'guides' && !at('strands').parentNode.hidden) {
       at('strands').value = 'guides';
       this.show_strands();
