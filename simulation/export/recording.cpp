@@ -23,7 +23,7 @@ class Bytes {
   }
   template <class T>
   void put_sized(const std::vector<T>& x) {
-    put(std::vector{static_cast<double>(x.size())});
+    put(std::vector<std::uint64_t>{x.size()});
     put(x);
   }
 
@@ -39,8 +39,8 @@ class Bytes {
   }
   template <class T>
   bool take_sized(std::vector<T>& x) {
-    std::vector<double> size;
-    return take(size, 1) && take(x, static_cast<std::size_t>(size[0]));
+    std::vector<std::uint64_t> size;
+    return take(size, 1) && take(x, size[0]);
   }
   bool skip(std::string_view expected) {
     if (!std::string_view(text_).substr(at_).starts_with(expected)) return false;
@@ -151,6 +151,11 @@ void Recording::resume(const RunKey& key) {
     throw InputError(std::string("the saved state is damaged: ") + error.what(), state,
                      remedy);
   }
+  // Where a count is damaged, what follows it is no frame.
+  const auto damaged = [&] {
+    return InputError("frames are missing or damaged: their checksum does not fit",
+                      frames, remedy);
+  };
   Bytes bytes(binary_.read());
   while (frames_.size() < saved.frames) {
     Frame3d frame;
@@ -158,15 +163,12 @@ void Recording::resume(const RunKey& key) {
         !bytes.take(frame.positions, 3 * points_) ||
         !bytes.take(frame.channels, channels_ * points_) ||
         !bytes.take_sized(frame.contacts)) {
-      throw InputError("frames are missing", frames, remedy);
+      throw damaged();
     }
     sum_.add(record(frame));
     frames_.push_back(std::move(frame));
   }
-  if (sum_.value() != saved.sum) {
-    throw InputError("the frames are damaged: their checksum does not fit", frames,
-                     remedy);
-  }
+  if (sum_.value() != saved.sum) throw damaged();
   saved_ = std::move(saved.snapshot);
 }
 
