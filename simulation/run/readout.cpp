@@ -206,12 +206,12 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first,
       continue;
     }
     read([&](InOut f) {
-      for (const ContactForce& contact :
-           std::ranges::equal_range(contacts, k, {}, &ContactForce::strand)) {
-        if (contact.effect != e) continue;
-        const std::size_t at = nearest(contact.place, x);
-        store3(load3(&f[3 * at]) + contact.force, &f[3 * at]);
-        add_contact(contact.place, contact.force, frame);
+      auto contact = std::ranges::lower_bound(contacts, k, {}, &ContactForce::strand);
+      for (; contact != contacts.end() && contact->strand == k; ++contact) {
+        if (contact->effect != e) continue;
+        const std::size_t at = nearest(contact->place, x);
+        store3(load3(&f[3 * at]) + contact->force, &f[3 * at]);
+        add_contact(contact->place, contact->force, frame);
       }
     });
   }

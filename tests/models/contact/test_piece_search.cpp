@@ -40,6 +40,7 @@ TEST(BoxPairs, AreAllThatOverlapOnceEach) {
   std::size_t some = 0;
   for (const double size : {1e-3, 0.05, 0.3, 3.0}) {
     std::vector<Box> boxes;
+    boxes.reserve(301);
     for (int i = 0; i < 300; ++i) boxes.push_back(random_box(random, size));
     boxes.push_back(random_box(random, 1000));  // one of another size
     boxes[7].most.x = std::numeric_limits<double>::quiet_NaN();
