@@ -7,26 +7,38 @@
 #include "math/frame.h"
 #include "math/pack.h"
 
-/// Operations of kernels that are generic in the scalar: `double`, or a Pack with one of
-/// four strands per lane.
+/// Operations of kernels that are generic in the scalar: `double`, or a pack with one
+/// strand per lane.
 namespace tress {
 
 template <class Real>
 inline constexpr int lanes = 1;
-template <>
-inline constexpr int lanes<Pack> = Pack::lanes;
+template <class Number, int width>
+inline constexpr int lanes<PackOf<Number, width>> = width;
 
 inline double lane_of(double x, int /*lane*/) { return x; }
-inline double lane_of(const Pack& x, int lane) { return x[lane]; }
+template <class Number, int width>
+double lane_of(const PackOf<Number, width>& x, int lane) {
+  return static_cast<double>(x[lane]);
+}
 inline void set_lane(double& x, int /*lane*/, double value) { x = value; }
-inline void set_lane(Pack& x, int lane, double value) { x.set(lane, value); }
+template <class Number, int width>
+void set_lane(PackOf<Number, width>& x, int lane, double value) {
+  x.set(lane, static_cast<Number>(value));
+}
 
 inline double largest(double x) { return x; }
-inline double largest(const Pack& x) {
-  return std::max(std::max(x[0], x[1]), std::max(x[2], x[3]));
+template <class Number, int width>
+double largest(const PackOf<Number, width>& x) {
+  Number most = x[0];
+  for (int lane = 1; lane < width; ++lane) most = std::max(most, x[lane]);
+  return static_cast<double>(most);
 }
 inline bool is_finite(double x) { return std::isfinite(x); }
-inline bool is_finite(const Pack& x) { return std::isfinite(sum(x - x)); }
+template <class Number, int width>
+bool is_finite(const PackOf<Number, width>& x) {
+  return std::isfinite(sum(x - x));
+}
 
 /// Sum over four points of one strand; unchanged when lanes are strands, since each lane
 /// then holds its own point.

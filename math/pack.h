@@ -4,36 +4,66 @@
 
 namespace tress {
 
-/// Four numbers processed together: the points of an element, or four strands. Arithmetic
-/// is entry by entry, one AVX instruction on machines that have AVX.
-struct Pack {
-  static constexpr int lanes = 4;
-  using Vector __attribute__((vector_size(lanes * sizeof(double)))) = double;
+/// `width` numbers processed together, entry by entry; one instruction where the machine
+/// has registers of that size. Number = double or float.
+template <class Number, int width>
+struct PackOf {
+  static constexpr int lanes = width;
+  using Scalar = Number;
+  using Vector __attribute__((vector_size(width * sizeof(Number)))) = Number;
   Vector v;
 
-  Pack() = default;  // Pack x; is uninitialised, Pack x{}; zero, as for double
+  PackOf() = default;  // Pack x; is uninitialised, Pack x{}; zero, as for double
   // Implicit, so that kernels can mix numbers and packs.
-  Pack(double x) : v(Vector{x, x, x, x}) {}  // NOLINT(google-explicit-constructor)
-  explicit Pack(const Vector& x) : v(x) {}
-  Pack(double x0, double x1, double x2, double x3) : v(Vector{x0, x1, x2, x3}) {}
+  PackOf(double x)  // NOLINT(google-explicit-constructor)
+      : v(Vector{} + static_cast<Number>(x)) {}
+  explicit PackOf(const Vector& x) : v(x) {}
+  PackOf(Number x0, Number x1, Number x2, Number x3) requires(width == 4)
+      : v(Vector{x0, x1, x2, x3}) {}
 
-  double operator[](int lane) const { return v[lane]; }
-  void set(int lane, double x) { v[lane] = x; }
-  static Pack load(const double* p) { return {p[0], p[1], p[2], p[3]}; }
+  Number operator[](int lane) const { return v[lane]; }
+  void set(int lane, Number x) { v[lane] = x; }
+  static PackOf load(const Number* p) {
+    PackOf x;
+    for (int lane = 0; lane < width; ++lane) x.v[lane] = p[lane];
+    return x;
+  }
 
-  Pack& operator+=(const Pack& y) { return *this = *this + y; }
-  Pack& operator-=(const Pack& y) { return *this = *this - y; }
-  friend Pack operator+(const Pack& x, const Pack& y) { return Pack(x.v + y.v); }
-  friend Pack operator-(const Pack& x, const Pack& y) { return Pack(x.v - y.v); }
-  friend Pack operator*(const Pack& x, const Pack& y) { return Pack(x.v * y.v); }
-  friend Pack operator/(const Pack& x, const Pack& y) { return Pack(x.v / y.v); }
-  friend Pack operator-(const Pack& x) { return Pack(-x.v); }
+  PackOf& operator+=(const PackOf& y) { return *this = *this + y; }
+  PackOf& operator-=(const PackOf& y) { return *this = *this - y; }
+  friend PackOf operator+(const PackOf& x, const PackOf& y) { return PackOf(x.v + y.v); }
+  friend PackOf operator-(const PackOf& x, const PackOf& y) { return PackOf(x.v - y.v); }
+  friend PackOf operator*(const PackOf& x, const PackOf& y) { return PackOf(x.v * y.v); }
+  friend PackOf operator/(const PackOf& x, const PackOf& y) { return PackOf(x.v / y.v); }
+  friend PackOf operator-(const PackOf& x) { return PackOf(-x.v); }
 
-  friend double sum(const Pack& x) { return (x.v[0] + x.v[1]) + (x.v[2] + x.v[3]); }
-  friend bool operator==(const Pack& x, const Pack& y) {
-    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2] && x[3] == y[3];
+  friend Number sum(const PackOf& x) {  // of pairs of lanes, from the first on
+    Number all = 0;
+    for (int lane = 0; lane + 1 < width; lane += 2) all += x.v[lane] + x.v[lane + 1];
+    return width % 2 == 0 ? all : all + x.v[width - 1];
+  }
+  friend bool operator==(const PackOf& x, const PackOf& y) {
+    for (int lane = 0; lane < width; ++lane) {
+      if (x.v[lane] != y.v[lane]) return false;
+    }
+    return true;
+  }
+  /// Whether x <= limit in all lanes; false with a NaN.
+  friend bool all_up_to(const PackOf& x, Number limit) {
+    const auto over = x.v <= Vector{} + limit;
+    auto all = over[0];
+    for (int lane = 1; lane < width; ++lane) all &= over[lane];
+    return all != 0;
+  }
+  /// The lanes of `yes` where x <= limit, otherwise (NaN, too) those of `no`.
+  friend PackOf where_up_to(const PackOf& x, Number limit, const PackOf& yes,
+                            const PackOf& no) {
+    return PackOf(x.v <= Vector{} + limit ? yes.v : no.v);
   }
 };
+
+/// The points of an element, or four strands.
+using Pack = PackOf<double, 4>;
 
 inline double sum(double x) { return x; }
 

@@ -1,0 +1,246 @@
+// Heads of hair: what a step of a strand costs as a multiple of the reference kernel, in
+// the cache and out of it, and a head of 200 000 strands.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "experiments/benchmarks/fixture.h"
+#include "experiments/benchmarks/reference_kernel.h"
+#include "models/head/head.h"
+#include "simulation/run/crew.h"
+#include "simulation/run/timing.h"
+
+namespace tress::experiments::benchmarks {
+namespace {
+
+using models::Head;
+using models::HeadNumber;
+using models::HeadPack;
+
+constexpr int elements = 10;
+constexpr double length = 0.2, h = 1e-3;  // m, s
+
+/// Curls that differ a little from strand to strand.
+double curl(std::size_t k) { return 20 * (1 + 0.3 * std::sin(0.37 * (k % 97))); }  // 1/m
+
+models::Strand hair(std::size_t k) {
+  models::Material material;
+  material.youngs_modulus = 1e9;
+  material.shear_modulus = models::Material::shear_modulus_of(1e9, 0.48);
+  material.internal_friction = 1e-10;
+  return make_strand(material, {}, {.elements = elements, .length = length},
+                     models::uniform_shape({0, curl(k), 0}));
+}
+
+std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag) {
+  models::HeadOptions options;
+  options.elements = elements;
+  options.drag = drag;
+  options.longest = length;
+  auto made = helix_head(options, pack);
+  made->reserve(strands);
+  for (std::size_t k = 0; k < strands; ++k) made->add(hair(k));
+  return made;
+}
+
+class Reference {
+ public:
+  explicit Reference(std::size_t strands)
+      : blocks_(strands / reference::lanes),
+        state_(blocks_ * elements),
+        scratch_(elements) {
+    const models::Strand one = hair(0);
+    const models::CrossSection& section = one.segments.front().section;
+    const Vec moduli = stiffness(one.material, section);
+    // Units of length, gravity and mass, as a Head has them.
+    const double mu = one.material.density * section.area(), tau2 = length / 9.81,
+                 unit = mu * std::pow(length, 4) / tau2;
+    strand_ = {elements,
+               1.0 / elements,
+               1,
+               moduli.x / unit,
+               moduli.y / unit,
+               one.material.internal_friction / (unit * std::sqrt(tau2)),
+               1,
+               h / std::sqrt(tau2)};
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      for (std::size_t i = 0; i < elements; ++i) {
+        reference::State& s = state_[b * elements + i];
+        s = {};
+        for (int lane = 0; lane < reference::lanes; ++lane) {
+          s.k.y[lane] =
+              length * curl(b * reference::lanes + static_cast<std::size_t>(lane));
+        }
+        s.rest = s.k;
+      }
+    }
+  }
+  void step() {
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      reference::step(strand_, &state_[b * elements], scratch_.data());
+    }
+  }
+  /// 1/m.
+  double curvature(std::size_t strand, std::size_t element) const {
+    return state_[strand / reference::lanes * elements + element]
+               .k.y[static_cast<int>(strand % reference::lanes)] /
+           length;
+  }
+
+ private:
+  std::size_t blocks_;
+  reference::Strand strand_{};
+  std::vector<reference::State> state_;
+  std::vector<reference::Record> scratch_;
+};
+
+struct Stepping {
+  std::unique_ptr<Head> head;
+  std::unique_ptr<Head::Scratch> scratch = head->scratch();
+  double t = 0;
+  void step() {
+    for (std::size_t b = 0; b < head->blocks(); ++b) head->step(b, t, h, *scratch);
+    t += h;
+  }
+};
+
+/// Median of the ratios of neighbouring runs, in turn.
+double ratio(const std::function<void()>& of, const std::function<void()>& to) {
+  std::vector<double> ratios;
+  for (int i = 0; i < 31; ++i) {
+    const double first = seconds_of(i % 2 == 0 ? of : to),
+                 second = seconds_of(i % 2 == 0 ? to : of);
+    ratios.push_back(i % 2 == 0 ? first / second : second / first);
+  }
+  return median(ratios);
+}
+
+struct Line {
+  std::string_view name;
+  HeadPack pack;
+  std::size_t strands;
+  double drag;
+  double most;  // times the reference
+};
+constexpr Line lines[] = {
+    {"4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.2},
+    {"4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1.3},
+    {"4 of 64 bits, drag", {HeadNumber::float64, 4}, 64, 2e-5, 1.56},
+    {"8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 0.7},
+    {"8 of 32 bits", {HeadNumber::float32, 8}, 64, 0, 0.55},
+    {"16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 0.35}};
+
+void register_all() {
+  benchmark::RegisterBenchmark("reference/64", [](benchmark::State& state) {
+    Reference kernel(64);
+    for ([[maybe_unused]] auto _ : state) kernel.step();
+    count_per_element(state, 64 * elements);
+  });
+  for (const Line& line : lines) {
+    benchmark::RegisterBenchmark(
+        fmt::format("step/{}/{}", line.name, line.strands).c_str(),
+        [line](benchmark::State& state) {
+          Stepping of{head(line.strands, line.pack, line.drag)};
+          for ([[maybe_unused]] auto _ : state) of.step();
+          count_per_element(state, static_cast<int>(line.strands) * elements);
+        });
+  }
+}
+
+bool kept(const std::string& what, double value, double most) {
+  const bool good = value <= most;
+  fmt::print("requirement on heads: {}: {} takes {:.3g} (at most {:.3g})\n",
+             good ? "met" : "NOT met", what, value, most);
+  return good;
+}
+
+/// The reference moves as heads do: the same motion, to the error of its shorter series.
+bool same_motion() {
+  Reference kernel(64);
+  Stepping of{head(64, {HeadNumber::float64, 4}, 0)};
+  for (int s = 0; s < 20; ++s) {
+    kernel.step();
+    of.step();
+  }
+  std::vector<double> q(3 * elements), v(3 * elements);
+  double most = 0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    of.head->state(k, q, v);
+    for (std::size_t i = 0; i < elements; ++i) {
+      most =
+          std::max(most, std::abs(q[3 * i + 1] - kernel.curvature(k, i)) / q[3 * i + 1]);
+    }
+  }
+  return kept("the reference, its relative difference from a head,", most, 1e-2);
+}
+
+bool costs_met() {
+  bool met = true;
+  for (const Line& line : lines) {
+    Reference kernel(line.strands);
+    Stepping of{head(line.strands, line.pack, line.drag)};
+    const int repeat = static_cast<int>(40960 / line.strands);
+    const auto repeated = [repeat](auto& what) {
+      return [&what, repeat] {
+        for (int i = 0; i < repeat; ++i) what.step();
+      };
+    };
+    met = kept(fmt::format("{}, {} strands, over the reference", line.name, line.strands),
+               ratio(repeated(of), repeated(kernel)), line.most) &&
+          met;
+  }
+  return met;
+}
+
+/// 200 000 strands: building, memory, a step of gravity and drag, two threads over one.
+bool head_met() {
+  constexpr std::size_t strands = 200000;
+  std::unique_ptr<Head> all;
+  const double building = seconds_of([&] {
+    all = head(strands, {HeadNumber::float64, 8}, 2e-5);
+  });
+  bool met = kept("building 200 000 strands, s,", building, 10);
+  met = kept("memory of a strand, bytes,",
+             static_cast<double>(all->bytes()) / static_cast<double>(strands), 2048) &&
+        met;
+  double one = 0;
+  for (const int threads : {1, 2}) {
+    simulation::Crew crew(threads);
+    std::vector<std::unique_ptr<Head::Scratch>> scratch;
+    constexpr std::size_t parts = 64;
+    for (std::size_t p = 0; p < parts; ++p) scratch.push_back(all->scratch());
+    std::vector<double> times;
+    for (int s = 0; s < 9; ++s) {
+      times.push_back(seconds_of([&] {
+        crew.run(parts, [&](std::size_t p) {
+          const std::size_t blocks = all->blocks();
+          for (std::size_t b = blocks * p / parts; b < blocks * (p + 1) / parts; ++b) {
+            all->step(b, s * h, h, *scratch[p]);
+          }
+        });
+      }));
+    }
+    const double time = median(times);
+    if (threads == 1) {
+      one = time;
+    } else {
+      met = kept("a step of 200 000 strands on 2 threads, s,", time, 0.25) && met;
+      met = kept("on 2 threads over 1, its time,", time / one, 1 / 1.8) && met;
+    }
+  }
+  return met;
+}
+
+}  // namespace
+}  // namespace tress::experiments::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace tress::experiments::benchmarks;
+  register_all();
+  const Measured measured = run_benchmarks(argc, argv);
+  if (measured.exit_code != 0) return measured.exit_code;
+  const bool same = same_motion(), costs = costs_met(), whole = head_met();
+  return same && costs && whole ? 0 : 3;
+}

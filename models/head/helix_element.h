@@ -1,0 +1,287 @@
+#pragma once
+
+#include "math/helix.h"
+#include "models/head/matrix3.h"
+
+namespace tress::models {
+
+/// math/helix.h's functions at arc length s <= length, for kernels whose lanes are
+/// strands: which formula a lane takes does not depend on its neighbours, so results are
+/// the same bits for any number of lanes. Series of 9 terms for elements that wind by 1.5
+/// rad at most, 16 terms up to 4.5 rad, closed forms beyond.
+template <class T>
+class LaneFunctions {
+ public:
+  LaneFunctions(const Vec3<T>& kappa, const T& length)
+      : x2_(dot(kappa, kappa)),
+        winding_(x2_ * length * length),
+        short_(all_up_to(winding_, static_cast<typename T::Scalar>(helix::short_end))) {}
+
+  HelixFunctions<T> at(const T& s) const {
+    const HelixFunctions<T> few = helix::series<9>(s, x2_);
+    return short_ ? few : longer(s, few);
+  }
+  const T& x2() const { return x2_; }
+
+ private:
+  [[gnu::noinline]] HelixFunctions<T> longer(const T& s,
+                                             const HelixFunctions<T>& few) const {
+    const HelixFunctions<T> more = helix::series<16>(s, x2_);
+    HelixFunctions<T> all;
+    for (T HelixFunctions<T>::*f :
+         {&HelixFunctions<T>::S, &HelixFunctions<T>::A, &HelixFunctions<T>::B,
+          &HelixFunctions<T>::A1, &HelixFunctions<T>::B1, &HelixFunctions<T>::A2,
+          &HelixFunctions<T>::B2, &HelixFunctions<T>::A3, &HelixFunctions<T>::B3}) {
+      all.*f = where_up_to(winding_, static_cast<typename T::Scalar>(helix::short_end),
+                           few.*f, more.*f);
+    }
+    for (int lane = 0; lane < T::lanes; ++lane) {
+      if (!(lane_of(winding_, lane) > helix::long_end)) continue;
+      const HelixFunctions<double> one =
+          helix::closed_forms(lane_of(s, lane), lane_of(x2_, lane));
+      set_lane(all.S, lane, one.S);
+      set_lane(all.A, lane, one.A);
+      set_lane(all.B, lane, one.B);
+      set_lane(all.A1, lane, one.A1);
+      set_lane(all.B1, lane, one.B1);
+      set_lane(all.A2, lane, one.A2);
+      set_lane(all.B2, lane, one.B2);
+      set_lane(all.A3, lane, one.A3);
+      set_lane(all.B3, lane, one.B3);
+    }
+    return all;
+  }
+
+  T x2_, winding_;
+  bool short_;
+};
+
+/// A vector along an element: constants weighted with the functions of arc length.
+template <class T>
+struct AlongHelix {
+  Vec3<T> one, s, A, B, A1, B1, A2, B2;
+
+  Vec3<T> at(const T& arc, const HelixFunctions<T>& f) const {
+    return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
+           f.B2 * B2;
+  }
+};
+
+/// An element of constant Darboux vector kappa that changes at the rate kappa', in the
+/// components of its start: what models/reduced/helix.h states for one strand, with the
+/// products of e0 = (1, 0, 0) written out. With u = kappa x e0 and z = kappa x u
+///
+///     P = s e0 + A u + B z,    dP/dkappa_j = kappa_j r + B l_j + A m_j,
+///     r = A1 u + B1 z,  l_j = e_j x u + kappa x (e_j x e0),  m_j = e_j x e0.
+///
+/// So everything that is summed over an element is a combination of constant vectors;
+/// only the functions and their products have to be summed over its points.
+template <class T>
+class HelixElement {
+ public:
+  using Vec = Vec3<T>;
+  using Matrix = Matrix3<T>;
+
+  HelixElement(const Vec& kappa, const Vec& rate)
+      : k_(kappa),
+        v_(rate),
+        u_{T(0), kappa.z, -kappa.y},
+        z_{-(kappa.y * kappa.y + kappa.z * kappa.z), kappa.x * kappa.y,
+           kappa.x * kappa.z},
+        k_v_(dot(kappa, rate)),
+        v_v_(dot(rate, rate)),
+        u_v_{T(0), rate.z, -rate.y},
+        z_v_(cross(rate, u_) + cross(kappa, u_v_)),
+        l_v_(along_l(rate)) {}
+
+  const Vec& u() const { return u_; }
+  const Vec& z() const { return z_; }
+
+  Vec position(const T& s, const HelixFunctions<T>& f) const {
+    return {s + f.B * z_.x, f.A * u_.y + f.B * z_.y, f.A * u_.z + f.B * z_.z};
+  }
+  Matrix slope(const HelixFunctions<T>& f) const {
+    const Vec r{f.B1 * z_.x, f.A1 * u_.y + f.B1 * z_.y, f.A1 * u_.z + f.B1 * z_.z};
+    const T bx = f.B * k_.x, by = f.B * k_.y, bz = f.B * k_.z;
+    return Matrix::columns({k_.x * r.x, k_.x * r.y + by, k_.x * r.z + bz},
+                           {k_.y * r.x - T(2) * by, k_.y * r.y + bx, k_.y * r.z - f.A},
+                           {k_.z * r.x - T(2) * bz, k_.z * r.y + f.A, k_.z * r.z + bx});
+  }
+  /// P'' at kappa'' = 0.
+  Vec bias(const HelixFunctions<T>& f) const {
+    const T a_v = f.A1 * k_v_, b_v = f.B1 * k_v_;  // A', B'
+    const T a_vv = f.A2 * k_v_ * k_v_ + f.A1 * v_v_;
+    const T b_vv = f.B2 * k_v_ * k_v_ + f.B1 * v_v_;
+    return b_vv * z_ + T(2) * b_v * z_v_ + f.B * z_vv() + a_vv * u_ + T(2) * a_v * u_v_;
+  }
+
+  /// rho times the acceleration plus c times the velocity of its points, seen from a
+  /// start that moves with v, omega, a, alpha.
+  AlongHelix<T> inertial(const T& rho, const T& c, const Vec& v, const Vec& omega,
+                         const Vec& a, const Vec& alpha) const {
+    // rho (a + alpha x P + omega x (omega x P + 2 P') + P'') + c (v + omega x P + P').
+    const Vec spin = rho * alpha + c * omega;
+    const auto carried = [&](const Vec& x) {
+      return cross(spin, x) + cross(rho * omega, cross(omega, x));
+    };
+    const auto moved = [&](const Vec& x) {  // x: a constant of P'
+      return cross(T(2) * rho * omega, x) + c * x;
+    };
+    const T twice = T(2) * rho * k_v_, square = rho * k_v_ * k_v_, own = rho * v_v_;
+    AlongHelix<T> all;
+    all.one = rho * a + c * v;
+    all.s = carried({T(1), T(0), T(0)});
+    all.A = carried(u_) + moved(u_v_);
+    all.B = carried(z_) + moved(l_v_) + rho * z_vv();
+    all.A1 = k_v_ * moved(u_) + own * u_ + twice * u_v_;
+    all.B1 = k_v_ * moved(z_) + own * z_ + twice * z_v_;
+    all.A2 = square * u_;
+    all.B2 = square * z_;
+    return all;
+  }
+
+  struct Turn {
+    Matrix rotation;  // E, from the components of the tip to those of the start
+    Matrix turn;      // W: angular velocity of the tip = W kappa'
+    Vec velocity;     // W kappa'
+    Vec bias;         // its derivative at kappa'' = 0
+  };
+  Turn turn(const T& s, const HelixFunctions<T>& f, const T& x2) const {
+    Turn t;
+    t.rotation = of_cross(T(1), f.S, f.A, x2);
+    t.turn = of_cross(s, f.A, f.B, x2);
+    t.velocity = t.turn * v_;
+    const Vec turned = cross(k_, v_);
+    t.bias = k_v_ * (f.A1 * turned + f.B1 * cross(k_, turned)) + f.B * cross(v_, turned);
+    return t;
+  }
+
+  /// sum_j x_j l_j, and the three numbers l_j . b + m_j . a.
+  Vec along_l(const Vec& x) const {
+    return {T(-2) * (k_.y * x.y + k_.z * x.z), k_.y * x.x + k_.x * x.y,
+            k_.z * x.x + k_.x * x.z};
+  }
+  Vec back(const Vec& b, const Vec& a) const {
+    return {k_.y * b.y + k_.z * b.z, k_.x * b.y - T(2) * k_.y * b.x - a.z,
+            k_.x * b.z - T(2) * k_.z * b.x + a.y};
+  }
+
+ private:
+  Vec z_vv() const { return T(2) * cross(v_, u_v_); }  // z''
+  /// a I + b K + c K^2.
+  Matrix of_cross(const T& a, const T& b, const T& c, const T& x2) const {
+    const T &x = k_.x, &y = k_.y, &z = k_.z;
+    const T xy = c * (x * y), xz = c * (x * z), yz = c * (y * z);
+    return {{{a + c * (x * x - x2), xy - b * z, xz + b * y},
+             {xy + b * z, a + c * (y * y - x2), yz - b * x},
+             {xz - b * y, yz + b * x, a + c * (z * z - x2)}}};
+  }
+
+  Vec k_, v_, u_, z_;
+  T k_v_, v_v_;    // kappa . kappa', kappa' . kappa'
+  Vec u_v_, z_v_;  // u' = sum kappa'_j m_j, z'
+  Vec l_v_;        // sum kappa'_j l_j
+};
+
+/// Sums over the points of an element, weights w: of w times products of the functions,
+/// and of forces times functions.
+template <class T>
+struct HelixSums {
+  T one{}, s{}, A{}, B{}, A1{}, B1{};
+  T ss{}, sA{}, sB{}, sA1{}, sB1{};
+  T AA{}, AB{}, BB{}, AA1{}, AB1{}, BA1{}, BB1{}, A1A1{}, A1B1{}, B1B1{};
+  Vec3<T> force, force_s, force_A, force_B, force_A1, force_B1;
+
+  void add(const T& w, const T& arc, const HelixFunctions<T>& f) {
+    const T ws = w * arc, wA = w * f.A, wB = w * f.B, wA1 = w * f.A1, wB1 = w * f.B1;
+    one += w;
+    s += ws;
+    A += wA;
+    B += wB;
+    A1 += wA1;
+    B1 += wB1;
+    ss += ws * arc;
+    sA += ws * f.A;
+    sB += ws * f.B;
+    sA1 += ws * f.A1;
+    sB1 += ws * f.B1;
+    AA += wA * f.A;
+    AB += wA * f.B;
+    BB += wB * f.B;
+    AA1 += wA * f.A1;
+    AB1 += wA * f.B1;
+    BA1 += wB * f.A1;
+    BB1 += wB * f.B1;
+    A1A1 += wA1 * f.A1;
+    A1B1 += wA1 * f.B1;
+    B1B1 += wB1 * f.B1;
+  }
+  void add_force(const Vec3<T>& f_w, const T& arc, const HelixFunctions<T>& f) {
+    force = force + f_w;
+    force_s = force_s + arc * f_w;
+    force_A = force_A + f.A * f_w;
+    force_B = force_B + f.B * f_w;
+    force_A1 = force_A1 + f.A1 * f_w;
+    force_B1 = force_B1 + f.B1 * f_w;
+  }
+};
+
+/// What the equations need of them. With d_j = dP/dkappa_j: moments of inertia w =
+/// weight.
+template <class T>
+struct HelixMoments {
+  Vec3<T> first;            // sum w P
+  Symmetric3<T> second;     // sum w P P^T
+  Matrix3<T> momentum;      // rows j: sum w d_j
+  Matrix3<T> spin;          // rows j: sum w P x d_j
+  Symmetric3<T> inner;      // sum w d_i . d_j
+  Vec3<T> moment, unknown;  // sum P x f, sum d_j . f
+
+  HelixMoments(const HelixElement<T>& element, const Vec3<T>& k, const HelixSums<T>& m) {
+    using Vec = Vec3<T>;
+    const Vec &u = element.u(), &z = element.z();
+    const Vec e0{T(1), T(0), T(0)};
+    const auto combined = [&](const T& s, const T& a, const T& b) {  // s e0 + a u + b z
+      return Vec{s + b * z.x, a * u.y + b * z.y, a * u.z + b * z.z};
+    };
+    const auto spread = [&](const T& a, const T& b) {  // a u + b z
+      return Vec{b * z.x, a * u.y + b * z.y, a * u.z + b * z.z};
+    };
+    first = combined(m.s, m.A, m.B);
+    const Vec s_p = combined(m.ss, m.sA, m.sB), a_p = combined(m.sA, m.AA, m.AB),
+              b_p = combined(m.sB, m.AB, m.BB);  // sums of w times s P, A P, B P
+    // P P^T = e0 (s P)^T + u (A P)^T + z (B P)^T.
+    second = {s_p.x + z.x * b_p.x, u.y * a_p.y + z.y * b_p.y, u.z * a_p.z + z.z * b_p.z,
+              s_p.y + z.x * b_p.y, s_p.z + z.x * b_p.z,       u.y * a_p.z + z.y * b_p.z};
+    const Vec r = spread(m.A1, m.B1);
+    const Vec a_r = spread(m.AA1, m.AB1), b_r = spread(m.BA1, m.BB1);
+    const Vec u_z = cross(u, z);
+    // P x r.
+    const Vec p_r = cross(e0, spread(m.sA1, m.sB1)) + (m.AB1 - m.BA1) * u_z;
+    const T r_r = m.A1A1 * dot(u, u) + m.B1B1 * dot(z, z);  // u . z = 0
+    const Vec l[3] = {
+        {T(0), k.y, k.z}, {T(-2) * k.y, k.x, T(0)}, {T(-2) * k.z, T(0), k.x}};
+    momentum = {{k.x * r + m.B * l[0], k.y * r + m.B * l[1], k.z * r + m.B * l[2]}};
+    momentum.row[1].z -= m.A;
+    momentum.row[2].y += m.A;
+    spin = {{k.x * p_r + cross(b_p, l[0]), k.y * p_r + cross(b_p, l[1]),
+             k.z * p_r + cross(b_p, l[2])}};
+    // a_p x m_1 = a_p x -e2, a_p x m_2 = a_p x e1.
+    spin.row[1] = spin.row[1] + Vec{-a_p.y, a_p.x, T(0)};
+    spin.row[2] = spin.row[2] + Vec{-a_p.z, T(0), a_p.x};
+    const Vec g = element.back(b_r, a_r);
+    const T xx = k.x * k.x, yy = k.y * k.y, zz = k.z * k.z, xy = k.x * k.y,
+            xz = k.x * k.z, yz = k.y * k.z;
+    inner = {xx * r_r + T(2) * k.x * g.x + m.BB * (yy + zz),
+             yy * r_r + T(2) * k.y * g.y + m.BB * (T(4) * yy + xx) + m.AA,
+             zz * r_r + T(2) * k.z * g.z + m.BB * (T(4) * zz + xx) + m.AA,
+             xy * (r_r + m.BB) + k.x * g.y + k.y * g.x - m.AB * k.z,
+             xz * (r_r + m.BB) + k.x * g.z + k.z * g.x + m.AB * k.y,
+             yz * (r_r + T(4) * m.BB) + k.y * g.z + k.z * g.y};
+    moment = cross(e0, m.force_s) + cross(u, m.force_A) + cross(z, m.force_B);
+    const T f_r = dot(u, m.force_A1) + dot(z, m.force_B1);
+    unknown = f_r * k + element.back(m.force_B, m.force_A);
+  }
+};
+
+}  // namespace tress::models

@@ -1,0 +1,284 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "models/effects/gravity.h"
+#include "models/effects/linear_drag.h"
+#include "models/head/head.h"
+#include "models/reduced/super_helix.h"
+
+namespace tress::test_helix_head {
+
+using namespace models;
+using integrators::make_integrator;
+
+constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
+                              {HeadNumber::float64, 4},
+                              {HeadNumber::float64, 8},
+                              {HeadNumber::float32, 8},
+                              {HeadNumber::float32, 16}};
+
+struct Case {
+  std::string name;
+  int elements = 10, points = 8;
+  bool twist = true, moves = false;
+  double curl = 1;     // scales the rest shapes
+  bool sprung = true;  // released from another shape than that at rest
+  double drag = 2e-5, mass_damping = 0.5;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
+
+constexpr double h = 1e-4;  // s
+
+HeadOptions options(const Case& c) {
+  HeadOptions o{.elements = c.elements,
+                .points = c.points,
+                .twist = c.twist,
+                .gravity = {0.5, 1, -9.81},
+                .drag = c.drag,
+                .mass_damping = c.mass_damping,
+                .longest = 0.25,
+                .motion = {}};
+  o.motion.position = {0.01, 0.02, 1.5};
+  if (c.moves) {
+    o.motion.translations = {{{0, 1, 0.5}, one_minus_cosine(0.01, 3)}};
+    o.motion.rotations = {{{0, 0.6, 0.8}, one_minus_cosine(0.4, 2)}};
+  }
+  return o;
+}
+
+/// Strands that have nothing in common but their elements; their roots move as the head.
+Strand strand(const Case& c, std::size_t k) {
+  const double x = static_cast<double>(k % 11);
+  Material material;
+  material.density = 1300 + 10 * x;
+  material.youngs_modulus = 3e9 / (1 + x / 4);
+  material.internal_friction = 2e-11 * (1 + x);
+  const Vec natural{c.twist ? 4 - x / 3 : 0, 20 + 3 * std::sin(x), 5 * std::cos(x)};
+  const Vec initial{c.twist ? x / 4 : 0, 12, -7};
+  Strand made =
+      make_strand(material, {4e-5 + 2e-6 * x, 5e-5},
+                  {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
+                  uniform_shape(c.curl * natural),
+                  uniform_shape(c.curl * (c.sprung ? initial : natural)));
+  const HeadOptions o = options(c);
+  made.root = o.motion;
+  made.root.centre = o.motion.position;
+  made.root.position = o.motion.position + Vec{0.01 * x, 0.1 - 0.02 * x, 0.003};
+  made.root.frame = rotation({0, 0.6, -0.8}, 0.3 * x);
+  return made;
+}
+
+std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {
+  auto all = helix_head(options(c), pack);
+  for (std::size_t k = 0; k < strands; ++k) all->add(strand(c, k));
+  return all;
+}
+
+void advance(Head& all, int steps, double h = test_helix_head::h) {
+  const auto scratch = all.scratch();
+  for (int s = 0; s < steps; ++s) {
+    for (std::size_t b = 0; b < all.blocks(); ++b) all.step(b, s * h, h, *scratch);
+  }
+}
+
+/// The same strand by itself: coordinates in the head's order, and points.
+struct Alone {
+  std::vector<double> q, v, x;
+};
+Alone alone(const Case& c, std::size_t k, int steps, double change) {
+  const Strand one = strand(c, k);
+  const ReducedOptions of_model{
+      .dofs = c.twist ? 3 : 2, .tangent = ReducedTangent::stiff, .quadrature = c.points};
+  const HeadOptions o = options(c);
+  const auto system = super_helix(one, of_model,
+                                  {std::make_shared<Gravity>(o.gravity),
+                                   std::make_shared<LinearDrag>(o.drag, o.mass_damping)});
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  std::vector<double> q(n), v(n);
+  system->initial_state(q, v);
+  for (std::size_t i = 0; i < n; ++i) {
+    q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + 1 / one.length());
+  }
+  Options step;
+  step.step = h;
+  const auto method_of = make_integrator("semi_implicit_euler", *system, step);
+  EXPECT_EQ(method_of->start(0, q, v), Status::ok);
+  EXPECT_EQ(method_of->advance(steps * h), Status::ok);
+  Alone end;
+  end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
+  system->material_points()->positions(steps * h, method_of->q(), end.x);
+  const auto put = [&](In from, std::vector<double>& to) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {
+      if (c.twist) {
+        to.insert(to.end(), {from[3 * i], from[3 * i + 1], from[3 * i + 2]});
+      } else {
+        to.insert(to.end(), {0.0, from[2 * i], from[2 * i + 1]});
+      }
+    }
+  };
+  put(method_of->q(), end.q);
+  put(method_of->v(), end.v);
+  return end;
+}
+
+double apart(In x, In y) {
+  double most = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i] - y[i])) return std::numeric_limits<double>::infinity();
+    most = std::max(most, std::abs(x[i] - y[i]));
+  }
+  return most;
+}
+
+class HelixHead : public testing::TestWithParam<Case> {};
+
+// Both eliminate the same matrices in other orders of summation: some thousand roundings
+// an element, of 1e-16 each, that add up as a random walk and are amplified alike. So
+// they differ by no more than a relative change of the initial state by 1e-12 makes.
+TEST_P(HelixHead, StrandsMoveAsTheyDoAlone) {
+  const Case& c = GetParam();
+  constexpr int steps = 100;
+  constexpr std::size_t strands = 10;
+  const auto all = head(c, {HeadNumber::float64, 8}, strands);
+  advance(*all, steps);
+  const auto n = static_cast<std::size_t>(3 * c.elements);
+  std::vector<double> q(n), v(n), x(strands * (n + 3));
+  std::size_t done = 0;
+  for (std::size_t b = 0; b < all->blocks(); ++b) {
+    const std::size_t size = all->strands_of(b) * (n + 3);
+    all->positions(b, steps * h, std::span(x).subspan(done, size));
+    done += size;
+  }
+  ASSERT_EQ(done, x.size());
+  for (std::size_t k = 0; k < strands; ++k) {
+    SCOPED_TRACE(k);
+    EXPECT_FALSE(all->lost(k));
+    all->state(k, q, v);
+    const Alone want = alone(c, k, steps, 0);
+    const Alone changed = alone(c, k, steps, 1e-12);
+    EXPECT_LE(apart(q, want.q), apart(changed.q, want.q));
+    EXPECT_LE(apart(v, want.v), apart(changed.v, want.v));
+    const In points = std::span(x).subspan(k * (n + 3), n + 3);
+    EXPECT_LE(apart(points, want.x), apart(changed.x, want.x));
+    // It has moved, or all of this says nothing.
+    EXPECT_GT(apart(want.x, alone(c, k, 0, 0).x), 1e-4);
+  }
+}
+
+TEST_P(HelixHead, LanesAndThreadsGiveTheSameBits) {
+  const Case& c = GetParam();
+  std::size_t want = 0;
+  for (const int lanes : {1, 4, 8}) {
+    const auto all = head(c, {HeadNumber::float64, lanes}, 11);
+    advance(*all, 50);
+    if (lanes == 1) want = all->hash();
+    EXPECT_EQ(all->hash(), want) << lanes;
+  }
+  const auto f8 = head(c, {HeadNumber::float32, 8}, 19),
+             f16 = head(c, {HeadNumber::float32, 16}, 19);
+  advance(*f8, 50);
+  advance(*f16, 50);
+  EXPECT_EQ(f8->hash(), f16->hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, HelixHead,
+    testing::Values(Case{"Curly"}, Case{.name = "Moved", .moves = true},
+                    Case{.name = "BendingOnly", .twist = false, .moves = true},
+                    Case{.name = "FourPoints", .points = 4},
+                    Case{.name = "Straight", .curl = 0},
+                    Case{.name = "OneElement", .elements = 1, .points = 12},
+                    Case{.name = "Fine", .elements = 40, .points = 4, .moves = true},
+                    // Elements wind by up to 3 and by up to 6 rad: other formulas.
+                    Case{.name = "Tight", .points = 12, .curl = 5},
+                    Case{.name = "Tightest", .points = 16, .curl = 11},
+                    Case{.name = "InVacuum", .drag = 0, .mass_damping = 0}),
+    [](const auto& of) { return of.param.name; });
+
+// Of 32 bits, in units of length, gravity and mass.
+TEST(HelixHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
+  for (const int elements : {5, 10, 20, 40}) {
+    const Case c{
+        .name = "", .elements = elements, .points = 4, .moves = true, .sprung = false};
+    const auto wide = head(c, {HeadNumber::float64, 8}, 16),
+               narrow = head(c, {HeadNumber::float32, 16}, 16);
+    advance(*wide, 1000, 1e-3);
+    advance(*narrow, 1000, 1e-3);
+    const auto n = 3 * static_cast<std::size_t>(elements + 1);
+    std::vector<double> x(16 * n), y(16 * n);
+    wide->positions(0, 1, std::span(x).first(8 * n));
+    wide->positions(1, 1, std::span(x).last(8 * n));
+    narrow->positions(0, 1, y);
+    EXPECT_LE(apart(x, y), 1e-5 * 0.25) << elements;
+    EXPECT_GT(apart(x, y), 0) << elements;
+  }
+}
+
+// 11 of 64 strands cannot be computed: the others move as they do without them.
+TEST(HelixHeadWithLosses, OtherStrandsGoOn) {
+  const Case c{"", 10, 4};
+  const auto fails = [](std::size_t k) { return k % 6 == 1; };
+  for (const HeadPack& pack : packs) {
+    const auto sound = head(c, pack, 64), hurt = helix_head(options(c), pack);
+    std::size_t failing = 0;
+    for (std::size_t k = 0; k < 64; ++k) {
+      Strand one = strand(c, k);
+      if (fails(k)) {
+        ++failing;
+        for (Segment& s : one.segments) s.initial = {1e200, -1e200, 1e200};
+      }
+      hurt->add(one);
+    }
+    ASSERT_EQ(failing, 11u);
+    advance(*sound, 30);
+    advance(*hurt, 30);
+    std::vector<double> q(30), v(30), want_q(30), want_v(30);
+    for (std::size_t k = 0; k < 64; ++k) {
+      EXPECT_EQ(hurt->lost(k), fails(k)) << k;
+      EXPECT_FALSE(sound->lost(k));
+      hurt->state(k, q, v);
+      sound->state(k, want_q, want_v);
+      if (fails(k)) {
+        EXPECT_EQ(v, std::vector<double>(30)) << k;
+      } else {
+        EXPECT_EQ(q, want_q) << k;
+        EXPECT_EQ(v, want_v) << k;
+      }
+    }
+  }
+}
+
+TEST(HelixHeadMemory, IsTheStateAndTwentyNumbers) {
+  const Case c{"", 10, 4};
+  const auto all = head(c, {HeadNumber::float64, 8}, 16);
+  EXPECT_EQ(all->blocks(), 2u);
+  EXPECT_LE(all->bytes(), 16u * (10 * 9 + 21) * sizeof(double));
+}
+
+TEST(HelixHeadInput, IsRefusedWithTheReason) {
+  const Case c{"", 10, 4};
+  const auto all = helix_head(options(c), {});
+  EXPECT_THROW(all->add(strand({"", 9, 4}, 0)), InputError);
+  Strand graded = strand(c, 0);
+  graded.segments[3].length *= 1.5;
+  EXPECT_THROW(all->add(graded), InputError);
+  Strand thinner = strand(c, 0);
+  thinner.segments[3].section.a1 *= 0.5;
+  EXPECT_THROW(all->add(thinner), InputError);
+  Strand loose = strand(c, 0);
+  loose.free_root = FreeRoot{};
+  EXPECT_THROW(all->add(loose), InputError);
+  Strand tree = strand(c, 0);
+  tree.segments[3].parent = 0;
+  EXPECT_THROW(all->add(tree), InputError);
+  EXPECT_EQ(all->strands(), 0u);
+  EXPECT_EQ(all->blocks(), 0u);
+  EXPECT_THROW(helix_head(options(c), {HeadNumber::float64, 16}), InputError);
+  EXPECT_THROW(helix_head(options({"", 0}), {}), InputError);
+  EXPECT_THROW(helix_head(options({"", 5, 40}), {}), InputError);
+}
+
+}  // namespace tress::test_helix_head
