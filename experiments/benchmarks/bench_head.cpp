@@ -23,7 +23,9 @@ constexpr int elements = 10;
 constexpr double length = 0.2, h = 1e-3;  // m, s
 
 /// Curls that differ a little from strand to strand.
-double curl(std::size_t k) { return 20 * (1 + 0.3 * std::sin(0.37 * (k % 97))); }  // 1/m
+double curl(std::size_t k) {  // 1/m
+  return 20 * (1 + 0.3 * std::sin(0.37 * static_cast<double>(k % 97)));
+}
 
 models::Strand hair(std::size_t k) {
   models::Material material;
@@ -68,7 +70,7 @@ class Reference {
     for (std::size_t b = 0; b < blocks_; ++b) {
       for (std::size_t i = 0; i < elements; ++i) {
         reference::State& s = state_[b * elements + i];
-        s = {};
+        s = reference::State{};
         for (int lane = 0; lane < reference::lanes; ++lane) {
           s.k.y[lane] =
               length * curl(b * reference::lanes + static_cast<std::size_t>(lane));
