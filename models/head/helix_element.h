@@ -7,8 +7,8 @@ namespace tress::models {
 
 /// math/helix.h's functions at arc length s <= length, for kernels whose lanes are
 /// strands: which formula a lane takes does not depend on its neighbours, so results are
-/// the same bits for any number of lanes. Series of 9 terms for elements that wind by 1.5
-/// rad at most, 16 terms up to 4.5 rad, closed forms beyond.
+/// the same bits for any number of lanes. Series of 9 terms, or 6 in 32 bits, for
+/// elements that wind by 1.5 rad at most, 16 terms up to 4.5 rad, closed forms beyond.
 template <class T>
 class LaneFunctions {
  public:
@@ -18,27 +18,46 @@ class LaneFunctions {
         short_(all_up_to(winding_, static_cast<typename T::Scalar>(helix::short_end))) {}
 
   HelixFunctions<T> at(const T& s) const {
-    const HelixFunctions<T> few = helix::series<9>(s, x2_);
-    return short_ ? few : longer(s, few);
+    HelixFunctions<T> f;
+    if (short_) [[likely]] {
+      f = helix::series<few>(s, x2_);
+    } else {
+      const HelixFunctions<T> g = longer(s, x2_, winding_);
+      f.S = g.S;
+      f.A = g.A;
+      f.B = g.B;
+      f.A1 = g.A1;
+      f.B1 = g.B1;
+      f.A2 = g.A2;
+      f.B2 = g.B2;
+      f.A3 = g.A3;
+      f.B3 = g.B3;
+    }
+    return f;
   }
   const T& x2() const { return x2_; }
 
  private:
-  [[gnu::noinline]] HelixFunctions<T> longer(const T& s,
-                                             const HelixFunctions<T>& few) const {
-    const HelixFunctions<T> more = helix::series<16>(s, x2_);
+  /// Six terms leave 1e-9 at 1.5 rad.
+  static constexpr int few = sizeof(typename T::Scalar) == sizeof(double) ? 9 : 6;
+
+  /// Apart, with arguments by value: what a call might change could not stay in
+  /// registers.
+  [[gnu::noinline]] static HelixFunctions<T> longer(T s, T x2, T winding) {
+    const HelixFunctions<T> below = helix::series<few>(s, x2);
+    const HelixFunctions<T> more = helix::series<16>(s, x2);
     HelixFunctions<T> all;
     for (T HelixFunctions<T>::*f :
          {&HelixFunctions<T>::S, &HelixFunctions<T>::A, &HelixFunctions<T>::B,
           &HelixFunctions<T>::A1, &HelixFunctions<T>::B1, &HelixFunctions<T>::A2,
           &HelixFunctions<T>::B2, &HelixFunctions<T>::A3, &HelixFunctions<T>::B3}) {
-      all.*f = where_up_to(winding_, static_cast<typename T::Scalar>(helix::short_end),
-                           few.*f, more.*f);
+      all.*f = where_up_to(winding, static_cast<typename T::Scalar>(helix::short_end),
+                           below.*f, more.*f);
     }
     for (int lane = 0; lane < T::lanes; ++lane) {
-      if (!(lane_of(winding_, lane) > helix::long_end)) continue;
+      if (!(lane_of(winding, lane) > helix::long_end)) continue;
       const HelixFunctions<double> one =
-          helix::closed_forms(lane_of(s, lane), lane_of(x2_, lane));
+          helix::closed_forms(lane_of(s, lane), lane_of(x2, lane));
       set_lane(all.S, lane, one.S);
       set_lane(all.A, lane, one.A);
       set_lane(all.B, lane, one.B);

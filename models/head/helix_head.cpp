@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,11 @@ class HelixHead final : public Head {
     Own& scratch = static_cast<Own&>(given);
     Vec3<T>*const q = &q_[n_ * block], *const v = &v_[n_ * block];
     std::copy_n(q, n_, scratch.before.begin());
-    const HelixRoot<T> root = root_of(roots_[block], options_.motion.at(t + h));
+    if (scratch.t != t + h) {
+      scratch.t = t + h;
+      scratch.pose = options_.motion.at(scratch.t);
+    }
+    const HelixRoot<T> root = root_of(roots_[block], scratch.pose);
     kernel_.semi_implicit_step(materials_[block], root, &rest_[n_ * block],
                                h / units_.time, q, v, scratch.elements.data());
     T finite(0);  // 0 or NaN
@@ -179,7 +184,9 @@ class HelixHead final : public Head {
   struct Own final : Scratch {
     explicit Own(std::size_t elements) : elements(elements), before(elements) {}
     std::vector<typename HelixStrand<T>::Scratch> elements;
-    std::vector<Vec3<T>> before;  // q
+    std::vector<Vec3<T>> before;                          // q
+    double t = std::numeric_limits<double>::quiet_NaN();  // of the pose
+    RootPose pose;
   };
 
   void check(const Strand& strand) const {
