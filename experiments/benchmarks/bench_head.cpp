@@ -212,17 +212,19 @@ bool head_met() {
     simulation::Crew crew(threads);
     std::vector<std::unique_ptr<Head::Scratch>> scratch;
     constexpr std::size_t parts = 64;
+    scratch.reserve(parts);
     for (std::size_t p = 0; p < parts; ++p) scratch.push_back(all->scratch());
-    std::vector<double> times;
-    for (int s = 0; s < 9; ++s) {
-      times.push_back(seconds_of([&] {
+    constexpr std::size_t steps = 9;
+    std::vector<double> times(steps);
+    for (std::size_t s = 0; s < steps; ++s) {
+      times[s] = seconds_of([&] {
         crew.run(parts, [&](std::size_t p) {
           const std::size_t blocks = all->blocks();
           for (std::size_t b = blocks * p / parts; b < blocks * (p + 1) / parts; ++b) {
-            all->step(b, s * h, h, *scratch[p]);
+            all->step(b, static_cast<double>(s) * h, h, *scratch[p]);
           }
         });
-      }));
+      });
     }
     const double time = median(times);
     if (threads == 1) {

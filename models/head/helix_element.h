@@ -212,28 +212,29 @@ struct HelixSums {
   Vec3<T> force, force_s, force_A, force_B, force_A1, force_B1;
 
   void add(const T& w, const T& arc, const HelixFunctions<T>& f) {
-    const T ws = w * arc, wA = w * f.A, wB = w * f.B, wA1 = w * f.A1, wB1 = w * f.B1;
+    const T with_s = w * arc, with_a = w * f.A, with_b = w * f.B, with_a1 = w * f.A1,
+            with_b1 = w * f.B1;
     one += w;
-    s += ws;
-    A += wA;
-    B += wB;
-    A1 += wA1;
-    B1 += wB1;
-    ss += ws * arc;
-    sA += ws * f.A;
-    sB += ws * f.B;
-    sA1 += ws * f.A1;
-    sB1 += ws * f.B1;
-    AA += wA * f.A;
-    AB += wA * f.B;
-    BB += wB * f.B;
-    AA1 += wA * f.A1;
-    AB1 += wA * f.B1;
-    BA1 += wB * f.A1;
-    BB1 += wB * f.B1;
-    A1A1 += wA1 * f.A1;
-    A1B1 += wA1 * f.B1;
-    B1B1 += wB1 * f.B1;
+    s += with_s;
+    A += with_a;
+    B += with_b;
+    A1 += with_a1;
+    B1 += with_b1;
+    ss += with_s * arc;
+    sA += with_s * f.A;
+    sB += with_s * f.B;
+    sA1 += with_s * f.A1;
+    sB1 += with_s * f.B1;
+    AA += with_a * f.A;
+    AB += with_a * f.B;
+    BB += with_b * f.B;
+    AA1 += with_a * f.A1;
+    AB1 += with_a * f.B1;
+    BA1 += with_b * f.A1;
+    BB1 += with_b * f.B1;
+    A1A1 += with_a1 * f.A1;
+    A1B1 += with_a1 * f.B1;
+    B1B1 += with_b1 * f.B1;
   }
   void add_force(const Vec3<T>& f_w, const T& arc, const HelixFunctions<T>& f) {
     force = force + f_w;

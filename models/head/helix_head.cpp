@@ -132,9 +132,9 @@ class HelixHead final : public Head {
     const Root& root = roots_[block];
     const T length = materials_[block].length;
     FrameOf<T> frame = FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2};
-    Vec3<T> at = Vec3<T>((1 / units_.length) * pose.x) + frame * root.from;
+    Vec3<T> at = frame * root.from;  // seen from the motion's position
     frame = frame * root.frame;
-    store(at, 0, block, x);
+    store(pose.x, at, 0, block, x);
     for (std::size_t i = 0; i < n_; ++i) {
       const Vec3<T>& kappa = q_[n_ * block + i];
       const HelixElement<T> element(kappa, {});
@@ -143,7 +143,7 @@ class HelixHead final : public Head {
       at = at + frame * element.position(length, f);
       const Matrix3<T> turn = element.turn(length, f, functions.x2()).rotation;
       frame = frame * FrameOf<T>{turn.column(0), turn.column(1), turn.column(2)};
-      store(at, i + 1, block, x);
+      store(pose.x, at, i + 1, block, x);
     }
   }
 
@@ -182,7 +182,7 @@ class HelixHead final : public Head {
     FrameOf<T> frame;
   };
   struct Own final : Scratch {
-    explicit Own(std::size_t elements) : elements(elements), before(elements) {}
+    explicit Own(std::size_t n) : elements(n), before(n) {}
     std::vector<typename HelixStrand<T>::Scratch> elements;
     std::vector<Vec3<T>> before;                          // q
     double t = std::numeric_limits<double>::quiet_NaN();  // of the pose
@@ -238,10 +238,10 @@ class HelixHead final : public Head {
     return {tress::lane_of(x.x, lane), tress::lane_of(x.y, lane),
             tress::lane_of(x.z, lane)};
   }
-  void store(const Vec3<T>& at, std::size_t i, std::size_t block,
+  void store(const Vec& from, const Vec3<T>& at, std::size_t i, std::size_t block,
              std::span<double> x) const {
     for (std::size_t k = 0; k < strands_of(block); ++k) {
-      store3(units_.length * of_lane(at, static_cast<int>(k)),
+      store3(from + units_.length * of_lane(at, static_cast<int>(k)),
              &x[3 * (k * (n_ + 1) + i)]);
     }
   }

@@ -77,10 +77,10 @@ std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {
   return all;
 }
 
-void advance(Head& all, int steps, double h = test_helix_head::h) {
+void advance(Head& all, int steps, double dt = h) {
   const auto scratch = all.scratch();
   for (int s = 0; s < steps; ++s) {
-    for (std::size_t b = 0; b < all.blocks(); ++b) all.step(b, s * h, h, *scratch);
+    for (std::size_t b = 0; b < all.blocks(); ++b) all.step(b, s * dt, dt, *scratch);
   }
 }
 
@@ -198,15 +198,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{.name = "InVacuum", .drag = 0, .mass_damping = 0}),
     [](const auto& of) { return of.param.name; });
 
-// Of 32 bits, in units of length, gravity and mass.
+// In units of length, gravity and mass; hairs let go by a head at rest.
 TEST(HelixHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
-  for (const int elements : {5, 10, 20, 40}) {
-    const Case c{
-        .name = "", .elements = elements, .points = 4, .moves = true, .sprung = false};
+  for (const int elements : {5, 20}) {
+    const Case c{.name = "", .elements = elements, .points = 4, .sprung = false};
     const auto wide = head(c, {HeadNumber::float64, 8}, 16),
                narrow = head(c, {HeadNumber::float32, 16}, 16);
-    advance(*wide, 1000, 1e-3);
-    advance(*narrow, 1000, 1e-3);
+    advance(*wide, 500, 2e-3);
+    advance(*narrow, 500, 2e-3);
     const auto n = 3 * static_cast<std::size_t>(elements + 1);
     std::vector<double> x(16 * n), y(16 * n);
     wide->positions(0, 1, std::span(x).first(8 * n));
