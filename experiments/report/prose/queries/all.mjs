@@ -11,6 +11,7 @@ import * as findings from './findings.mjs';
 import * as flight from './flight.mjs';
 import * as friction from './friction.mjs';
 import * as hard from './hard.mjs';
+import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as references from './references.mjs';
 import * as scaling from './scaling.mjs';
@@ -30,6 +31,7 @@ export const queries = {
   flight,
   friction,
   hard,
+  heads,
   machine,
   references,
   scaling,

@@ -1,0 +1,301 @@
+// What does a head of hair cost: by number of strands, by what holds their numbers, and
+// by threads? And are the results the same?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "models/head/head.h"
+#include "simulation/files/parse.h"
+#include "simulation/run/crew.h"
+#include "simulation/run/timing.h"
+
+namespace tress::experiments::heads {
+namespace {
+
+using models::Head;
+using models::HeadNumber;
+using models::HeadPack;
+
+constexpr Column columns[] = {
+    {"strands", "number of hairs on the head"},
+    {"elements", "of each"},
+    {"bits", "of a number: 64 or 32"},
+    {"lanes", "hairs computed side by side"},
+    {"threads", "that share the blocks of hairs"},
+    {"build_s", "wall time to build them", true},
+    {"bytes_per_strand", "memory of a hair: state, rest shape, material, root"},
+    {"cost_per_step_s", "wall time of a step, median", true},
+    {"cost_per_element_step_s", "the same by hairs and elements", true},
+    {"cost_per_frame_s", "wall time of 1/60 s of motion and of reading all points", true},
+    {"lost", "hairs whose result was not finite"},
+    {"difference_rel",
+     "largest distance of a point from that in 64 bits, over the length; every 97th "
+     "hair"},
+    {"state", "checksum of all states at the end: equal bits, equal checksum"},
+};
+
+constexpr Parameter own_settings[] = {
+    {.name = "strands",
+     .help = "numbers of hairs, as in 1000,200000",
+     .text = true,
+     .fallback = "1000,20000,200000"},
+    {.name = "dt_s", .help = "step (s)", .number = 1.0 / 300, .min = 1e-7, .max = 0.1},
+    {.name = "frames",
+     .help = "of 1/60 s that are computed",
+     .number = 3,
+     .min = 1,
+     .max = 1e5,
+     .whole = true},
+};
+
+constexpr OwnOption command_options[] = {
+    {"strands", "strands", "numbers of hairs, as in 1000,200000", true},
+};
+
+constexpr double length = 0.2;      // m
+constexpr double frame = 1.0 / 60;  // s
+
+/// Hair `k` of `count`: roots spread evenly over the upper half of a head of 9 cm, curls
+/// that differ from hair to hair.
+models::Strand hair(std::size_t k, std::size_t count, int elements) {
+  const double place = static_cast<double>(k) + 0.5, golden = 2.399963229728653;
+  const double up = 1 - place / static_cast<double>(count), out = std::sqrt(1 - up * up);
+  const Vec normal{out * std::cos(golden * place), out * std::sin(golden * place), up};
+  models::Material material;
+  material.internal_friction = 2e-10;
+  const double curl = 15 + 10 * std::sin(0.37 * static_cast<double>(k % 97));
+  models::Strand made =
+      make_strand(material, {4e-5, 3e-5}, {.elements = elements, .length = length},
+                  models::uniform_shape({3, curl, 0}));
+  made.root.position = 0.09 * normal;
+  // A frame whose e0 is the normal.
+  const Vec side = std::abs(up) < 0.9 ? Vec{0, 0, 1} : Vec{1, 0, 0};
+  const Vec across = cross(normal, side);
+  const Vec e1 = 1 / norm(across) * across;
+  made.root.frame = {normal, e1, cross(normal, e1)};
+  return made;
+}
+
+std::unique_ptr<Head> head(std::size_t strands, int elements, HeadPack pack) {
+  models::HeadOptions options{
+      .elements = elements, .points = 8, .drag = 5e-5, .longest = length, .motion = {}};
+  options.motion.rotations = {{{0, 0, 1}, models::one_minus_cosine(0.3, 2)}};
+  auto made = helix_head(options, pack);
+  made->reserve(strands);
+  for (std::size_t k = 0; k < strands; ++k) made->add(hair(k, strands, elements));
+  return made;
+}
+
+struct Work {
+  std::size_t strands;
+  int elements;
+  HeadPack pack;
+  int threads;
+  double dt;
+  int frames;
+};
+
+/// A head that is advanced by a crew, each worker with its share of the blocks.
+class Moving {
+ public:
+  explicit Moving(const Work& work)
+      : elements_(static_cast<std::size_t>(work.elements)),
+        dt_(work.dt),
+        crew_(work.threads),
+        head_(head(work.strands, work.elements, work.pack)),
+        parts_(std::min(head_->blocks(), 32 * static_cast<std::size_t>(work.threads))) {
+    scratch_.reserve(parts_);
+    for (std::size_t p = 0; p < parts_; ++p) scratch_.push_back(head_->scratch());
+    x_.resize(3 * (elements_ + 1) * head_->strands());
+  }
+
+  void step() {
+    share([&](std::size_t block, std::size_t part) {
+      head_->step(block, time(), dt_, *scratch_[part]);
+    });
+    ++taken_;
+  }
+  /// (3 (elements + 1)) of every strand.
+  const std::vector<double>& read() {
+    const std::size_t each = 3 * (elements_ + 1);
+    share([&](std::size_t block, std::size_t) {
+      // All blocks before are full.
+      const std::size_t first = block * head_->strands_of(0);
+      head_->positions(
+          block, time(),
+          std::span(x_).subspan(each * first, each * head_->strands_of(block)));
+    });
+    return x_;
+  }
+  const Head& head_now() const { return *head_; }
+
+ private:
+  double time() const { return static_cast<double>(taken_) * dt_; }
+  template <class Use>
+  void share(Use use) {
+    const std::size_t blocks = head_->blocks();
+    crew_.run(parts_, [&](std::size_t p) {
+      const std::size_t end = blocks * (p + 1) / parts_;
+      for (std::size_t b = blocks * p / parts_; b < end; ++b) use(b, p);
+    });
+  }
+
+  std::size_t elements_;
+  double dt_;
+  simulation::Crew crew_;
+  std::unique_ptr<Head> head_;
+  std::size_t parts_;
+  std::vector<std::unique_ptr<Head::Scratch>> scratch_;
+  std::vector<double> x_;
+  long taken_ = 0;
+};
+
+/// From the same hairs in 64 bits: every 97th, on a head of theirs alone.
+double difference(const Work& work, int steps, const std::vector<double>& x) {
+  const std::size_t each = 3 * static_cast<std::size_t>(work.elements + 1);
+  std::unique_ptr<Head> few = head(0, work.elements, {HeadNumber::float64, 4});
+  std::vector<std::size_t> which;
+  for (std::size_t k = 0; k < work.strands; k += 97) {
+    few->add(hair(k, work.strands, work.elements));
+    which.push_back(k);
+  }
+  const auto scratch = few->scratch();
+  double most = 0;
+  std::vector<double> own(4 * each);
+  for (std::size_t b = 0; b < few->blocks(); ++b) {
+    for (int s = 0; s < steps; ++s) few->step(b, s * work.dt, work.dt, *scratch);
+    few->positions(b, steps * work.dt, own);
+    for (std::size_t i = 0; i < few->strands_of(b) * each; ++i) {
+      const std::size_t k = which[4 * b + i / each];
+      most = std::max(most, std::abs(own[i] - x[k * each + i % each]));
+    }
+  }
+  return most / length;
+}
+
+void run(const Work& work, Row& row) {
+  std::optional<Moving> moving;
+  row.set("build_s", seconds_of([&] { moving.emplace(work); }));
+  const Head& head = moving->head_now();
+  row.set("bytes_per_strand",
+          static_cast<double>(head.bytes()) / static_cast<double>(work.strands));
+  const int steps = std::max(1, static_cast<int>(std::lround(frame / work.dt)));
+  std::vector<double> of_steps, of_frames;
+  for (int f = 0; f < work.frames; ++f) {
+    of_frames.push_back(seconds_of([&] {
+      for (int s = 0; s < steps; ++s) {
+        of_steps.push_back(seconds_of([&] { moving->step(); }));
+      }
+      moving->read();
+    }));
+  }
+  const double step = median(of_steps);
+  row.set("cost_per_step_s", step);
+  row.set("cost_per_element_step_s",
+          step / (static_cast<double>(work.strands) * work.elements));
+  row.set("cost_per_frame_s", median(of_frames));
+  int lost = 0;
+  for (std::size_t k = 0; k < work.strands; ++k) lost += head.lost(k) ? 1 : 0;
+  row.set("lost", lost);
+  row.set("difference_rel", difference(work, steps * work.frames, moving->read()));
+  row.set("state", fmt::format("{:016x}", head.hash()));
+}
+
+constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
+                              {HeadNumber::float64, 4},
+                              {HeadNumber::float64, 8},
+                              {HeadNumber::float32, 8},
+                              {HeadNumber::float32, 16}};
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, own_settings);
+  const Parameters& own = settings.experiment();
+  std::vector<Case> all;
+  const std::vector<int> elements =
+      line.elements.empty() ? std::vector{10} : line.elements;
+  for (const std::string& count : split(own.word("strands"), ',', "strands")) {
+    const auto strands = static_cast<int>(parse_whole(count, "strands", 1, 1000000));
+    for (const int n : elements) {
+      for (const HeadPack& pack : packs) {
+        // One hair at a time is there for the comparison of bits and of cost by hair.
+        if (pack.lanes == 1 && strands > 20000) continue;
+        for (const int threads : {1, 2, 3}) {
+          if (threads > 1 && pack.lanes != 8) continue;
+          Row identity;
+          identity.set("strands", strands).set("elements", n);
+          identity.set("bits", pack.number == HeadNumber::float64 ? 64 : 32);
+          identity.set("lanes", pack.lanes).set("threads", threads);
+          const Work work{static_cast<std::size_t>(strands),
+                          n,
+                          pack,
+                          threads,
+                          own.number("dt_s"),
+                          own.whole("frames")};
+          all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
+  int compared = 0, different = 0;
+  double lost = 0, narrow = 0;
+  for (const Row& row : rows) {
+    if (!row.ok()) continue;
+    lost = std::max(lost, row.number("lost"));
+    if (row.number("bits") == 32) {
+      narrow = std::max(narrow, row.number("difference_rel"));
+    }
+    for (const Row& other : rows) {
+      if (!other.ok() || &other == &row) continue;
+      bool same = true;
+      for (const char* column : {"strands", "elements", "bits"}) {
+        same = same && row.text(column) == other.text(column);
+      }
+      if (!same) continue;
+      ++compared;
+      if (row.text("state") != other.text("state")) ++different;
+    }
+  }
+  const std::string bits = "any number of lanes and threads gives the same bits";
+  if (compared > 0) {
+    verdicts.check(bits, different == 0, different);
+  } else {
+    verdicts.not_judged(bits);
+  }
+  verdicts.check("no hair is lost", lost == 0, lost);
+  verdicts.check("in 32 bits no point is off by more than 1e-5 of the length",
+                 narrow <= 1e-5, narrow);
+}
+
+constexpr Unused unused[] = {{"models", "super_helix alone comes in packs"},
+                             {"integrators", "semi_implicit_euler alone does"},
+                             not_random};
+
+}  // namespace
+}  // namespace tress::experiments::heads
+
+int main(int argc, char** argv) {
+  using namespace tress::experiments;
+  using namespace tress::experiments::heads;
+  const Experiment experiment{
+      .name = "heads",
+      .question = "what does a head of hair cost, and is it the same by all threads?",
+      .example = "--strands 200000",
+      .columns = columns,
+      .settings = own_settings,
+      .options = command_options,
+      .unused = unused,
+      .cases = cases,
+      .checks = judge};
+  return run_experiment(experiment, argc, argv);
+}

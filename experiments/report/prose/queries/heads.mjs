@@ -1,0 +1,79 @@
+// What a head of hair costs.
+import { succeeded } from '../../src/tables.mjs';
+import { number, rows_of, table } from '../markdown.mjs';
+
+const heads = (tables) => rows_of(tables, 'heads').filter(succeeded);
+const largest = (tables) => {
+  const rows = heads(tables);
+  const most = Math.max(...rows.map((row) => Number(row.strands)));
+  return rows.filter((row) => Number(row.strands) === most);
+};
+const least = (rows, column) =>
+  rows.reduce((best, row) => (Number(row[column]) < Number(best[column]) ? row : best));
+
+export const cost_table = (tables) =>
+  table(
+    [
+      'hairs',
+      'bits',
+      'side by side',
+      'threads',
+      'memory of a hair, bytes',
+      'a step, ms',
+      'of an element, ns',
+      'a frame of 1/60 s and its points, ms',
+      'off 64 bits',
+      'checksum of the states',
+    ],
+    heads(tables).map((row) => [
+      row.strands,
+      row.bits,
+      row.lanes,
+      row.threads,
+      number(row.bytes_per_strand),
+      number(1e3 * row.cost_per_step_s),
+      number(1e9 * row.cost_per_element_step_s),
+      number(1e3 * row.cost_per_frame_s),
+      Number(row.difference_rel) === 0 ? '0' : number(row.difference_rel),
+      row.state.slice(0, 8),
+    ]),
+  );
+
+/// The fastest run of the largest head, for each number of bits.
+export const fastest = (tables) =>
+  ['64', '32']
+    .map((bits) => {
+      const row = least(
+        largest(tables).filter((each) => String(each.bits) === bits),
+        'cost_per_step_s',
+      );
+      return `${number(1e3 * row.cost_per_step_s)} ms a step in ${bits} bits (${row.lanes} side by side, ${row.threads} threads)`;
+    })
+    .join(', ');
+
+export const largest_head = (tables) => largest(tables)[0].strands;
+export const elements = (tables) => largest(tables)[0].elements;
+export const build = (tables) =>
+  number(Math.max(...largest(tables).map((row) => Number(row.build_s))));
+export const narrow = (tables) =>
+  number(
+    Math.max(
+      ...heads(tables)
+        .filter((row) => Number(row.bits) === 32)
+        .map((row) => Number(row.difference_rel)),
+    ),
+  );
+/// Time of one thread over that of two, for the largest head.
+export const two_threads = (tables) =>
+  ['64', '32']
+    .map((bits) => {
+      const of = (threads) =>
+        largest(tables).find(
+          (row) =>
+            String(row.bits) === bits &&
+            Number(row.lanes) === 8 &&
+            Number(row.threads) === threads,
+        );
+      return number(of(1).cost_per_step_s / of(2).cost_per_step_s);
+    })
+    .join(' and ');
