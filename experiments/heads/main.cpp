@@ -279,6 +279,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
 
 constexpr Unused unused[] = {{"models", "super_helix alone comes in packs"},
                              {"integrators", "semi_implicit_euler alone does"},
+                             {"repeat", "--set frames says how long a row is timed"},
                              not_random};
 
 }  // namespace
