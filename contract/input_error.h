@@ -14,4 +14,9 @@ class InputError : public std::runtime_error {
       : std::runtime_error(problem + " (" + where + "): " + remedy) {}
 };
 
+inline void refuse_if(bool refused, const std::string& problem, const std::string& where,
+                      const std::string& remedy) {
+  if (refused) throw InputError(problem, where, remedy);
+}
+
 }  // namespace tress

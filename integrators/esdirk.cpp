@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "integrators/control/error_controlled.h"
 #include "integrators/fixed_step.h"
@@ -17,9 +18,6 @@ namespace {
 /// Higher polynomials amplify what the fast modes left in them.
 constexpr std::size_t guessed_from = 3;
 
-/// Acceleration (m/s^2) by which what rests falls in a step, and makes no impact.
-constexpr double falling = 9.81;
-
 class FixedEsdirk final : public FixedStep {
  public:
   FixedEsdirk(System& system, const Options& options, const EsdirkTable& table)
@@ -29,7 +27,8 @@ class FixedEsdirk final : public FixedStep {
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
 
   Status step(double t, double h) override {
-    const Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * falling);
+    // By so much what rests falls in a step, and makes no impact.
+    const Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * earth_gravity);
     take(stages_.q(), stages_.v());
     std::ranges::copy(stages_.a(), a_.begin());
     std::ranges::copy(stages_.lambda(), lambda_.begin());

@@ -19,7 +19,19 @@ namespace tress {
 template <class T>
 struct HelixFunctions {
   T S, A, B, A1, B1, A2, B2, A3, B3;
+
+  static constexpr T HelixFunctions::*all[] = {
+      &HelixFunctions::S,  &HelixFunctions::A,  &HelixFunctions::B,
+      &HelixFunctions::A1, &HelixFunctions::B1, &HelixFunctions::A2,
+      &HelixFunctions::B2, &HelixFunctions::A3, &HelixFunctions::B3};
 };
+
+template <class T>
+void set_lane(HelixFunctions<T>& to, int lane, const HelixFunctions<double>& f) {
+  for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
+    set_lane(to.*HelixFunctions<T>::all[i], lane, f.*HelixFunctions<double>::all[i]);
+  }
+}
 
 namespace helix {
 
@@ -88,16 +100,7 @@ template <class X>
 HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
   HelixFunctions<Pack> all;
   for (int lane = 0; lane < Pack::lanes; ++lane) {
-    const HelixFunctions<double> one = one_by_one(s[lane], lane_of(x2, lane));
-    all.S.set(lane, one.S);
-    all.A.set(lane, one.A);
-    all.B.set(lane, one.B);
-    all.A1.set(lane, one.A1);
-    all.B1.set(lane, one.B1);
-    all.A2.set(lane, one.A2);
-    all.B2.set(lane, one.B2);
-    all.A3.set(lane, one.A3);
-    all.B3.set(lane, one.B3);
+    set_lane(all, lane, one_by_one(s[lane], lane_of(x2, lane)));
   }
   return all;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "contract/constants.h"
 #include "experiments/family/family.h"
 #include "experiments/problems/strand_models.h"
 #include "models/catalogue.h"
@@ -17,7 +18,6 @@ namespace tress::experiments::family {
 namespace {
 
 constexpr double density = 1300;  // kg/m^3
-constexpr double gravity = 9.81;  // m/s^2
 constexpr double twist_per_curvature = 0.3;
 constexpr double share_without_friction = 0.25;
 constexpr int least_elements = 20;
@@ -82,7 +82,8 @@ std::string_view name(Drive drive) {
 
 // Mass per length over bending stiffness: rho pi r^2 / (E pi r^4/4).
 double Hair::gravito_bending() const {
-  return 4 * density * gravity * std::pow(length, 3) / (youngs_modulus * radius * radius);
+  return 4 * density * earth_gravity * std::pow(length, 3) /
+         (youngs_modulus * radius * radius);
 }
 
 double Hair::winding() const {
@@ -152,7 +153,7 @@ Parameters parameters_of(const Hair& hair, std::string_view model, int elements)
   p.set("radius_m", text(hair.radius));
   p.set("youngs_modulus_pa", text(hair.youngs_modulus));
   p.set("density_kg_m3", text(density));
-  p.set("gravity_m_s2", text(gravity));
+  p.set("gravity_m_s2", text(earth_gravity));
   p.set("ellipticity", text(hair.ellipticity));
   p.set("natural_curvature_1_m", text(hair.natural_curvature));
   p.set("natural_twist_1_m", text(twist_per_curvature * hair.natural_curvature));

@@ -13,7 +13,7 @@
 #include "experiments/run/settings.h"
 #include "models/head/head.h"
 #include "simulation/files/parse.h"
-#include "simulation/run/crew.h"
+#include "simulation/run/head_run.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::heads {
@@ -102,65 +102,10 @@ struct Work {
   int frames;
 };
 
-/// A head that is advanced by a crew, each worker with its share of the blocks.
-class Moving {
- public:
-  explicit Moving(const Work& work)
-      : elements_(static_cast<std::size_t>(work.elements)),
-        dt_(work.dt),
-        crew_(work.threads),
-        head_(head(work.strands, work.elements, work.pack)),
-        parts_(std::min(head_->blocks(), 32 * static_cast<std::size_t>(work.threads))) {
-    scratch_.reserve(parts_);
-    for (std::size_t p = 0; p < parts_; ++p) scratch_.push_back(head_->scratch());
-    x_.resize(3 * (elements_ + 1) * head_->strands());
-  }
-
-  void step() {
-    share([&](std::size_t block, std::size_t part) {
-      head_->step(block, time(), dt_, *scratch_[part]);
-    });
-    ++taken_;
-  }
-  /// (3 (elements + 1)) of every strand.
-  const std::vector<double>& read() {
-    const std::size_t each = 3 * (elements_ + 1);
-    share([&](std::size_t block, std::size_t) {
-      // All blocks before are full.
-      const std::size_t first = block * head_->strands_of(0);
-      head_->positions(
-          block, time(),
-          std::span(x_).subspan(each * first, each * head_->strands_of(block)));
-    });
-    return x_;
-  }
-  const Head& head_now() const { return *head_; }
-
- private:
-  double time() const { return static_cast<double>(taken_) * dt_; }
-  template <class Use>
-  void share(Use use) {
-    const std::size_t blocks = head_->blocks();
-    crew_.run(parts_, [&](std::size_t p) {
-      const std::size_t end = blocks * (p + 1) / parts_;
-      for (std::size_t b = blocks * p / parts_; b < end; ++b) use(b, p);
-    });
-  }
-
-  std::size_t elements_;
-  double dt_;
-  simulation::Crew crew_;
-  std::unique_ptr<Head> head_;
-  std::size_t parts_;
-  std::vector<std::unique_ptr<Head::Scratch>> scratch_;
-  std::vector<double> x_;
-  long taken_ = 0;
-};
-
 /// From the same hairs in 64 bits: every 97th, on a head of theirs alone.
 double difference(const Work& work, int steps, const std::vector<double>& x) {
-  const std::size_t each = 3 * static_cast<std::size_t>(work.elements + 1);
-  std::unique_ptr<Head> few = head(0, work.elements, {HeadNumber::float64, 4});
+  const std::unique_ptr<Head> few = head(0, work.elements, {HeadNumber::float64, 4});
+  const std::size_t each = few->numbers();
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < work.strands; k += 97) {
     few->add(hair(k, work.strands, work.elements));
@@ -181,19 +126,22 @@ double difference(const Work& work, int steps, const std::vector<double>& x) {
 }
 
 void run(const Work& work, Row& row) {
-  std::optional<Moving> moving;
-  row.set("build_s", seconds_of([&] { moving.emplace(work); }));
-  const Head& head = moving->head_now();
+  std::optional<simulation::HeadRun> moving;
+  row.set("build_s", seconds_of([&] {
+            moving.emplace(head(work.strands, work.elements, work.pack), work.threads);
+          }));
+  const Head& all = moving->head();
   row.set("bytes_per_strand",
-          static_cast<double>(head.bytes()) / static_cast<double>(work.strands));
+          static_cast<double>(all.bytes()) / static_cast<double>(work.strands));
   const int steps = std::max(1, static_cast<int>(std::lround(frame / work.dt)));
-  std::vector<double> of_steps, of_frames;
+  std::vector<double> of_steps, of_frames, x;
+  int taken = 0;
   for (int f = 0; f < work.frames; ++f) {
     of_frames.push_back(seconds_of([&] {
       for (int s = 0; s < steps; ++s) {
-        of_steps.push_back(seconds_of([&] { moving->step(); }));
+        of_steps.push_back(seconds_of([&] { moving->step(taken++ * work.dt, work.dt); }));
       }
-      moving->read();
+      moving->positions(taken * work.dt, x);
     }));
   }
   const double step = median(of_steps);
@@ -202,10 +150,10 @@ void run(const Work& work, Row& row) {
           step / (static_cast<double>(work.strands) * work.elements));
   row.set("cost_per_frame_s", median(of_frames));
   int lost = 0;
-  for (std::size_t k = 0; k < work.strands; ++k) lost += head.lost(k) ? 1 : 0;
+  for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;
   row.set("lost", lost);
-  row.set("difference_rel", difference(work, steps * work.frames, moving->read()));
-  row.set("state", fmt::format("{:016x}", head.hash()));
+  row.set("difference_rel", difference(work, taken, x));
+  row.set("state", fmt::format("{:016x}", all.hash()));
 }
 
 constexpr HeadPack packs[] = {{HeadNumber::float64, 1},

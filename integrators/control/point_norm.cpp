@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "contract/constants.h"
+
 namespace tress::integrators {
 namespace {
-
-constexpr double gravity = 9.81;  // m/s^2
 
 double distance(In x, std::size_t i, In y, std::size_t j) {
   return std::hypot(x[3 * i] - y[3 * j], x[3 * i + 1] - y[3 * j + 1],
@@ -26,7 +26,7 @@ void PointNorm::start(const MaterialPoints& points, In x) {
     way[i] = way[j] + distance(x, i, x, j);
     length_ = std::max(length_, way[i]);
   }
-  time_ = std::sqrt(length_ / gravity);
+  time_ = std::sqrt(length_ / earth_gravity);
 }
 
 void PointNorm::look(In x, In y, double factor, bool velocity) {

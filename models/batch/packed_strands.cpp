@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::size_t width = Pack::lanes;
 
-void refuse(bool refused, const std::string& what, const char* remedy) {
-  if (refused) throw InputError(what, "batch of strands", remedy);
-}
+constexpr const char* place = "batch of strands";
 
 /// Quadrature points per segment, equal for all segments of a strand.
 int points(const ReducedStrand& strand) {
@@ -22,15 +20,16 @@ int points(const ReducedStrand& strand) {
 
 void check_alike(const std::vector<ReducedStrand>& strands) {
   const ReducedStrand& first = strands.front();
-  refuse(first.tangent != ReducedTangent::stiff || first.method != TreeMethod::recursive,
-         "only the stiff tangent is solved for several strands at once, recursively",
-         "use tangent = stiff and solver = recursive");
+  refuse_if(
+      first.tangent != ReducedTangent::stiff || first.method != TreeMethod::recursive,
+      "only the stiff tangent is solved for several strands at once, recursively", place,
+      "use tangent = stiff and solver = recursive");
   for (const ReducedStrand& strand : strands) {
-    refuse(strand.free_root.has_value(), "a free root", "clamp all roots");
-    refuse(!std::ranges::equal(strand.segments, first.segments, {},
-                               &ReducedSegment::parent, &ReducedSegment::parent),
-           "strands of different segments",
-           "cut all into equally many segments, hanging on one another alike");
+    refuse_if(strand.free_root.has_value(), "a free root", place, "clamp all roots");
+    refuse_if(!std::ranges::equal(strand.segments, first.segments, {},
+                                  &ReducedSegment::parent, &ReducedSegment::parent),
+              "strands of different segments", place,
+              "cut all into equally many segments, hanging on one another alike");
   }
 }
 
@@ -82,12 +81,12 @@ ReducedOptions with_same_points(std::span<const Strand> strands, Unknown unknown
 
 PackedStrands packed(std::span<const Strand> all_strands, Unknown unknown,
                      const ReducedOptions& options, std::vector<Effects> effects) {
-  refuse(all_strands.empty() || all_strands.size() > width,
-         std::to_string(all_strands.size()) + " strands", "give one to four");
-  refuse(effects.size() != all_strands.size(),
-         std::to_string(effects.size()) + " lists of effects for " +
-             std::to_string(all_strands.size()) + " strands",
-         "give every strand one, empty if nothing acts on it");
+  refuse_if(all_strands.empty() || all_strands.size() > width,
+            std::to_string(all_strands.size()) + " strands", place, "give one to four");
+  refuse_if(effects.size() != all_strands.size(),
+            std::to_string(effects.size()) + " lists of effects for " +
+                std::to_string(all_strands.size()) + " strands",
+            place, "give every strand one, empty if nothing acts on it");
   std::vector<ReducedStrand> strands;
   for (const Strand& strand : all_strands) {
     strands.push_back(reduced_strand(strand, unknown, options, {}));

@@ -63,8 +63,9 @@ class Head {
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
   virtual bool lost(std::size_t strand) const = 0;
 
-  /// Of the strands of a block: root and tips of elements (m), strand after strand; 3
-  /// (elements + 1) numbers each, for as many strands as there are in the block.
+  /// Of the strands of a block: root and tips of elements (m), strand after strand,
+  /// `numbers` each = 3 (elements + 1).
+  virtual std::size_t numbers() const = 0;
   virtual std::size_t strands_of(std::size_t block) const = 0;
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
   /// Darboux vectors (1/m) and their rates of a strand, 3 per element.

@@ -22,16 +22,7 @@ class LaneFunctions {
     if (short_) [[likely]] {
       f = helix::series<few>(s, x2_);
     } else {
-      const HelixFunctions<T> g = longer(s, x2_, winding_);
-      f.S = g.S;
-      f.A = g.A;
-      f.B = g.B;
-      f.A1 = g.A1;
-      f.B1 = g.B1;
-      f.A2 = g.A2;
-      f.B2 = g.B2;
-      f.A3 = g.A3;
-      f.B3 = g.B3;
+      f = longer(s, x2_, winding_);
     }
     return f;
   }
@@ -47,26 +38,13 @@ class LaneFunctions {
     const HelixFunctions<T> below = helix::series<few>(s, x2);
     const HelixFunctions<T> more = helix::series<16>(s, x2);
     HelixFunctions<T> all;
-    for (T HelixFunctions<T>::*f :
-         {&HelixFunctions<T>::S, &HelixFunctions<T>::A, &HelixFunctions<T>::B,
-          &HelixFunctions<T>::A1, &HelixFunctions<T>::B1, &HelixFunctions<T>::A2,
-          &HelixFunctions<T>::B2, &HelixFunctions<T>::A3, &HelixFunctions<T>::B3}) {
+    for (T HelixFunctions<T>::*f : HelixFunctions<T>::all) {
       all.*f = where_up_to(winding, static_cast<typename T::Scalar>(helix::short_end),
                            below.*f, more.*f);
     }
     for (int lane = 0; lane < T::lanes; ++lane) {
       if (!(lane_of(winding, lane) > helix::long_end)) continue;
-      const HelixFunctions<double> one =
-          helix::closed_forms(lane_of(s, lane), lane_of(x2, lane));
-      set_lane(all.S, lane, one.S);
-      set_lane(all.A, lane, one.A);
-      set_lane(all.B, lane, one.B);
-      set_lane(all.A1, lane, one.A1);
-      set_lane(all.B1, lane, one.B1);
-      set_lane(all.A2, lane, one.A2);
-      set_lane(all.B2, lane, one.B2);
-      set_lane(all.A3, lane, one.A3);
-      set_lane(all.B3, lane, one.B3);
+      set_lane(all, lane, helix::closed_forms(lane_of(s, lane), lane_of(x2, lane)));
     }
     return all;
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "math/lanes.h"
 #include "models/head/head.h"
@@ -14,11 +15,7 @@
 namespace tress::models {
 namespace {
 
-constexpr double earth = 9.81;  // m/s^2
-
-void refuse(bool refused, const std::string& what, const char* remedy) {
-  if (refused) throw InputError(what, "head of hair", remedy);
-}
+constexpr const char* place = "head of hair";
 
 /// In which 1 is a long hair, the time in which it falls by its length, and its mass.
 /// Numbers of any size then fit into 32 bits.
@@ -34,7 +31,7 @@ class HelixHead final : public Head {
       : options_(options),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
-        units_{options.longest, std::sqrt(options.longest / earth), 0} {
+        units_{options.longest, std::sqrt(options.longest / earth_gravity), 0} {
     options_.motion.frame = {};
   }
 
@@ -123,6 +120,7 @@ class HelixHead final : public Head {
   }
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
 
+  std::size_t numbers() const override { return 3 * (n_ + 1); }
   std::size_t strands_of(std::size_t block) const override {
     return std::min(width, lost_.size() - width * block);
   }
@@ -190,20 +188,20 @@ class HelixHead final : public Head {
   };
 
   void check(const Strand& strand) const {
-    refuse(strand.segments.size() != n_,
-           "a strand of " + std::to_string(strand.segments.size()) +
-               " elements among those of " + std::to_string(n_),
-           "cut all into equally many");
-    refuse(strand.free_root.has_value(), "a free root", "clamp all roots");
+    refuse_if(strand.segments.size() != n_,
+              "a strand of " + std::to_string(strand.segments.size()) +
+                  " elements among those of " + std::to_string(n_),
+              place, "cut all into equally many");
+    refuse_if(strand.free_root.has_value(), "a free root", place, "clamp all roots");
     const Segment& first = strand.segments.front();
     for (std::size_t i = 0; i < n_; ++i) {
       const Segment& s = strand.segments[i];
-      refuse(
+      refuse_if(
           s.parent != static_cast<int>(i) - 1 || s.mount.e0.x != 1 || s.mount.e1.y != 1,
-          "a strand with branches", "run trees one by one");
-      refuse(std::abs(s.length - first.length) > 1e-9 * first.length ||
-                 s.section.a1 != first.section.a1 || s.section.a2 != first.section.a2,
-             "elements of different length or section", "use grading = 1");
+          "a strand with branches", place, "run trees one by one");
+      refuse_if(std::abs(s.length - first.length) > 1e-9 * first.length ||
+                    s.section.a1 != first.section.a1 || s.section.a2 != first.section.a2,
+                "elements of different length or section", place, "use grading = 1");
     }
   }
 
@@ -259,12 +257,13 @@ class HelixHead final : public Head {
 }  // namespace
 
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  refuse(options.elements < 1, "no elements", "cut strands into at least one");
-  refuse(
+  refuse_if(options.elements < 1, "no elements", place, "cut strands into at least one");
+  refuse_if(
       options.points < 2 || options.points > HelixStrand<PackOf<double, 1>>::most_points,
-      std::to_string(options.points) + " points of an element", "use 2 to 16");
-  refuse(!(options.longest > 0) || !std::isfinite(options.longest),
-         "a length that is not positive", "give that of the longest strand, in m");
+      std::to_string(options.points) + " points of an element", place, "use 2 to 16");
+  refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
+            "a length that is not positive", place,
+            "give that of the longest strand, in m");
   if (pack.number == HeadNumber::float64) {
     if (pack.lanes == 1) return std::make_unique<HelixHead<PackOf<double, 1>>>(options);
     if (pack.lanes == 4) return std::make_unique<HelixHead<PackOf<double, 4>>>(options);

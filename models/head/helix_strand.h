@@ -185,7 +185,7 @@ class HelixStrand {
     all.ll.zz += mass;
     all.la = f_turn - cross_matrix(p);
     const Symmetric3<T> pp = inertia * points.second;
-    all.aa = upper_of(m_turn + cross_times(tip, f_turn)) - pp;
+    all.aa = upper(m_turn + cross_times(tip, f_turn)) - pp;
     const T trace = pp.xx + pp.yy + pp.zz;
     all.aa.xx += trace;
     all.aa.yy += trace;
@@ -215,13 +215,6 @@ class HelixStrand {
     all.la = all.la - by_force * z_a;
     all.aa = all.aa - upper(by_moment, z_a.transposed());
     return all;
-  }
-
-  static Matrix full(const Symmetric3<T>& a) {
-    return {{{a.xx, a.xy, a.xz}, {a.xy, a.yy, a.yz}, {a.xz, a.yz, a.zz}}};
-  }
-  static Symmetric3<T> upper_of(const Matrix& a) {
-    return {a.row[0].x, a.row[1].y, a.row[2].z, a.row[0].y, a.row[0].z, a.row[1].z};
   }
 
   /// Without twist, of the lower right block.

@@ -96,10 +96,14 @@ Symmetric3<T> congruent(const Matrix3<T>& r, const Symmetric3<T>& a) {
   const auto by = [&](const Vec3<T>& row) { return a * row; };
   return upper(Matrix3<T>{{by(r.row[0]), by(r.row[1]), by(r.row[2])}}, r);
 }
-/// x x^T.
 template <class T>
-Symmetric3<T> square(const Vec3<T>& x) {
-  return {x.x * x.x, x.y * x.y, x.z * x.z, x.x * x.y, x.x * x.z, x.y * x.z};
+Matrix3<T> full(const Symmetric3<T>& a) {
+  return {{{a.xx, a.xy, a.xz}, {a.xy, a.yy, a.yz}, {a.xz, a.yz, a.zz}}};
+}
+/// The upper triangle, as it stands.
+template <class T>
+Symmetric3<T> upper(const Matrix3<T>& a) {
+  return {a.row[0].x, a.row[1].y, a.row[2].z, a.row[0].y, a.row[0].z, a.row[1].z};
 }
 
 }  // namespace tress::models

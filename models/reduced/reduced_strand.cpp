@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "math/gauss_legendre.h"
 #include "models/strand/geometry.h"
@@ -61,20 +62,18 @@ Vec joint_angle(const Strand& strand, std::size_t i, Vec Segment::*shape) {
   return angle;
 }
 
-void refuse(bool refused, const char* what, const char* remedy) {
-  if (refused) throw InputError(what, "model option modes", remedy);
-}
+constexpr const char* place = "model option modes";
 
 void check_plane(const Strand& strand) {
-  refuse(strand.free_root.has_value(), "a free root does not stay in a plane",
-         "use modes = bend or bend_twist with motion = free");
+  refuse_if(strand.free_root.has_value(), "a free root does not stay in a plane", place,
+            "use modes = bend or bend_twist with motion = free");
   for (const Segment& segment : strand.segments) {
-    refuse(!identity(segment.mount), "branches leave the plane",
-           "use modes = bend or bend_twist for trees");
+    refuse_if(!identity(segment.mount), "branches leave the plane", place,
+              "use modes = bend or bend_twist for trees");
     for (const Vec& shape : {segment.natural, segment.initial}) {
-      refuse(shape.x != 0 || shape.z != 0,
-             "a shape with twist or curvature about e2 leaves the plane",
-             "use modes = bend or bend_twist, or a natural curvature about e1 alone");
+      refuse_if(shape.x != 0 || shape.z != 0,
+                "a shape with twist or curvature about e2 leaves the plane", place,
+                "use modes = bend or bend_twist, or a natural curvature about e1 alone");
     }
   }
 }
@@ -224,14 +223,13 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     reduced.to_tip = helix_turn(times(free, last.natural), last.length / 2);
   }
 
-  constexpr double earth = 9.81;  // m/s^2
   const CrossSection& section = strand.segments.front().section;
   reduced.length = strand.length();
   // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
   const double bending =
       12.36 * material.youngs_modulus * section.inertia1() /
       (material.density * section.area() * std::pow(reduced.length, 4));
-  reduced.rate = std::sqrt(earth / reduced.length + bending);
+  reduced.rate = std::sqrt(earth_gravity / reduced.length + bending);
   reduced.unknown_scale =
       joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / reduced.length;
   reduced.regular_mass = options.dofs < 3 || options.rotary_inertia;

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "contract/constants.h"
 #include "simulation/run/readout.h"
 
 namespace tress::simulation {
 namespace {
-
-constexpr double earth = 9.81;  // m/s^2
 
 double rms_root_acceleration(const Scene& scene, const RootMotion& root) {
   double squares = 0;
@@ -59,7 +58,7 @@ double load_over_weight(const Scene& scene, std::string_view effect) {
     count += points;
   }
   return std::sqrt(squares / static_cast<double>(count)) /
-         (earth * line_density(scene.strands.front()));
+         (earth_gravity * line_density(scene.strands.front()));
 }
 
 }  // namespace tress::simulation

@@ -7,6 +7,7 @@
 #include "experiments/numerics/fit.h"
 #include "integrators/integrator_options.h"
 #include "simulation/run/simulation.h"
+#include "tests/support/apart.h"
 #include "tests/support/drive.h"
 #include "tests/support/small_systems.h"
 
@@ -119,12 +120,6 @@ std::vector<double> at_end(std::string_view id, System& system, const Options& o
   Drive drive(id, system, options);
   EXPECT_EQ(drive.to(t_end), Status::ok) << drive.integrator->failure();
   return {drive.integrator->q().begin(), drive.integrator->q().end()};
-}
-
-double apart(const std::vector<double>& x, const std::vector<double>& y) {
-  double most = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, std::abs(x[i] - y[i]));
-  return most;
 }
 
 constexpr double step = 0.1;

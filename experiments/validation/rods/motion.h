@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/constants.h"
 #include "contract/system.h"
 #include "experiments/problems/strand_models.h"
 #include "models/effects/effect.h"
@@ -15,8 +16,7 @@ namespace tress::experiments::validation {
 /// Strands in motion, for validation tests in time. A run that fails throws
 /// std::runtime_error with the integrator's message.
 
-inline constexpr double earth_gravity = 9.81;  // m/s^2
-Effects weight();                              // along -z
+Effects weight();  // along -z
 
 /// Height (m) of the lowest of the points at which effects act on the strand, which
 /// touches a plane first. Models that integrate over segments have no such point at their

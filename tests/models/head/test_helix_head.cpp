@@ -8,6 +8,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/head/head.h"
 #include "models/reduced/super_helix.h"
+#include "tests/support/apart.h"
 
 namespace tress::test_helix_head {
 
@@ -122,15 +123,6 @@ Alone alone(const Case& c, std::size_t k, int steps, double change) {
   put(method_of->q(), end.q);
   put(method_of->v(), end.v);
   return end;
-}
-
-double apart(In x, In y) {
-  double most = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i] - y[i])) return std::numeric_limits<double>::infinity();
-    most = std::max(most, std::abs(x[i] - y[i]));
-  }
-  return most;
 }
 
 class HelixHead : public testing::TestWithParam<Case> {};

@@ -6,6 +6,7 @@
 #include "models/effects/linear_drag.h"
 #include "models/reduced/super_helix.h"
 #include "tests/models/reduced/strand_cases.h"
+#include "tests/support/apart.h"
 
 /// What the tests of batches share: strands that differ, and how far results may.
 namespace tress::testing_support {
@@ -85,15 +86,6 @@ inline Effects effects(int lane) {
 // A number takes part in at most some hundred operations per segment, whose rounding
 // errors of eps each add up: those of results are within this of the largest term.
 inline constexpr double rounding = 100 * segments * eps;
-
-inline double apart(In x, In y) {
-  double most = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i] - y[i])) return std::numeric_limits<double>::infinity();
-    most = std::max(most, std::abs(x[i] - y[i]));
-  }
-  return most;
-}
 
 /// The inverse of S(w), column by column.
 inline Eigen::MatrixXd inverse(System& strand, std::size_t n) {

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace tress {
+
+inline constexpr double earth_gravity = 9.81;  // m/s^2
+
+}  // namespace tress
