@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 
 namespace tress {
@@ -11,7 +13,9 @@ struct PackOf {
   static constexpr int lanes = width;
   using Scalar = Number;
   using Vector __attribute__((vector_size(width * sizeof(Number)))) = Number;
-  Vector v;
+  // Of its own accord a vector has the alignment of the widest registers that are
+  // allowed.
+  alignas(width * sizeof(Number)) Vector v;
 
   PackOf() = default;  // Pack x; is uninitialised, Pack x{}; zero, as for double
   // Implicit, so that kernels can mix numbers and packs.
@@ -23,6 +27,10 @@ struct PackOf {
 
   Number operator[](int lane) const { return v[lane]; }
   void set(int lane, Number x) { v[lane] = x; }
+  explicit PackOf(const std::array<Number, width>& x) : v(std::bit_cast<Vector>(x)) {}
+  std::array<Number, width> numbers() const {
+    return std::bit_cast<std::array<Number, width>>(v);
+  }
   static PackOf load(const Number* p) {
     PackOf x;
     for (int lane = 0; lane < width; ++lane) x.v[lane] = p[lane];

@@ -82,9 +82,11 @@ class Reference {
     }
   }
   void step() {
-    for (std::size_t b = 0; b < blocks_; ++b) {
-      reference::step(strand_, &state_[b * elements], scratch_.data());
-    }
+    by(widest_instructions(), [this] {
+      for (std::size_t b = 0; b < blocks_; ++b) {
+        reference::step(strand_, &state_[b * elements], scratch_.data());
+      }
+    });
   }
   /// 1/m.
   double curvature(std::size_t strand, std::size_t element) const {

@@ -66,6 +66,7 @@ void add_context() {
                               fmt::format("{:.2f}", sundials_speed_ratio()));
   benchmark::AddCustomContext("cpu", machine().cpu);
   benchmark::AddCustomContext("simd", machine().simd);
+  benchmark::AddCustomContext("kernels", machine().kernels);
   for (const auto& [library, version] : library_versions()) {
     benchmark::AddCustomContext(library, version);
   }

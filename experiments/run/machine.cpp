@@ -14,6 +14,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "math/instructions.h"
+
 namespace tress::experiments {
 namespace {
 
@@ -67,6 +69,7 @@ Machine machine() {
           .cpus = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN)),
           .caches = cache_sizes(),
           .simd = widest_simd(),
+          .kernels = name(widest_instructions()),
           .kernel = fmt::format("{} {}", system.sysname, system.release)};
 }
 

@@ -11,11 +11,12 @@ namespace tress::experiments {
 
 /// The hardware and system on which a timing depends. No host name: tables are published.
 struct Machine {
-  std::string cpu;     // model name
-  int cpus = 0;        // hardware threads
-  std::string caches;  // "L1d 32K, L2 512K, L3 16384K" of the first CPU
-  std::string simd;    // widest of sse2, avx, avx2, avx512f
-  std::string kernel;  // system and release
+  std::string cpu;      // model name
+  int cpus = 0;         // hardware threads
+  std::string caches;   // "L1d 32K, L2 512K, L3 16384K" of the first CPU
+  std::string simd;     // widest of sse2, avx, avx2, avx512f
+  std::string kernels;  // math/instructions.h: by which those in packs run
+  std::string kernel;   // system and release
 };
 Machine machine();
 

@@ -138,6 +138,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
         {"cpus", here.cpus},
         {"caches", here.caches},
         {"simd", here.simd},
+        {"kernels", here.kernels},
         {"kernel", here.kernel},
         {"load_before", load_},
         {"load_after", load_average()}}},

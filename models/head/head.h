@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "math/instructions.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
@@ -29,7 +31,10 @@ enum class HeadNumber { float64, float32 };
 struct HeadPack {
   HeadNumber number = HeadNumber::float64;
   int lanes = 4;  // 1, 4, 8; of float32 8, 16
+  std::optional<Instructions> instructions = {};  // none: the widest of the machine
 };
+/// As many lanes as the machine's registers have.
+HeadPack widest_pack(HeadNumber number);
 
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
 /// strands, each advanced by itself, by as many threads as there are. A strand takes its

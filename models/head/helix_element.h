@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "math/helix.h"
 #include "models/head/matrix3.h"
 
@@ -22,19 +24,27 @@ class LaneFunctions {
     if (short_) [[likely]] {
       f = helix::series<few>(s, x2_);
     } else {
-      f = longer(s, x2_, winding_);
+      const HelixFunctions<Numbers> all =
+          longer(s.numbers(), x2_.numbers(), winding_.numbers());
+      for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
+        f.*HelixFunctions<T>::all[i] = T(all.*HelixFunctions<Numbers>::all[i]);
+      }
     }
     return f;
   }
   const T& x2() const { return x2_; }
 
  private:
+  using Numbers = std::array<typename T::Scalar, T::lanes>;
+
   /// Six terms leave 1e-9 at 1.5 rad.
   static constexpr int few = sizeof(typename T::Scalar) == sizeof(double) ? 9 : 6;
 
   /// Apart, with arguments by value: what a call might change could not stay in
-  /// registers.
-  [[gnu::noinline]] static HelixFunctions<T> longer(T s, T x2, T winding) {
+  /// registers. As arrays, which all instructions pass alike (math/instructions.h).
+  [[gnu::noinline]] static HelixFunctions<Numbers> longer(Numbers arc, Numbers squared,
+                                                          Numbers angle) {
+    const T s(arc), x2(squared), winding(angle);
     const HelixFunctions<T> below = helix::series<few>(s, x2);
     const HelixFunctions<T> more = helix::series<16>(s, x2);
     HelixFunctions<T> all;
@@ -46,7 +56,12 @@ class LaneFunctions {
       if (!(lane_of(winding, lane) > helix::long_end)) continue;
       set_lane(all, lane, helix::closed_forms(lane_of(s, lane), lane_of(x2, lane)));
     }
-    return all;
+    HelixFunctions<Numbers> numbers;
+    for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
+      numbers.*HelixFunctions<Numbers>::all[i] =
+          (all.*HelixFunctions<T>::all[i]).numbers();
+    }
+    return numbers;
   }
 
   T x2_, winding_;

@@ -27,8 +27,9 @@ struct Units {
 template <class T>
 class HelixHead final : public Head {
  public:
-  explicit HelixHead(const HeadOptions& options)
+  HelixHead(const HeadOptions& options, Instructions instructions)
       : options_(options),
+        instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
         units_{options.longest, std::sqrt(options.longest / earth_gravity), 0} {
@@ -109,8 +110,10 @@ class HelixHead final : public Head {
       scratch.pose = options_.motion.at(scratch.t);
     }
     const HelixRoot<T> root = root_of(roots_[block], scratch.pose);
-    kernel_.semi_implicit_step(materials_[block], root, &rest_[n_ * block],
-                               h / units_.time, q, v, scratch.elements.data());
+    by(instructions_, [&] {
+      kernel_.semi_implicit_step(materials_[block], root, &rest_[n_ * block],
+                                 h / units_.time, q, v, scratch.elements.data());
+    });
     T finite(0);  // 0 or NaN
     for (std::size_t i = 0; i < n_; ++i) {
       const T all = q[i].x + q[i].y + q[i].z;
@@ -245,6 +248,7 @@ class HelixHead final : public Head {
   }
 
   HeadOptions options_;
+  Instructions instructions_;
   std::size_t n_;
   HelixStrand<T> kernel_;
   Units units_;
@@ -256,6 +260,12 @@ class HelixHead final : public Head {
 
 }  // namespace
 
+HeadPack widest_pack(HeadNumber number) {
+  const bool wide = widest_instructions() == Instructions::avx512;
+  if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
+  return {number, wide ? 16 : 8};
+}
+
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
   refuse_if(options.elements < 1, "no elements", place, "cut strands into at least one");
   refuse_if(
@@ -264,13 +274,20 @@ std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pac
   refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
             "a length that is not positive", place,
             "give that of the longest strand, in m");
+  const Instructions instructions = pack.instructions.value_or(widest_instructions());
+  refuse_if(!available(instructions),
+            std::string("no instructions ") + name(instructions) + " on this machine",
+            place, "leave the choice open");
+  const auto made = [&]<class T>() {
+    return std::make_unique<HelixHead<T>>(options, instructions);
+  };
   if (pack.number == HeadNumber::float64) {
-    if (pack.lanes == 1) return std::make_unique<HelixHead<PackOf<double, 1>>>(options);
-    if (pack.lanes == 4) return std::make_unique<HelixHead<PackOf<double, 4>>>(options);
-    if (pack.lanes == 8) return std::make_unique<HelixHead<PackOf<double, 8>>>(options);
+    if (pack.lanes == 1) return made.operator()<PackOf<double, 1>>();
+    if (pack.lanes == 4) return made.operator()<PackOf<double, 4>>();
+    if (pack.lanes == 8) return made.operator()<PackOf<double, 8>>();
   } else {
-    if (pack.lanes == 8) return std::make_unique<HelixHead<PackOf<float, 8>>>(options);
-    if (pack.lanes == 16) return std::make_unique<HelixHead<PackOf<float, 16>>>(options);
+    if (pack.lanes == 8) return made.operator()<PackOf<float, 8>>();
+    if (pack.lanes == 16) return made.operator()<PackOf<float, 16>>();
   }
   throw InputError(std::to_string(pack.lanes) + " lanes", "head of hair",
                    "use 1, 4 or 8 of 64 bits, 8 or 16 of 32 bits");

@@ -1,0 +1,45 @@
+#pragma once
+
+namespace tress {
+
+/// Sets of vector instructions. A program is compiled for the first, which it needs to
+/// run at all; kernels run by another one where the machine has it.
+enum class Instructions { base, avx512 };
+
+/// Whether this machine and this program have them.
+bool available(Instructions set);
+/// The last of those available.
+Instructions widest_instructions();
+/// "avx512" and so on; of `base` what the compiler was allowed, such as "avx2".
+const char* name(Instructions set);
+
+// Without fused products in the base, bits would depend on the machine. Clang inlines less
+// than is asked for, and then passes packs in registers that a callee does not look at.
+#if defined(__x86_64__) && defined(__FMA__) && defined(__GNUC__) && !defined(__clang__)
+#define TRESS_HAS_AVX512 1
+#else
+#define TRESS_HAS_AVX512 0
+#endif
+
+#if TRESS_HAS_AVX512
+template <class Work>
+[[gnu::target("avx512f,avx512dq,avx512bw,avx512vl"), gnu::flatten]] void by_avx512(
+    const Work& work) {
+  work();
+}
+#endif
+
+/// Does work() by instructions that are available, with the same bits. What work() calls
+/// is inlined; what cannot be must neither take nor return packs, which are passed
+/// differently there (LaneFunctions::longer).
+template <class Work>
+void by(Instructions set, const Work& work) {
+#if TRESS_HAS_AVX512
+  if (set == Instructions::avx512) return by_avx512(work);
+#else
+  static_cast<void>(set);
+#endif
+  work();
+}
+
+}  // namespace tress
