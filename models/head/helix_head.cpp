@@ -217,15 +217,14 @@ class HelixHead final : public Head {
 }  // namespace
 
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  refuse_if(options.elements < 1, "no elements", place_of_head,
-            "cut strands into at least one");
+  check_for_head(options);
   refuse_if(
       options.points < 2 || options.points > HelixStrand<PackOf<double, 1>>::most_points,
       std::to_string(options.points) + " points of an element", place_of_head,
       "use 2 to 16");
-  refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
-            "a length that is not positive", place_of_head,
-            "give that of the longest strand, in m");
+  refuse_if(options.method != HeadMethod::semi_implicit_euler,
+            "a method that super-helices do not have", place_of_head,
+            "use semi_implicit_euler");
   return on_pack(pack,
                  [&]<class T>() { return std::make_unique<HelixHead<T>>(options); });
 }

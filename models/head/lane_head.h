@@ -33,6 +33,17 @@ struct LaneRoot {
   FrameOf<T> frame;
 };
 
+/// Throws InputError unless these numbers make sense.
+inline void check_for_head(const HeadOptions& options) {
+  refuse_if(options.elements < 1, "no elements", place_of_head,
+            "cut strands into at least one");
+  refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
+            "a length that is not positive", place_of_head,
+            "give that of the longest strand, in m");
+  refuse_if(!(options.newton_tolerance > 0) || options.newton_iterations < 1,
+            "no tolerance or no iterations", place_of_head, "give positive ones");
+}
+
 /// Throws InputError unless the strand has `elements` segments of equal length and
 /// section, one after the other, and no free root.
 inline void check_for_head(const Strand& strand, std::size_t elements) {
