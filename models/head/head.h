@@ -4,12 +4,17 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "math/instructions.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
 namespace tress::models {
+
+/// How a step is computed, by the names of the integrators' catalogue.
+enum class HeadMethod { semi_implicit_euler, backward_euler };
 
 /// What acts on every strand of a head, and how strands are discretised.
 struct HeadOptions {
@@ -22,6 +27,10 @@ struct HeadOptions {
   double mass_damping = 0;     // force per mass and velocity, 1/s
   double longest = 0.2;        // m: sets the units of computation, any order of magnitude
   RootMotion motion;           // of the head, `position` any point of it, at rest
+  HeadMethod method = HeadMethod::semi_implicit_euler;
+  // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
+  double newton_tolerance = 1e-10;
+  int newton_iterations = 20;
 };
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
@@ -30,11 +39,43 @@ struct HeadOptions {
 enum class HeadNumber { float64, float32 };
 struct HeadPack {
   HeadNumber number = HeadNumber::float64;
-  int lanes = 4;  // 1, 4, 8; of float32 8, 16
+  int lanes = 4;                                  // 1, 4, 8; of float32 8, 16
   std::optional<Instructions> instructions = {};  // none: the widest of the machine
 };
 /// As many lanes as the machine's registers have.
-HeadPack widest_pack(HeadNumber number);
+inline HeadPack widest_pack(HeadNumber number) {
+  const bool wide = widest_instructions() == Instructions::avx512;
+  if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
+  return {number, wide ? 16 : 8};
+}
+
+/// A strand without a solution: it stays where it was, the others go on.
+struct HeadLoss {
+  std::size_t strand;
+  long step;    // of its head, the first is 1
+  double time;  // at which the step starts, s
+  std::string_view reason;
+};
+
+/// Newton's iterations of steps.
+struct HeadWork {
+  long steps = 0;       // of strands
+  long iterations = 0;  // of strands, side by side
+  long lanes = 0;       // of lanes, those that had no strand included
+  long alone = 0;       // damped and of shorter steps, one strand at a time
+  long retried = 0;     // steps of strands that needed them
+  long shortened = 0;   // of those, in shorter steps
+
+  HeadWork& operator+=(const HeadWork& more) {
+    steps += more.steps;
+    iterations += more.iterations;
+    lanes += more.lanes;
+    alone += more.alone;
+    retried += more.retried;
+    shortened += more.shortened;
+    return *this;
+  }
+};
 
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
 /// strands, each advanced by itself, by as many threads as there are. A strand takes its
@@ -59,6 +100,7 @@ class Head {
   class Scratch {
    public:
     virtual ~Scratch() = default;
+    HeadWork work;  // done with it
   };
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
@@ -66,22 +108,40 @@ class Head {
   /// result is not finite stays as it was, at rest, from then on. Safe for different
   /// blocks at once, each thread with its own scratch.
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
+  /// The same of blocks first to last - 1: methods that iterate fill the lanes of strands
+  /// that are done with the next strands, and so waste less on many blocks than on one.
+  /// The results are the same bits.
+  virtual void step(std::size_t first, std::size_t last, double t, double h,
+                    Scratch& scratch) {
+    for (std::size_t block = first; block < last; ++block) step(block, t, h, scratch);
+  }
   virtual bool lost(std::size_t strand) const = 0;
+  /// By strand and step; empty as well where the kernel does not say.
+  virtual std::vector<HeadLoss> losses() const { return {}; }
 
   /// Of the strands of a block: root and tips of elements (m), strand after strand,
   /// `numbers` each = 3 (elements + 1).
   virtual std::size_t numbers() const = 0;
   virtual std::size_t strands_of(std::size_t block) const = 0;
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
-  /// Darboux vectors (1/m) and their rates of a strand, 3 per element.
+  /// Coordinates and their rates of a strand, in the order of its elements: see the
+  /// functions below.
   virtual void state(std::size_t strand, std::span<double> q,
                      std::span<double> v) const = 0;
   /// Of the bits of all strands' states, in their order; equal for all numbers of lanes.
   virtual std::size_t hash() const = 0;
 };
 
-/// A head of super-helices (models/head/helix_strand.h). Throws InputError if the options
-/// or the pack make no sense.
+/// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors
+/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent. Throws InputError if
+/// the options or the pack make no sense.
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack);
+
+/// A head of discrete elastic rods (models/head/der_strand.h), `elements` edges each:
+/// semi_implicit_euler with the stiff tangent, or backward_euler. Coordinates are, per
+/// edge, the vector along it (m, world axes) and the angle of its frame; the rate of the
+/// first edge is the velocity of its end. Without rotary_inertia angles have no inertia;
+/// `points` is not read. Throws InputError as above.
+std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack);
 
 }  // namespace tress::models

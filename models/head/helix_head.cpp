@@ -1,28 +1,15 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "contract/constants.h"
 #include "contract/input_error.h"
-#include "math/lanes.h"
-#include "models/head/head.h"
 #include "models/head/helix_strand.h"
+#include "models/head/lane_head.h"
 
 namespace tress::models {
 namespace {
-
-constexpr const char* place = "head of hair";
-
-/// In which 1 is a long hair, the time in which it falls by its length, and its mass.
-/// Numbers of any size then fit into 32 bits.
-struct Units {
-  double length, time, density;  // m, s, kg/m
-  double stiffness() const { return density * std::pow(length, 4) / (time * time); }
-};
 
 template <class T>
 class HelixHead final : public Head {
@@ -32,7 +19,7 @@ class HelixHead final : public Head {
         instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
-        units_{options.longest, std::sqrt(options.longest / earth_gravity), 0} {
+        units_(HeadUnits::of(options.longest)) {
     options_.motion.frame = {};
   }
 
@@ -46,7 +33,7 @@ class HelixHead final : public Head {
 
   void add(const Strand& strand) override {
     models::check(strand);
-    check(strand);
+    check_for_head(strand, n_);
     const Segment& first = strand.segments.front();
     const CrossSection& section = first.section;
     const double density = strand.material.density * section.area();
@@ -153,35 +140,30 @@ class HelixHead final : public Head {
     const auto lane = static_cast<int>(strand % width);
     for (std::size_t i = 0; i < n_; ++i) {
       const std::size_t at = n_ * (strand / width) + i;
-      store3((1 / units_.length) * of_lane(q_[at], lane), &q[3 * i]);
-      store3(1 / (units_.length * units_.time) * of_lane(v_[at], lane), &v[3 * i]);
+      store3((1 / units_.length) * lane_of(q_[at], lane), &q[3 * i]);
+      store3(1 / (units_.length * units_.time) * lane_of(v_[at], lane), &v[3 * i]);
     }
   }
 
   std::size_t hash() const override {
-    std::size_t all = 1469598103934665603U;  // FNV-1a, by numbers
+    StateHash all;
     for (std::size_t k = 0; k < strands(); ++k) {
       const auto lane = static_cast<int>(k % width);
       for (std::size_t i = 0; i < n_; ++i) {
         for (const auto* state : {&q_, &v_}) {
-          const Vec x = of_lane((*state)[n_ * (k / width) + i], lane);
-          for (const double entry : {x.x, x.y, x.z}) {
-            all = (all ^ std::bit_cast<std::uint64_t>(entry)) * 1099511628211U;
-          }
+          const Vec x = lane_of((*state)[n_ * (k / width) + i], lane);
+          for (const double entry : {x.x, x.y, x.z}) all.add(entry);
         }
       }
     }
-    return all;
+    return all.value();
   }
 
  private:
   static constexpr std::size_t width = T::lanes;
 
-  /// Where a strand's root is in the head at rest.
-  struct Root {
-    Vec3<T> from;  // the motion's position
-    FrameOf<T> frame;
-  };
+  using Root = LaneRoot<T>;
+
   struct Own final : Scratch {
     explicit Own(std::size_t n) : elements(n), before(n) {}
     std::vector<typename HelixStrand<T>::Scratch> elements;
@@ -189,24 +171,6 @@ class HelixHead final : public Head {
     double t = std::numeric_limits<double>::quiet_NaN();  // of the pose
     RootPose pose;
   };
-
-  void check(const Strand& strand) const {
-    refuse_if(strand.segments.size() != n_,
-              "a strand of " + std::to_string(strand.segments.size()) +
-                  " elements among those of " + std::to_string(n_),
-              place, "cut all into equally many");
-    refuse_if(strand.free_root.has_value(), "a free root", place, "clamp all roots");
-    const Segment& first = strand.segments.front();
-    for (std::size_t i = 0; i < n_; ++i) {
-      const Segment& s = strand.segments[i];
-      refuse_if(
-          s.parent != static_cast<int>(i) - 1 || s.mount.e0.x != 1 || s.mount.e1.y != 1,
-          "a strand with branches", place, "run trees one by one");
-      refuse_if(std::abs(s.length - first.length) > 1e-9 * first.length ||
-                    s.section.a1 != first.section.a1 || s.section.a2 != first.section.a2,
-                "elements of different length or section", place, "use grading = 1");
-    }
-  }
 
   HelixRoot<T> root_of(const Root& root, const RootPose& pose) const {
     // In the components of the head, without units.
@@ -227,7 +191,7 @@ class HelixHead final : public Head {
     for (int lane = 0; lane < T::lanes; ++lane) {
       if (finite[lane] == 0) continue;
       for (std::size_t i = 0; i < n_; ++i) {
-        set_lane(q_[n_ * block + i], lane, of_lane(scratch.before[i], lane));
+        set_lane(q_[n_ * block + i], lane, lane_of(scratch.before[i], lane));
         set_lane(v_[n_ * block + i], lane, Vec{});
       }
       const std::size_t strand = width * block + static_cast<std::size_t>(lane);
@@ -235,14 +199,10 @@ class HelixHead final : public Head {
     }
   }
 
-  static Vec of_lane(const Vec3<T>& x, int lane) {
-    return {tress::lane_of(x.x, lane), tress::lane_of(x.y, lane),
-            tress::lane_of(x.z, lane)};
-  }
   void store(const Vec& from, const Vec3<T>& at, std::size_t i, std::size_t block,
              std::span<double> x) const {
     for (std::size_t k = 0; k < strands_of(block); ++k) {
-      store3(from + units_.length * of_lane(at, static_cast<int>(k)),
+      store3(from + units_.length * lane_of(at, static_cast<int>(k)),
              &x[3 * (k * (n_ + 1) + i)]);
     }
   }
@@ -251,7 +211,7 @@ class HelixHead final : public Head {
   Instructions instructions_;
   std::size_t n_;
   HelixStrand<T> kernel_;
-  Units units_;
+  HeadUnits units_;
   std::vector<Root> roots_;
   std::vector<HelixMaterial<T>> materials_;
   std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
@@ -260,37 +220,18 @@ class HelixHead final : public Head {
 
 }  // namespace
 
-HeadPack widest_pack(HeadNumber number) {
-  const bool wide = widest_instructions() == Instructions::avx512;
-  if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
-  return {number, wide ? 16 : 8};
-}
-
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  refuse_if(options.elements < 1, "no elements", place, "cut strands into at least one");
+  check_for_head(options);
   refuse_if(
       options.points < 2 || options.points > HelixStrand<PackOf<double, 1>>::most_points,
-      std::to_string(options.points) + " points of an element", place, "use 2 to 16");
-  refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
-            "a length that is not positive", place,
-            "give that of the longest strand, in m");
-  const Instructions instructions = pack.instructions.value_or(widest_instructions());
-  refuse_if(!available(instructions),
-            std::string("no instructions ") + name(instructions) + " on this machine",
-            place, "leave the choice open");
-  const auto made = [&]<class T>() {
-    return std::make_unique<HelixHead<T>>(options, instructions);
-  };
-  if (pack.number == HeadNumber::float64) {
-    if (pack.lanes == 1) return made.operator()<PackOf<double, 1>>();
-    if (pack.lanes == 4) return made.operator()<PackOf<double, 4>>();
-    if (pack.lanes == 8) return made.operator()<PackOf<double, 8>>();
-  } else {
-    if (pack.lanes == 8) return made.operator()<PackOf<float, 8>>();
-    if (pack.lanes == 16) return made.operator()<PackOf<float, 16>>();
-  }
-  throw InputError(std::to_string(pack.lanes) + " lanes", "head of hair",
-                   "use 1, 4 or 8 of 64 bits, 8 or 16 of 32 bits");
+      std::to_string(options.points) + " points of an element", place_of_head,
+      "use 2 to 16");
+  refuse_if(options.method != HeadMethod::semi_implicit_euler,
+            "a method that super-helices do not have", place_of_head,
+            "use semi_implicit_euler");
+  return on_pack(pack, [&]<class T>(Instructions set) {
+    return std::make_unique<HelixHead<T>>(options, set);
+  });
 }
 
 }  // namespace tress::models

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "contract/constants.h"
+#include "contract/input_error.h"
+#include "math/lanes.h"
+#include "models/head/head.h"
+
+/// What all heads of hair have in common, whatever their kernel.
+namespace tress::models {
+
+inline constexpr const char* place_of_head = "head of hair";
+
+/// In which 1 is a long hair, the time in which it falls by its length, and its mass.
+/// Numbers of any size then fit into 32 bits.
+struct HeadUnits {
+  double length, time, density;  // m, s, kg/m
+  static HeadUnits of(double longest) {
+    return {longest, std::sqrt(longest / earth_gravity), 0};
+  }
+  double stiffness() const { return density * std::pow(length, 4) / (time * time); }
+};
+
+/// Where a strand's root is in the head at rest.
+template <class T>
+struct LaneRoot {
+  Vec3<T> from;  // the motion's position
+  FrameOf<T> frame;
+};
+
+/// Throws InputError unless these numbers make sense.
+inline void check_for_head(const HeadOptions& options) {
+  refuse_if(options.elements < 1, "no elements", place_of_head,
+            "cut strands into at least one");
+  refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
+            "a length that is not positive", place_of_head,
+            "give that of the longest strand, in m");
+  refuse_if(!(options.newton_tolerance > 0) || options.newton_iterations < 1,
+            "no tolerance or no iterations", place_of_head, "give positive ones");
+}
+
+/// Throws InputError unless the strand has `elements` segments of equal length and
+/// section, one after the other, and no free root.
+inline void check_for_head(const Strand& strand, std::size_t elements) {
+  refuse_if(strand.segments.size() != elements,
+            "a strand of " + std::to_string(strand.segments.size()) +
+                " elements among those of " + std::to_string(elements),
+            place_of_head, "cut all into equally many");
+  refuse_if(strand.free_root.has_value(), "a free root", place_of_head,
+            "clamp all roots");
+  const Segment& first = strand.segments.front();
+  for (std::size_t i = 0; i < elements; ++i) {
+    const Segment& s = strand.segments[i];
+    refuse_if(
+        s.parent != static_cast<int>(i) - 1 || s.mount.e0.x != 1 || s.mount.e1.y != 1,
+        "a strand with branches", place_of_head, "run trees one by one");
+    refuse_if(std::abs(s.length - first.length) > 1e-9 * first.length ||
+                  s.section.a1 != first.section.a1 || s.section.a2 != first.section.a2,
+              "elements of different length or section", place_of_head,
+              "use grading = 1");
+  }
+}
+
+template <class T>
+Vec lane_of(const Vec3<T>& x, int lane) {
+  return {lane_of(x.x, lane), lane_of(x.y, lane), lane_of(x.z, lane)};
+}
+
+/// FNV-1a, by numbers.
+class StateHash {
+ public:
+  void add(double entry) {
+    all_ = (all_ ^ std::bit_cast<std::uint64_t>(entry)) * 1099511628211U;
+  }
+  std::size_t value() const { return all_; }
+
+ private:
+  std::size_t all_ = 1469598103934665603U;
+};
+
+/// The Head of this pack: made<T>(instructions) for the type T of the pack's numbers.
+/// Throws InputError if there is no such pack.
+template <class Made>
+std::unique_ptr<Head> on_pack(const HeadPack& pack, Made made) {
+  const Instructions set = pack.instructions.value_or(widest_instructions());
+  refuse_if(!available(set),
+            std::string("no instructions ") + name(set) + " on this machine",
+            place_of_head, "leave the choice open");
+  if (pack.number == HeadNumber::float64) {
+    if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>(set);
+    if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>(set);
+    if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
+  } else {
+    if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>(set);
+    if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
+  }
+  throw InputError(std::to_string(pack.lanes) + " lanes", place_of_head,
+                   "use 1, 4 or 8 of 64 bits, 8 or 16 of 32 bits");
+}
+
+}  // namespace tress::models

@@ -1,0 +1,362 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "models/head/lane_head.h"
+#include "models/head/lone_strand.h"
+
+namespace tress::models {
+
+/// A head of any model in lanes by a step of Newton's, or by as many as converge. A Model
+/// has
+///
+///     Real                                  // PackOf
+///     Strand, Element                       // Real only: what is known of them
+///     Clamp, Scratch(elements)
+///     elements(), unknowns()                // of a strand
+///     describe(strand, units, lane, Strand&, Element*, q, v)
+///     clamp(Strand, RootPose)
+///     renew(Element*, Clamp, q, v)          // reference frames, before a step
+///     predict(Strand, RootPose, RootPose, h, q, v, q_bar)   // q + h v
+///     newton(Strand, Element*, Clamp, Weights, q, v, a, correction, Scratch&)
+///     again(the same)                       // with the matrix of the last newton()
+///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
+///     positions(Strand, Element*, RootPose, q, use(i, Vec3<Real>))
+///     unit(HeadUnits, k)                    // of unknown k
+///
+/// all without units; poses are HeadUnits' multiples. Lanes do not mix, and decisions are
+/// taken lane by lane, so results are the same bits for any number of lanes, threads and
+/// blocks in a call.
+template <class Model>
+class SteppingHead final : public Head {
+ public:
+  using T = typename Model::Real;
+
+  SteppingHead(const HeadOptions& options, Instructions instructions)
+      : options_(options),
+        units_(HeadUnits::of(options.longest)),
+        model_(options, units_, instructions),
+        iterates_(options.method == HeadMethod::backward_euler),
+        n_(model_.elements()),
+        size_(model_.unknowns()),
+        of_state_((iterates_ ? 3 : 2) * size_) {
+    options_.motion.frame = {};
+  }
+
+  void reserve(std::size_t strands) override {
+    const std::size_t blocks = (strands + width - 1) / width;
+    strands_.reserve(blocks);
+    elements_.reserve(n_ * blocks);
+    state_.reserve(of_state_ * blocks);
+    lost_.reserve(strands);
+  }
+
+  void add(const models::Strand& strand) override {
+    models::check(strand);
+    check_for_head(strand, n_);
+    if (units_.density == 0) {
+      units_.density = strand.material.density * strand.segments.front().section.area();
+    }
+    const std::size_t block = lost_.size() / width;
+    const int own = static_cast<int>(lost_.size() % width);
+    if (own == 0) {
+      strands_.emplace_back();
+      elements_.resize(elements_.size() + n_);
+      state_.resize(state_.size() + of_state_, T(0));
+    }
+    models::Strand in_head = strand;
+    in_head.root = options_.motion;
+    in_head.root.position = strand.root.position;
+    in_head.root.frame = strand.root.frame;
+    if (!in_head.root.centre) in_head.root.centre = options_.motion.position;
+    model_.describe(in_head, options_.motion.position, units_, own, strands_[block],
+                    &elements_[n_ * block], q_of(block), v_of(block));
+    // The first strand of a block fills the lanes of those that may not come.
+    for (int lane = 1; own == 0 && lane < T::lanes; ++lane) {
+      copy_strand(block, 0, block, lane);
+    }
+    lost_.push_back(0);
+  }
+
+  std::size_t strands() const override { return lost_.size(); }
+  std::size_t blocks() const override { return strands_.size(); }
+  std::size_t bytes() const override {
+    return blocks() * (sizeof(typename Model::Strand) +
+                       n_ * sizeof(typename Model::Element) + of_state_ * sizeof(T)) +
+           lost_.size();
+  }
+  std::unique_ptr<Scratch> scratch() const override {
+    return std::make_unique<Own>(model_);
+  }
+
+  void step(std::size_t block, double t, double h, Scratch& given) override {
+    step(block, block + 1, t, h, given);
+  }
+  void step(std::size_t first, std::size_t last, double t, double h,
+            Scratch& given) override {
+    Own& own = static_cast<Own&>(given);
+    own.from = pose(t);
+    own.to = pose(t + h);
+    if (iterates_) {
+      iterate(first, last, t, h, own);
+    } else {
+      for (std::size_t block = first; block < last; ++block) once(block, t, h, own);
+    }
+  }
+
+  bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
+  std::vector<HeadLoss> losses() const override {
+    const std::scoped_lock lock(guard_);
+    std::vector<HeadLoss> all = losses_;
+    std::ranges::sort(all, {}, &HeadLoss::strand);
+    return all;
+  }
+
+  std::size_t numbers() const override { return 3 * (n_ + 1); }
+  std::size_t strands_of(std::size_t block) const override {
+    return std::min(width, lost_.size() - width * block);
+  }
+  void positions(std::size_t block, double t, std::span<double> x) const override {
+    const RootPose of_head = options_.motion.at(t);
+    model_.positions(strands_[block], of_head.frame, &state_[of_state_ * block],
+                     [&](std::size_t i, const Vec3<T>& at) {
+                       for (std::size_t k = 0; k < strands_of(block); ++k) {
+                         store3(
+                             of_head.x + units_.length * lane_of(at, static_cast<int>(k)),
+                             &x[3 * (k * (n_ + 1) + i)]);
+                       }
+                     });
+  }
+  void state(std::size_t strand, std::span<double> q,
+             std::span<double> v) const override {
+    const auto lane = static_cast<int>(strand % width);
+    const T* const from = &state_[of_state_ * (strand / width)];
+    for (std::size_t k = 0; k < size_; ++k) {
+      const double unit = model_.unit(units_, k);
+      q[k] = unit * lane_of(from[k], lane);
+      v[k] = unit / units_.time * lane_of(from[size_ + k], lane);
+    }
+  }
+  std::size_t hash() const override {
+    StateHash all;
+    for (std::size_t k = 0; k < strands(); ++k) {
+      const T* const from = &state_[of_state_ * (k / width)];
+      for (std::size_t i = 0; i < 2 * size_; ++i) {
+        all.add(lane_of(from[i], static_cast<int>(k % width)));
+      }
+    }
+    return all.value();
+  }
+
+ private:
+  static constexpr std::size_t width = T::lanes;
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  struct Own final : Scratch {
+    explicit Own(const Model& model) : work(model) {}
+    LaneWork<Model> work;
+    RootPose from, to;
+    std::vector<std::size_t> failed;
+  };
+
+  T* q_of(std::size_t block) { return &state_[of_state_ * block]; }
+  T* v_of(std::size_t block) { return q_of(block) + size_; }
+
+  RootPose pose(double t) const {
+    RootPose at = options_.motion.at(t);
+    const double l = units_.length, tau = units_.time;
+    at.x = (1 / l) * at.x;
+    at.v = (tau / l) * at.v;
+    at.a = (tau * tau / l) * at.a;
+    at.omega = tau * at.omega;
+    at.alpha = (tau * tau) * at.alpha;
+    return at;
+  }
+
+  void copy_strand(std::size_t from, int lane_from, std::size_t to, int lane_to) {
+    copy_lane<T>(strands_[from], lane_from, strands_[to], lane_to);
+    for (std::size_t i = 0; i < n_; ++i) {
+      copy_lane<T>(elements_[n_ * from + i], lane_from, elements_[n_ * to + i], lane_to);
+    }
+    copy_lane(q_of(from), lane_from, q_of(to), lane_to, of_state_);
+  }
+
+  /// One step of Newton's for a block where it lies.
+  void once(std::size_t block, double t, double h_s, Own& own) {
+    const double h = h_s / units_.time;
+    LaneWork<Model>& work = own.work;
+    T *const q = q_of(block), *const v = v_of(block), *const a = work.a();
+    typename Model::Element* const elements = &elements_[n_ * block];
+    const typename Model::Strand& strand = strands_[block];
+    model_.renew(elements, model_.clamp(strand, own.from), q, v);
+    model_.predict(strand, own.from, own.to, h, q, v, work.q_bar.data());
+    std::fill_n(a, size_, T(0));
+    const T size =
+        model_.newton(strand, elements, model_.clamp(strand, own.to), {1, h, h * h},
+                      work.q_bar.data(), v, a, work.step.data(), work.scratch);
+    const T pos(h * h), vel(h);
+    own.Scratch::work.steps += static_cast<long>(strands_of(block));
+    if (all_up_to(size, std::numeric_limits<typename T::Scalar>::max()) &&
+        !some_lost(block)) [[likely]] {
+      for (std::size_t k = 0; k < size_; ++k) {
+        v[k] -= vel * work.step[k];
+        q[k] = work.q_bar[k] - pos * work.step[k];
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      if (lost_[width * block + k] != 0) continue;
+      if (!std::isfinite(size[lane])) {
+        lose(width * block + k, t, h_s, "the result of the step is not finite");
+        continue;
+      }
+      for (std::size_t i = 0; i < size_; ++i) {
+        v[i].set(lane, (v[i] - vel * work.step[i])[lane]);
+        q[i].set(lane, (work.q_bar[i] - pos * work.step[i])[lane]);
+      }
+    }
+  }
+  bool some_lost(std::size_t block) const {
+    return std::any_of(&lost_[width * block], &lost_[width * block] + strands_of(block),
+                       [](char lost) { return lost != 0; });
+  }
+
+  /// Newton's iteration of the strands of these blocks: lanes that are done take the next
+  /// strand. Strands on which it fails are solved one by one in the end.
+  void iterate(std::size_t first, std::size_t last, double t, double h_s, Own& own) {
+    const double h = h_s / units_.time;
+    LaneWork<Model>& work = own.work;
+    HeadWork& done = own.Scratch::work;
+    std::size_t home[width];
+    NewtonJudge judges[width];
+    NewtonJudge::Rules rules[width]{};
+    std::fill_n(home, width, none);
+    own.failed.clear();
+    std::size_t next = width * first;
+    const std::size_t end = std::min(width * last, lost_.size());
+    for (bool refill = true;;) {
+      if (refill) {
+        fill(home, judges, next, end, work);
+        if (std::ranges::all_of(home, [](std::size_t k) { return k == none; })) break;
+        work.begin(model_, own.from, own.to, h);
+        for (std::size_t k = 0; k < width; ++k) {
+          rules[k] =
+              NewtonJudge::rules(options_.newton_tolerance, options_.newton_iterations,
+                                 work.resolved(model_, static_cast<int>(k)));
+        }
+        refill = false;
+      }
+      const T size = work.newton(model_);
+      work.move(T(1), work.step.data());
+      done.lanes += T::lanes;
+      for (int lane = 0; lane < T::lanes; ++lane) {
+        const auto k = static_cast<std::size_t>(lane);
+        if (home[k] == none) continue;
+        ++done.iterations;
+        switch (judges[k].judge(rules[k], lane_of(size, lane))) {
+          case NewtonJudge::Verdict::go_on:
+            continue;
+          case NewtonJudge::Verdict::converged:
+            put_home(work, lane, home[k]);
+            break;
+          case NewtonJudge::Verdict::failed:
+            own.failed.push_back(home[k]);
+            break;
+        }
+        ++done.steps;
+        home[k] = none;
+        refill = true;
+      }
+    }
+    for (const std::size_t strand : own.failed) alone(strand, t, h_s, own);
+  }
+
+  /// Takes the next strands into free lanes; into all lanes of a whole block at once.
+  void fill(std::size_t (&home)[width], NewtonJudge (&judges)[width], std::size_t& next,
+            std::size_t end, LaneWork<Model>& work) {
+    const bool all_free =
+        std::ranges::all_of(home, [](std::size_t k) { return k == none; });
+    if (all_free && next < end && next % width == 0) {
+      const std::size_t block = next / width;
+      work.strand = strands_[block];
+      std::copy_n(&elements_[n_ * block], n_, work.elements.begin());
+      std::copy_n(q_of(block), of_state_, work.state.begin());
+      for (std::size_t k = 0; k < width; ++k, ++next) {
+        if (next < end && lost_[next] == 0) home[k] = next;
+        judges[k] = {};
+      }
+      next = std::min(next, end);
+    }
+    for (std::size_t k = 0; k < width; ++k) {
+      if (home[k] != none) continue;
+      while (next < end && lost_[next] != 0) ++next;
+      if (next == end) return;
+      take(next, work, static_cast<int>(k));
+      home[k] = next++;
+      judges[k] = {};
+    }
+  }
+
+  void take(std::size_t strand, LaneWork<Model>& work, int lane) {
+    const std::size_t block = strand / width;
+    const auto from = static_cast<int>(strand % width);
+    copy_lane<T>(strands_[block], from, work.strand, lane);
+    for (std::size_t i = 0; i < n_; ++i) {
+      copy_lane<T>(elements_[n_ * block + i], from, work.elements[i], lane);
+    }
+    copy_lane(q_of(block), from, work.q_n(), lane, of_state_);
+  }
+  void put_home(LaneWork<Model>& work, int lane, std::size_t strand) {
+    const std::size_t block = strand / width;
+    const auto to = static_cast<int>(strand % width);
+    for (std::size_t i = 0; i < n_; ++i) {
+      copy_lane<T>(work.elements[i], lane, elements_[n_ * block + i], to);
+    }
+    copy_lane(work.q.data(), lane, q_of(block), to, size_);
+    copy_lane(work.v.data(), lane, v_of(block), to, size_);
+    copy_lane(work.a(), lane, v_of(block) + size_, to, size_);
+  }
+
+  void alone(std::size_t strand, double t, double h_s, Own& own) {
+    for (int lane = 0; lane < T::lanes; ++lane) take(strand, own.work, lane);
+    LoneStrand<Model> lone(model_, options_.newton_tolerance, options_.newton_iterations,
+                           own.work);
+    const bool solved =
+        lone.solve([&](double part) { return pose(t + part * h_s); }, h_s / units_.time);
+    ++own.Scratch::work.retried;
+    own.Scratch::work.alone += lone.iterations;
+    own.Scratch::work.shortened += lone.shortened ? 1 : 0;
+    if (solved) {
+      put_home(own.work, 0, strand);
+    } else {
+      lose(strand, t, h_s, "no solution for the step, nor for 64 parts of it");
+    }
+  }
+
+  void lose(std::size_t strand, double t, double h_s, std::string_view reason) {
+    const auto lane = static_cast<int>(strand % width);
+    T* const v = v_of(strand / width);
+    for (std::size_t k = 0; k < of_state_ - size_; ++k) v[k].set(lane, 0);
+    lost_[strand] = 1;
+    const std::scoped_lock lock(guard_);
+    losses_.push_back({strand, std::lround(t / h_s) + 1, t, reason});
+  }
+
+  HeadOptions options_;
+  HeadUnits units_;
+  Model model_;
+  bool iterates_;
+  std::size_t n_, size_, of_state_;  // per strand: elements, unknowns, numbers of state
+  std::vector<typename Model::Strand> strands_;    // (blocks)
+  std::vector<typename Model::Element> elements_;  // (blocks, elements)
+  std::vector<T> state_;                           // (blocks; q, v, and a if it iterates)
+  std::vector<char> lost_;                         // of each strand
+  mutable std::mutex guard_;
+  std::vector<HeadLoss> losses_;
+};
+
+}  // namespace tress::models

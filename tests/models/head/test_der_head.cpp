@@ -1,0 +1,239 @@
+#include <gtest/gtest.h>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "tests/models/head/der_strands.h"
+#include "tests/support/apart.h"
+
+namespace tress::test_der_head {
+
+using namespace models;
+using namespace testing_support;
+using integrators::make_integrator;
+
+constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
+                              {HeadNumber::float64, 4},
+                              {HeadNumber::float64, 8},
+                              {HeadNumber::float32, 8},
+                              {HeadNumber::float32, 16}};
+constexpr HeadMethod methods[] = {HeadMethod::semi_implicit_euler,
+                                  HeadMethod::backward_euler};
+
+std::unique_ptr<Head> head(const RodCase& c, HeadMethod method, HeadPack pack,
+                           std::size_t strands) {
+  HeadOptions options = rod_options(c);
+  options.method = method;
+  auto all = der_head(options, pack);
+  for (std::size_t k = 0; k < strands; ++k) all->add(rod(c, k));
+  return all;
+}
+
+void advance(Head& all, int steps, double h, std::size_t together = 100) {
+  const auto scratch = all.scratch();
+  for (int s = 0; s < steps; ++s) {
+    for (std::size_t b = 0; b < all.blocks(); b += together) {
+      all.step(b, std::min(all.blocks(), b + together), s * h, h, *scratch);
+    }
+  }
+}
+
+/// A strand by itself after the same steps: points, coordinates in the head's order.
+struct Alone {
+  std::vector<double> q, v, x;
+};
+Alone alone(const RodCase& c, HeadMethod method, std::size_t k, int steps, double h,
+            double change) {
+  const bool newton = method == HeadMethod::backward_euler;
+  const auto system = rod_alone(c, k, newton ? "exact" : "stiff");
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  std::vector<double> q(n), v(n);
+  system->initial_state(q, v);
+  const Vec root = rod(c, k).root.at(0).x;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double from = i < n / 4 * 3 ? (&root.x)[i % 3] : 0;
+    q[i] += (i % 2 == 0 ? change : -change) * (q[i] - from);
+  }
+  Options options;
+  options.step = h;
+  const auto method_of = make_integrator(
+      newton ? "backward_euler" : "semi_implicit_euler", *system, options);
+  EXPECT_EQ(method_of->start(0, q, v), Status::ok);
+  EXPECT_EQ(method_of->advance(steps * h), Status::ok) << method_of->failure();
+  Alone end;
+  end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
+  system->material_points()->positions(steps * h, method_of->q(), end.x);
+  end.q = as_edges(method_of->q(), load3(end.x.data()));
+  end.v = as_edges(method_of->v(), {});
+  return end;
+}
+
+class DerHead : public testing::TestWithParam<RodCase> {};
+
+// Both eliminate the same matrices in other orders. An edge rounded by 1e-16 of itself is
+// to the springs what a change of the state by as much is: a hundred steps of forty edges
+// add up some thousand of them, amplified alike. So strands differ by no more than a
+// relative change of the initial state by 1e-11 makes, and by roundings of what they are.
+// The head renews references a step later: an angle that has just become 0 is left out.
+TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
+  const RodCase& c = GetParam();
+  constexpr int steps = 100;
+  constexpr double h = 1e-3;
+  constexpr std::size_t strands = 10;
+  for (const HeadMethod method : methods) {
+    SCOPED_TRACE(static_cast<int>(method));
+    const auto all = head(c, method, {HeadNumber::float64, 8}, strands);
+    advance(*all, steps, h);
+    const auto n = static_cast<std::size_t>(c.elements);
+    std::vector<double> q(4 * n), v(4 * n), x(strands * 3 * (n + 1));
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < all->blocks(); ++b) {
+      const std::size_t size = all->strands_of(b) * 3 * (n + 1);
+      all->positions(b, steps * h, std::span(x).subspan(done, size));
+      done += size;
+    }
+    ASSERT_EQ(done, x.size());
+    for (std::size_t k = 0; k < strands; ++k) {
+      SCOPED_TRACE(k);
+      EXPECT_FALSE(all->lost(k));
+      all->state(k, q, v);
+      const Alone want = alone(c, method, k, steps, h, 0);
+      const Alone changed = alone(c, method, k, steps, h, 1e-11);
+      for (std::size_t i = 3; i < q.size(); i += 4) {
+        if (want.q[i] != 0) continue;
+        q[i] = 0;
+        v[i] = want.v[i];
+      }
+      // Newton's tolerance, over a step, as a change of the state.
+      const double solved = method == HeadMethod::backward_euler ? steps * 1e-10 : 1e-13;
+      const double length = 0.25, rate = 60;
+      EXPECT_LE(apart(q, want.q), apart(changed.q, want.q) + solved);
+      EXPECT_LE(apart(v, want.v), apart(changed.v, want.v) + solved * rate);
+      const In points = std::span(x).subspan(k * 3 * (n + 1), 3 * (n + 1));
+      EXPECT_LE(apart(points, want.x), apart(changed.x, want.x) + solved * length);
+      // It has moved, or all of this says nothing.
+      EXPECT_GT(apart(want.x, alone(c, method, k, 0, h, 0).x), 1e-4);
+    }
+  }
+}
+
+TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
+  const RodCase& c = GetParam();
+  for (const HeadMethod method : methods) {
+    const double h = method == HeadMethod::backward_euler ? 1.0 / 120 : 1e-3;
+    std::size_t want = 0;
+    for (const int lanes : {1, 4, 8}) {
+      for (const std::size_t together : {1, 2, 100}) {
+        for (const Instructions set : {Instructions::base, Instructions::avx512}) {
+          if (!available(set)) continue;
+          const auto all = head(c, method, {HeadNumber::float64, lanes, set}, 27);
+          advance(*all, 20, h, together);
+          if (want == 0) want = all->hash();
+          EXPECT_EQ(all->hash(), want) << lanes << " " << together << " " << name(set);
+        }
+      }
+    }
+    const auto f8 = head(c, method, {HeadNumber::float32, 8}, 19),
+               f16 = head(c, method, {HeadNumber::float32, 16}, 19);
+    advance(*f8, 20, h);
+    advance(*f16, 20, h);
+    EXPECT_EQ(f8->hash(), f16->hash());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, DerHead,
+    testing::Values(RodCase{"Curly"}, RodCase{.name = "Moved", .moves = true},
+                    RodCase{.name = "Straight", .curl = 0},
+                    RodCase{.name = "OneEdge", .elements = 1},
+                    RodCase{.name = "Fine", .elements = 40, .moves = true},
+                    RodCase{.name = "Tight", .curl = 4},
+                    RodCase{.name = "InVacuum", .drag = 0, .mass_damping = 0},
+                    RodCase{.name = "WithoutFriction", .friction = 0},
+                    // Edges turn by more than 60 degrees: new references.
+                    RodCase{.name = "Whipped", .moves = true, .speed = 3},
+                    RodCase{.name = "Soft", .youngs_modulus = 1e8}),
+    [](const auto& of) { return of.param.name; });
+
+// In units of length, gravity and mass; hairs let go by a head at rest.
+TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
+  for (const HeadMethod method : methods) {
+    for (const int elements : {5, 20}) {
+      const RodCase c{.name = "", .elements = elements, .sprung = false};
+      const auto wide = head(c, method, {HeadNumber::float64, 8}, 16),
+                 narrow = head(c, method, {HeadNumber::float32, 16}, 16);
+      advance(*wide, 500, 2e-3);
+      advance(*narrow, 500, 2e-3);
+      const auto n = 3 * static_cast<std::size_t>(elements + 1);
+      std::vector<double> x(16 * n), y(16 * n);
+      wide->positions(0, 1, std::span(x).first(8 * n));
+      wide->positions(1, 1, std::span(x).last(8 * n));
+      narrow->positions(0, 1, y);
+      EXPECT_LE(apart(x, y), 1e-5 * 0.25) << elements;
+      EXPECT_GT(apart(x, y), 0) << elements;
+    }
+  }
+}
+
+// 11 of 64 strands cannot be computed: the others move as they do without them.
+TEST(DerHeadWithLosses, OtherStrandsGoOn) {
+  const RodCase c{""};
+  const auto fails = [](std::size_t k) { return k % 6 == 1; };
+  for (const HeadMethod method : methods) {
+    for (const HeadPack& pack : packs) {
+      const auto sound = head(c, method, pack, 64);
+      HeadOptions options = rod_options(c);
+      options.method = method;
+      const auto hurt = der_head(options, pack);
+      std::size_t failing = 0;
+      for (std::size_t k = 0; k < 64; ++k) {
+        Strand one = rod(c, k);
+        if (fails(k)) {
+          ++failing;
+          for (Segment& s : one.segments) s.natural = {1e200, -1e200, 1e200};
+        }
+        hurt->add(one);
+      }
+      ASSERT_EQ(failing, 11u);
+      advance(*sound, 10, 2e-3);
+      advance(*hurt, 10, 2e-3);
+      std::vector<double> q(40), v(40), want_q(40), want_v(40);
+      for (std::size_t k = 0; k < 64; ++k) {
+        EXPECT_EQ(hurt->lost(k), fails(k)) << k;
+        EXPECT_FALSE(sound->lost(k));
+        hurt->state(k, q, v);
+        sound->state(k, want_q, want_v);
+        if (fails(k)) {
+          EXPECT_EQ(v, std::vector<double>(40)) << k;
+        } else {
+          EXPECT_EQ(q, want_q) << k;
+          EXPECT_EQ(v, want_v) << k;
+        }
+      }
+      const std::vector<HeadLoss> losses = hurt->losses();
+      ASSERT_EQ(losses.size(), 11u);
+      EXPECT_EQ(losses[1].strand, 7u);
+      EXPECT_EQ(losses[1].step, 1);
+      EXPECT_EQ(losses[1].time, 0);
+      EXPECT_NE(losses[1].reason, "");
+    }
+  }
+}
+
+TEST(DerHeadMemory, IsTheState) {
+  const auto all = head({""}, HeadMethod::backward_euler, {HeadNumber::float64, 8}, 16);
+  // q, v, a, rest strain, reference axes of each edge; root and material.
+  EXPECT_LE(all->bytes(), 16u * (10 * (3 * 4 + 9) + 25) * sizeof(double));
+}
+
+TEST(DerHeadInput, IsRefusedWithTheReason) {
+  const RodCase c{""};
+  HeadOptions options = rod_options(c);
+  options.twist = false;
+  EXPECT_THROW(der_head(options, {}), InputError);
+  options.twist = true;
+  options.newton_iterations = 0;
+  EXPECT_THROW(der_head(options, {}), InputError);
+  EXPECT_THROW(der_head(rod_options(c), {HeadNumber::float64, 16}), InputError);
+}
+
+}  // namespace tress::test_der_head
