@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -108,9 +109,12 @@ class ArcTangent {
     return a + a * z * (sum(above) / sum(below));
   }
 
+  using Numbers = std::array<Number, width>;
+
   /// Apart, with arguments by value: what a call might change could not stay in
-  /// registers.
-  [[gnu::noinline]] static T any(T y, T x) {
+  /// registers. As arrays, which all instructions pass alike (math/instructions.h).
+  [[gnu::noinline]] static Numbers any(Numbers sine, Numbers cosine) {
+    const T y(sine), x(cosine);
     const T ay = magnitude(y), ax = magnitude(x);
     const auto steep = ay.v > ax.v;
     const T few(steep ? ax.v : ay.v), many(steep ? ay.v : ax.v);
@@ -122,7 +126,7 @@ class ArcTangent {
     T all(near_diagonal ? (angle + T(0.78539816339744828)).v : angle.v);
     all = T(steep ? (T(1.5707963267948966) - all).v : all.v);
     all = T(x.v < 0 ? (T(3.1415926535897931) - all).v : all.v);
-    return T(y.v < 0 ? -all.v : all.v);
+    return T(y.v < 0 ? -all.v : all.v).numbers();
   }
 
  public:
@@ -132,7 +136,7 @@ class ArcTangent {
     if (all_up_to(magnitude(y) - reach, Number(0))) [[likely]] {
       return small(y / x);
     }
-    return any(y, x);
+    return T(any(y.numbers(), x.numbers()));
   }
 };
 

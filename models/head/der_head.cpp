@@ -98,7 +98,7 @@ class DerModel {
             omega};
   }
   void renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
-    by(instructions_, [&] { kernel_.renew(elements, clamp, q, v); });
+    kernel_.renew(elements, clamp, q, v);
   }
   /// The first edge starts at the root, wherever that has gone.
   void predict(const Strand& strand, const RootPose& from, const RootPose& to, double h,
