@@ -38,12 +38,15 @@ models::Strand hair(std::size_t k) {
                      models::uniform_shape({0, curl(k), 0}));
 }
 
-std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag) {
+using Make = std::unique_ptr<Head> (*)(const models::HeadOptions&, const HeadPack&);
+
+std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag,
+                           Make make = models::helix_head) {
   models::HeadOptions options;
   options.elements = elements;
   options.drag = drag;
   options.longest = length;
-  auto made = helix_head(options, pack);
+  auto made = make(options, pack);
   made->reserve(strands);
   for (std::size_t k = 0; k < strands; ++k) made->add(hair(k));
   return made;
@@ -129,6 +132,7 @@ struct Line {
   std::size_t strands;
   double drag;
   double most;  // times the reference
+  Make make = models::helix_head;
 };
 constexpr Line lines[] = {
     {"4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.2},
@@ -136,7 +140,11 @@ constexpr Line lines[] = {
     {"4 of 64 bits, drag", {HeadNumber::float64, 4}, 64, 2e-5, 1.56},
     {"8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 0.7},
     {"8 of 32 bits", {HeadNumber::float32, 8}, 64, 0, 0.55},
-    {"16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 0.35}};
+    {"16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 0.35},
+    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.5, models::der_head},
+    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1.5, models::der_head},
+    {"der, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1.5, models::der_head},
+    {"der, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 1.5, models::der_head}};
 
 void register_all() {
   benchmark::RegisterBenchmark("reference/64", [](benchmark::State& state) {
@@ -148,7 +156,7 @@ void register_all() {
     benchmark::RegisterBenchmark(
         fmt::format("step/{}/{}", line.name, line.strands).c_str(),
         [line](benchmark::State& state) {
-          Stepping of{head(line.strands, line.pack, line.drag)};
+          Stepping of{head(line.strands, line.pack, line.drag, line.make)};
           for ([[maybe_unused]] auto _ : state) of.step();
           count_per_element(state, static_cast<int>(line.strands) * elements);
         });
@@ -186,7 +194,7 @@ bool costs_met() {
   bool met = true;
   for (const Line& line : lines) {
     Reference kernel(line.strands);
-    Stepping of{head(line.strands, line.pack, line.drag)};
+    Stepping of{head(line.strands, line.pack, line.drag, line.make)};
     const int repeat = static_cast<int>(40960 / line.strands);
     const auto repeated = [repeat](auto& what) {
       return [&what, repeat] {
