@@ -1,5 +1,5 @@
-// What does a head of hair cost: by number of strands, by what holds their numbers, and
-// by threads? And are the results the same?
+// What does a head of hair cost: by number of strands, by what holds their numbers, by
+// threads, and by what acts on it? And are the results the same?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +11,8 @@
 
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
+#include "models/effects/body.h"
+#include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/head_run.h"
@@ -29,6 +31,9 @@ constexpr Column columns[] = {
     {"bits", "of a number: 64 or 32"},
     {"lanes", "hairs computed side by side"},
     {"threads", "that share the blocks of hairs"},
+    {"effects",
+     "beside gravity: none; drag; body, an ellipsoid under the roots, and drag; "
+     "interaction of neighbouring hairs, and drag"},
     {"build_s", "wall time to build them", true},
     {"bytes_per_strand", "memory of a hair: state, rest shape, material, root"},
     {"cost_per_step_s", "wall time of a step, median", true},
@@ -83,13 +88,38 @@ models::Strand hair(std::size_t k, std::size_t count, int elements) {
   return made;
 }
 
-std::unique_ptr<Head> head(std::size_t strands, int elements, HeadPack pack) {
-  models::HeadOptions options{
-      .elements = elements, .points = 8, .drag = 5e-5, .longest = length, .motion = {}};
+enum class Acting { none, drag, body, interaction };
+constexpr std::string_view names[] = {"none", "drag", "body", "interaction"};
+
+/// A head without hairs.
+std::unique_ptr<Head> bald(int elements, HeadPack pack, Acting acting) {
+  models::HeadOptions options{.elements = elements,
+                              .points = 8,
+                              .drag = acting == Acting::none ? 0 : 5e-5,
+                              .longest = length,
+                              .motion = {},
+                              .effects = {}};
   options.motion.rotations = {{{0, 0, 1}, models::one_minus_cosine(0.3, 2)}};
-  auto made = helix_head(options, pack);
+  if (acting == Acting::body) {
+    options.effects = {std::make_shared<models::Body>(
+        models::Ellipsoid({0.09, 0.09, 0.09}), models::StrandPlace{},
+        models::BodyContact{
+            .stiffness = 10, .damping = 1, .friction = 0.3, .offset = 4e-5},
+        options.motion)};
+  }
+  return helix_head(options, pack);
+}
+
+/// Each hair with its own effects, if there are any.
+std::unique_ptr<Head> head(std::size_t strands, int elements, HeadPack pack,
+                           Acting acting, const models::StrandInteraction* between) {
+  auto made = bald(elements, pack, acting);
   made->reserve(strands);
-  for (std::size_t k = 0; k < strands; ++k) made->add(hair(k, strands, elements));
+  for (std::size_t k = 0; k < strands; ++k) {
+    models::Effects own;
+    if (between != nullptr) own.push_back(between->effect(k));
+    made->add(hair(k, strands, elements), own);
+  }
   return made;
 }
 
@@ -100,11 +130,13 @@ struct Work {
   int threads;
   double dt;
   int frames;
+  Acting acting;
 };
 
 /// From the same hairs in 64 bits: every 97th, on a head of theirs alone.
 double difference(const Work& work, int steps, const std::vector<double>& x) {
-  const std::unique_ptr<Head> few = head(0, work.elements, {HeadNumber::float64, 4});
+  const std::unique_ptr<Head> few =
+      bald(work.elements, {HeadNumber::float64, 4}, work.acting);
   const std::size_t each = few->numbers();
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < work.strands; k += 97) {
@@ -126,11 +158,31 @@ double difference(const Work& work, int steps, const std::vector<double>& x) {
 }
 
 void run(const Work& work, Row& row) {
+  std::optional<models::StrandInteraction> between;
+  if (work.acting == Acting::interaction) {
+    between.emplace(Parameters(models::strand_interaction_parameters(), "heads"),
+                    std::vector<int>(work.strands, work.elements + 1));
+  }
   std::optional<simulation::HeadRun> moving;
   row.set("build_s", seconds_of([&] {
-            moving.emplace(head(work.strands, work.elements, work.pack), work.threads);
+            moving.emplace(head(work.strands, work.elements, work.pack, work.acting,
+                                between ? &*between : nullptr),
+                           work.threads);
           }));
   const Head& all = moving->head();
+  std::vector<double> places, speeds;
+  const auto exchange = [&](double t) {
+    if (!between) return;
+    places.resize(work.strands * all.numbers());
+    speeds.resize(places.size());
+    for (std::size_t b = 0, first = 0; b < all.blocks(); ++b) {
+      const std::size_t size = all.strands_of(b) * all.numbers();
+      all.motion(b, t, std::span(places).subspan(first, size),
+                 std::span(speeds).subspan(first, size));
+      first += size;
+    }
+    between->update(places, speeds);
+  };
   row.set("bytes_per_strand",
           static_cast<double>(all.bytes()) / static_cast<double>(work.strands));
   const int steps = std::max(1, static_cast<int>(std::lround(frame / work.dt)));
@@ -139,7 +191,10 @@ void run(const Work& work, Row& row) {
   for (int f = 0; f < work.frames; ++f) {
     of_frames.push_back(seconds_of([&] {
       for (int s = 0; s < steps; ++s) {
-        of_steps.push_back(seconds_of([&] { moving->step(taken++ * work.dt, work.dt); }));
+        of_steps.push_back(seconds_of([&] {
+          exchange(taken * work.dt);
+          moving->step(taken++ * work.dt, work.dt);
+        }));
       }
       moving->positions(taken * work.dt, x);
     }));
@@ -152,7 +207,8 @@ void run(const Work& work, Row& row) {
   int lost = 0;
   for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;
   row.set("lost", lost);
-  row.set("difference_rel", difference(work, taken, x));
+  // Few hairs alone lack the neighbours that the others have.
+  if (!between) row.set("difference_rel", difference(work, taken, x));
   row.set("state", fmt::format("{:016x}", all.hash()));
 }
 
@@ -162,31 +218,50 @@ constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                               {HeadNumber::float32, 8},
                               {HeadNumber::float32, 16}};
 
+/// Every pack and number of threads under drag; what else acts, as far as it takes to
+/// compare costs and bits.
+bool wanted(int strands, HeadPack pack, int threads, Acting acting) {
+  // One hair at a time is there for the comparison of bits and of cost by hair.
+  if (pack.lanes == 1 && strands > 20000) return false;
+  if (threads > 1 && pack.lanes != 8) return false;
+  if (acting == Acting::drag) return true;
+  if (pack.number != HeadNumber::float64 || pack.lanes == 1) return false;
+  if (acting == Acting::interaction && strands > 20000) return false;
+  return threads < 3 && (acting != Acting::none || threads == 1);
+}
+
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
   const Parameters& own = settings.experiment();
   std::vector<Case> all;
   const std::vector<int> elements =
       line.elements.empty() ? std::vector{10} : line.elements;
+  const auto add = [&](int strands, int n, HeadPack pack, int threads, Acting acting) {
+    Row identity;
+    identity.set("strands", strands).set("elements", n);
+    identity.set("bits", pack.number == HeadNumber::float64 ? 64 : 32);
+    identity.set("lanes", pack.lanes).set("threads", threads);
+    identity.set("effects", std::string(names[static_cast<std::size_t>(acting)]));
+    const Work work{static_cast<std::size_t>(strands),
+                    n,
+                    pack,
+                    threads,
+                    own.number("dt_s"),
+                    own.whole("frames"),
+                    acting};
+    all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+  };
   for (const std::string& count : split(own.word("strands"), ',', "strands")) {
     const auto strands = static_cast<int>(parse_whole(count, "strands", 1, 1000000));
     for (const int n : elements) {
-      for (const HeadPack& pack : packs) {
-        // One hair at a time is there for the comparison of bits and of cost by hair.
-        if (pack.lanes == 1 && strands > 20000) continue;
-        for (const int threads : {1, 2, 3}) {
-          if (threads > 1 && pack.lanes != 8) continue;
-          Row identity;
-          identity.set("strands", strands).set("elements", n);
-          identity.set("bits", pack.number == HeadNumber::float64 ? 64 : 32);
-          identity.set("lanes", pack.lanes).set("threads", threads);
-          const Work work{static_cast<std::size_t>(strands),
-                          n,
-                          pack,
-                          threads,
-                          own.number("dt_s"),
-                          own.whole("frames")};
-          all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+      for (const Acting acting :
+           {Acting::drag, Acting::none, Acting::body, Acting::interaction}) {
+        for (const HeadPack& pack : packs) {
+          for (const int threads : {1, 2, 3}) {
+            if (wanted(strands, pack, threads, acting)) {
+              add(strands, n, pack, threads, acting);
+            }
+          }
         }
       }
     }
@@ -206,7 +281,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     for (const Row& other : rows) {
       if (!other.ok() || &other == &row) continue;
       bool same = true;
-      for (const char* column : {"strands", "elements", "bits"}) {
+      for (const char* column : {"strands", "elements", "bits", "effects"}) {
         same = same && row.text(column) == other.text(column);
       }
       if (!same) continue;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
@@ -20,6 +21,10 @@ struct HeadOptions {
   double mass_damping = 0;     // force per mass and velocity, 1/s
   double longest = 0.2;        // m: sets the units of computation, any order of magnitude
   RootMotion motion;           // of the head, `position` any point of it, at rest
+  /// On every strand, in addition: gravity and linear drag join the numbers above, bodies
+  /// are computed for all lanes at once, others strand by strand. Refused: effects that
+  /// couple points (self_contact) or hold contact forces (friction_law = exact).
+  Effects effects;
 };
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
@@ -41,10 +46,13 @@ class Head {
 
   /// Memory for so many strands.
   virtual void reserve(std::size_t strands) = 0;
-  /// Throws InputError unless the strand has `elements` segments of equal length and
-  /// section, one after the other, and no free root. Its own root motion is not read but
+  /// `own`: effects on this strand alone, as StrandInteraction::effect(k); they must not
+  /// be shared, as blocks advance on several threads. Throws InputError unless the strand
+  /// has `elements` segments of equal length and section, one after the other, and no
+  /// free root, and on effects as HeadOptions says. Its own root motion is not read but
   /// for `position` and `frame` at rest.
-  virtual void add(const Strand& strand) = 0;
+  virtual void add(const Strand& strand, Effects own) = 0;
+  void add(const Strand& strand) { add(strand, {}); }
 
   virtual std::size_t strands() const = 0;
   virtual std::size_t blocks() const = 0;
@@ -58,7 +66,9 @@ class Head {
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
   /// One step of semi_implicit_euler of a block, from t to t + h (s). A strand whose
-  /// result is not finite stays as it was, at rest, from then on. Safe for different
+  /// result is not finite stays as it was, at rest, from then on; others are the same
+  /// bits with and without it. Effects cost where they reach: a body a test for each
+  /// block, then one for each element, before any point is looked at. Safe for different
   /// blocks at once, each thread with its own scratch.
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
   virtual bool lost(std::size_t strand) const = 0;
@@ -68,6 +78,9 @@ class Head {
   virtual std::size_t numbers() const = 0;
   virtual std::size_t strands_of(std::size_t block) const = 0;
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
+  /// The same with their velocities (m/s).
+  virtual void motion(std::size_t block, double t, std::span<double> x,
+                      std::span<double> v) const = 0;
   /// Darboux vectors (1/m) and their rates of a strand, 3 per element.
   virtual void state(std::size_t strand, std::span<double> q,
                      std::span<double> v) const = 0;
