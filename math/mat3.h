@@ -5,37 +5,48 @@
 
 namespace tress {
 
-/// A 3x3 matrix, stored by rows.
-struct Mat3 {
-  Vec r0, r1, r2;
+/// A 3x3 matrix over any scalar, stored by rows.
+template <class T>
+struct Mat3Of {
+  Vec3<T> r0, r1, r2;
 
-  friend constexpr Mat3 operator+(const Mat3& a, const Mat3& b) {
+  friend constexpr Mat3Of operator+(const Mat3Of& a, const Mat3Of& b) {
     return {a.r0 + b.r0, a.r1 + b.r1, a.r2 + b.r2};
   }
-  friend constexpr Mat3 operator-(const Mat3& a, const Mat3& b) {
+  friend constexpr Mat3Of operator-(const Mat3Of& a, const Mat3Of& b) {
     return {a.r0 - b.r0, a.r1 - b.r1, a.r2 - b.r2};
   }
-  friend constexpr Mat3 operator*(double s, const Mat3& a) {
+  friend constexpr Mat3Of operator*(const T& s, const Mat3Of& a) {
     return {s * a.r0, s * a.r1, s * a.r2};
   }
-  friend constexpr Vec operator*(const Mat3& a, const Vec& x) {
+  friend constexpr Vec3<T> operator*(const Mat3Of& a, const Vec3<T>& x) {
     return {dot(a.r0, x), dot(a.r1, x), dot(a.r2, x)};
   }
   /// x^T a
-  friend constexpr Vec operator*(const Vec& x, const Mat3& a) {
+  friend constexpr Vec3<T> operator*(const Vec3<T>& x, const Mat3Of& a) {
     return x.x * a.r0 + x.y * a.r1 + x.z * a.r2;
   }
-  friend constexpr Mat3 operator*(const Mat3& a, const Mat3& b) {
+  friend constexpr Mat3Of operator*(const Mat3Of& a, const Mat3Of& b) {
     return {a.r0 * b, a.r1 * b, a.r2 * b};
   }
 };
+using Mat3 = Mat3Of<double>;
 
 constexpr Mat3 diagonal(const Vec& d) { return {{d.x, 0, 0}, {0, d.y, 0}, {0, 0, d.z}}; }
-constexpr Mat3 identity() { return diagonal({1, 1, 1}); }
-constexpr double trace(const Mat3& a) { return a.r0.x + a.r1.y + a.r2.z; }
+template <class T = double>
+constexpr Mat3Of<T> identity() {
+  return {{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}};
+}
+template <class T>
+constexpr T trace(const Mat3Of<T>& a) {
+  return a.r0.x + a.r1.y + a.r2.z;
+}
 
 /// a b^T
-constexpr Mat3 outer(const Vec& a, const Vec& b) { return {a.x * b, a.y * b, a.z * b}; }
+template <class T>
+constexpr Mat3Of<T> outer(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x * b, a.y * b, a.z * b};
+}
 /// cross_matrix(w) x = w cross x
 constexpr Mat3 cross_matrix(const Vec& w) {
   return {{0, -w.z, w.y}, {w.z, 0, -w.x}, {-w.y, w.x, 0}};

@@ -10,6 +10,7 @@
 #include "contract/constants.h"
 #include "experiments/benchmarks/fixture.h"
 #include "experiments/benchmarks/reference_kernel.h"
+#include "models/effects/body.h"
 #include "models/head/head.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/timing.h"
@@ -49,6 +50,45 @@ std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag,
   auto made = make(options, pack);
   made->reserve(strands);
   for (std::size_t k = 0; k < strands; ++k) made->add(hair(k));
+  return made;
+}
+
+/// Hair combed down on an ellipsoid, which is `away` from it (m) or, without a number,
+/// not there.
+std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
+                             std::optional<double> away) {
+  const Vec axes{0.08, 0.1, 0.12};
+  models::HeadOptions options;
+  options.elements = elements;
+  options.drag = 5e-5;
+  options.longest = length;
+  if (away) {
+    options.effects = {std::make_shared<models::Body>(
+        models::Ellipsoid(axes), models::StrandPlace{{*away, 0, 0}, {}},
+        models::BodyContact{
+            .stiffness = 10, .damping = 1, .friction = 0.3, .offset = 4e-5})};
+  }
+  auto made = helix_head(options, pack);
+  made->reserve(strands);
+  for (std::size_t k = 0; k < strands; ++k) {
+    // Over the upper half, neighbours in height side by side.
+    const double up = 1 - (static_cast<double>(k) + 0.5) / static_cast<double>(strands);
+    const double out = std::sqrt(1 - up * up),
+                 turn = 2.399963229728653 * static_cast<double>(k);
+    const Vec x{axes.x * out * std::cos(turn), axes.y * out * std::sin(turn),
+                axes.z * up};
+    const Vec slope{x.x / (axes.x * axes.x), x.y / (axes.y * axes.y),
+                    x.z / (axes.z * axes.z)};
+    const Vec normal = 1 / norm(slope) * slope;
+    const Vec level = cross(normal, {0, 0, 1});
+    const Vec e2 = 1 / norm(level) * level;
+    const Vec uphill = cross(e2, normal);
+    const Vec tangent = std::sqrt(0.5) * (normal - uphill);
+    models::Strand one = hair(k);
+    one.root.position = x;
+    one.root.frame = {tangent, cross(e2, tangent), e2};
+    made->add(one);
+  }
   return made;
 }
 
@@ -208,6 +248,38 @@ bool costs_met() {
   return met;
 }
 
+/// Hair that has come to rest on its head: a body over none, touching and 5 m away.
+bool bodies_met() {
+  constexpr std::size_t strands = 256;
+  bool met = true;
+  for (const int lanes : {4, 8}) {
+    const HeadPack pack{HeadNumber::float64, lanes};
+    Stepping without{combed(strands, pack, {})}, on{combed(strands, pack, 0.0)},
+        beside{combed(strands, pack, 5.0)};
+    Reference kernel(strands);
+    for (Stepping* one : {&without, &on, &beside}) {
+      for (int s = 0; s < 500; ++s) one->step();
+    }
+    const auto repeated = [](auto& what) {
+      return [&what] {
+        for (int i = 0; i < 40; ++i) what.step();
+      };
+    };
+    const auto name = [lanes](const char* what) {
+      return fmt::format("{} of 64 bits, {}", lanes, what);
+    };
+    met = kept(name("drag and a head that hair lies on, over gravity and drag"),
+               ratio(repeated(on), repeated(without)), 1.3) &&
+          met;
+    met = kept(name("a body 5 m away over none"),
+               ratio(repeated(beside), repeated(without)), 1.05) &&
+          met;
+    fmt::print("{}: {:.3g} times the reference\n", name("on a head"),
+               ratio(repeated(on), repeated(kernel)));
+  }
+  return met;
+}
+
 /// 200 000 strands: building, memory, a step of gravity and drag, two threads over one.
 bool head_met() {
   constexpr std::size_t strands = 200000;
@@ -244,6 +316,7 @@ int main(int argc, char** argv) {
   register_all();
   const Measured measured = run_benchmarks(argc, argv);
   if (measured.exit_code != 0) return measured.exit_code;
-  const bool same = same_motion(), costs = costs_met(), whole = head_met();
-  return same && costs && whole ? 0 : 3;
+  const bool same = same_motion(), costs = costs_met(), bodies = bodies_met(),
+             whole = head_met();
+  return same && costs && bodies && whole ? 0 : 3;
 }

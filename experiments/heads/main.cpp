@@ -10,17 +10,14 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "experiments/heads/moving_head.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
-#include "models/head/head.h"
 #include "simulation/files/parse.h"
-#include "simulation/run/head_run.h"
-#include "simulation/run/timing.h"
 
 namespace tress::experiments::heads {
 namespace {
 
-using models::Head;
 using models::HeadMethod;
 using models::HeadNumber;
 using models::HeadPack;
@@ -34,6 +31,9 @@ constexpr Column columns[] = {
     {"bits", "of a number: 64 or 32"},
     {"lanes", "hairs computed side by side"},
     {"threads", "that share the blocks of hairs"},
+    {"effects",
+     "beside gravity: none; drag; body, an ellipsoid under the roots, and drag; "
+     "interaction of neighbouring hairs, and drag"},
     {"build_s", "wall time to build them", true},
     {"bytes_per_strand", "memory of a hair: state, rest shape, material, root"},
     {"cost_per_step_s", "wall time of a step, median", true},
@@ -90,134 +90,11 @@ constexpr OwnOption command_options[] = {
     {"strands", "strands", "numbers of hairs, as in 1000,200000", true},
 };
 
-constexpr double length = 0.2;      // m
-constexpr double frame = 1.0 / 60;  // s
-
-/// Hair `k` of `count`: roots spread evenly over the upper half of a head of 9 cm, curls
-/// that differ from hair to hair.
-models::Strand hair(std::size_t k, std::size_t count, int elements) {
-  const double place = static_cast<double>(k) + 0.5, golden = 2.399963229728653;
-  const double up = 1 - place / static_cast<double>(count), out = std::sqrt(1 - up * up);
-  const Vec normal{out * std::cos(golden * place), out * std::sin(golden * place), up};
-  models::Material material;
-  material.internal_friction = 2e-10;
-  const double curl = 15 + 10 * std::sin(0.37 * static_cast<double>(k % 97));
-  models::Strand made =
-      make_strand(material, {4e-5, 3e-5}, {.elements = elements, .length = length},
-                  models::uniform_shape({3, curl, 0}));
-  made.root.position = 0.09 * normal;
-  // A frame whose e0 is the normal.
-  const Vec side = std::abs(up) < 0.9 ? Vec{0, 0, 1} : Vec{1, 0, 0};
-  const Vec across = cross(normal, side);
-  const Vec e1 = 1 / norm(across) * across;
-  made.root.frame = {normal, e1, cross(normal, e1)};
-  return made;
-}
-
-struct Kind {
-  std::string_view model, integrator;
-  std::unique_ptr<Head> (*make)(const models::HeadOptions&, const HeadPack&);
-  HeadMethod method;
-};
 constexpr Kind kinds[] = {
     {"super_helix", "semi_implicit_euler", models::helix_head,
      HeadMethod::semi_implicit_euler},
     {"der", "semi_implicit_euler", models::der_head, HeadMethod::semi_implicit_euler},
     {"der", "backward_euler", models::der_head, HeadMethod::backward_euler}};
-
-std::unique_ptr<Head> head(const Kind& kind, std::size_t strands, int elements,
-                           HeadPack pack) {
-  models::HeadOptions options{.elements = elements,
-                              .points = 8,
-                              .drag = 5e-5,
-                              .longest = length,
-                              .motion = {},
-                              .method = kind.method};
-  options.motion.rotations = {{{0, 0, 1}, models::one_minus_cosine(0.3, 2)}};
-  auto made = kind.make(options, pack);
-  made->reserve(strands);
-  for (std::size_t k = 0; k < strands; ++k) made->add(hair(k, strands, elements));
-  return made;
-}
-
-struct Work {
-  Kind kind;
-  std::size_t strands;
-  int elements;
-  HeadPack pack;
-  int threads;
-  double dt;
-  int frames;
-};
-
-/// From the same hairs in 64 bits: every 97th, on a head of theirs alone.
-double difference(const Work& work, int steps, const std::vector<double>& x) {
-  const std::unique_ptr<Head> few =
-      head(work.kind, 0, work.elements, {HeadNumber::float64, 4});
-  const std::size_t each = few->numbers();
-  std::vector<std::size_t> which;
-  for (std::size_t k = 0; k < work.strands; k += 97) {
-    few->add(hair(k, work.strands, work.elements));
-    which.push_back(k);
-  }
-  const auto scratch = few->scratch();
-  double most = 0;
-  std::vector<double> own(4 * each);
-  for (std::size_t b = 0; b < few->blocks(); ++b) {
-    for (int s = 0; s < steps; ++s) few->step(b, s * work.dt, work.dt, *scratch);
-    few->positions(b, steps * work.dt, own);
-    for (std::size_t i = 0; i < few->strands_of(b) * each; ++i) {
-      const std::size_t k = which[4 * b + i / each];
-      most = std::max(most, std::abs(own[i] - x[k * each + i % each]));
-    }
-  }
-  return most / length;
-}
-
-void run(const Work& work, Row& row) {
-  std::optional<simulation::HeadRun> moving;
-  row.set("build_s", seconds_of([&] {
-            moving.emplace(head(work.kind, work.strands, work.elements, work.pack),
-                           work.threads);
-          }));
-  const Head& all = moving->head();
-  row.set("bytes_per_strand",
-          static_cast<double>(all.bytes()) / static_cast<double>(work.strands));
-  // Of steps longer than a frame the reading of points is timed with each.
-  const int steps = std::max(1, static_cast<int>(std::lround(frame / work.dt)));
-  std::vector<double> of_steps, of_frames, x;
-  int taken = 0;
-  for (int f = 0; f < work.frames; ++f) {
-    of_frames.push_back(seconds_of([&] {
-      for (int s = 0; s < steps; ++s) {
-        of_steps.push_back(seconds_of([&] { moving->step(taken++ * work.dt, work.dt); }));
-      }
-      moving->positions(taken * work.dt, x);
-    }));
-  }
-  const double step = median(of_steps);
-  row.set("cost_per_step_s", step);
-  row.set("cost_per_element_step_s",
-          step / (static_cast<double>(work.strands) * work.elements));
-  row.set("cost_per_frame_s", median(of_frames));
-  const models::HeadWork done = moving->work();
-  if (done.iterations > 0) {
-    const auto iterations = static_cast<double>(done.iterations);
-    row.set("iterations_per_step", iterations / static_cast<double>(done.steps));
-    row.set("lanes_per_iteration", static_cast<double>(done.lanes) / iterations);
-    row.set("retried", static_cast<int>(done.retried));
-  }
-  int lost = 0;
-  for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;
-  row.set("lost", lost);
-  if (const auto losses = all.losses(); !losses.empty()) {
-    const models::HeadLoss& first = losses.front();
-    fmt::print(stderr, "hair {} is lost in step {}, at {} s: {}\n", first.strand,
-               first.step, first.time, first.reason);
-  }
-  row.set("difference_rel", difference(work, taken, x));
-  row.set("state", fmt::format("{:016x}", all.hash()));
-}
 
 constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                               {HeadNumber::float64, 4},
@@ -225,42 +102,56 @@ constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                               {HeadNumber::float32, 8},
                               {HeadNumber::float32, 16}};
 
+/// Every pack and number of threads under drag; what else acts, as far as it takes to
+/// compare costs and bits.
+bool wanted(const Kind& kind, int strands, HeadPack pack, int threads, Acting acting) {
+  // One hair at a time is there for the comparison of bits and of cost by hair.
+  if (pack.lanes == 1 && strands > 20000) return false;
+  if (threads > 1 && pack.lanes != 8) return false;
+  if (acting == Acting::drag) return true;
+  if (&kind != kinds) return false;
+  if (pack.number != HeadNumber::float64 || pack.lanes == 1) return false;
+  if (acting == Acting::interaction && strands > 20000) return false;
+  return threads < 3 && (acting != Acting::none || threads == 1);
+}
+
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
   const Parameters& own = settings.experiment();
   std::vector<Case> all;
   const std::vector<int> elements =
       line.elements.empty() ? std::vector{10} : line.elements;
+  const auto add_one = [&](const Work& work) {
+    Row identity;
+    identity.set("model", std::string(work.kind.model));
+    identity.set("integrator", std::string(work.kind.integrator)).set("dt_s", work.dt);
+    identity.set("strands", static_cast<int>(work.strands));
+    identity.set("elements", work.elements);
+    identity.set("bits", work.pack.number == HeadNumber::float64 ? 64 : 32);
+    identity.set("lanes", work.pack.lanes).set("threads", work.threads);
+    identity.set("effects",
+                 std::string(names_of_acting[static_cast<std::size_t>(work.acting)]));
+    all.push_back({identity, [work](Row& row, const auto&) { run_head(work, row); }});
+  };
   const auto add = [&](const Kind& kind, int strands, int n, double dt) {
-    for (const HeadPack& pack : packs) {
-      // One hair at a time is there for the comparison of bits and of cost by hair.
-      if (pack.lanes == 1 && strands > 20000) continue;
-      for (const int threads : {1, 2, 3}) {
-        if (threads > 1 && pack.lanes != 8) continue;
-        Row identity;
-        identity.set("model", std::string(kind.model));
-        identity.set("integrator", std::string(kind.integrator)).set("dt_s", dt);
-        identity.set("strands", strands).set("elements", n);
-        identity.set("bits", pack.number == HeadNumber::float64 ? 64 : 32);
-        identity.set("lanes", pack.lanes).set("threads", threads);
-        const Work work{
-            kind,
-            static_cast<std::size_t>(strands),
-            n,
-            pack,
-            threads,
-            dt,
-            own.whole(kind.method == HeadMethod::semi_implicit_euler ? "frames"
-                                                                     : "newton_frames")};
-        all.push_back({identity, [work](Row& row, const auto&) { run(work, row); }});
+    const int frames = own.whole(
+        kind.method == HeadMethod::semi_implicit_euler ? "frames" : "newton_frames");
+    for (const Acting acting :
+         {Acting::drag, Acting::none, Acting::body, Acting::interaction}) {
+      for (const HeadPack& pack : packs) {
+        for (const int threads : {1, 2, 3}) {
+          if (!wanted(kind, strands, pack, threads, acting)) continue;
+          add_one({kind, static_cast<std::size_t>(strands), n, pack, threads, dt, frames,
+                   acting});
+        }
       }
     }
   };
   for (const std::string& count : split(own.word("strands"), ',', "strands")) {
     const auto strands = static_cast<int>(parse_whole(count, "strands", 1, 1000000));
     for (const Kind& kind : kinds) {
-      if (!wanted(line.models, kind.model)) continue;
-      if (!wanted(line.integrators, kind.integrator)) continue;
+      if (!experiments::wanted(line.models, kind.model)) continue;
+      if (!experiments::wanted(line.integrators, kind.integrator)) continue;
       if (&kind != kinds && strands > own.whole("others_up_to")) continue;
       for (const int n : elements) {
         if (kind.method == HeadMethod::semi_implicit_euler) {
@@ -296,7 +187,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
       if (!other.ok() || &other == &row) continue;
       bool same = true;
       for (const char* column :
-           {"model", "integrator", "dt_s", "strands", "elements", "bits"}) {
+           {"model", "integrator", "dt_s", "strands", "elements", "bits", "effects"}) {
         same = same && row.text(column) == other.text(column);
       }
       if (!same) continue;

@@ -35,45 +35,51 @@ struct NormalContact {
     return stiffness / 2 * depth(to) * depth(to);
   }
 
-  struct State {
-    double depth, steepness;
-    Vec n;
-    double speed_away;  // u_n
-    double cushion, cushion_slope;
-    double load;  // N
+  template <class T>
+  struct StateOf {
+    T depth, steepness;
+    Vec3<T> n;
+    T speed_away;  // u_n
+    T cushion, cushion_slope;
+    T load;  // N
 
-    State(const NormalContact& law, const Distance& to, const Vec& u)
-        : depth(law.depth(to)),
-          steepness(std::sqrt(dot(to.gradient, to.gradient))),
-          n(steepness > 0 ? (1 / steepness) * to.gradient : Vec{}),
+    StateOf(const NormalContact& law, const DistanceOf<T>& to, const Vec3<T>& u)
+        : depth(T(law.offset) - to.value),
+          steepness(square_root(dot(to.gradient, to.gradient))),
+          n(where_less(T(0), steepness, T(1), T(0)) /
+            where_less(T(0), steepness, steepness, T(1)) * to.gradient),
           speed_away(dot(n, u)) {
-      const double s = 1 - law.damping * speed_away;
-      const double start = std::clamp(s + 0.5, 0.0, 1.0);  // h up to s = 1/2
-      cushion = start * start / 2 + std::max(s - 0.5, 0.0);
+      const T s = T(1) - T(law.damping) * speed_away;
+      const T start = larger(T(0), smaller(s + T(0.5), T(1)));  // h up to s = 1/2
+      cushion = T(0.5) * (start * start) + larger(s - T(0.5), T(0));
       cushion_slope = start;
-      load = law.stiffness * depth * steepness * cushion;
+      load = T(law.stiffness) * depth * steepness * cushion;
     }
-    Mat3 across() const { return identity() - outer(n, n); }
+    Mat3Of<T> across() const { return identity<T>() - outer(n, n); }
     /// dn/dx, with the second derivatives of phi.
-    Mat3 n_by_x(const Mat3& curvature) const {
-      return (1 / steepness) * (across() * curvature);
+    Mat3Of<T> n_by_x(const Mat3Of<T>& curvature) const {
+      return (T(1) / steepness) * (curvature - outer(n, n * curvature));
     }
-    Vec slide(const Vec& u) const { return u - speed_away * n; }  // u_t
+    Vec3<T> slide(const Vec3<T>& u) const { return u - speed_away * n; }  // u_t
     /// du_t/dx at fixed u.
-    Mat3 slide_by_x(const Vec& u, const Mat3& n_by_x) const {
-      return (-1.0) * (outer(n, u * n_by_x) + speed_away * n_by_x);
+    Mat3Of<T> slide_by_x(const Vec3<T>& u, const Mat3Of<T>& n_by_x) const {
+      return T(-1) * (outer(n, u * n_by_x) + speed_away * n_by_x);
     }
   };
+  using State = StateOf<double>;
+
   /// dN/du_n
-  double by_speed(const State& at) const {
-    const double spring = stiffness * at.depth * at.steepness;
-    return -damping * spring * at.cushion_slope;
+  template <class T>
+  T by_speed(const StateOf<T>& at) const {
+    const T spring = T(stiffness) * at.depth * at.steepness;
+    return T(-damping) * spring * at.cushion_slope;
   }
   /// dN/dx at fixed u.
-  Vec by_x(const State& at, const Distance& to, const Mat3& curvature, const Mat3& n_by_x,
-           const Vec& u) const {
-    return (-stiffness * at.steepness * at.cushion) * to.gradient +
-           (stiffness * at.depth * at.cushion) * (at.n * curvature) +
+  template <class T>
+  Vec3<T> by_x(const StateOf<T>& at, const DistanceOf<T>& to, const Mat3Of<T>& curvature,
+               const Mat3Of<T>& n_by_x, const Vec3<T>& u) const {
+    return (T(-stiffness) * at.steepness * at.cushion) * to.gradient +
+           (T(stiffness) * at.depth * at.cushion) * (at.n * curvature) +
            by_speed(at) * (u * n_by_x);
   }
 };
@@ -88,9 +94,11 @@ inline void check(const NormalContact& law, double friction) {
 }
 
 /// df/dx at fixed u and df/du of a contact force.
-struct ContactSlopes {
-  Mat3 by_x, by_u;
+template <class T>
+struct ContactSlopesOf {
+  Mat3Of<T> by_x, by_u;
 };
+using ContactSlopes = ContactSlopesOf<double>;
 
 /// Compliant contact with regularised friction, per length of strand:
 ///
@@ -109,44 +117,68 @@ struct BodyContact {
 
   NormalContact normal() const { return {stiffness, damping, offset}; }
 
-  Vec load(const Distance& to, const Vec& u) const {
-    const State at(*this, to, u);
+  template <class T>
+  Vec3<T> load(const DistanceOf<T>& to, const Vec3<T>& u) const {
+    const State<T> at(*this, to, u);
     return at.load * at.direction();
   }
 
-  ContactSlopes slopes(const Distance& to, const Mat3& curvature, const Vec& u) const {
-    const State at(*this, to, u);
-    if (at.steepness == 0) return {};
-    const Vec w = at.direction();
-    const Mat3 n_by_x = at.n_by_x(curvature);
-    const Mat3 drag = (friction * at.load) *
-                      (at.grip * identity() + at.grip_slope * outer(at.slide, at.slide));
-    return {outer(w, normal().by_x(at, to, curvature, n_by_x, u)) + at.load * n_by_x -
-                drag * at.slide_by_x(u, n_by_x),
-            outer(w, normal().by_speed(at) * at.n) - drag * at.across()};
+  /// With w = n - mu e u_t and y = u dn/dx, and since u_t.n = 0 and n dn/dx = 0,
+  ///
+  ///     df/dx = w dN/dx + N ((1 + mu e u_n) dn/dx + mu (e n + e'/|u_t| u_n u_t) y),
+  ///     df/du = w dN/du - mu N (e (1 - n n) + e'/|u_t| u_t u_t).
+  template <class T>
+  ContactSlopesOf<T> slopes(const DistanceOf<T>& to, const Mat3Of<T>& curvature,
+                            const Vec3<T>& u) const {
+    return State<T>(*this, to, u).slopes(*this, to, curvature, u);
+  }
+  /// Load and slopes of a point in one pass.
+  template <class T>
+  Vec3<T> load(const DistanceOf<T>& to, const Mat3Of<T>& curvature, const Vec3<T>& u,
+               ContactSlopesOf<T>& slopes) const {
+    const State<T> at(*this, to, u);
+    slopes = at.slopes(*this, to, curvature, u);
+    return at.load * at.direction();
   }
 
  private:
-  struct State : NormalContact::State {
-    Vec slide;          // u_t
-    double grip;        // e
-    double grip_slope;  // e'/|u_t|
-    double friction;
+  template <class T>
+  struct State : NormalContact::StateOf<T> {
+    using Normal = NormalContact::StateOf<T>;
+    Vec3<T> slide;  // u_t
+    T grip;         // e
+    T grip_slope;   // e'/|u_t|
+    T friction;
 
-    State(const BodyContact& law, const Distance& to, const Vec& u)
-        : NormalContact::State(law.normal(), to, u),
-          slide(NormalContact::State::slide(u)),
-          friction(law.friction) {
-      const double y = norm(slide);
-      if (y >= law.slip) {
-        grip = 1 / y;
-        grip_slope = -1 / (y * y * y);
-      } else {
-        grip = (2 - y / law.slip) / law.slip;
-        grip_slope = y > 0 ? -1 / (law.slip * law.slip * y) : 0;
-      }
+    State(const BodyContact& law, const DistanceOf<T>& to, const Vec3<T>& u)
+        : Normal(law.normal(), to, u), slide(Normal::slide(u)), friction(law.friction) {
+      const T y = square_root(dot(slide, slide)), o(0), slip(law.slip);
+      const T by = T(1) / where_less(o, y, y, T(1));
+      const T fades = T(1 / law.slip);
+      grip = where_less(y, slip, fades * (T(2) - y * fades), by);
+      grip_slope = where_less(y, slip, where_less(o, y, -(fades * fades * by), o),
+                              -(by * by * by));
     }
-    Vec direction() const { return n - (friction * grip) * slide; }
+    Vec3<T> direction() const { return this->n - (friction * grip) * slide; }
+
+    ContactSlopesOf<T> slopes(const BodyContact& law, const DistanceOf<T>& to,
+                              const Mat3Of<T>& curvature, const Vec3<T>& u) const {
+      const NormalContact normal = law.normal();
+      const Vec3<T>& n = this->n;
+      // Without a direction there is no load, and n_by_x would divide by 0.
+      const T o(0), some = where_less(o, this->steepness, T(1), o);
+      Normal at = *this;
+      at.steepness = where_less(o, this->steepness, this->steepness, T(1));
+      const Mat3Of<T> n_by_x = some * at.n_by_x(curvature);
+      const Vec3<T> w = some * direction(), turned = u * n_by_x;
+      const T rubs = friction * this->load, held = rubs * grip, turns = rubs * grip_slope;
+      const T& away = this->speed_away;
+      return {outer(w, normal.by_x(*this, to, curvature, n_by_x, u)) +
+                  (this->load + held * away) * n_by_x +
+                  outer(held * n + (turns * away) * slide, turned),
+              outer(w, normal.by_speed(*this) * n) - held * this->across() -
+                  turns * outer(slide, slide)};
+    }
   };
 };
 

@@ -1,36 +1,111 @@
 #pragma once
 
+#include <limits>
+
 #include "contract/layers.h"
+#include "math/lane_choice.h"
+#include "math/lanes.h"
 #include "math/mat3.h"
 
 /// Surfaces of bodies in their own frames, given by the signed distance phi(x) (m, < 0
 /// inside), its gradient (of length 1) and its second derivatives. All are finite
-/// everywhere: if the nearest point is not unique (centre, axis), one is chosen.
+/// everywhere: if the nearest point is not unique (centre, axis), one is chosen. Over
+/// doubles, or packs of one place a lane; a lane's result does not depend on the others.
 namespace tress::models {
 
-struct Distance {
-  double value = 0;  // m
-  Vec gradient;
+template <class T>
+struct DistanceOf {
+  T value{};  // m
+  Vec3<T> gradient;
 };
+using Distance = DistanceOf<double>;
+
+/// What one search for the nearest point gives.
+template <class T>
+struct NearestOf {
+  DistanceOf<T> to;
+  T length{};  // of an ellipsoid, of y_i/a_i^2
+};
+
+/// What all shapes give in addition to nearest() and curvature(x, nearest(x)).
+template <class Shape>
+struct DistanceByNearest {
+  Distance distance(const Vec& x) const { return self().nearest(x).to; }
+  Mat3 curvature(const Vec& x) const { return self().curvature(x, self().nearest(x)); }
+
+ private:
+  const Shape& self() const { return static_cast<const Shape&>(*this); }
+};
+
+/// The distance from a point, and upwards at the point itself.
+template <class T>
+NearestOf<T> around_point(const Vec3<T>& arm, double radius) {
+  const T r = square_root(dot(arm, arm)), o(0);
+  const T by = T(1) / where_less(o, r, r, T(1));
+  return {{r - T(radius), {by * arm.x, by * arm.y, where_less(o, r, by * arm.z, T(1))}}};
+}
+template <class T>
+Mat3Of<T> curvature_around_point(const NearestOf<T>& at, double radius) {
+  const T r = at.to.value + T(radius), o(0);
+  const T by = where_less(o, r, T(1), o) / where_less(o, r, r, T(1));
+  return by * (identity<T>() - outer(at.to.gradient, at.to.gradient));
+}
 
 /// Everything below z = 0 is inside.
-struct Plane {
-  Distance distance(const Vec& x) const { return {x.z, {0, 0, 1}}; }
-  Mat3 curvature(const Vec&) const { return {}; }
+struct Plane : DistanceByNearest<Plane> {
+  using DistanceByNearest::curvature;
+  template <class T>
+  NearestOf<T> nearest(const Vec3<T>& x) const {
+    return {{x.z, {T(0), T(0), T(1)}}};
+  }
+  template <class T>
+  Mat3Of<T> curvature(const Vec3<T>&, const NearestOf<T>&) const {
+    return {};
+  }
 };
 
-struct Sphere {
+struct Sphere : DistanceByNearest<Sphere> {
   double radius;  // m
-  Distance distance(const Vec& x) const;
-  Mat3 curvature(const Vec& x) const;
+
+  explicit Sphere(double r) : radius(r) {}
+  using DistanceByNearest::curvature;
+  template <class T>
+  NearestOf<T> nearest(const Vec3<T>& x) const {
+    return around_point(x, radius);
+  }
+  template <class T>
+  Mat3Of<T> curvature(const Vec3<T>&, const NearestOf<T>& at) const {
+    return curvature_around_point(at, radius);
+  }
 };
 
 /// All points within `radius` of the segment |z| <= half_length of the z axis.
-struct Capsule {
+struct Capsule : DistanceByNearest<Capsule> {
   double radius;       // m
   double half_length;  // m, without the caps
-  Distance distance(const Vec& x) const;
-  Mat3 curvature(const Vec& x) const;
+
+  Capsule(double r, double half) : radius(r), half_length(half) {}
+  using DistanceByNearest::curvature;
+  template <class T>
+  NearestOf<T> nearest(const Vec3<T>& x) const {
+    // From the nearest point of the axis.
+    const T end(half_length);
+    const Vec3<T> arm{x.x, x.y, x.z - larger(-end, smaller(x.z, end))};
+    NearestOf<T> at = around_point(arm, radius);
+    const T o(0), off = dot(arm, arm);  // on the axis, sideways
+    at.to.gradient.x = where_less(o, off, at.to.gradient.x, T(1));
+    at.to.gradient.z = where_less(o, off, at.to.gradient.z, o);
+    return at;
+  }
+  template <class T>
+  Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>& at) const {
+    Mat3Of<T> all = curvature_around_point(at, radius);
+    const T end(half_length), o(0), height = magnitude(x.z);
+    for (T* along : {&all.r0.z, &all.r1.z, &all.r2.x, &all.r2.y, &all.r2.z}) {
+      *along = where_less(end, height, *along, o);  // none along the axis
+    }
+    return all;
+  }
 };
 
 /// sum (x_i/a_i)^2 <= 1. The nearest point y has x - y = tau grad F(y), so that
@@ -43,25 +118,120 @@ struct Capsule {
 /// the root monotonically. Then phi = tau |y_i/a_i^2|, free of cancellation, with an
 /// error of some eps of the largest axis. With the shape operator S = P diag(1/a^2)
 /// P/|y_i/a_i^2| at y, grad grad phi = S (1 + phi S)^-1.
-class Ellipsoid {
+///
+/// Packs take a few Newton steps from tau = 0, the root on the surface; lanes for which
+/// that is too few, far from it, are searched one by one.
+class Ellipsoid : public DistanceByNearest<Ellipsoid> {
  public:
-  explicit Ellipsoid(const Vec& half_axes) : a_(half_axes) {}  // m, > 0
+  explicit Ellipsoid(const Vec& half_axes);  // m, > 0
   const Vec& half_axes() const { return a_; }
-  Distance distance(const Vec& x) const;
-  Mat3 curvature(const Vec& x) const;
+
+  using DistanceByNearest::curvature;
+  NearestOf<double> nearest(const Vec& x) const;
+  template <class Number, int width>
+  NearestOf<PackOf<Number, width>> nearest(const Vec3<PackOf<Number, width>>& x) const;
+  template <class T>
+  Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>& at) const;
   /// A lower bound of phi outside (m), without the search: |x_i/a_i| is 1 on the surface
   /// and changes per length by at most 1 over the least half axis.
-  double at_least(const Vec& x) const;
+  template <class T>
+  T at_least(const Vec3<T>& x) const {
+    const Vec3<T> scaled{T(inverse_.x) * x.x, T(inverse_.y) * x.y, T(inverse_.z) * x.z};
+    return T(least_) * (square_root(dot(scaled, scaled)) - T(1));
+  }
 
  private:
-  struct Nearest {
-    double phi;
-    Vec normal;     // of length 1
-    double length;  // of y_i/a_i^2
-  };
-  Nearest nearest(const Vec& x) const;
-
-  Vec a_;
+  Vec a_, inverse_;  // half axes, 1 over them
+  double least_;     // of them
+  Vec above_;        // a_i^2 - least^2 >= 0
 };
+
+template <class Number, int width>
+NearestOf<PackOf<Number, width>> Ellipsoid::nearest(
+    const Vec3<PackOf<Number, width>>& x) const {
+  using T = PackOf<Number, width>;
+  constexpr int steps = 4;
+  // A step so short leaves an error of its square.
+  constexpr double short_step = sizeof(Number) == sizeof(double) ? 1e-9 : 1e-5;
+  const T shift(least_ * least_);
+  const Vec3<T> above(above_);
+  const Vec3<T> ax{T(a_.x) * x.x, T(a_.y) * x.y, T(a_.z) * x.z};
+  // s = tau + shift, and a bound of its root from below.
+  const T bound = larger(larger(magnitude(ax.x) - above.x, magnitude(ax.y) - above.y),
+                         magnitude(ax.z) - above.z);
+  T s = larger(shift, bound), step(0);
+  Vec3<T> by;
+  for (int k = 0; k <= steps; ++k) {
+    const Vec3<T> d{s + above.x, s + above.y, s + above.z};
+    const T xy = d.x * d.y, inverse = T(1) / (xy * d.z);
+    by = {inverse * (d.y * d.z), inverse * (d.x * d.z), inverse * xy};
+    if (k == steps) break;
+    const Vec3<T> ratio{ax.x * by.x, ax.y * by.y, ax.z * by.z};
+    const Vec3<T> square{ratio.x * ratio.x, ratio.y * ratio.y, ratio.z * ratio.z};
+    const T g = square.x + square.y + square.z - T(1), slope = dot(square, by);
+    const T next = larger(s + T(0.5) * g / slope, bound);
+    step = magnitude(next - s);
+    s = next;
+  }
+  const Vec3<T> n{x.x * by.x, x.y * by.y, x.z * by.z};
+  const T length = square_root(dot(n, n));
+  NearestOf<T> at{{(s - shift) * length, (T(1) / length) * n}, length};
+  const T enough = T(short_step) * s;
+  if (all_up_to(step - enough, 0)) return at;
+  for (int lane = 0; lane < width; ++lane) {
+    if (step[lane] <= enough[lane]) continue;
+    const NearestOf<double> one = nearest(lane_of(x, lane));
+    set_lane(at.to.value, lane, one.to.value);
+    set_lane(at.to.gradient, lane, one.to.gradient);
+    set_lane(at.length, lane, one.length);
+  }
+  return at;
+}
+
+template <class T>
+Mat3Of<T> Ellipsoid::curvature(const Vec3<T>& /*x*/, const NearestOf<T>& at) const {
+  const Vec3<T>& n = at.to.gradient;
+  const T& phi = at.to.value;
+  const Vec3<T> k{T(inverse_.x * inverse_.x), T(inverse_.y * inverse_.y),
+                  T(inverse_.z * inverse_.z)};
+  // P diag(k) P, P = 1 - n n^T.
+  const Vec3<T> kn{k.x * n.x, k.y * n.y, k.z * n.z};
+  const T along = dot(n, kn), by = T(1) / at.length;
+  const Vec3<T> half = kn - (T(0.5) * along) * n;
+  const auto entry = [&](const T& ni, const T& hi, const T& nj, const T& hj) {
+    return -(ni * hj + hi * nj);
+  };
+  const T xx = by * (k.x + entry(n.x, half.x, n.x, half.x)),
+          yy = by * (k.y + entry(n.y, half.y, n.y, half.y)),
+          zz = by * (k.z + entry(n.z, half.z, n.z, half.z)),
+          xy = by * entry(n.x, half.x, n.y, half.y),
+          xz = by * entry(n.x, half.x, n.z, half.z),
+          yz = by * entry(n.y, half.y, n.z, half.z);
+  // S (1 + phi S)^-1 in the tangent plane by Cayley and Hamilton; the denominator is 0 on
+  // focal lines, where the derivative does not exist.
+  const T mean = xx + yy + zz;
+  const T square = xx * xx + yy * yy + zz * zz + T(2) * (xy * xy + xz * xz + yz * yz);
+  const T gauss = T(0.5) * (mean * mean - square);
+  const T under = T(1) / larger(T(1) + phi * (mean + phi * gauss), T(1e-12));
+  const T more = phi * gauss;
+  const auto all = [&](const T& own, const T& ni, const T& nj, double same) {
+    return under * (own + more * (T(same) - ni * nj));
+  };
+  const T a = all(xy, n.x, n.y, 0), b = all(xz, n.x, n.z, 0), c = all(yz, n.y, n.z, 0);
+  return {{all(xx, n.x, n.x, 1), a, b},
+          {a, all(yy, n.y, n.y, 1), c},
+          {b, c, all(zz, n.z, n.z, 1)}};
+}
+
+/// A lower bound of the distance where it is positive, without a search where there is
+/// one; it changes by no more than the place.
+template <class T, class Shape>
+T at_least(const Shape& shape, const Vec3<T>& x) {
+  if constexpr (requires { shape.at_least(x); }) {
+    return shape.at_least(x);
+  } else {
+    return shape.nearest(x).to.value;
+  }
+}
 
 }  // namespace tress::models

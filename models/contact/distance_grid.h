@@ -27,6 +27,44 @@ class DistanceGrid {
 
   Distance distance(const Vec& x) const;
   Mat3 curvature(const Vec& x) const;
+  /// As the other shapes; packs are looked up lane by lane.
+  template <class T>
+  NearestOf<T> nearest(const Vec3<T>& x) const {
+    NearestOf<T> at;
+    for (int lane = 0; lane < lanes<T>; ++lane) {
+      const Distance one = distance(lane_of(x, lane));
+      set_lane(at.to.value, lane, one.value);
+      set_lane(at.to.gradient, lane, one.gradient);
+    }
+    return at;
+  }
+  template <class T>
+  Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>&) const {
+    Mat3Of<T> all;
+    for (int lane = 0; lane < lanes<T>; ++lane) {
+      const Mat3 one = curvature(lane_of(x, lane));
+      set_lane(all.r0, lane, one.r0);
+      set_lane(all.r1, lane, one.r1);
+      set_lane(all.r2, lane, one.r2);
+    }
+    return all;
+  }
+  /// Distance from the grid's box outside of it, where no surface is; minus infinity
+  /// within.
+  template <class T>
+  T at_least(const Vec3<T>& x) const {
+    const Vec end = s_.origin + s_.spacing * Vec{static_cast<double>(s_.nx - 1),
+                                                 static_cast<double>(s_.ny - 1),
+                                                 static_cast<double>(s_.nz - 1)};
+    const auto beyond = [](const T& at, double from, double to) {
+      return larger(T(0), larger(T(from) - at, at - T(to)));
+    };
+    const Vec3<T> out{beyond(x.x, s_.origin.x, end.x), beyond(x.y, s_.origin.y, end.y),
+                      beyond(x.z, s_.origin.z, end.z)};
+    const T square = dot(out, out);
+    return where_less(T(0), square, square_root(square),
+                      T(-std::numeric_limits<double>::infinity()));
+  }
   const Samples& samples() const { return s_; }
   /// The least value in the two outermost layers (m).
   double clearance() const;

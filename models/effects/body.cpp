@@ -145,7 +145,7 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
 
 Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
            std::optional<RootMotion> head)
-    : body_(std::move(shape), place, law.offset, std::move(head)), law_(law) {
+    : contact_{RigidBody(std::move(shape), place, law.offset, std::move(head)), law} {
   check(law.normal(), law.friction);
   if (!(std::isfinite(law.slip) && law.slip > 0)) {
     throw InputError("its slip speed is not positive or not finite", "effect body",
@@ -154,24 +154,25 @@ Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
 }
 
 void Body::add_load(double t, const Points& p, InOut f) const noexcept {
-  const BodyPose now = body_.pose(t);
-  body_.for_near<RigidBody::With::velocity>(
-      now, p, [&](std::size_t) { return law_.offset; },
+  const BodyPose now = contact_.body.pose(t);
+  contact_.body.for_near<RigidBody::With::velocity>(
+      now, p, [&](std::size_t) { return contact_.law.offset; },
       [&](const RigidBody::Near& at) {
         double* load = &f[3 * at.point];
-        store3(load3(load) + p.length[at.point] * (now.frame * law_.load(at.to, at.u)),
+        store3(load3(load) +
+                   p.length[at.point] * (now.frame * contact_.law.load(at.to, at.u)),
                load);
       });
 }
 
 void Body::add_derivatives(double t, const Points& p, double pos, double vel,
                            InOut blocks) const noexcept {
-  const BodyPose now = body_.pose(t);
+  const BodyPose now = contact_.body.pose(t);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
-  body_.for_near<RigidBody::With::curvature>(
-      now, p, [&](std::size_t) { return law_.offset; },
+  contact_.body.for_near<RigidBody::With::curvature>(
+      now, p, [&](std::size_t) { return contact_.law.offset; },
       [&](const RigidBody::Near& at) {
-        const auto [by_x, by_u] = law_.slopes(at.to, at.curvature, at.u);
+        const auto [by_x, by_u] = contact_.law.slopes(at.to, at.curvature, at.u);
         // The surface moves faster further out: du/dx = -omega x.
         const Mat3 block = pos * (by_x - by_u * spin) + vel * by_u;
         add9(turned(now.frame, p.length[at.point] * block), &blocks[9 * at.point]);
@@ -180,24 +181,25 @@ void Body::add_derivatives(double t, const Points& p, double pos, double vel,
 
 double Body::potential(double t, const Points& p) const noexcept {
   double sum = 0;
-  body_.for_near<RigidBody::With::position>(
-      body_.pose(t), p, [&](std::size_t) { return law_.offset; },
+  contact_.body.for_near<RigidBody::With::position>(
+      contact_.body.pose(t), p, [&](std::size_t) { return contact_.law.offset; },
       [&](const RigidBody::Near& at) {
-        sum += p.length[at.point] * law_.normal().energy(at.to);
+        sum += p.length[at.point] * contact_.law.normal().energy(at.to);
       });
   return sum;
 }
 
 double Body::power(double t, const Points& p) const noexcept {
-  const BodyPose now = body_.pose(t);
+  const BodyPose now = contact_.body.pose(t);
   double sum = 0;
-  body_.for_near<RigidBody::With::velocity>(
-      now, p, [&](std::size_t) { return law_.offset; },
+  contact_.body.for_near<RigidBody::With::velocity>(
+      now, p, [&](std::size_t) { return contact_.law.offset; },
       [&](const RigidBody::Near& at) {
         // f.v - f_elastic.(v - w), the second being the rate of the potential.
         const Vec v = now.frame.back(load3(&p.v[3 * at.point]));
-        sum += p.length[at.point] * (dot(law_.load(at.to, at.u), v) -
-                                     dot(law_.normal().elastic_load(at.to), at.u));
+        sum +=
+            p.length[at.point] * (dot(contact_.law.load(at.to, at.u), v) -
+                                  dot(contact_.law.normal().elastic_load(at.to), at.u));
       });
   return sum;
 }

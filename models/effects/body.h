@@ -11,6 +11,12 @@ namespace tress::models {
 
 std::span<const Parameter> body_parameters();
 
+/// What Effect::rigid_contact() gives: per length of strand, `law`.
+struct RigidContact {
+  RigidBody body;
+  BodyContact law;
+};
+
 /// Contact of the strand with a rigid body and regularised friction: per point, l times
 /// the load of BodyContact, a force per length, so the result does not depend on the
 /// number of points; points without length receive no force. The elastic part is the
@@ -26,21 +32,26 @@ class Body final : public Effect {
   Needs needs() const override {
     return {.position = true, .velocity = true, .derivatives = true};
   }
+  const RigidContact* rigid_contact() const noexcept override { return &contact_; }
+  bool reaches(double t, const Ball& ball) const noexcept override {
+    return contact_.body.reaches(contact_.body.pose(t), ball);
+  }
   void add_load(double t, const Points& p, InOut f) const noexcept override;
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override;
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
   std::optional<double> penetration(double t, In x) const override {
-    return body_.penetration(t, x);
+    return contact_.body.penetration(t, x);
   }
-  std::optional<Outline> outline(double t) const override { return body_.outline(t); }
+  std::optional<Outline> outline(double t) const override {
+    return contact_.body.outline(t);
+  }
 
-  BodyPose pose(double t) const { return body_.pose(t); }
+  BodyPose pose(double t) const { return contact_.body.pose(t); }
 
  private:
-  RigidBody body_;
-  BodyContact law_;
+  RigidContact contact_;
 };
 
 /// With regularised friction, or as ExactBody.

@@ -43,6 +43,19 @@ struct Needs {
 };
 
 class Obstacle;
+struct RigidContact;
+
+/// All places within `radius` of its centre, m.
+struct Ball {
+  Vec centre;
+  double radius = 0;
+};
+
+/// The load -(per_length l + per_mass m) v on points of length l and mass m.
+struct Viscosity {
+  double per_length = 0;  // kg/(m s)
+  double per_mass = 0;    // 1/s
+};
 
 /// A body for drawing.
 struct Outline {
@@ -77,6 +90,15 @@ class Effect {
   /// Set if the load is m times the same acceleration at every point and time. Models in
   /// moving frames may then accelerate the root against it instead of calling add_load.
   virtual std::optional<Vec> uniform_acceleration() const noexcept { return {}; }
+  /// Set if that is all of its load, at every point and time. Models of uniform strands
+  /// may then add it to their mass instead of calling add_load.
+  virtual std::optional<Viscosity> viscosity() const noexcept { return {}; }
+  /// Set if its loads are those of BodyContact on a rigid body, which kernels for many
+  /// strands compute by themselves.
+  virtual const RigidContact* rigid_contact() const noexcept { return nullptr; }
+  /// Whether it may load some point of the ball at time t, by a test that is cheap beside
+  /// add_load; models need not call that for points in balls which it does not reach.
+  virtual bool reaches(double /*t*/, const Ball& /*ball*/) const noexcept { return true; }
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;

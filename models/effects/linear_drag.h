@@ -19,6 +19,9 @@ class LinearDrag final : public Effect {
 
   std::string_view name() const override { return "linear_drag"; }
   Needs needs() const override { return {.velocity = true, .derivatives = true}; }
+  std::optional<Viscosity> viscosity() const noexcept override {
+    return Viscosity{nu_, mass_damping_};
+  }
   void add_load(double t, const Points& p, InOut f) const noexcept override;
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override;

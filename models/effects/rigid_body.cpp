@@ -100,10 +100,17 @@ double RigidBody::least_radius() const {
 }
 
 std::optional<Distance> RigidBody::distance(const Vec& x, double reach) const {
-  Distance to;
-  const auto look = [&](const auto& shape) { return distance(shape, x, reach, to); };
+  NearestOf<double> at;
+  const auto look = [&](const auto& shape) { return nearest(shape, x, reach, at); };
   if (!std::visit(look, shape_)) return {};
-  return to;
+  return at.to;
+}
+
+bool RigidBody::reaches(const BodyPose& now, const Ball& ball) const {
+  const Vec centre = now.frame.back(ball.centre - now.x);
+  return std::visit(
+      [&](const auto& shape) { return at_least(shape, centre) - ball.radius < offset_; },
+      shape_);
 }
 
 double RigidBody::penetration(double t, In x) const {
@@ -111,9 +118,9 @@ double RigidBody::penetration(double t, In x) const {
   double deepest = 0;
   const auto look = [&](const auto& shape) {
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
-      Distance to;
-      if (distance(shape, now.frame.back(load3(&x[i]) - now.x), offset_, to)) {
-        deepest = std::max(deepest, offset_ - to.value);
+      NearestOf<double> at;
+      if (nearest(shape, now.frame.back(load3(&x[i]) - now.x), offset_, at)) {
+        deepest = std::max(deepest, offset_ - at.to.value);
       }
     }
   };

@@ -39,6 +39,11 @@ class RigidBody {
   /// Largest depth (m) of the strand's surface in the body over the points at x.
   double penetration(double t, In x) const;
 
+  const BodyShape& shape() const { return shape_; }
+  double offset() const { return offset_; }  // m
+  /// Whether points of the ball may be in contact.
+  bool reaches(const BodyPose& now, const Ball& ball) const;
+
   /// Its least radius of curvature where that is known, m; infinity: flat.
   double least_radius() const;
   /// From a place in its frame, if it is below `reach`.
@@ -62,11 +67,15 @@ class RigidBody {
             Near at;
             at.point = i;
             at.x = now.frame.back(world - now.x);
-            if (!distance(shape, at.x, reach(i), at.to)) continue;
+            NearestOf<double> found;
+            if (!nearest(shape, at.x, reach(i), found)) continue;
+            at.to = found.to;
             if constexpr (with != With::position) {
               at.u = now.frame.back(load3(&p.v[3 * i]) - now.surface_velocity(world));
             }
-            if constexpr (with == With::curvature) at.curvature = shape.curvature(at.x);
+            if constexpr (with == With::curvature) {
+              at.curvature = shape.curvature(at.x, found);
+            }
             see(at);
           }
         },
@@ -74,15 +83,16 @@ class RigidBody {
   }
 
  private:
-  /// The distance from a shape, if it is below `reach`; most others are excluded without
-  /// a search.
+  /// The place on a shape, if the distance is below `reach`; most others are excluded
+  /// without a search.
   template <class Shape>
-  static bool distance(const Shape& shape, const Vec& x, double reach, Distance& to) {
+  static bool nearest(const Shape& shape, const Vec& x, double reach,
+                      NearestOf<double>& at) {
     if constexpr (requires { shape.at_least(x); }) {
       if (shape.at_least(x) >= reach) return false;
     }
-    to = shape.distance(x);
-    return to.value < reach;
+    at = shape.nearest(x);
+    return at.to.value < reach;
   }
 
   BodyShape shape_;

@@ -139,6 +139,15 @@ class DerModel {
   }
 
   template <class Use>
+  void velocities(const Clamp& clamp, const Real* v, Use use) const {
+    use(0, clamp.v);
+    V at{};  // the first rate is that of a place, not of an edge
+    for (std::size_t i = 0; i < n_; ++i) {
+      at = at + load3(v + 4 * i);
+      use(i + 1, at);
+    }
+  }
+  template <class Use>
   void positions(const Strand& strand, const Frame& head, const Real* q, Use use) const {
     V at = frame_of(head) * strand.root.from;
     use(0, at);

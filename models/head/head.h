@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/instructions.h"
+#include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
@@ -31,6 +32,10 @@ struct HeadOptions {
   // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
   double newton_tolerance = 1e-10;
   int newton_iterations = 20;
+  /// On every strand, in addition: gravity and linear drag join the numbers above, bodies
+  /// are computed for all lanes at once, others strand by strand. Refused: effects that
+  /// couple points (self_contact) or hold contact forces (friction_law = exact).
+  Effects effects;
 };
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
@@ -87,10 +92,13 @@ class Head {
 
   /// Memory for so many strands.
   virtual void reserve(std::size_t strands) = 0;
-  /// Throws InputError unless the strand has `elements` segments of equal length and
-  /// section, one after the other, and no free root. Its own root motion is not read but
+  /// `own`: effects on this strand alone, as StrandInteraction::effect(k); they must not
+  /// be shared, as blocks advance on several threads. Throws InputError unless the strand
+  /// has `elements` segments of equal length and section, one after the other, and no
+  /// free root, and on effects as HeadOptions says. Its own root motion is not read but
   /// for `position` and `frame` at rest.
-  virtual void add(const Strand& strand) = 0;
+  virtual void add(const Strand& strand, Effects own) = 0;
+  void add(const Strand& strand) { add(strand, {}); }
 
   virtual std::size_t strands() const = 0;
   virtual std::size_t blocks() const = 0;
@@ -105,7 +113,9 @@ class Head {
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
   /// One step of semi_implicit_euler of a block, from t to t + h (s). A strand whose
-  /// result is not finite stays as it was, at rest, from then on. Safe for different
+  /// result is not finite stays as it was, at rest, from then on; others are the same
+  /// bits with and without it. Effects cost where they reach: a body a test for each
+  /// block, then one for each element, before any point is looked at. Safe for different
   /// blocks at once, each thread with its own scratch.
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
   /// The same of blocks first to last - 1: methods that iterate fill the lanes of strands
@@ -124,6 +134,9 @@ class Head {
   virtual std::size_t numbers() const = 0;
   virtual std::size_t strands_of(std::size_t block) const = 0;
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
+  /// The same with their velocities (m/s).
+  virtual void motion(std::size_t block, double t, std::span<double> x,
+                      std::span<double> v) const = 0;
   /// Coordinates and their rates of a strand, in the order of its elements: see the
   /// functions below.
   virtual void state(std::size_t strand, std::span<double> q,

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/head/helix_loads.h"
 #include "models/head/helix_strand.h"
 #include "models/head/lane_head.h"
 
@@ -15,25 +17,35 @@ template <class T>
 class HelixHead final : public Head {
  public:
   HelixHead(const HeadOptions& options, Instructions instructions)
-      : options_(options),
+      : options_(with_uniform_effects(options)),
         instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
         units_(HeadUnits::of(options.longest)) {
     options_.motion.frame = {};
+    for (const auto& effect : options_.effects) {
+      if (effect->rigid_contact() != nullptr) {
+        bodies_.push_back(effect->rigid_contact());
+      } else {
+        others_.push_back(effect.get());
+      }
+    }
   }
 
   void reserve(std::size_t strands) override {
     const std::size_t blocks = (strands + width - 1) / width;
     roots_.reserve(blocks);
     materials_.reserve(blocks);
+    hurt_.reserve(blocks);
     for (auto* state : {&q_, &v_, &rest_}) state->reserve(n_ * blocks);
     lost_.reserve(strands);
   }
 
-  void add(const Strand& strand) override {
+  using Head::add;
+  void add(const Strand& strand, Effects own_effects) override {
     models::check(strand);
     check_for_head(strand, n_);
+    for (const auto& effect : own_effects) check_for_head(*effect);
     const Segment& first = strand.segments.front();
     const CrossSection& section = first.section;
     const double density = strand.material.density * section.area();
@@ -42,14 +54,16 @@ class HelixHead final : public Head {
     if (opens) {
       roots_.emplace_back();
       materials_.emplace_back();
+      hurt_.push_back(0);
       for (auto* state : {&q_, &v_, &rest_}) state->resize(state->size() + n_);
     }
     const std::size_t block = roots_.size() - 1;
+    const Vec from = strand.root.position - options_.motion.position;
+    radius_ = std::max(radius_, norm(from) + static_cast<double>(n_) * first.length);
     const int own = static_cast<int>(lost_.size() % width);
     // The first strand of a block fills the lanes of those that may not come.
     for (int lane = own; lane < (opens ? T::lanes : own + 1); ++lane) {
       Root& root = roots_[block];
-      const Vec from = strand.root.position - options_.motion.position;
       set_lane(root.from, lane, (1 / units_.length) * from);
       set_lane(root.frame, lane, strand.root.frame);
       HelixMaterial<T>& m = materials_[block];
@@ -76,37 +90,49 @@ class HelixHead final : public Head {
       }
     }
     lost_.push_back(0);
+    if (own_effects.empty() && own_.empty()) return;
+    own_.resize(lost_.size());
+    own_.back() = std::move(own_effects);
   }
 
   std::size_t strands() const override { return lost_.size(); }
   std::size_t blocks() const override { return roots_.size(); }
   std::size_t bytes() const override {
     return blocks() *
-               (sizeof(Root) + sizeof(HelixMaterial<T>) + 3 * n_ * sizeof(Vec3<T>)) +
-           lost_.size();
+               (sizeof(Root) + sizeof(HelixMaterial<T>) + 3 * n_ * sizeof(Vec3<T>) + 1) +
+           lost_.size() + own_.size() * sizeof(Effects);
   }
 
-  std::unique_ptr<Scratch> scratch() const override { return std::make_unique<Own>(n_); }
+  std::unique_ptr<Scratch> scratch() const override {
+    // Units are known from the first strand on.
+    return std::make_unique<Own>(kernel_, units_);
+  }
 
   void step(std::size_t block, double t, double h, Scratch& given) override {
     Own& scratch = static_cast<Own&>(given);
     Vec3<T>*const q = &q_[n_ * block], *const v = &v_[n_ * block];
     std::copy_n(q, n_, scratch.before.begin());
-    if (scratch.t != t + h) {
-      scratch.t = t + h;
-      scratch.pose = options_.motion.at(scratch.t);
-    }
+    if (scratch.t != t + h) look_around(t + h, scratch);
     const HelixRoot<T> root = root_of(roots_[block], scratch.pose);
+    const HelixMaterial<T>& material = materials_[block];
+    const double step = h / units_.time;
+    auto* const elements = scratch.elements.data();
+    typename HelixStrand<T>::Sum end;
+    by(instructions_, [&] { end = kernel_.move(material, root, step, q, v, elements); });
+    const LoadSums<T>* const* loads = nullptr;
+    if (const auto reached = reached_by_effects(block, h, scratch)) {
+      loads = scratch.loads.find(*reached, v, elements);
+    }
     by(instructions_, [&] {
-      kernel_.semi_implicit_step(materials_[block], root, &rest_[n_ * block],
-                                 h / units_.time, q, v, scratch.elements.data());
+      kernel_.semi_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
+                                 elements);
     });
     T finite(0);  // 0 or NaN
     for (std::size_t i = 0; i < n_; ++i) {
       const T all = q[i].x + q[i].y + q[i].z;
       finite += all - all;
     }
-    if (!all_up_to(finite, 0)) freeze(block, finite, scratch);
+    if (!all_up_to(finite, 0) || hurt_[block] != 0) freeze(block, finite, scratch);
   }
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
 
@@ -116,25 +142,32 @@ class HelixHead final : public Head {
   }
 
   void positions(std::size_t block, double t, std::span<double> x) const override {
-    const RootPose pose = options_.motion.at(t);
-    const Root& root = roots_[block];
-    const T length = materials_[block].length;
-    FrameOf<T> frame = FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2};
-    Vec3<T> at = frame * root.from;  // seen from the motion's position
-    frame = frame * root.frame;
-    store(pose.x, at, 0, block, x);
-    for (std::size_t i = 0; i < n_; ++i) {
-      const Vec3<T>& kappa = q_[n_ * block + i];
-      const HelixElement<T> element(kappa, {});
-      const LaneFunctions<T> functions(kappa, length);
-      const HelixFunctions<T> f = functions.at(length);
-      at = at + frame * element.position(length, f);
-      const Matrix3<T> turn = element.turn(length, f, functions.x2()).rotation;
-      frame = frame * FrameOf<T>{turn.column(0), turn.column(1), turn.column(2)};
-      store(pose.x, at, i + 1, block, x);
-    }
+    follow(block, t, [&](std::size_t i, const Vec& from, const Vec3<T>& at, const auto&) {
+      store(from, units_.length, at, i, block, x);
+    });
   }
-
+  void motion(std::size_t block, double t, std::span<double> x,
+              std::span<double> v) const override {
+    const HelixRoot<T> root = root_of(roots_[block], options_.motion.at(t));
+    const T length = materials_[block].length;
+    Vec3<T> velocity = root.v, omega = root.omega;
+    follow(
+        block, t,
+        [&](std::size_t i, const Vec& from, const Vec3<T>& at, const FrameOf<T>& frame) {
+          store(from, units_.length, at, i, block, x);
+          store({}, units_.speed(), frame * velocity, i, block, v);
+          if (i == n_) return;
+          const Vec3<T>&kappa = q_[n_ * block + i], &rate = v_[n_ * block + i];
+          const HelixElement<T> element(kappa, rate);
+          const LaneFunctions<T> functions(kappa, length);
+          const HelixFunctions<T> f = functions.at(length);
+          const auto turn = element.turn(length, f, functions.x2());
+          velocity =
+              turn.rotation.back(velocity + cross(omega, element.position(length, f)) +
+                                 element.slope(f) * rate);
+          omega = turn.rotation.back(omega + turn.velocity);
+        });
+  }
   void state(std::size_t strand, std::span<double> q,
              std::span<double> v) const override {
     const auto lane = static_cast<int>(strand % width);
@@ -165,12 +198,91 @@ class HelixHead final : public Head {
   using Root = LaneRoot<T>;
 
   struct Own final : Scratch {
-    explicit Own(std::size_t n) : elements(n), before(n) {}
+    Own(const HelixStrand<T>& kernel, const HeadUnits& units)
+        : elements(static_cast<std::size_t>(kernel.elements())),
+          before(elements.size()),
+          loads(kernel, units),
+          others(width) {}
     std::vector<typename HelixStrand<T>::Scratch> elements;
-    std::vector<Vec3<T>> before;                          // q
-    double t = std::numeric_limits<double>::quiet_NaN();  // of the pose
+    std::vector<Vec3<T>> before;  // q
+    HelixLoads<T> loads;
+    double t = std::numeric_limits<double>::quiet_NaN();  // of what follows
     RootPose pose;
+    std::vector<NearBody> bodies;            // that reach the head
+    std::vector<const Effect*> all_strands;  // other effects that reach it
+    std::vector<NearBody> near;              // those that reach a block
+    std::vector<std::vector<const Effect*>> others;
   };
+
+  /// Effects that reach the ball in which all strands are.
+  void look_around(double t, Own& scratch) const {
+    scratch.t = t;
+    scratch.pose = options_.motion.at(t);
+    const Ball ball{scratch.pose.x, radius_};
+    scratch.bodies.clear();
+    for (const RigidContact* contact : bodies_) {
+      BodyPose pose = contact->body.pose(t);
+      if (!contact->body.reaches(pose, ball)) continue;
+      pose.x = pose.x - scratch.pose.x;
+      scratch.bodies.push_back({contact, pose});
+    }
+    scratch.all_strands.clear();
+    for (const Effect* effect : others_) {
+      if (effect->reaches(t, ball)) scratch.all_strands.push_back(effect);
+    }
+  }
+
+  /// A block and the effects that reach some of its strands, if there are any.
+  std::optional<typename HelixLoads<T>::Block> reached_by_effects(std::size_t block,
+                                                                  double h,
+                                                                  Own& scratch) const {
+    if (scratch.bodies.empty() && scratch.all_strands.empty() && own_.empty()) return {};
+    const Root& root = roots_[block];
+    const HelixMaterial<T>& material = materials_[block];
+    const Frame& head = scratch.pose.frame;
+    const FrameOf<T> axes{head.e0, head.e1, head.e2};
+    const Vec3<T> from = T(units_.length) * (axes * root.from);
+    const T radius = T(static_cast<double>(n_) * units_.length) * material.length;
+    scratch.near.clear();
+    for (const NearBody& body : scratch.bodies) {
+      const Frame& f = body.pose.frame;
+      const Vec3<T> seen = FrameOf<T>{f.e0, f.e1, f.e2}.back(from - Vec3<T>(body.pose.x));
+      const T reach = radius + T(body.contact->body.offset());
+      const bool near = std::visit(
+          [&](const auto& shape) { return any_less(at_least(shape, seen), reach); },
+          body.contact->body.shape());
+      if (near) scratch.near.push_back(body);
+    }
+    bool others = false;
+    if (!scratch.all_strands.empty() || !own_.empty()) {
+      for (std::size_t k = 0; k < strands_of(block); ++k) {
+        const int lane = static_cast<int>(k);
+        const Ball ball{scratch.pose.x + lane_of(from, lane), lane_of(radius, lane)};
+        others =
+            take_others(width * block + k, ball, scratch, scratch.others[k]) || others;
+      }
+    }
+    if (scratch.near.empty() && !others) return {};
+    std::span<const std::vector<const Effect*>> of_strands;
+    if (others) of_strands = std::span(scratch.others).first(strands_of(block));
+    return typename HelixLoads<T>::Block{&material,    from,      axes * root.frame,
+                                         scratch.t,    h,         scratch.pose.x,
+                                         scratch.near, of_strands};
+  }
+  bool take_others(std::size_t strand, const Ball& ball, const Own& scratch,
+                   std::vector<const Effect*>& to) const {
+    to.clear();
+    if (lost_[strand] != 0) return false;
+    for (const Effect* effect : scratch.all_strands) {
+      if (effect->reaches(scratch.t, ball)) to.push_back(effect);
+    }
+    if (strand < own_.size()) {
+      for (const auto& effect : own_[strand]) {
+        if (effect->reaches(scratch.t, ball)) to.push_back(effect.get());
+      }
+    }
+    return !to.empty();
+  }
 
   HelixRoot<T> root_of(const Root& root, const RootPose& pose) const {
     // In the components of the head, without units.
@@ -189,21 +301,45 @@ class HelixHead final : public Head {
 
   void freeze(std::size_t block, const T& finite, const Own& scratch) {
     for (int lane = 0; lane < T::lanes; ++lane) {
-      if (finite[lane] == 0) continue;
+      const std::size_t strand = width * block + static_cast<std::size_t>(lane);
+      const bool counts = strand < lost_.size();
+      if (finite[lane] == 0 && !(counts && lost_[strand] != 0)) continue;
       for (std::size_t i = 0; i < n_; ++i) {
         set_lane(q_[n_ * block + i], lane, lane_of(scratch.before[i], lane));
         set_lane(v_[n_ * block + i], lane, Vec{});
       }
-      const std::size_t strand = width * block + static_cast<std::size_t>(lane);
-      if (strand < lost_.size()) lost_[strand] = 1;
+      hurt_[block] = 1;
+      if (counts) lost_[strand] = 1;
     }
   }
 
-  void store(const Vec& from, const Vec3<T>& at, std::size_t i, std::size_t block,
-             std::span<double> x) const {
+  /// Calls see(i, the head's position, the root or the tip of an element seen from there,
+  /// its frame) from the root to the tip.
+  template <class See>
+  void follow(std::size_t block, double t, See see) const {
+    const RootPose pose = options_.motion.at(t);
+    const Root& root = roots_[block];
+    const T length = materials_[block].length;
+    FrameOf<T> frame = FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2};
+    Vec3<T> at = frame * root.from;
+    frame = frame * root.frame;
+    see(0, pose.x, at, frame);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Vec3<T>& kappa = q_[n_ * block + i];
+      const HelixElement<T> element(kappa, {});
+      const LaneFunctions<T> functions(kappa, length);
+      const HelixFunctions<T> f = functions.at(length);
+      at = at + frame * element.position(length, f);
+      const Matrix3<T> turn = element.turn(length, f, functions.x2()).rotation;
+      frame = frame * FrameOf<T>{turn.column(0), turn.column(1), turn.column(2)};
+      see(i + 1, pose.x, at, frame);
+    }
+  }
+  /// from + unit x, of all strands.
+  void store(const Vec& from, double unit, const Vec3<T>& x, std::size_t i,
+             std::size_t block, std::span<double> to) const {
     for (std::size_t k = 0; k < strands_of(block); ++k) {
-      store3(from + units_.length * lane_of(at, static_cast<int>(k)),
-             &x[3 * (k * (n_ + 1) + i)]);
+      store3(from + unit * lane_of(x, static_cast<int>(k)), &to[3 * (k * (n_ + 1) + i)]);
     }
   }
 
@@ -212,10 +348,15 @@ class HelixHead final : public Head {
   std::size_t n_;
   HelixStrand<T> kernel_;
   HeadUnits units_;
+  std::vector<const RigidContact*> bodies_;
+  std::vector<const Effect*> others_;
+  double radius_ = 0;  // of the ball about the head's position that holds all strands, m
   std::vector<Root> roots_;
   std::vector<HelixMaterial<T>> materials_;
   std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
   std::vector<char> lost_;             // of each strand
+  std::vector<char> hurt_;             // of each block: whether it has a lost strand
+  std::vector<Effects> own_;           // of each strand, or empty
 };
 
 }  // namespace

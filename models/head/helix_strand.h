@@ -5,6 +5,7 @@
 #include "contract/system.h"
 #include "math/gauss_legendre.h"
 #include "models/head/helix_element.h"
+#include "models/head/point_loads.h"
 
 namespace tress::models {
 
@@ -33,9 +34,10 @@ struct HelixRoot {
 /// in three sweeps over the elements that keep all of an element in registers: motion
 /// from the root to the tip, then residual wrenches and articulated inertias back to the
 /// root [Featherstone 1983], then delta to the tip. The equations of ReducedSystem with
-/// gravity and linear drag, for as many strands as T has lanes. Lanes do not mix: a lane
-/// that is not finite leaves the others as they are, and results are the same bits for
-/// any number of lanes.
+/// gravity and linear drag, and with the loads of other effects on points if a step is
+/// given them, for as many strands as T has lanes. Lanes do not mix: a lane that is not
+/// finite leaves the others as they are, and results are the same bits for any number of
+/// lanes and whether or not others have loads.
 ///
 /// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, as it stands; results
 /// differ from ReducedSystem's by what a relative change of 1e-12 of the state makes
@@ -69,22 +71,34 @@ class HelixStrand {
     }
   }
   static constexpr int most_points = 16;
+  int elements() const { return elements_; }
+  int points() const { return points_; }
+  double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
+  double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
 
-  /// One linear solve per step h (SemiImplicitStep): q and v (elements) are updated.
-  [[gnu::flatten]] void semi_implicit_step(const HelixMaterial<T>& m,
-                                           const HelixRoot<T>& root, const Vec* rest,
-                                           double h, Vec* q, Vec* v,
-                                           Scratch* scratch) const {
+  /// One linear solve per step h (SemiImplicitStep) in two parts, between which loads of
+  /// effects are found: motion at q + h v and v in `scratch`; then q and v (elements) are
+  /// updated. The first returns what the second needs.
+  struct Sum;
+  [[gnu::flatten]] Sum move(const HelixMaterial<T>& m, const HelixRoot<T>& root, double h,
+                            const Vec* q, const Vec* v, Scratch* scratch) const {
     const T step(h);
     for (int i = 0; i < elements_; ++i) scratch[i].q = q[i] + step * v[i];
-    backward(m, rest, v, {1, h, h * h}, forward(m, root, v, scratch), scratch);
+    return forward(m, root, v, scratch);
+  }
+  /// `loads`: of an element null or its loads; null if there are none.
+  [[gnu::flatten]] void semi_implicit_step(const HelixMaterial<T>& m, const Sum& end,
+                                           const LoadSums<T>* const* loads,
+                                           const Vec* rest, double h, Vec* q, Vec* v,
+                                           Scratch* scratch) const {
+    const T step(h);
+    backward(m, rest, v, {1, h, h * h}, end, loads, scratch);
     solve(scratch, [&](int i, const Vec& a) {
       v[i] = v[i] + step * a;
       q[i] = q[i] + step * v[i];
     });
   }
 
- private:
   /// The wrench and the articulated inertia at a frame: force = ll a + la alpha, moment =
   /// la^T a + aa alpha.
   struct Sum {
@@ -93,6 +107,7 @@ class HelixStrand {
     Matrix la;
   };
 
+ private:
   /// Returns the wrench on the last tip: that of its rotor.
   Sum forward(const HelixMaterial<T>& m, const HelixRoot<T>& root, const Vec* v,
               Scratch* scratch) const {
@@ -129,7 +144,7 @@ class HelixStrand {
   }
 
   void backward(const HelixMaterial<T>& m, const Vec* rest, const Vec* v, Weights w,
-                Sum hanging, Scratch* scratch) const {
+                Sum hanging, const LoadSums<T>* const* loads, Scratch* scratch) const {
     const T inertia = T(w.acc) * m.density + T(w.vel) * m.drag;
     const Vec restoring =
         T(w.pos) * m.stiffness + (T(w.vel) * m.friction) * Vec{T(1), T(1), T(1)};
@@ -137,7 +152,8 @@ class HelixStrand {
     for (int i = elements_ - 1; i >= 0; --i) {
       Scratch& e = scratch[i];
       hanging.aa.xx += T(w.acc) * rotor;
-      hanging = over(m, restoring, inertia, rest[i], v[i], hanging, e);
+      hanging = over(m, restoring, inertia, rest[i], v[i], hanging,
+                     loads != nullptr ? loads[i] : nullptr, e);
       rotor = m.rotor;  // halves of two elements
       hanging.moment = hanging.moment + rotor_moment(rotor, e.omega, e.alpha);
     }
@@ -145,7 +161,8 @@ class HelixStrand {
 
   /// From the tip of an element to its start.
   Sum over(const HelixMaterial<T>& m, const Vec& restoring, const T& inertia,
-           const Vec& rest, const Vec& v, const Sum& hanging, Scratch& e) const {
+           const Vec& rest, const Vec& v, const Sum& hanging,
+           const LoadSums<T>* of_effects, Scratch& e) const {
     const HelixElement<T> element(e.q, v);
     const LaneFunctions<T> functions(e.q, m.length);
     const AlongHelix<T> load =
@@ -200,13 +217,17 @@ class HelixStrand {
     own.yy += restoring.y;
     own.zz += restoring.z;
 
-    e.pivot = inverse(own);
     const Vec strain = e.q - rest;
     e.unknown = Vec{} - points.unknown - e.slope.back(tip_force) -
                 e.turn.back(tip_moment) -
                 Vec{m.stiffness.x * strain.x + m.friction * v.x,
                     m.stiffness.y * strain.y + m.friction * v.y,
                     m.stiffness.z * strain.z + m.friction * v.z};
+    // One code with and without loads: the same bits for strands that have none.
+    if (of_effects != nullptr) [[unlikely]] {
+      add(*of_effects, all, own, e);
+    }
+    e.pivot = inverse(own);
     const Matrix z_l = e.pivot * e.of_force, z_a = e.pivot * e.of_moment;
     all.force = all.force + z_l.back(e.unknown);
     all.moment = all.moment + z_a.back(e.unknown);
@@ -215,6 +236,20 @@ class HelixStrand {
     all.la = all.la - by_force * z_a;
     all.aa = all.aa - upper(by_moment, z_a.transposed());
     return all;
+  }
+
+  /// The wrench is that of inertia less loads.
+  static void add(const LoadSums<T>& of_effects, Sum& all, Symmetric3<T>& own,
+                  Scratch& e) {
+    of_effects.add_to(all.force, Vec{} - of_effects.force);
+    of_effects.add_to(all.moment, Vec{} - of_effects.moment);
+    of_effects.add_to(e.unknown, of_effects.unknown);
+    of_effects.add_to(all.ll, of_effects.ll);
+    of_effects.add_to(all.la, of_effects.la);
+    of_effects.add_to(all.aa, of_effects.aa);
+    of_effects.add_to(e.of_force, of_effects.of_force);
+    of_effects.add_to(e.of_moment, of_effects.of_moment);
+    of_effects.add_to(own, of_effects.inner);
   }
 
   /// Without twist, of the lower right block.

@@ -6,25 +6,15 @@
 #include <memory>
 #include <string>
 
-#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "math/lanes.h"
 #include "models/head/head.h"
+#include "models/head/head_units.h"
 
 /// What all heads of hair have in common, whatever their kernel.
 namespace tress::models {
 
 inline constexpr const char* place_of_head = "head of hair";
-
-/// In which 1 is a long hair, the time in which it falls by its length, and its mass.
-/// Numbers of any size then fit into 32 bits.
-struct HeadUnits {
-  double length, time, density;  // m, s, kg/m
-  static HeadUnits of(double longest) {
-    return {longest, std::sqrt(longest / earth_gravity), 0};
-  }
-  double stiffness() const { return density * std::pow(length, 4) / (time * time); }
-};
 
 /// Where a strand's root is in the head at rest.
 template <class T>
@@ -64,6 +54,36 @@ inline void check_for_head(const Strand& strand, std::size_t elements) {
               "elements of different length or section", place_of_head,
               "use grading = 1");
   }
+}
+
+/// Throws InputError on an effect that acts between points, or holds forces between
+/// steps.
+inline void check_for_head(const Effect& effect) {
+  const std::string name(effect.name());
+  refuse_if(effect.for_strand(0) != nullptr,
+            "effect " + name + " holds contact forces between steps", place_of_head,
+            "set friction_law = \"regularised\", or run the strands one by one");
+  refuse_if(effect.needs().couplings,
+            "effect " + name + " couples the points of a strand", place_of_head,
+            "leave it out, or run the strands one by one");
+}
+
+/// Effects that the other numbers say as well, uniform accelerations and linear drag,
+/// join them; the others are left.
+inline HeadOptions with_uniform_effects(HeadOptions options) {
+  std::erase_if(options.effects, [&](const auto& effect) {
+    check_for_head(*effect);
+    if (const auto acceleration = effect->uniform_acceleration()) {
+      options.gravity = options.gravity + *acceleration;
+      return true;
+    }
+    const auto viscosity = effect->viscosity();
+    if (!viscosity) return false;
+    options.drag += viscosity->per_length;
+    options.mass_damping += viscosity->per_mass;
+    return true;
+  });
+  return options;
 }
 
 template <class T>

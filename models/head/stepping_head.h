@@ -25,6 +25,7 @@ namespace tress::models {
 ///     again(the same)                       // with the matrix of the last newton()
 ///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
 ///     positions(Strand, Element*, RootPose, q, use(i, Vec3<Real>))
+///     velocities(Clamp, v, use(i, Vec3<Real>))
 ///     unit(HeadUnits, k)                    // of unknown k
 ///
 /// all without units; poses are HeadUnits' multiples. Lanes do not mix, and decisions are
@@ -36,14 +37,15 @@ class SteppingHead final : public Head {
   using T = typename Model::Real;
 
   SteppingHead(const HeadOptions& options, Instructions instructions)
-      : options_(options),
+      : options_(with_uniform_effects(options)),
         units_(HeadUnits::of(options.longest)),
-        model_(options, units_, instructions),
+        model_(options_, units_, instructions),
         iterates_(options.method == HeadMethod::backward_euler),
         n_(model_.elements()),
         size_(model_.unknowns()),
         of_state_((iterates_ ? 3 : 2) * size_) {
     options_.motion.frame = {};
+    refuse(options_.effects);
   }
 
   void reserve(std::size_t strands) override {
@@ -54,15 +56,17 @@ class SteppingHead final : public Head {
     lost_.reserve(strands);
   }
 
-  void add(const models::Strand& strand) override {
+  using Head::add;
+  void add(const models::Strand& strand, Effects own) override {
     models::check(strand);
     check_for_head(strand, n_);
+    refuse(own);
     if (units_.density == 0) {
       units_.density = strand.material.density * strand.segments.front().section.area();
     }
     const std::size_t block = lost_.size() / width;
-    const int own = static_cast<int>(lost_.size() % width);
-    if (own == 0) {
+    const int lane_of_own = static_cast<int>(lost_.size() % width);
+    if (lane_of_own == 0) {
       strands_.emplace_back();
       elements_.resize(elements_.size() + n_);
       state_.resize(state_.size() + of_state_, T(0));
@@ -72,10 +76,10 @@ class SteppingHead final : public Head {
     in_head.root.position = strand.root.position;
     in_head.root.frame = strand.root.frame;
     if (!in_head.root.centre) in_head.root.centre = options_.motion.position;
-    model_.describe(in_head, options_.motion.position, units_, own, strands_[block],
-                    &elements_[n_ * block], q_of(block), v_of(block));
+    model_.describe(in_head, options_.motion.position, units_, lane_of_own,
+                    strands_[block], &elements_[n_ * block], q_of(block), v_of(block));
     // The first strand of a block fills the lanes of those that may not come.
-    for (int lane = 1; own == 0 && lane < T::lanes; ++lane) {
+    for (int lane = 1; lane_of_own == 0 && lane < T::lanes; ++lane) {
       copy_strand(block, 0, block, lane);
     }
     lost_.push_back(0);
@@ -130,6 +134,19 @@ class SteppingHead final : public Head {
                        }
                      });
   }
+  void motion(std::size_t block, double t, std::span<double> x,
+              std::span<double> v) const override {
+    positions(block, t, x);
+    const typename Model::Strand& strand = strands_[block];
+    const T* const rates = &state_[of_state_ * block] + size_;
+    model_.velocities(model_.clamp(strand, pose(t)), rates,
+                      [&](std::size_t i, const Vec3<T>& u) {
+                        for (std::size_t k = 0; k < strands_of(block); ++k) {
+                          store3(units_.speed() * lane_of(u, static_cast<int>(k)),
+                                 &v[3 * (k * (n_ + 1) + i)]);
+                        }
+                      });
+  }
   void state(std::size_t strand, std::span<double> q,
              std::span<double> v) const override {
     const auto lane = static_cast<int>(strand % width);
@@ -161,6 +178,13 @@ class SteppingHead final : public Head {
     RootPose from, to;
     std::vector<std::size_t> failed;
   };
+
+  /// No effect but those that the options' numbers say as well.
+  static void refuse(const Effects& effects) {
+    if (effects.empty()) return;
+    throw InputError("effect " + std::string(effects.front()->name()) + " on this model",
+                     place_of_head, "use super_helix, or run the strands one by one");
+  }
 
   T* q_of(std::size_t block) { return &state_[of_state_ * block]; }
   T* v_of(std::size_t block) { return q_of(block) + size_; }

@@ -3,127 +3,21 @@
 #include <numeric>
 
 #include "contract/input_error.h"
-#include "integrators/catalogue.h"
-#include "models/effects/gravity.h"
-#include "models/effects/linear_drag.h"
-#include "models/head/head.h"
-#include "models/reduced/super_helix.h"
+#include "tests/models/head/hairs.h"
 #include "tests/support/apart.h"
 
 namespace tress::test_helix_head {
 
 using namespace models;
-using integrators::make_integrator;
-
-constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
-                              {HeadNumber::float64, 4},
-                              {HeadNumber::float64, 8},
-                              {HeadNumber::float32, 8},
-                              {HeadNumber::float32, 16}};
-
-struct Case {
-  std::string name;
-  int elements = 10, points = 8;
-  bool twist = true, moves = false;
-  double curl = 1;     // scales the rest shapes
-  bool sprung = true;  // released from another shape than that at rest
-  double drag = 2e-5, mass_damping = 0.5;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
-
-constexpr double h = 1e-4;  // s
-
-HeadOptions options(const Case& c) {
-  HeadOptions o{.elements = c.elements,
-                .points = c.points,
-                .twist = c.twist,
-                .gravity = {0.5, 1, -9.81},
-                .drag = c.drag,
-                .mass_damping = c.mass_damping,
-                .longest = 0.25,
-                .motion = {}};
-  o.motion.position = {0.01, 0.02, 1.5};
-  if (c.moves) {
-    o.motion.translations = {{{0, 1, 0.5}, one_minus_cosine(0.01, 3)}};
-    o.motion.rotations = {{{0, 0.6, 0.8}, one_minus_cosine(0.4, 2)}};
-  }
-  return o;
-}
-
-/// Strands that have nothing in common but their elements; their roots move as the head.
-Strand strand(const Case& c, std::size_t k) {
-  const double x = static_cast<double>(k % 11);
-  Material material;
-  material.density = 1300 + 10 * x;
-  material.youngs_modulus = 3e9 / (1 + x / 4);
-  material.internal_friction = 2e-11 * (1 + x);
-  const Vec natural{c.twist ? 4 - x / 3 : 0, 20 + 3 * std::sin(x), 5 * std::cos(x)};
-  const Vec initial{c.twist ? x / 4 : 0, 12, -7};
-  Strand made =
-      make_strand(material, {4e-5 + 2e-6 * x, 5e-5},
-                  {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
-                  uniform_shape(c.curl * natural),
-                  uniform_shape(c.curl * (c.sprung ? initial : natural)));
-  const HeadOptions o = options(c);
-  made.root = o.motion;
-  made.root.centre = o.motion.position;
-  made.root.position = o.motion.position + Vec{0.01 * x, 0.1 - 0.02 * x, 0.003};
-  made.root.frame = rotation({0, 0.6, -0.8}, 0.3 * x);
-  return made;
-}
-
-std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {
-  auto all = helix_head(options(c), pack);
-  for (std::size_t k = 0; k < strands; ++k) all->add(strand(c, k));
-  return all;
-}
-
-void advance(Head& all, int steps, double dt = h) {
-  const auto scratch = all.scratch();
-  for (int s = 0; s < steps; ++s) {
-    for (std::size_t b = 0; b < all.blocks(); ++b) all.step(b, s * dt, dt, *scratch);
-  }
-}
-
-/// The same strand by itself: coordinates in the head's order, and points.
-struct Alone {
-  std::vector<double> q, v, x;
-};
-Alone alone(const Case& c, std::size_t k, int steps, double change) {
-  const Strand one = strand(c, k);
-  const ReducedOptions of_model{
-      .dofs = c.twist ? 3 : 2, .tangent = ReducedTangent::stiff, .quadrature = c.points};
-  const HeadOptions o = options(c);
-  const auto system = super_helix(one, of_model,
-                                  {std::make_shared<Gravity>(o.gravity),
-                                   std::make_shared<LinearDrag>(o.drag, o.mass_damping)});
-  const auto n = static_cast<std::size_t>(system->layout().coordinates);
-  std::vector<double> q(n), v(n);
-  system->initial_state(q, v);
-  for (std::size_t i = 0; i < n; ++i) {
-    q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + 1 / one.length());
-  }
-  Options step;
-  step.step = h;
-  const auto method_of = make_integrator("semi_implicit_euler", *system, step);
-  EXPECT_EQ(method_of->start(0, q, v), Status::ok);
-  EXPECT_EQ(method_of->advance(steps * h), Status::ok);
-  Alone end;
-  end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
-  system->material_points()->positions(steps * h, method_of->q(), end.x);
-  const auto put = [&](In from, std::vector<double>& to) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {
-      if (c.twist) {
-        to.insert(to.end(), {from[3 * i], from[3 * i + 1], from[3 * i + 2]});
-      } else {
-        to.insert(to.end(), {0.0, from[2 * i], from[2 * i + 1]});
-      }
-    }
-  };
-  put(method_of->q(), end.q);
-  put(method_of->v(), end.v);
-  return end;
-}
+using testing_support::advance;
+using testing_support::Alone;
+using testing_support::alone;
+using testing_support::Case;
+using testing_support::h;
+using testing_support::head;
+using testing_support::options;
+using testing_support::packs;
+using testing_support::strand;
 
 class HelixHead : public testing::TestWithParam<Case> {};
 

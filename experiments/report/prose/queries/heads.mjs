@@ -2,7 +2,8 @@
 import { succeeded } from '../../src/tables.mjs';
 import { number, rows_of, table } from '../markdown.mjs';
 
-const heads = (tables) => rows_of(tables, 'heads').filter(succeeded);
+const all_heads = (tables) => rows_of(tables, 'heads').filter(succeeded);
+const heads = (tables) => all_heads(tables).filter((row) => (row.effects ?? 'drag') === 'drag');
 const largest = (tables) => {
   const rows = heads(tables);
   const most = Math.max(...rows.map((row) => Number(row.strands)));
@@ -38,6 +39,24 @@ export const cost_table = (tables) =>
       row.state.slice(0, 8),
     ]),
   );
+
+/// What acts, by number of hairs: one thread, eight numbers of 64 bits side by side.
+export const effect_table = (tables) => {
+  const rows = all_heads(tables).filter(
+    (row) => Number(row.bits) === 64 && Number(row.lanes) === 8 && Number(row.threads) === 1,
+  );
+  const of = (strands, effects) =>
+    rows.find((row) => row.strands === strands && (row.effects ?? 'drag') === effects);
+  const cost = (row) => (row ? number(1e9 * row.cost_per_element_step_s) : '');
+  const kinds = ['none', 'drag', 'body', 'interaction'];
+  return table(
+    ['hairs', 'gravity, ns an element', 'and drag', 'and a head', 'drag and interaction'],
+    [...new Set(rows.map((row) => row.strands))].map((strands) => [
+      strands,
+      ...kinds.map((kind) => cost(of(strands, kind))),
+    ]),
+  );
+};
 
 /// The fastest run of the largest head, for each number of bits.
 export const fastest = (tables) =>

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cmath>
+
+#include "contract/constants.h"
+
+namespace tress::models {
+
+/// A head's units of length, time and mass per length in SI: in them 1 is a long hair,
+/// the time in which it falls by its length, and its mass. Numbers of any size then fit
+/// into 32 bits.
+struct HeadUnits {
+  double length, time, density;  // m, s, kg/m
+  static HeadUnits of(double longest) {
+    return {longest, std::sqrt(longest / earth_gravity), 0};
+  }
+  double stiffness() const { return density * std::pow(length, 4) / (time * time); }
+  double speed() const { return length / time; }
+  double force() const { return density * speed() * speed(); }
+  double mass() const { return density * length; }
+};
+
+}  // namespace tress::models

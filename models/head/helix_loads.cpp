@@ -1,0 +1,265 @@
+#include "models/head/helix_loads.h"
+
+#include <algorithm>
+
+#include "models/head/semidefinite.h"
+
+namespace tress::models {
+namespace {
+
+template <class T>
+Vec3<T> in_body(const BodyPose& pose, const Vec3<T>& x) {
+  return FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2}.back(x);
+}
+
+}  // namespace
+
+template <class T>
+const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v,
+                                              const Element* elements) {
+  block_ = block;
+  place(elements);
+  const bool others = std::ranges::any_of(
+      block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
+  if (others) take_others(v, elements);
+  for (std::size_t i = 0; i < n_; ++i) {
+    loads_[i] = element(i, v[i], elements[i], others) ? &sums_[i] : nullptr;
+  }
+  return loads_.data();
+}
+
+template <class T>
+void HelixLoads<T>::place(const Element* elements) {
+  Start at{block_.from, block_.frame};
+  const T length(units_.length);
+  for (std::size_t i = 0; i < n_; ++i) {
+    starts_[i] = at;
+    const Element& e = elements[i];
+    at.x = at.x + at.frame * (length * e.position);
+    at.frame = at.frame * FrameOf<T>{e.rotation.column(0), e.rotation.column(1),
+                                     e.rotation.column(2)};
+  }
+}
+
+/// Whether some of its points have a load, which is in sums_ then.
+template <class T>
+bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
+                            bool others) {
+  const std::span<const PointLoad<T>> loads =
+      others ? std::span(others_).subspan(points_ * i, points_)
+             : std::span<const PointLoad<T>>();
+  bool near = false;
+  for (const NearBody& body : block_.bodies) near = near || reaches(body, i, e);
+  bool some = false;
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    some = some || any_less(T(0), some_[points_ * i + k]);
+  }
+  if (!near && !some) return false;
+
+  const HelixElement<T> shape(e.q, rate);
+  const LaneFunctions<T> functions(e.q, block_.material->length);
+  Place place;
+  for (std::size_t k = 0; k < points_; ++k) {
+    Point& at = place[k];
+    const T arc = arc_of(k);
+    at.f = functions.at(arc);
+    at.p = shape.position(arc, at.f);
+    at.load = others ? loads[k] : PointLoad<T>{};
+    at.some = others ? some_[points_ * i + k] : T(0);
+  }
+  if (near) {
+    for (const NearBody& body : block_.bodies) {
+      if (!reaches(body, i, e)) continue;
+      std::visit(
+          [&](const auto& surface) { touch(body, surface, i, e, shape, rate, place); },
+          body.contact->body.shape());
+    }
+  }
+  return add_up(i, shape, place);
+}
+
+template <class T>
+bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
+                           const Place& place) {
+  LoadSums<T>& sums = sums_[i];
+  sums = {};
+  bool loaded = false;
+  for (std::size_t k = 0; k < points_; ++k) {
+    const Point& at = place[k];
+    if (!any_less(T(0), at.some)) continue;
+    loaded = true;
+    sums.some = larger(sums.some, at.some);
+    // Of all effects together, linear drag among them, as ReducedSystem has them.
+    const T drag = T(block_.h / units_.time) * weight_of(k) * block_.material->drag;
+    PointLoad<T> load = at.load;
+    const auto shift = [&load](const T& by) {
+      load.block.xx += by;
+      load.block.yy += by;
+      load.block.zz += by;
+    };
+    shift(drag);
+    load.block = semidefinite(load.block, at.some);
+    shift(-drag);
+    sums.add(at.p, shape.slope(at.f), load);
+  }
+  return loaded;
+}
+
+/// By the ball about the middle of the chord, which holds the whole element.
+template <class T>
+bool HelixLoads<T>::reaches(const NearBody& body, std::size_t i, const Element& e) const {
+  const Start& at = starts_[i];
+  const T half(0.5 * units_.length);
+  const Vec3T middle =
+      in_body(body.pose, at.x + at.frame * (half * e.position) - Vec3T(body.pose.x));
+  const T reach = half * block_.material->length + T(body.contact->body.offset());
+  return std::visit(
+      [&](const auto& shape) { return any_less(at_least(shape, middle), reach); },
+      body.contact->body.shape());
+}
+
+template <class T>
+template <class Shape>
+void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
+                          const Element& e, const HelixElement<T>& helix,
+                          const Vec3T& rate, Place& place) const {
+  const BodyPose& pose = body.pose;
+  const BodyContact& law = body.contact->law;
+  const Start& at = starts_[i];
+  // From the components of the element to those of the body, and where it starts.
+  const auto turn = Matrix3<T>::columns(
+      in_body(pose, at.frame.e0), in_body(pose, at.frame.e1), in_body(pose, at.frame.e2));
+  const Vec3T start = in_body(pose, at.x - Vec3T(pose.x));
+  const Vec3T moves(pose.frame.back(pose.v)), turns(pose.frame.back(pose.omega));
+  const T length(units_.length), speed(units_.speed()), o(0), reach(law.offset);
+  // The surface moves faster further out: du/dx = -omega x.
+  const double pos = block_.h * block_.h, vel = block_.h;
+  const Mat3Of<T> by_place = {{T(vel), T(pos) * turns.z, -(T(pos) * turns.y)},
+                              {-(T(pos) * turns.z), T(vel), T(pos) * turns.x},
+                              {T(pos) * turns.y, -(T(pos) * turns.x), T(vel)}};
+  for (std::size_t k = 0; k < points_; ++k) {
+    Point& point = place[k];
+    const Vec3T x = start + turn * (length * point.p);
+    if constexpr (requires { shape.at_least(x); }) {
+      if (!any_less(shape.at_least(x), reach)) continue;
+    }
+    const NearestOf<T> near = shape.nearest(x);
+    const T outside = near.to.value - reach;
+    if (!any_less(outside, o)) continue;
+    const Vec3T local = e.v + cross(e.omega, point.p) + helix.slope(point.f) * rate;
+    const Vec3T u = turn * (speed * local) - (moves + cross(turns, x));
+    ContactSlopesOf<T> slopes;
+    const Vec3T force = law.load(near.to, shape.curvature(x, near), u, slopes);
+    const Mat3Of<T> b = T(-pos) * slopes.by_x - slopes.by_u * by_place;
+    const Symmetric3<T> symmetric{b.r0.x,
+                                  b.r1.y,
+                                  b.r2.z,
+                                  T(0.5) * (b.r0.y + b.r1.x),
+                                  T(0.5) * (b.r0.z + b.r2.x),
+                                  T(0.5) * (b.r1.z + b.r2.y)};
+    const T w = weight_of(k);
+    const T to_force = w * T(units_.length / units_.force()),
+            to_block = w * T(1 / units_.density);
+    point.load.force =
+        point.load.force + where_less(outside, o, to_force * turn.back(force), Vec3T{});
+    point.load.block =
+        point.load.block +
+        where_less(outside, o, to_block * congruent(turn.transposed(), symmetric), {});
+    point.some = where_less(outside, o, T(1), point.some);
+  }
+}
+
+/// Effects other than bodies, strand by strand.
+template <class T>
+void HelixLoads<T>::take_others(const Vec3T* v, const Element* elements) {
+  const std::size_t all = n_ * points_;
+  others_.assign(all, {});
+  some_.assign(all, T(0));
+  x_.resize(all);
+  v_.resize(all);
+  tangent_.resize(all);
+  const T length(units_.length), speed(units_.speed());
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Element& e = elements[i];
+    const Start& at = starts_[i];
+    const HelixElement<T> shape(e.q, v[i]);
+    const LaneFunctions<T> functions(e.q, block_.material->length);
+    for (std::size_t k = 0; k < points_; ++k) {
+      const HelixFunctions<T> f = functions.at(arc_of(k));
+      const Vec3T p = shape.position(arc_of(k), f);
+      const std::size_t point = points_ * i + k;
+      x_[point] = at.x + at.frame * (length * p);
+      v_[point] = at.frame * (speed * (e.v + cross(e.omega, p) + shape.slope(f) * v[i]));
+      tangent_[point] =
+          at.frame * (Vec3T{T(1), T(0), T(0)} + f.S * shape.u() + f.A * shape.z());
+    }
+  }
+  for (std::size_t k = 0; k < block_.others.size(); ++k) {
+    if (!block_.others[k].empty()) take_others(static_cast<int>(k));
+  }
+}
+
+template <class T>
+void HelixLoads<T>::take_others(int lane) {
+  const std::size_t all = n_ * points_;
+  for (auto* to : {&of_x_, &of_v_, &of_tangent_}) to->resize(3 * all);
+  mass_.resize(all);
+  length_.resize(all);
+  load_.assign(3 * all, 0.0);
+  blocks_.assign(9 * all, 0.0);
+  const double density = lane_of(block_.material->density, lane) * units_.density;
+  for (std::size_t i = 0; i < all; ++i) {
+    store3(block_.head + lane_of(x_[i], lane), &of_x_[3 * i]);
+    store3(lane_of(v_[i], lane), &of_v_[3 * i]);
+    store3(lane_of(tangent_[i], lane), &of_tangent_[3 * i]);
+    length_[i] = units_.length * lane_of(weight_of(i % points_), lane);
+    mass_[i] = density * length_[i];
+  }
+  const Points p{.count = static_cast<int>(all),
+                 .x = of_x_,
+                 .v = of_v_,
+                 .tangent = of_tangent_,
+                 .mass = mass_,
+                 .length = length_};
+  const double h = block_.h;
+  for (const Effect* effect : block_.others[static_cast<std::size_t>(lane)]) {
+    effect->add_load(block_.t, p, load_);
+    if (effect->needs().derivatives) {
+      effect->add_derivatives(block_.t, p, -h * h, -h, blocks_);
+    }
+  }
+  for (std::size_t i = 0; i < all; ++i) put(i, lane);
+}
+
+/// Into the lane, in the components of the element.
+template <class T>
+void HelixLoads<T>::put(std::size_t i, int lane) {
+  const double *f = &load_[3 * i], *b = &blocks_[9 * i];
+  const auto zero = [](double x) { return x == 0; };
+  if (std::all_of(f, f + 3, zero) && std::all_of(b, b + 9, zero)) return;
+  const FrameOf<T>& packed = starts_[i / points_].frame;
+  const Frame frame{lane_of(packed.e0, lane), lane_of(packed.e1, lane),
+                    lane_of(packed.e2, lane)};
+  const Symmetric3<double> world{
+      b[0], b[4], b[8], (b[1] + b[3]) / 2, (b[2] + b[6]) / 2, (b[5] + b[7]) / 2};
+  const Symmetric3<double> own =
+      (1 / units_.mass()) *
+      congruent(Matrix3<double>{{frame.e0, frame.e1, frame.e2}}, world);
+  set_lane(others_[i].force, lane, (1 / units_.force()) * frame.back(load3(f)));
+  Symmetric3<T>& to = others_[i].block;
+  set_lane(to.xx, lane, own.xx);
+  set_lane(to.yy, lane, own.yy);
+  set_lane(to.zz, lane, own.zz);
+  set_lane(to.xy, lane, own.xy);
+  set_lane(to.xz, lane, own.xz);
+  set_lane(to.yz, lane, own.yz);
+  some_[i].set(lane, 1);
+}
+
+template class HelixLoads<PackOf<double, 1>>;
+template class HelixLoads<PackOf<double, 4>>;
+template class HelixLoads<PackOf<double, 8>>;
+template class HelixLoads<PackOf<float, 8>>;
+template class HelixLoads<PackOf<float, 16>>;
+
+}  // namespace tress::models

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "models/effects/body.h"
+#include "models/head/head_units.h"
+#include "models/head/helix_strand.h"
+
+namespace tress::models {
+
+/// What acts on a head at one time: a body and where it is, seen from the head's position
+/// along the axes of the world.
+struct NearBody {
+  const RigidContact* contact;
+  BodyPose pose;
+};
+
+/// Loads of effects on the points of a block of super-helices in one step, between the
+/// sweeps of HelixStrand. Bodies: all strands at once, a point only if its element's ball
+/// comes near enough. Other effects: strand by strand, as ReducedSystem calls them.
+/// Elements that nothing loads are left alone. Compiled without fused products, whose
+/// choice depends on the number of lanes: the same bits for all.
+template <class T>
+class HelixLoads {
+ public:
+  using Vec3T = Vec3<T>;
+  using Kernel = HelixStrand<T>;
+  using Element = typename Kernel::Scratch;
+
+  HelixLoads(const Kernel& kernel, const HeadUnits& units)
+      : kernel_(kernel),
+        units_(units),
+        n_(static_cast<std::size_t>(kernel.elements())),
+        points_(static_cast<std::size_t>(kernel.points())),
+        starts_(n_),
+        sums_(n_),
+        loads_(n_) {}
+
+  /// A block in one step: bodies that may touch it, and of each
+  /// strand the other effects. `from`, `frame`: of the roots, seen from the head's
+  /// position along the axes of the world, m.
+  struct Block {
+    const HelixMaterial<T>* material;
+    Vec3T from;
+    FrameOf<T> frame;
+    double t, h;  // end and length of the step, s
+    Vec head;     // its position, m
+    std::span<const NearBody> bodies;
+    std::span<const std::vector<const Effect*>> others;  // (strands), or empty
+  };
+  /// Of each element its loads, or null; from the motion at the step's end.
+  const LoadSums<T>* const* find(const Block& block, const Vec3T* v,
+                                 const Element* elements);
+
+ private:
+  static constexpr auto most = static_cast<std::size_t>(Kernel::most_points);
+
+  struct Start {
+    Vec3T x;  // m, from the head's position
+    FrameOf<T> frame;
+  };
+  struct Point {
+    HelixFunctions<T> f;
+    Vec3T p;  // from the start, in its components
+    PointLoad<T> load;
+    T some;  // 1 in lanes with a load, 0 in others
+  };
+  using Place = std::array<Point, most>;
+
+  void place(const Element* elements);
+  bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
+  bool add_up(std::size_t i, const HelixElement<T>& shape, const Place& place);
+  bool reaches(const NearBody& body, std::size_t i, const Element& e) const;
+  template <class Shape>
+  void touch(const NearBody& body, const Shape& shape, std::size_t i, const Element& e,
+             const HelixElement<T>& helix, const Vec3T& rate, Place& place) const;
+  void take_others(const Vec3T* v, const Element* elements);
+  void take_others(int lane);
+  void put(std::size_t i, int lane);
+
+  T arc_of(std::size_t k) const {
+    return T(kernel_.at(static_cast<int>(k))) * block_.material->length;
+  }
+  T weight_of(std::size_t k) const {
+    return T(kernel_.weight(static_cast<int>(k))) * block_.material->length;
+  }
+
+  const Kernel& kernel_;
+  HeadUnits units_;
+  std::size_t n_, points_;
+  Block block_{};
+  std::vector<Start> starts_;
+  std::vector<LoadSums<T>> sums_;
+  std::vector<const LoadSums<T>*> loads_;
+  // Of effects other than bodies, by points.
+  std::vector<PointLoad<T>> others_;
+  std::vector<T> some_;
+  std::vector<Vec3T> x_, v_, tangent_;
+  std::vector<double> of_x_, of_v_, of_tangent_, mass_, length_, load_, blocks_;
+};
+
+}  // namespace tress::models

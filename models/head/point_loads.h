@@ -1,0 +1,65 @@
+#pragma once
+
+#include "math/lane_choice.h"
+#include "models/head/matrix3.h"
+
+namespace tress::models {
+
+/// The load f of effects on a point, and B = -(w.pos df/dx + w.vel df/dv), symmetric and
+/// semidefinite where it enters a tangent.
+template <class T>
+struct PointLoad {
+  Vec3<T> force;
+  Symmetric3<T> block;
+};
+
+template <class T>
+Symmetric3<T> where_less(const T& x, const T& y, const Symmetric3<T>& yes,
+                         const Symmetric3<T>& no) {
+  const auto one = [&](const T& a, const T& b) { return tress::where_less(x, y, a, b); };
+  return {one(yes.xx, no.xx), one(yes.yy, no.yy), one(yes.zz, no.zz),
+          one(yes.xy, no.xy), one(yes.xz, no.xz), one(yes.yz, no.yz)};
+}
+template <class T>
+Vec3<T> where_less(const T& x, const T& y, const Vec3<T>& yes, const Vec3<T>& no) {
+  return {where_less(x, y, yes.x, no.x), where_less(x, y, yes.y, no.y),
+          where_less(x, y, yes.z, no.z)};
+}
+template <class T>
+Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
+                      const Matrix3<T>& no) {
+  return {{where_less(x, y, yes.row[0], no.row[0]),
+           where_less(x, y, yes.row[1], no.row[1]),
+           where_less(x, y, yes.row[2], no.row[2])}};
+}
+
+/// Their sums over an element: sum J^T f and sum J^T B J with the motion of a point J =
+/// [1, -[P]x, d], d_j = dP/dkappa_j, in the components of the element's start.
+template <class T>
+struct LoadSums {
+  T some{};  // 1 in lanes with a load, 0 in others
+  Vec3<T> force, moment, unknown;
+  Symmetric3<T> ll, aa, inner;
+  Matrix3<T> la;
+  Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
+
+  void add(const Vec3<T>& p, const Matrix3<T>& d, const PointLoad<T>& load) {
+    force = force + load.force;
+    moment = moment + cross(p, load.force);
+    unknown = unknown + d.back(load.force);
+    const Matrix3<T> turned = times_cross(full(load.block), p), own = load.block * d;
+    ll = ll + load.block;
+    la = la - turned;
+    aa = aa - upper(cross_times(p, turned));
+    of_force = of_force + own.transposed();
+    of_moment = of_moment + cross_times(p, own).transposed();
+    inner = inner + upper(d.transposed(), own.transposed());
+  }
+  /// `to` + `more` where there is a load; elsewhere not even the sign of a zero changes.
+  template <class M>
+  void add_to(M& to, const M& more) const {
+    to = where_less(T(0), some, to + more, to);
+  }
+};
+
+}  // namespace tress::models

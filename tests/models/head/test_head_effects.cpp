@@ -1,0 +1,336 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "contract/input_error.h"
+#include "models/effects/body.h"
+#include "models/effects/catalogue.h"
+#include "models/effects/constant_force.h"
+#include "models/effects/exact_body.h"
+#include "models/effects/self_contact.h"
+#include "models/effects/strand_interaction.h"
+#include "models/effects/tether.h"
+#include "models/head/semidefinite.h"
+#include "models/reduced/definite_block.h"
+#include "tests/models/effects/sphere_grid.h"
+#include "tests/models/head/hairs.h"
+#include "tests/support/apart.h"
+
+namespace tress::test_head_effects {
+
+using namespace models;
+using testing_support::advance;
+using testing_support::Alone;
+using testing_support::alone;
+using testing_support::Case;
+using testing_support::h;
+using testing_support::head;
+using testing_support::options;
+using testing_support::packs;
+using testing_support::sphere_samples;
+using testing_support::strand;
+
+// So soft that strands which overlap it at first move by centimetres in 10 ms and not by
+// metres; friction and damping of the order of the spring's force.
+constexpr BodyContact soft{
+    .stiffness = 0.05, .damping = 0.5, .friction = 0.4, .slip = 0.02, .offset = 1e-3};
+
+std::shared_ptr<const Effect> body(BodyShape shape, const Vec& x,
+                                   std::optional<RootMotion> follows = {}) {
+  return std::make_shared<Body>(std::move(shape),
+                                StrandPlace{x, rotation({0.6, 0, 0.8}, 0.7)}, soft,
+                                std::move(follows));
+}
+
+RootMotion moving_head() {
+  const Case moves{.name = "", .moves = true};
+  return options(moves).motion;
+}
+
+Tether::Settings pulled() {
+  return {.at = 0.7, .stiffness = 1e-3, .damping = 1e-5, .target = {0.2, 0, 1.4}};
+}
+
+/// All strands where they are at first, each near some of the others.
+std::shared_ptr<StrandInteraction> neighbours(std::size_t strands) {
+  const Case c{.name = ""};
+  const auto all = head(c, {HeadNumber::float64, 4}, strands);
+  std::vector<double> x(strands * all->numbers()), v(x.size());
+  for (std::size_t b = 0, first = 0; b < all->blocks(); ++b) {
+    const std::size_t size = all->strands_of(b) * all->numbers();
+    all->motion(b, 0, std::span(x).subspan(first, size),
+                std::span(v).subspan(first, size));
+    first += size;
+  }
+  const std::vector<int> points(strands, c.elements + 1);
+  auto made = std::make_shared<StrandInteraction>(
+      ContactLaw({.stiffness = 0.02, .viscosity = 1e-3, .inner = 0.02, .outer = 0.03},
+                 "test"),
+      points);
+  made->update(x, v);
+  return made;
+}
+
+constexpr std::size_t strands = 10;
+
+std::vector<Case> cases() {
+  const Vec low{0.12, 0.08, 1.43};
+  const auto one = [](const char* name, Effects effects) {
+    return Case{.name = name, .effects = std::move(effects)};
+  };
+  std::vector<Case> all = {
+      one("OnAPlane", {body(Plane{}, {0.1, 0, 1.5})}),
+      one("OnASphere", {body(Sphere{0.1}, low)}),
+      one("OnACapsule", {body(Capsule{0.06, 0.1}, low)}),
+      one("OnAnEllipsoid", {body(Ellipsoid({0.08, 0.1, 0.12}), low)}),
+      one("OnAGrid", {body(DistanceGrid(sphere_samples(0.1, 0.15, 31), "test"), low)}),
+      one("OnTwoBodiesAndATether", {body(Sphere{0.1}, low), body(Plane{}, {0.1, 0, 1.47}),
+                                    std::make_shared<Tether>(pulled())}),
+      one("Pushed", {std::make_shared<ConstantForce>(Vec{1e-4, -2e-4, 0}, Vec{1, 2, 3}),
+                     std::make_shared<ConstantForce>(Vec{}, Vec{1, 2, 3})}),
+      one("Viscous", {std::make_shared<LinearDrag>(3e-5, 0.2)}),
+  };
+  for (const char* id : {"quadratic_drag", "wind"}) {
+    const EffectEntry& entry = find_effect(id, "test");
+    all.push_back(
+        one(id, {entry.make(Parameters(entry.parameters, "test"), RootMotion{})}));
+  }
+  Case follows =
+      one("OnAMovingHead", {body(Ellipsoid({0.08, 0.1, 0.12}), low, moving_head())});
+  follows.moves = true;
+  all.push_back(follows);
+  Case bends = one("BendingOnly", {body(Sphere{0.1}, low)});
+  bends.twist = false;
+  all.push_back(bends);
+  Case interacts{.name = "Interacting"};
+  interacts.own = [of = neighbours(strands)](std::size_t k) {
+    // The effect refers to it.
+    return Effects{std::shared_ptr<const Effect>(
+        of->effect(k).release(), [of](const Effect* effect) { delete effect; })};
+  };
+  all.push_back(interacts);
+  return all;
+}
+
+class HeadWithEffects : public testing::TestWithParam<Case> {};
+
+// As in test_helix_head.cpp: what a relative change of 1e-12 of the start makes.
+TEST_P(HeadWithEffects, StrandsMoveAsTheyDoAlone) {
+  const Case& c = GetParam();
+  constexpr int steps = 100;
+  const auto all = head(c, {HeadNumber::float64, 8}, strands);
+  advance(*all, steps);
+  const auto n = static_cast<std::size_t>(3 * c.elements);
+  std::vector<double> q(n), v(n), x(strands * (n + 3)), u(x.size());
+  for (std::size_t b = 0, done = 0; b < all->blocks(); ++b) {
+    const std::size_t size = all->strands_of(b) * (n + 3);
+    all->motion(b, steps * h, std::span(x).subspan(done, size),
+                std::span(u).subspan(done, size));
+    done += size;
+  }
+  Case bare = c;
+  bare.effects.clear();
+  bare.own = {};
+  std::size_t moved = 0;
+  for (std::size_t k = 0; k < strands; ++k) {
+    SCOPED_TRACE(k);
+    EXPECT_FALSE(all->lost(k));
+    all->state(k, q, v);
+    const Alone want = alone(c, k, steps, 0), changed = alone(c, k, steps, 1e-12);
+    EXPECT_LE(apart(q, want.q), apart(changed.q, want.q));
+    EXPECT_LE(apart(v, want.v), apart(changed.v, want.v));
+    EXPECT_LE(apart(In(x).subspan(k * (n + 3), n + 3), want.x), apart(changed.x, want.x));
+    // A rate turns what follows, of length L at most, over L at most.
+    EXPECT_LE(apart(In(u).subspan(k * (n + 3), n + 3), want.u),
+              apart(changed.u, want.u) + 0.25 * 0.25 * apart(changed.v, want.v));
+    moved += apart(want.x, alone(bare, k, steps, 0).x) > 1e-6 ? 1 : 0;
+  }
+  EXPECT_GE(moved, 2U);  // of whose points by more than a micrometre by the effects
+}
+
+TEST_P(HeadWithEffects, LanesGiveTheSameBits) {
+  const Case& c = GetParam();
+  std::size_t want = 0;
+  for (const int lanes : {1, 4, 8}) {
+    const auto all = head(c, {HeadNumber::float64, lanes}, strands);
+    advance(*all, 50);
+    if (lanes == 1) want = all->hash();
+    EXPECT_EQ(all->hash(), want) << lanes;
+  }
+  const auto f8 = head(c, {HeadNumber::float32, 8}, strands),
+             f16 = head(c, {HeadNumber::float32, 16}, strands);
+  advance(*f8, 50);
+  advance(*f16, 50);
+  EXPECT_EQ(f8->hash(), f16->hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, HeadWithEffects, testing::ValuesIn(cases()),
+                         [](const auto& of) { return of.param.name; });
+
+struct State {
+  std::vector<double> q, v;
+  bool operator==(const State&) const = default;
+};
+State state(const Head& of, std::size_t k) {
+  State s{std::vector<double>(of.numbers() - 3), std::vector<double>(of.numbers() - 3)};
+  of.state(k, s.q, s.v);
+  return s;
+}
+
+/// The tip of a strand at the start.
+Vec tip(const Case& c, std::size_t k) {
+  const Alone at = alone(c, k, 0, 0);
+  return load3(&at.x[at.x.size() - 3]);
+}
+
+// A ball of 4 mm at one tip, and a tether on one strand: the strands beside them have the
+// bits of a head without, whatever their neighbours in a block do.
+TEST(HeadWithEffectsOnSome, OthersAreTheSameBits) {
+  Case c{.name = ""};
+  const Case bare = c;
+  const Vec at = tip(c, 5) + Vec{2e-3, 0, 0};
+  c.effects = {body(Sphere{4e-3}, at)};
+  c.own = [](std::size_t k) {
+    return k == 2 ? Effects{std::make_shared<Tether>(pulled())} : Effects{};
+  };
+  constexpr int steps = 20;
+  for (const HeadPack& pack : packs) {
+    const auto some = head(c, pack, 11), none = head(bare, pack, 11);
+    advance(*some, steps);
+    advance(*none, steps);
+    for (std::size_t k = 0; k < 11; ++k) {
+      if (k != 2 && k != 5) {
+        EXPECT_GT(norm(tip(bare, k) - at), 0.012) << k;  // or the sphere may touch it
+      }
+      EXPECT_EQ(state(*some, k) == state(*none, k), k != 2 && k != 5) << k;
+    }
+  }
+}
+
+// The load of the same ball is infinite.
+TEST(HeadWithEffectsOnSome, AStrandThatABodyLosesLeavesOthersAlone) {
+  Case c{.name = ""};
+  const Case bare = c;
+  BodyContact hard = soft;
+  hard.stiffness = 1e308;
+  c.effects = {std::make_shared<Body>(
+      Sphere{4e-3}, StrandPlace{tip(c, 5) + Vec{2e-3, 0, 0}, {}}, hard)};
+  for (const HeadPack& pack : packs) {
+    const auto some = head(c, pack, 11), none = head(bare, pack, 11);
+    const State before = state(*none, 5);
+    advance(*some, 20);
+    advance(*none, 20);
+    for (std::size_t k = 0; k < 11; ++k) {
+      EXPECT_EQ(some->lost(k), k == 5) << k;
+      if (k != 5) {
+        EXPECT_EQ(state(*some, k), state(*none, k)) << k;
+      }
+    }
+    EXPECT_EQ(state(*some, 5), before);
+  }
+}
+
+TEST(HeadEffects, ThatNeedMoreThanPointsAreRefused) {
+  const ContactLaw law({.stiffness = 1, .viscosity = 0, .inner = 1e-3, .outer = 2e-3},
+                       "test");
+  const Effects refused[] = {
+      {std::make_shared<SelfContact>(law, 0.02)},
+      {std::make_shared<ExactBody>(Plane{}, StrandPlace{},
+                                   ExactContact{soft.normal(), false, 0.3, 0})}};
+  for (const Effects& effects : refused) {
+    Case c{.name = "", .effects = effects};
+    EXPECT_THROW(helix_head(options(c), {}), InputError);
+    c.effects.clear();
+    const auto all = helix_head(options(c), {});
+    EXPECT_THROW(all->add(strand(c, 0), effects), InputError);
+    EXPECT_EQ(all->strands(), 0U);
+  }
+}
+
+/// Random symmetric matrices: of any signs, of rank 1 and 2, with equal eigenvalues.
+std::vector<std::array<double, 9>> matrices() {
+  std::mt19937 random(1);
+  std::normal_distribution<double> number;
+  std::vector<std::array<double, 9>> all;
+  for (int i = 0; i < 400; ++i) {
+    Frame f = rotation((1 / 3.0) * Vec{1, 2, 2}, number(random));
+    f = f * rotation({0, 0.6, 0.8}, number(random));
+    double values[] = {number(random), number(random), number(random)};
+    if (i % 5 == 1) values[1] = 0;
+    if (i % 5 == 2) values[1] = values[0];
+    if (i % 5 == 3) values[0] = values[1] = values[2];
+    if (i % 5 == 4) values[0] = values[1] = 0;
+    const double scale = std::pow(10.0, 3 * number(random));
+    const Mat3 m = scale * turned(f, diagonal({values[0], values[1], values[2]}));
+    all.push_back({m.r0.x, (m.r0.y + m.r1.x) / 2, (m.r0.z + m.r2.x) / 2,
+                   (m.r0.y + m.r1.x) / 2, m.r1.y, (m.r1.z + m.r2.y) / 2,
+                   (m.r0.z + m.r2.x) / 2, (m.r1.z + m.r2.y) / 2, m.r2.z});
+  }
+  return all;
+}
+
+// Both are exact but for rounding: some tens of eps of the matrix.
+TEST(Semidefinite, IsTheProjectionByEigenvectors) {
+  using T = PackOf<double, 4>;
+  const auto all = matrices();
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i + 4 <= all.size(); i += 4) {
+    Symmetric3<T> b;
+    for (int lane = 0; lane < 4; ++lane) {
+      const auto& m = all[i + static_cast<std::size_t>(lane)];
+      b.xx.set(lane, m[0]);
+      b.yy.set(lane, m[4]);
+      b.zz.set(lane, m[8]);
+      b.xy.set(lane, m[1]);
+      b.xz.set(lane, m[2]);
+      b.yz.set(lane, m[5]);
+    }
+    const Symmetric3<T> found = semidefinite(b, T(1));
+    for (int lane = 0; lane < 4; ++lane) {
+      const auto& m = all[i + static_cast<std::size_t>(lane)];
+      auto want = m;
+      make_semidefinite(want);
+      changed += want != m ? 1 : 0;
+      const double got[] = {found.xx[lane], found.xy[lane], found.xz[lane],
+                            found.xy[lane], found.yy[lane], found.yz[lane],
+                            found.xz[lane], found.yz[lane], found.zz[lane]};
+      EXPECT_LE(apart(got, want), 1e-14 * (std::abs(m[0]) + std::abs(m[4]) +
+                                           std::abs(m[8]) + 3 * std::abs(m[1])))
+          << i << ' ' << lane;
+    }
+  }
+  EXPECT_GT(changed, 100U);
+}
+
+// Packs start from the surface, doubles from a bound: the same root, within the rounding
+// of distances, some eps of the size; where a few steps do not find it, the same search.
+TEST(BodyShapesInLanes, AnEllipsoidIsAsFarAsByOneSearchEach) {
+  using T = PackOf<double, 4>;
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  std::mt19937 random(2);
+  std::normal_distribution<double> number;
+  for (const Vec& axes : {Vec{0.08, 0.1, 0.12}, Vec{1, 0.1, 0.01}, Vec{0.3, 0.3, 0.3}}) {
+    const Ellipsoid shape(axes);
+    for (int i = 0; i < 200; ++i) {
+      Vec3<T> x;
+      Vec of[4];
+      for (int lane = 0; lane < 4; ++lane) {
+        const Vec n{number(random), number(random), number(random)};
+        const double scale = (i % 2 == 0 ? 1 + 1e-3 * number(random) : 3.0) / norm(n);
+        of[lane] = scale * Vec{axes.x * n.x, axes.y * n.y, axes.z * n.z};
+        set_lane(x, lane, of[lane]);
+      }
+      const NearestOf<T> found = shape.nearest(x);
+      const Mat3Of<T> curvature = shape.curvature(x, found);
+      for (int lane = 0; lane < 4; ++lane) {
+        const Distance want = shape.distance(of[lane]);
+        EXPECT_NEAR(found.to.value[lane], want.value, 100 * eps * norm(of[lane]));
+        EXPECT_LE(norm(lane_of(found.to.gradient, lane) - want.gradient), 1e-12);
+        const Mat3 k = shape.curvature(of[lane]);
+        EXPECT_LE(norm(lane_of(curvature.r0, lane) - k.r0), 1e-10 * (1 + norm(k.r0)));
+      }
+    }
+  }
+}
+
+}  // namespace tress::test_head_effects
