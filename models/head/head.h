@@ -31,6 +31,14 @@ struct HeadPack {
   int lanes = 4;  // 1, 4, 8; of float32 8, 16
 };
 
+/// Of a strand at one instant.
+struct HeadEnergy {
+  double kinetic = 0, elastic = 0;  // J
+  double gravity = 0;               // J, its potential, 0 at the origin of the world
+  double fastest = 0;               // m/s, of the root and the tips of elements
+  Vec tip;                          // m
+};
+
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
 /// strands, each advanced by itself, by as many threads as there are. A strand takes its
 /// state, its rest shape and some twenty numbers of memory, nothing else. Units of all
@@ -73,6 +81,18 @@ class Head {
                      std::span<double> v) const = 0;
   /// Of the bits of all strands' states, in their order; equal for all numbers of lanes.
   virtual std::size_t hash() const = 0;
+
+  /// Of each strand of a block: as Energetics of the strand by itself. O(elements
+  /// points).
+  virtual void energies(std::size_t block, double t,
+                        std::span<HeadEnergy> each) const = 0;
+
+  /// What steps change of the strands of a block, `kept` numbers each: exact, in units of
+  /// the head's own. A head of the same strands that recalls them goes on with the same
+  /// bits, for any number of lanes.
+  virtual std::size_t kept() const = 0;
+  virtual void keep(std::size_t block, std::span<double> x) const = 0;
+  virtual void recall(std::size_t block, std::span<const double> x) = 0;
 };
 
 /// A head of super-helices (models/head/helix_strand.h). Throws InputError if the options

@@ -10,6 +10,7 @@
 #include "contract/input_error.h"
 #include "math/lanes.h"
 #include "models/head/head.h"
+#include "models/head/helix_energies.h"
 #include "models/head/helix_strand.h"
 
 namespace tress::models {
@@ -31,6 +32,7 @@ class HelixHead final : public Head {
       : options_(options),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
+        energies_(options.points),
         units_{options.longest, std::sqrt(options.longest / earth_gravity), 0} {
     options_.motion.frame = {};
   }
@@ -171,6 +173,53 @@ class HelixHead final : public Head {
     return all;
   }
 
+  void energies(std::size_t block, double t, std::span<HeadEnergy> each) const override {
+    const RootPose pose = options_.motion.at(t);
+    const Root& root = roots_[block];
+    const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
+    const auto sums = energies_(materials_[block], root_of(root, pose), head * root.from,
+                                head * root.frame, &rest_[n_ * block], &q_[n_ * block],
+                                &v_[n_ * block], n_);
+    const double length = units_.length, speed = length / units_.time,
+                 unit = units_.density * length * speed * speed;
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      const double mass = units_.density * static_cast<double>(n_) * length *
+                          lane_of(materials_[block].density, lane) *
+                          lane_of(materials_[block].length, lane);
+      const Vec first =
+          mass * pose.x + units_.density * length * length * of_lane(sums.first, lane);
+      each[k] = {unit * lane_of(sums.kinetic, lane), unit * lane_of(sums.elastic, lane),
+                 -dot(options_.gravity, first),
+                 speed * std::sqrt(lane_of(sums.fastest, lane)),
+                 pose.x + length * of_lane(sums.tip, lane)};
+    }
+  }
+
+  std::size_t kept() const override { return 6 * n_ + 1; }
+  void keep(std::size_t block, std::span<double> x) const override {
+    double* to = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        store3(of_lane(q_[i], static_cast<int>(k)), to);
+        store3(of_lane(v_[i], static_cast<int>(k)), to + 3);
+        to += 6;
+      }
+      *to++ = lost_[width * block + k];
+    }
+  }
+  void recall(std::size_t block, std::span<const double> x) override {
+    const double* from = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        set_lane(q_[i], static_cast<int>(k), load3(from));
+        set_lane(v_[i], static_cast<int>(k), load3(from + 3));
+        from += 6;
+      }
+      lost_[width * block + k] = *from++ != 0 ? 1 : 0;
+    }
+  }
+
  private:
   static constexpr std::size_t width = T::lanes;
 
@@ -247,6 +296,7 @@ class HelixHead final : public Head {
   HeadOptions options_;
   std::size_t n_;
   HelixStrand<T> kernel_;
+  HelixEnergies<T> energies_;
   Units units_;
   std::vector<Root> roots_;
   std::vector<HelixMaterial<T>> materials_;
