@@ -39,6 +39,16 @@ HeadRecording::HeadRecording(std::string stem, RunKey key, const Scene& scene,
       key_(std::move(key)),
       columns_(stored.columns),
       lock_(stem_ + ".frames", "this scene") {
+  try {
+    open(scene, run, std::move(stored), resume);
+  } catch (...) {
+    if (lock_.read().empty()) lock_.remove();  // not frames that other runs have left
+    throw;
+  }
+}
+
+void HeadRecording::open(const Scene& scene, HeadRun& run, StoredFrames stored,
+                         bool resume) {
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {

@@ -39,6 +39,7 @@ class HeadRecording {
   void close();
 
  private:
+  void open(const Scene& scene, HeadRun& run, StoredFrames stored, bool resume);
   void write_lost();
 
   std::string stem_;

@@ -192,7 +192,11 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   options.progress = line.progress;
   options.pack = pack_of(a);
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
-  std::filesystem::remove(options.stem + ".errors.csv");  // of a run before
+  std::error_code ignored;  // what a run before has left would only mislead
+  for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv"}) {
+    if (job.head && ending != std::string_view(".errors.csv")) continue;
+    std::filesystem::remove(options.stem + ending, ignored);
+  }
   RunKey key;
   key.add("scene", contents_checksum({file}));
   if (job.head) check_room(job.outline, options);

@@ -1,5 +1,6 @@
 #include "simulation/export/hdf5_file.h"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 #include <unistd.h>
 
@@ -237,6 +238,12 @@ void Hdf5File::sync() {
   if (::fsync(*static_cast<int*>(descriptor)) != 0) {
     throw InputError("cannot write to the disk", file_, "free space or write elsewhere");
   }
+}
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  if (H5get_libversion(&major, &minor, &release) < 0) return {};
+  return fmt::format("{}.{}.{}", major, minor, release);
 }
 
 void shuffle(std::span<const char> from, std::size_t number_size, std::span<char> to) {

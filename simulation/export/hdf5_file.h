@@ -85,6 +85,8 @@ class Hdf5File {
   Hdf5Handle handle_;
 };
 
+std::string hdf5_version();
+
 /// The bytes of HDF5's shuffle filter: the first bytes of all numbers, then the second.
 void shuffle(std::span<const char> from, std::size_t number_size, std::span<char> to);
 
