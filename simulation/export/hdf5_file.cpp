@@ -140,8 +140,18 @@ Hdf5Handle Hdf5File::open(const std::string& dataset) const {
           H5Dclose};
 }
 
+/// Every group on the way is asked for: HDF5 takes it for an error where one is missing.
 bool Hdf5File::has(const std::string& dataset) const {
-  return H5Lexists(handle_.id(), dataset.c_str(), H5P_DEFAULT) > 0;
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = dataset.find('/', end + 1);
+    const std::string part = dataset.substr(0, end);
+    if (H5Lexists(handle_.id(), part.c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  return true;
+}
+
+void Hdf5File::remove(const std::string& dataset) {
+  checked(H5Ldelete(handle_.id(), dataset.c_str(), H5P_DEFAULT), "write");
 }
 
 Sizes Hdf5File::size(const std::string& dataset) const {

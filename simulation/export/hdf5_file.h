@@ -51,6 +51,7 @@ class Hdf5File {
   };
   void create(const std::string& dataset, const Shape& shape);
   bool has(const std::string& dataset) const;
+  void remove(const std::string& dataset);
   std::vector<std::size_t> size(const std::string& dataset) const;
   /// Entries of the first dimension: new ones are zero, those beyond are dropped.
   void resize(const std::string& dataset, std::size_t rows);

@@ -22,7 +22,6 @@ constexpr std::size_t most_strands_of_chunk = 2048;
 // Of zlib: higher ones take several times as long and save a few percent of positions.
 constexpr int zlib_level = 1;
 
-constexpr const char* all_positions = "positions";
 constexpr const char* series_name = "series";
 constexpr const char* shown_positions = "shown/positions";
 
@@ -49,8 +48,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::size_t HeadFrames::frame_bytes(const Head& head, int bits) {
-  return head.strands() * head.numbers() * static_cast<std::size_t>(bits) / 8;
+std::string HeadFrames::dataset(std::size_t frame) {
+  return fmt::format("positions/{:06}", frame);
 }
 
 HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
@@ -86,10 +85,6 @@ HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, const Head& 
   const std::vector<std::int32_t> strands(stored_.shown.begin(), stored_.shown.end());
   file_.write("shown/strands", 0, std::span<const std::int32_t>(strands));
   if (stored_.bits == 0) return;
-  file_.create(all_positions, {stored_.bits == 64 ? Hdf5Type::float64 : Hdf5Type::float32,
-                               {0, strands_ * points_, 3},
-                               {1, each_ * points_, 3},
-                               zlib_level});
   file_.create("connectivity",
                {Hdf5Type::int32, {strands_, points_}, {each_, points_}, zlib_level});
   for (std::size_t k = 0; k < strands_; k += each_) {
@@ -108,22 +103,23 @@ HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames s
   };
   const std::vector<std::size_t> series_size{sums.size(), stored_.columns.size()},
       shown_size{sums.size(), points_ * stored_.shown.size(), 3},
-      positions_size{sums.size(), strands_ * points_, 3};
+      positions_size{strands_ * points_, 3};
   const auto fits = [&](const char* dataset, const std::vector<std::size_t>& want) {
     if (!file_.has(dataset)) return false;
     const std::vector<std::size_t> size = file_.size(dataset);
     return size.size() == want.size() && size.front() >= want.front() &&
            std::equal(size.begin() + 1, size.end(), want.begin() + 1);
   };
-  if (!fits(series_name, series_size) || !fits(shown_positions, shown_size) ||
-      (stored_.bits != 0 && !fits(all_positions, positions_size))) {
+  if (!fits(series_name, series_size) || !fits(shown_positions, shown_size)) {
     throw damaged();
   }
   try {
     for (std::size_t frame = 0; frame < sums.size(); ++frame) {
+      if (stored_.bits != 0 && !fits(dataset(frame).c_str(), positions_size)) {
+        throw damaged();
+      }
       for (std::size_t c = 0; stored_.bits != 0 && c < chunks_.size(); ++c) {
-        const std::vector<char> bytes =
-            file_.read_chunk(all_positions, place_of(frame, c));
+        const std::vector<char> bytes = file_.read_chunk(dataset(frame), place_of(c));
         chunk_sums_[c] = Checksum().add({bytes.data(), bytes.size()}).value();
       }
       shown_ = shown(frame);
@@ -133,14 +129,16 @@ HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames s
     throw damaged();
   }
   sums_ = std::move(sums);
-  for (const char* dataset : {series_name, shown_positions, all_positions}) {
-    if (file_.has(dataset)) file_.resize(dataset, sums_.size());
+  for (const char* grown : {series_name, shown_positions}) {
+    file_.resize(grown, sums_.size());
+  }
+  for (std::size_t frame = sums_.size(); file_.has(dataset(frame)); ++frame) {
+    file_.remove(dataset(frame));
   }
 }
 
-std::vector<std::size_t> HeadFrames::place_of(std::size_t frame,
-                                              std::size_t chunk) const {
-  return {frame, chunk * each_ * points_, 0};
+std::vector<std::size_t> HeadFrames::place_of(std::size_t chunk) const {
+  return {chunk * each_ * points_, 0};
 }
 
 void HeadFrames::read(HeadRun& run, double t) {
@@ -208,9 +206,13 @@ std::uint64_t HeadFrames::sum(std::span<const double> series) const {
 void HeadFrames::write(std::span<const double> series) {
   const std::size_t frame = sums_.size();
   if (stored_.bits != 0) {
-    file_.resize(all_positions, frame + 1);
+    file_.create(dataset(frame),
+                 {stored_.bits == 64 ? Hdf5Type::float64 : Hdf5Type::float32,
+                  {strands_ * points_, 3},
+                  {each_ * points_, 3},
+                  zlib_level});
     for (std::size_t c = 0; c < chunks_.size(); ++c) {
-      file_.write_chunk(all_positions, place_of(frame, c),
+      file_.write_chunk(dataset(frame), place_of(c),
                         std::span(chunks_[c]).first(sizes_[c]));
     }
   }
@@ -242,7 +244,6 @@ std::vector<float> HeadFrames::shown(std::size_t frame) const {
 std::string HeadFrames::xdmf() const {
   const std::string file =
       xml_text(std::filesystem::path(stem_).filename().string() + ".h5");
-  const std::size_t all = strands_ * points_;
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
       "<Grid Name=\"strands\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
@@ -254,12 +255,10 @@ std::string HeadFrames::xdmf() const {
         "Precision=\"4\" Dimensions=\"{} {}\">{}:/connectivity</DataItem>\n</Topology>\n",
         series(frame).front(), points_, strands_, strands_, points_, file);
     text += fmt::format(
-        "<Geometry GeometryType=\"XYZ\">\n<DataItem ItemType=\"HyperSlab\" "
-        "Dimensions=\"{} 3\">\n<DataItem Format=\"XML\" NumberType=\"Int\" "
-        "Dimensions=\"3 3\">{} 0 0 1 1 1 1 {} 3</DataItem>\n<DataItem Format=\"HDF\" "
-        "NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{} {} 3\">{}:/positions"
-        "</DataItem>\n</DataItem>\n</Geometry>\n</Grid>\n",
-        all, frame, all, stored_.bits / 8, size(), all, file);
+        "<Geometry GeometryType=\"XYZ\">\n<DataItem Format=\"HDF\" "
+        "NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{} 3\">{}:/{}</DataItem>\n"
+        "</Geometry>\n</Grid>\n",
+        stored_.bits / 8, strands_ * points_, file, dataset(frame));
   }
   return text + "</Grid>\n</Domain>\n</Xdmf>\n";
 }

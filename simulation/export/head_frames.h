@@ -20,10 +20,12 @@ struct StoredFrames {
 
 /// The frames of a head on disk, <stem>.h5:
 ///
-///     positions (frames, strands points, 3), m   connectivity (strands, points)
-///     series (frames, columns)                   shown/positions, shown/strands
+///     positions/000000 ... (strands points, 3), m, one for each frame
+///     connectivity (strands, points)   series (frames, columns)
+///     shown/positions (frames, shown points, 3), shown/strands
 ///
-/// and how ParaView reads them as polylines, <stem>.xdmf [XDMF 3]. Strands are read,
+/// and how ParaView reads them as polylines, <stem>.xdmf: its readers of XDMF 2 and 3
+/// agree on whole datasets only, so that each frame is one. Strands are read,
 /// shuffled and compressed by the crew of the head, a thousand or two as one chunk; a
 /// frame is in the file once written. Memory: one compressed frame. A killed run leaves
 /// the frames before the one that it was writing.
@@ -50,7 +52,8 @@ class HeadFrames {
   /// (3 points) of the shown strands.
   std::vector<float> shown(std::size_t frame) const;
 
-  static std::size_t frame_bytes(const Head& head, int bits);  // uncompressed
+  /// Of the positions of all strands.
+  static std::string dataset(std::size_t frame);
 
  private:
   /// Of a worker.
@@ -61,7 +64,7 @@ class HeadFrames {
   HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
              Hdf5File::Mode mode);
   void read_chunk(const Head& head, std::size_t chunk, double t, Own& own);
-  std::vector<std::size_t> place_of(std::size_t frame, std::size_t chunk) const;
+  std::vector<std::size_t> place_of(std::size_t chunk) const;
   std::uint64_t sum(std::span<const double> series) const;
   std::string xdmf() const;
 

@@ -11,7 +11,7 @@
 
 #include "contract/input_error.h"
 #include "models/motion/root_motion.h"
-#include "simulation/export/hdf5_file.h"
+#include "simulation/export/head_frames.h"
 #include "simulation/files/csv.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/scene_head.h"
@@ -71,6 +71,16 @@ std::vector<double> all_of(const Hdf5File& file, const std::string& dataset) {
   return x;
 }
 
+/// Of all strands in all frames.
+std::vector<double> positions_of(const Hdf5File& file) {
+  std::vector<double> all;
+  for (std::size_t frame = 0; file.has(HeadFrames::dataset(frame)); ++frame) {
+    const std::vector<double> one = all_of(file, HeadFrames::dataset(frame));
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
 TEST(HeadOfHair, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
   Toy toy;
   // More than one chunk of frames.
@@ -89,12 +99,12 @@ TEST(HeadOfHair, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
         if (state.empty()) {
           series = toy.read("out/head.csv");
           state = meta.at("state");
-          positions = all_of(file, "positions");
+          positions = positions_of(file);
           EXPECT_EQ(positions.size(), 5U * 2100 * 4 * 3);
         }
         EXPECT_EQ(toy.read("out/head.csv"), series) << lane << ' ' << threads;
         EXPECT_EQ(meta.at("state"), state) << lane << ' ' << threads;
-        EXPECT_EQ(all_of(file, "positions"), positions) << lane << ' ' << threads;
+        EXPECT_EQ(positions_of(file), positions) << lane << ' ' << threads;
       }
     }
   }
@@ -132,11 +142,9 @@ TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
     const std::vector<double> want = by_world(scene, 0);
     run(toy, "--frames 64");
     const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
-    const std::vector<std::size_t> size = file.size("positions");
-    ASSERT_EQ(size, (std::vector<std::size_t>{5, 8 * 7, 3}));
-    std::vector<double> first(8 * 7 * 3), end(first.size());
-    file.read("positions", 0, std::span(first));
-    file.read("positions", 4, std::span(end));
+    const std::vector<double> first = all_of(file, HeadFrames::dataset(0)),
+                              end = all_of(file, HeadFrames::dataset(4));
+    ASSERT_EQ(end.size(), want.size());
     EXPECT_LE(apart(end, want), apart(by_world(scene, 1e-12), want));
     EXPECT_GT(apart(first, want), 1e-3);  // it has moved, or this says nothing
   }
@@ -159,17 +167,15 @@ TEST(HeadOfHair, FramesOnDiskAreThePositionsOfTheHead) {
       EXPECT_EQ(shown[i], static_cast<double>(static_cast<float>(x[i])));
     }
     if (bits == "none") {
-      EXPECT_FALSE(file.has("positions"));
+      EXPECT_FALSE(file.has(HeadFrames::dataset(0)));
       continue;
     }
-    std::vector<double> stored(x.size());
-    file.read("positions", 0, std::span(stored));
-    EXPECT_EQ(stored, bits == "64" ? x : shown);
+    EXPECT_EQ(all_of(file, HeadFrames::dataset(0)), bits == "64" ? x : shown);
     std::vector<std::int32_t> line(7);
     file.read("connectivity", 20, std::span(line));
     EXPECT_EQ(line.front(), 140);
     EXPECT_EQ(line.back(), 146);
-    EXPECT_THAT(toy.read("out/head.xdmf"), HasSubstr("head.h5:/positions"));
+    EXPECT_THAT(toy.read("out/head.xdmf"), HasSubstr("head.h5:/positions/000004<"));
   }
 }
 
@@ -250,7 +256,8 @@ void expect_same_results(const Toy& a, const Toy& b) {
   EXPECT_EQ(a.read("out/head.xdmf"), b.read("out/head.xdmf"));
   const Hdf5File first(path(a, "out/head.h5"), Hdf5File::Mode::read),
       second(path(b, "out/head.h5"), Hdf5File::Mode::read);
-  for (const std::string dataset : {"positions", "series", "shown/positions"}) {
+  EXPECT_EQ(positions_of(first), positions_of(second));
+  for (const std::string dataset : {"series", "shown/positions"}) {
     EXPECT_EQ(first.size(dataset), second.size(dataset));
     EXPECT_EQ(all_of(first, dataset), all_of(second, dataset));
   }
@@ -280,8 +287,7 @@ TEST(HeadOfHair, KilledItGoesOnAtItsCheckpointWithTheSameBits) {
     const std::size_t frames = file.size("series").front();
     EXPECT_GT(frames, 20U);
     EXPECT_LT(frames, 401U);
-    EXPECT_EQ(file.size("positions").front(), frames);
-    EXPECT_EQ(all_of(file, "positions").size(), frames * 400 * 11 * 3);
+    EXPECT_EQ(positions_of(file).size(), frames * 400 * 11 * 3);
   }
   run(stopped, "--resume");
   expect_same_results(through, stopped);
