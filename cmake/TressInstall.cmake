@@ -22,5 +22,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tressConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tressConfig.cmake
               ${PROJECT_BINARY_DIR}/tressConfigVersion.cmake
-              cmake/FindKLU.cmake
+              cmake/FindKLU.cmake cmake/FindHDF5C.cmake
         DESTINATION ${tress_config_dir})

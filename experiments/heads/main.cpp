@@ -1,11 +1,6 @@
 // What does a head of hair cost: by number of strands, by what holds their numbers, and
 // by threads? And are the results the same?
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

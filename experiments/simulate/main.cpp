@@ -11,11 +11,14 @@
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
 #include "experiments/simulate/error_bars.h"
+#include "experiments/simulate/head_scene_run.h"
 #include "experiments/simulate/outcome.h"
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
+#include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
+#include "simulation/scene/strand_tables.h"
 
 namespace tress::experiments::scene_runs {
 namespace {
@@ -28,16 +31,19 @@ struct Arguments {
   bool resume = false, vtk = false, usd = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
        full = false, error_bars = false;
-  std::string progress = "auto";
+  std::string progress = "auto", as = "auto", frames = "32";
+  int bits = 64, lanes = 0;
 };
 
 constexpr const char* help_end =
     "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
-    "the\nreport page), with --error-bars .errors.csv (errors over time). Exit codes: 0 "
-    "done, 1 internal error, 2 usage or input error, 3 "
+    "the\nreport page), with --error-bars .errors.csv (errors over time); of a head .h5 "
+    "and .xdmf\n(all frames, for ParaView and others) and .lost.csv (strands that could "
+    "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
-    "scene\ndid not run to its end, 130 interrupted (--resume continues)\n";
+    "scene did not run to\nits end, or lost strands, 130 interrupted (--resume "
+    "continues)\n";
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
@@ -49,6 +55,19 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 100'000));
   app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
   app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
+  app.add_option("--as", a.as,
+                 "strands: one by one; head: all side by side, up to a million; auto: a "
+                 "head, where the scene can be one and has 1000 strands (default auto)")
+      ->check(CLI::IsMember({"auto", "strands", "head"}));
+  app.add_option("--bits", a.bits, "of a head's numbers: 64 or 32 (default 64)")
+      ->check(CLI::IsMember({64, 32}));
+  app.add_option("--lanes", a.lanes,
+                 "strands of a head side by side: 1, 4, 8 of 64 bits, 8, 16 of 32 "
+                 "(default 8, 16); results are the same bits")
+      ->check(CLI::IsMember({1, 4, 8, 16}));
+  app.add_option("--frames", a.frames,
+                 "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
+      ->check(CLI::IsMember({"32", "64", "none"}));
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_flag("--no-guard", a.no_guard,
                "go on where a run does what physics rules out (as guard = false)");
@@ -108,10 +127,60 @@ bool estimate_errors(const Scene& scene, const Arguments& a, const std::string& 
   return !time.unfinished && !space.unfinished;
 }
 
+/// One scene and what it runs as.
+struct Job {
+  std::string file;
+  SceneOutline outline;
+  bool head = false;
+};
+
+models::HeadPack pack_of(const Arguments& a) {
+  const bool wide = a.bits == 64;
+  return {wide ? models::HeadNumber::float64 : models::HeadNumber::float32, a.lanes != 0
+                                                                                ? a.lanes
+                                                                            : wide ? 8
+                                                                                   : 16};
+}
+
+/// What speaks against a head: the scene, or what is asked for.
+std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
+  const char* option = a.hairs > 0    ? "--hairs"
+                       : a.verify     ? "--verify"
+                       : a.error_bars ? "--error-bars"
+                                      : nullptr;
+  if (option != nullptr) {
+    return NoHead{std::string(option) + " is not for a head of hair",
+                  "leave it out, or give --as strands with fewer strands"};
+  }
+  return simulation::no_head(outline);
+}
+
+/// Throws InputError if the scene cannot run as asked for.
+Job job_of(const std::string& file, const Arguments& a) {
+  constexpr std::size_t many = 1000;
+  Job job{file, read_outline(file)};
+  const std::size_t strands =
+      job.outline.series == nullptr ? 0 : job.outline.series->size();
+  const std::optional<NoHead> no = no_head(job.outline, a);
+  job.head = a.as == "head" || (a.as == "auto" && strands >= many && !no);
+  if (a.as == "head" && no) throw InputError(no->reason, file, no->remedy);
+  if (a.as == "auto" && no && strands > held_at_once.strands) {
+    throw InputError(
+        fmt::format("{} strands are too many to run one by one (at most {}), "
+                    "and not a head: {}",
+                    strands, held_at_once.strands, no->reason),
+        file, no->remedy);
+  }
+  if (!job.head && a.verify) check_verifiable(read_scene(file));
+  if (!job.head) read_scene(file);
+  return job;
+}
+
 /// False: the scene did not run to its end.
-bool run_file(const std::string& file, const Arguments& a, const CommandLine& line,
-              Interruption& interruption) {
-  Scene scene = read_scene(file);
+bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
+             Interruption& interruption) {
+  const std::string& file = job.file;
+  Scene scene = job.head ? job.outline.scene : read_scene(file);
   if (a.no_guard) scene.guard = false;
   SceneRunOptions options;
   options.stem = a.out + "/" + scene.name;
@@ -121,12 +190,20 @@ bool run_file(const std::string& file, const Arguments& a, const CommandLine& li
   options.vtk = a.vtk;
   options.usd = a.usd;
   options.progress = line.progress;
-  std::filesystem::remove(options.stem + ".errors.csv");  // of a run before
+  options.pack = pack_of(a);
+  options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
+  std::error_code ignored;  // what a run before has left would only mislead
+  for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv"}) {
+    if (job.head && ending != std::string_view(".errors.csv")) continue;
+    std::filesystem::remove(options.stem + ending, ignored);
+  }
   RunKey key;
   key.add("scene", contents_checksum({file}));
+  if (job.head) check_room(job.outline, options);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
-  const SceneRun run = run_scene(scene, key, options, interruption);
+  const SceneRun run = job.head ? run_head(job.outline, key, options, interruption)
+                                : run_scene(scene, key, options, interruption);
   Row row = outcome(scene, run);
   bool complete = run.end != SceneRun::End::failed;
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
@@ -156,19 +233,20 @@ int run(const Arguments& a, CommandLine line) {
                   : a.progress == "json" ? ProgressMode::json
                                          : ProgressMode::automatic;
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
+  static_cast<void>(models::helix_head({}, pack_of(a)));  // refuses other lanes
+  std::vector<Job> jobs;
   std::set<std::string> names;
   for (const std::string& file : files) {
-    const Scene scene = read_scene(file);
-    if (a.verify) check_verifiable(scene);
-    if (names.insert(scene.name).second) continue;
+    jobs.push_back(job_of(file, a));
+    if (names.insert(jobs.back().outline.scene.name).second) continue;
     throw InputError("two scenes of one name", file,
                      "rename one of them, or run it with another --out");
   }
   ready_folder(a.out);
   Interruption interruption("simulate");
   bool complete = true;
-  for (const std::string& file : files) {
-    complete = run_file(file, a, line, interruption) && complete;
+  for (const Job& job : jobs) {
+    complete = run_job(job, a, line, interruption) && complete;
   }
   return complete ? done : rows_failed;
 }

@@ -50,6 +50,18 @@ constexpr Column columns_of_outcome[] = {
     {"space_horizon_s", "when the first strand's two runs part"},
     {"space_parted", "strands whose two runs part"},
     {"space_error_missing", "why there is no estimate"},
+    {"strands", "of a head of hair"},
+    {"lost_strands", "of a head: those whose step had no finite result"},
+    {"bits", "of a head's numbers"},
+    {"lanes", "strands of a head computed side by side"},
+    {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
+    {"state",
+     "of a head: checksum of all states at the end, the same for any number of threads "
+     "and lanes"},
+    {"build_s", "of a head: time to make its strands", true},
+    {"step_s", "to step them", true},
+    {"read_s", "to read, and compress, its frames and energies", true},
+    {"write_s", "to write frames and states", true},
     {"wall_s", "time it took, output included", true},
 };
 
@@ -94,6 +106,15 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("contact_iterations", work.contact_iterations);
     row.set("contact_unfinished", work.contact_unfinished);
     row.set("contact_violation_m_s", work.contact_violation);
+  }
+  if (run.head) {
+    const HeadOutcome& head = *run.head;
+    row.set("strands", head.strands).set("lost_strands", head.lost);
+    row.set("bits", head.pack.number == models::HeadNumber::float64 ? 64 : 32);
+    row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
+    row.set("state", head.state).set("build_s", head.build_s);
+    row.set("step_s", head.step_s).set("read_s", head.read_s);
+    row.set("write_s", head.write_s);
   }
   row.set("wall_s", run.wall_s);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);

@@ -6,6 +6,20 @@
 #include "simulation/files/files.h"
 
 namespace tress::experiments::scene_runs {
+namespace {
+
+void write_vtk(const Animation& animation, const std::string& stem) {
+  const std::string name = std::filesystem::path(stem).filename();
+  const std::string folder = stem + "_vtk/";
+  std::error_code shown_by_the_first_file;
+  std::filesystem::create_directories(folder, shown_by_the_first_file);
+  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
+    replace_file(folder + vtp_name(name, f), vtp(animation, animation.frames[f]));
+  }
+  replace_file(folder + name + ".pvd", pvd(animation, name));
+}
+
+}  // namespace
 
 Pictures::Pictures(const Scene& scene, const World& world, const Readout& readout,
                    const SceneRunOptions& options)
@@ -27,24 +41,16 @@ void Pictures::write(const std::vector<Frame3d>& frames) const {
                             drawn,
                             curves,
                             hair_.hairs() > 0 ? readout_.lines().size() : 0};
-  // A single particle is no line to draw.
-  const auto& lines = readout_.lines();
-  if (std::ranges::all_of(lines, [](int points) { return points > 1; })) {
-    replace_file(options_.stem + ".json", page_json(animation));
-  }
-  if (options_.vtk) write_vtk(animation);
-  if (options_.usd) replace_file(options_.stem + ".usda", usda(animation));
+  write_pictures(animation, options_);
 }
 
-void Pictures::write_vtk(const Animation& animation) const {
-  const std::string name = std::filesystem::path(options_.stem).filename();
-  const std::string folder = options_.stem + "_vtk/";
-  std::error_code shown_by_the_first_file;
-  std::filesystem::create_directories(folder, shown_by_the_first_file);
-  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
-    replace_file(folder + vtp_name(name, f), vtp(animation, animation.frames[f]));
+void write_pictures(const Animation& animation, const SceneRunOptions& options) {
+  // A single particle is no line to draw.
+  if (std::ranges::all_of(animation.curves.lines(), [](int n) { return n > 1; })) {
+    replace_file(options.stem + ".json", page_json(animation));
   }
-  replace_file(folder + name + ".pvd", pvd(animation, name));
+  if (options.vtk) write_vtk(animation, options.stem);
+  if (options.usd) replace_file(options.stem + ".usda", usda(animation));
 }
 
 }  // namespace tress::experiments::scene_runs

@@ -8,6 +8,9 @@
 
 namespace tress::experiments::scene_runs {
 
+/// <stem>.json, and on request <stem>_vtk/ and <stem>.usda.
+void write_pictures(const Animation& animation, const SceneRunOptions& options);
+
 /// Drawn output of a run for the report page and other programs: <stem>.json, and on
 /// request <stem>_vtk/ and <stem>.usda, all with the same lines.
 class Pictures {
@@ -18,8 +21,6 @@ class Pictures {
   void write(const std::vector<Frame3d>& frames) const;
 
  private:
-  void write_vtk(const Animation& animation) const;
-
   const Scene& scene_;
   const Readout& readout_;
   const SceneRunOptions& options_;

@@ -1,16 +1,12 @@
 #include "experiments/simulate/scene_run.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "contract/input_error.h"
-#include "experiments/run/message.h"
-#include "experiments/run/progress.h"
 #include "experiments/simulate/pictures.h"
+#include "experiments/simulate/time_bar.h"
 #include "simulation/export/recording.h"
 
 namespace tress::experiments::scene_runs {
@@ -21,42 +17,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// Simulated time, wall time and the remaining time, on standard error.
-class TimeBar {
- public:
-  TimeBar(ProgressMode mode, const Scene& scene)
-      : mode_(mode), terminal_(::isatty(STDERR_FILENO) != 0), scene_(scene) {}
-  ~TimeBar() {
-    if (mode_ == ProgressMode::automatic && terminal_) tell("\r\033[K");
-  }
-
-  void show(double t) {
-    const double wall = seconds_since(start_);
-    if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
-    last_ = wall;
-    const double left = wall * (scene_.duration - t) / t;
-    if (mode_ == ProgressMode::json) {
-      const nlohmann::json event{
-          {"event", "frame"}, {"scene", scene_.name}, {"t_s", t}, {"wall_s", wall}};
-      tell("{}\n", event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-      return;
-    }
-    constexpr int width = 30;
-    const auto full = static_cast<std::size_t>(width * t / scene_.duration);
-    tell("{}{} [{}{}] {:.2f}/{:.2f} s simulated in {:.1f} s, about {} left{}",
-         terminal_ ? "\r" : "", scene_.name, std::string(full, '#'),
-         std::string(width - full, '.'), t, scene_.duration, wall,
-         readable_duration(left), terminal_ ? "\033[K" : "\n");
-  }
-
- private:
-  ProgressMode mode_;
-  bool terminal_;
-  const Scene& scene_;
-  Clock::time_point start_ = Clock::now();
-  double last_ = 0;
-};
 
 /// Rejects a state that this program has not written, even if its key matches.
 void restore(World& world, const Snapshot& saved) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "experiments/run/command_line.h"
 #include "experiments/run/interruption.h"
+#include "models/head/head.h"
 #include "simulation/files/run_key.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
@@ -18,6 +20,19 @@ struct SceneRunOptions {
   bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
   bool usd = false;       // <stem>.usda
   ProgressMode progress = ProgressMode::automatic;
+  // Of a head.
+  models::HeadPack pack = {};
+  int frame_bits = 32;  // of a coordinate in <stem>.h5; 0: frames only of shown strands
+};
+
+/// Of a head.
+struct HeadOutcome {
+  models::HeadPack pack;
+  std::size_t strands, lost;
+  double bytes_per_strand;
+  std::string state;  // checksum of all strands' states at the end
+  // Wall time of the parts, s.
+  double build_s = 0, step_s = 0, read_s = 0, write_s = 0;
 };
 
 struct SceneRun {
@@ -30,6 +45,7 @@ struct SceneRun {
   double indicator = 0;  // largest World::error_indicator
   Stats work = {};       // since this run began or was resumed
   Exchanges exchanges = {};
+  std::optional<HeadOutcome> head = {};
 };
 
 /// Runs a scene and writes series, pictures, and during the run the states from which a

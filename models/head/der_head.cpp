@@ -138,6 +138,14 @@ class DerModel {
            std::max(1.0, w.vel / (w.pos * lane_of(strand.material.rate, lane)));
   }
 
+  LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
+                              const RootPose& pose, const Real* q, const Real* v) const {
+    return kernel_.energies(strand.material, elements, clamp(strand, pose),
+                            frame_of(pose.frame) * strand.root.from, q, v);
+  }
+  double mass(const Strand& strand, int lane) const {
+    return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
+  }
   template <class Use>
   void velocities(const Clamp& clamp, const Real* v, Use use) const {
     use(0, clamp.v);

@@ -4,6 +4,7 @@
 #include "math/frame.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
+#include "models/head/lane_energies.h"
 #include "models/head/matrix3.h"
 
 namespace tress::models {
@@ -25,6 +26,19 @@ template <class T>
 struct DerEdge {
   Vec3<T> rest;                // strain of the joint before it
   Vec3<T> tangent, direction;  // reference frame: e0, e1
+
+  /// What steps change, of a lane.
+  static constexpr std::size_t kept = 6;
+  void keep(int lane, double* to) const {
+    for (const Vec3<T>* x : {&tangent, &direction}) {
+      store3(lane_of(*x, lane), to);
+      to += 3;
+    }
+  }
+  void recall(int lane, const double* from) {
+    set_lane(tangent, lane, load3(from));
+    set_lane(direction, lane, load3(from + 3));
+  }
 };
 
 /// Position and motion of the clamp's frame, axes as those of the edges.
@@ -159,6 +173,44 @@ class DerStrand {
         turn.cosine * edge.direction + turn.sine * cross(edge.tangent, edge.direction);
     const Vec m1 = u - (dot(u, t) * beside) * (edge.tangent + t);
     return {t, m1, cross(t, m1)};
+  }
+
+  /// At (q, v); `at`: of the root, seen from the head's position.
+  LaneEnergies<T> energies(const DerMaterial<T>& m, const DerEdge<T>* edges,
+                           const DerClamp<T>& clamp, Vec at, const T* q,
+                           const T* v) const {
+    const auto moves = [&](const T& mass, const Vec& u) {
+      return T(0.5) * mass * dot(u, u);
+    };
+    const T end = T(0.5) * m.mass;
+    LaneEnergies<T> sum{moves(end, clamp.v), T(0), end * at, dot(clamp.v, clamp.v), at};
+    FrameOf<T> before = clamp.frame;
+    Vec node_v{};
+    for (int i = 0; i < n_; ++i) {
+      const Vec edge = load3(q + 4 * i);
+      node_v = node_v + load3(v + 4 * i);
+      at = at + edge;
+      const T by_length = inverse_sqrt(dot(edge, edge));
+      const Vec t = by_length * edge;
+      const T& rate = v[4 * i + 3];
+      const T mass = i + 1 < n_ ? m.mass : end;
+      sum.kinetic += moves(mass, node_v) + T(0.5) * m.inertia * rate * rate;
+      sum.first = sum.first + mass * at;
+      sum.passes(node_v);
+      const FrameOf<T> now =
+          frame(edges[i], t, T(1) / (T(1) + dot(edges[i].tangent, t)), q[4 * i + 3]);
+      const Matrix turn{{now.back(before.e0), now.back(before.e1), now.back(before.e2)}};
+      const Joint joint(turn);
+      const Vec strain = joint.value - edges[i].rest;
+      const T longer = dot(edge, t) - m.length, half(i == 0 ? 1 : 0.5);
+      sum.elastic += T(0.5) * m.stretch * longer * longer +
+                     half * (m.stiffness.x * strain.x * strain.x +
+                             m.stiffness.y * strain.y * strain.y +
+                             m.stiffness.z * strain.z * strain.z);
+      before = now;
+    }
+    sum.tip = at;
+    return sum;
   }
 
  private:

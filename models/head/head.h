@@ -27,7 +27,7 @@ struct HeadOptions {
   double drag = 0;             // LinearDrag: force per length and velocity, kg/(m s)
   double mass_damping = 0;     // force per mass and velocity, 1/s
   double longest = 0.2;        // m: sets the units of computation, any order of magnitude
-  RootMotion motion;           // of the head, `position` any point of it, at rest
+  RootMotion motion = {};      // of the head, `position` any point of it, at rest
   HeadMethod method = HeadMethod::semi_implicit_euler;
   // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
   double newton_tolerance = 1e-10;
@@ -35,7 +35,7 @@ struct HeadOptions {
   /// On every strand, in addition: gravity and linear drag join the numbers above, bodies
   /// are computed for all lanes at once, others strand by strand. Refused: effects that
   /// couple points (self_contact) or hold contact forces (friction_law = exact).
-  Effects effects;
+  Effects effects = {};
 };
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
@@ -82,6 +82,14 @@ struct HeadWork {
   }
 };
 
+/// Of a strand at one instant.
+struct HeadEnergy {
+  double kinetic = 0, elastic = 0;  // J
+  double gravity = 0;               // J, its potential, 0 at the origin of the world
+  double fastest = 0;               // m/s, of the root and the tips of elements
+  Vec tip;                          // m
+};
+
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
 /// strands, each advanced by itself, by as many threads as there are. A strand takes its
 /// state, its rest shape and some twenty numbers of memory, nothing else. Units of all
@@ -126,8 +134,9 @@ class Head {
     for (std::size_t block = first; block < last; ++block) step(block, t, h, scratch);
   }
   virtual bool lost(std::size_t strand) const = 0;
-  /// By strand and step; empty as well where the kernel does not say.
-  virtual std::vector<HeadLoss> losses() const { return {}; }
+  /// All but the first `known` that were found, by strand.
+  virtual std::vector<HeadLoss> losses(std::size_t known) const = 0;
+  std::vector<HeadLoss> losses() const { return losses(0); }
 
   /// Of the strands of a block: root and tips of elements (m), strand after strand,
   /// `numbers` each = 3 (elements + 1).
@@ -143,6 +152,18 @@ class Head {
                      std::span<double> v) const = 0;
   /// Of the bits of all strands' states, in their order; equal for all numbers of lanes.
   virtual std::size_t hash() const = 0;
+
+  /// Of each strand of a block: as Energetics of the strand by itself. O(elements
+  /// points).
+  virtual void energies(std::size_t block, double t,
+                        std::span<HeadEnergy> each) const = 0;
+
+  /// What steps change of the strands of a block, `kept` numbers each: exact, in units of
+  /// the head's own. A head of the same strands that recalls them goes on with the same
+  /// bits, for any number of lanes.
+  virtual std::size_t kept() const = 0;
+  virtual void keep(std::size_t block, std::span<double> x) const = 0;
+  virtual void recall(std::size_t block, std::span<const double> x) = 0;
 };
 
 /// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors

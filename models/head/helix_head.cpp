@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/head/helix_energies.h"
 #include "models/head/helix_loads.h"
 #include "models/head/helix_strand.h"
 #include "models/head/lane_head.h"
@@ -21,6 +22,7 @@ class HelixHead final : public Head {
         instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
+        energies_(options.points),
         units_(HeadUnits::of(options.longest)) {
     options_.motion.frame = {};
     for (const auto& effect : options_.effects) {
@@ -132,9 +134,15 @@ class HelixHead final : public Head {
       const T all = q[i].x + q[i].y + q[i].z;
       finite += all - all;
     }
-    if (!all_up_to(finite, 0) || hurt_[block] != 0) freeze(block, finite, scratch);
+    if (!all_up_to(finite, 0) || hurt_[block] != 0) {
+      freeze(block, finite, h, scratch);
+    }
   }
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
+  using Head::losses;
+  std::vector<HeadLoss> losses(std::size_t known) const override {
+    return losses_.after(known);
+  }
 
   std::size_t numbers() const override { return 3 * (n_ + 1); }
   std::size_t strands_of(std::size_t block) const override {
@@ -190,6 +198,48 @@ class HelixHead final : public Head {
       }
     }
     return all.value();
+  }
+
+  void energies(std::size_t block, double t, std::span<HeadEnergy> each) const override {
+    const RootPose pose = options_.motion.at(t);
+    const Root& root = roots_[block];
+    const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
+    const auto sums = energies_(materials_[block], root_of(root, pose), head * root.from,
+                                head * root.frame, &rest_[n_ * block], &q_[n_ * block],
+                                &v_[n_ * block], n_);
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      const double mass = units_.mass() * static_cast<double>(n_) *
+                          lane_of(materials_[block].density, lane) *
+                          lane_of(materials_[block].length, lane);
+      each[k] = sums.of(lane, units_, mass, pose.x, options_.gravity);
+    }
+  }
+
+  std::size_t kept() const override { return 6 * n_ + 1; }
+  void keep(std::size_t block, std::span<double> x) const override {
+    double* to = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        store3(lane_of(q_[i], static_cast<int>(k)), to);
+        store3(lane_of(v_[i], static_cast<int>(k)), to + 3);
+        to += 6;
+      }
+      *to++ = lost_[width * block + k];
+    }
+  }
+  void recall(std::size_t block, std::span<const double> x) override {
+    const double* from = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        set_lane(q_[i], static_cast<int>(k), load3(from));
+        set_lane(v_[i], static_cast<int>(k), load3(from + 3));
+        from += 6;
+      }
+      char& lost = lost_[width * block + k];
+      lost = *from++ != 0 ? 1 : 0;
+      hurt_[block] = static_cast<char>(hurt_[block] | lost);
+    }
   }
 
  private:
@@ -299,7 +349,7 @@ class HelixHead final : public Head {
             root.frame.back(alpha)};
   }
 
-  void freeze(std::size_t block, const T& finite, const Own& scratch) {
+  void freeze(std::size_t block, const T& finite, double h, const Own& scratch) {
     for (int lane = 0; lane < T::lanes; ++lane) {
       const std::size_t strand = width * block + static_cast<std::size_t>(lane);
       const bool counts = strand < lost_.size();
@@ -309,7 +359,9 @@ class HelixHead final : public Head {
         set_lane(v_[n_ * block + i], lane, Vec{});
       }
       hurt_[block] = 1;
-      if (counts) lost_[strand] = 1;
+      if (!counts || lost_[strand] != 0) continue;
+      lost_[strand] = 1;
+      losses_.add(strand, scratch.t - h, h, "the result of the step is not finite");
     }
   }
 
@@ -347,6 +399,7 @@ class HelixHead final : public Head {
   Instructions instructions_;
   std::size_t n_;
   HelixStrand<T> kernel_;
+  HelixEnergies<T> energies_;
   HeadUnits units_;
   std::vector<const RigidContact*> bodies_;
   std::vector<const Effect*> others_;
@@ -355,8 +408,9 @@ class HelixHead final : public Head {
   std::vector<HelixMaterial<T>> materials_;
   std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
   std::vector<char> lost_;             // of each strand
-  std::vector<char> hurt_;             // of each block: whether it has a lost strand
-  std::vector<Effects> own_;           // of each strand, or empty
+  HeadLosses losses_;
+  std::vector<char> hurt_;    // of each block: whether it has a lost strand
+  std::vector<Effects> own_;  // of each strand, or empty
 };
 
 }  // namespace

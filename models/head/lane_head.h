@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "math/lanes.h"
@@ -86,10 +89,27 @@ inline HeadOptions with_uniform_effects(HeadOptions options) {
   return options;
 }
 
-template <class T>
-Vec lane_of(const Vec3<T>& x, int lane) {
-  return {lane_of(x.x, lane), lane_of(x.y, lane), lane_of(x.z, lane)};
-}
+/// What several threads find.
+class HeadLosses {
+ public:
+  /// In the step from t to t + h (s).
+  void add(std::size_t strand, double t, double h, std::string_view reason) {
+    const std::scoped_lock lock(guard_);
+    all_.push_back({strand, std::lround(t / h) + 1, t, reason});
+  }
+  /// See Head::losses().
+  std::vector<HeadLoss> after(std::size_t known) const {
+    const std::scoped_lock lock(guard_);
+    std::vector<HeadLoss> rest(all_.begin() + static_cast<std::ptrdiff_t>(known),
+                               all_.end());
+    std::ranges::sort(rest, {}, &HeadLoss::strand);
+    return rest;
+  }
+
+ private:
+  mutable std::mutex guard_;
+  std::vector<HeadLoss> all_;
+};
 
 /// FNV-1a, by numbers.
 class StateHash {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <optional>
 
 #include "models/head/lane_head.h"
@@ -26,6 +25,11 @@ namespace tress::models {
 ///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
 ///     positions(Strand, Element*, RootPose, q, use(i, Vec3<Real>))
 ///     velocities(Clamp, v, use(i, Vec3<Real>))
+///     energies(Strand, Element*, RootPose, q, v)   // LaneEnergies
+///     mass(Strand, lane)
+///
+/// and an Element has keep(lane, double*), recall(lane, const double*): `kept` numbers.
+///
 ///     unit(HeadUnits, k)                    // of unknown k
 ///
 /// all without units; poses are HeadUnits' multiples. Lanes do not mix, and decisions are
@@ -57,6 +61,7 @@ class SteppingHead final : public Head {
   }
 
   using Head::add;
+  using Head::losses;
   void add(const models::Strand& strand, Effects own) override {
     models::check(strand);
     check_for_head(strand, n_);
@@ -112,11 +117,8 @@ class SteppingHead final : public Head {
   }
 
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
-  std::vector<HeadLoss> losses() const override {
-    const std::scoped_lock lock(guard_);
-    std::vector<HeadLoss> all = losses_;
-    std::ranges::sort(all, {}, &HeadLoss::strand);
-    return all;
+  std::vector<HeadLoss> losses(std::size_t known) const override {
+    return losses_.after(known);
   }
 
   std::size_t numbers() const override { return 3 * (n_ + 1); }
@@ -155,6 +157,48 @@ class SteppingHead final : public Head {
       const double unit = model_.unit(units_, k);
       q[k] = unit * lane_of(from[k], lane);
       v[k] = unit / units_.time * lane_of(from[size_ + k], lane);
+    }
+  }
+  void energies(std::size_t block, double t, std::span<HeadEnergy> each) const override {
+    const T* const q = &state_[of_state_ * block];
+    const auto sums =
+        model_.energies(strands_[block], &elements_[n_ * block], pose(t), q, q + size_);
+    const Vec from = options_.motion.at(t).x;
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      each[k] = sums.of(lane, units_, units_.mass() * model_.mass(strands_[block], lane),
+                        from, options_.gravity);
+    }
+  }
+
+  // Of a strand: its numbers of state, reference frames, and whether it is lost.
+  std::size_t kept() const override { return of_state_ + Model::Element::kept * n_ + 1; }
+  void keep(std::size_t block, std::span<double> x) const override {
+    double* to = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      for (std::size_t i = 0; i < of_state_; ++i) {
+        *to++ = lane_of(state_[of_state_ * block + i], lane);
+      }
+      for (std::size_t i = 0; i < n_; ++i) {
+        elements_[n_ * block + i].keep(lane, to);
+        to += Model::Element::kept;
+      }
+      *to++ = lost_[width * block + k];
+    }
+  }
+  void recall(std::size_t block, std::span<const double> x) override {
+    const double* from = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      for (std::size_t i = 0; i < of_state_; ++i) {
+        set_lane(state_[of_state_ * block + i], lane, *from++);
+      }
+      for (std::size_t i = 0; i < n_; ++i) {
+        elements_[n_ * block + i].recall(lane, from);
+        from += Model::Element::kept;
+      }
+      lost_[width * block + k] = *from++ != 0 ? 1 : 0;
     }
   }
   std::size_t hash() const override {
@@ -366,8 +410,7 @@ class SteppingHead final : public Head {
     T* const v = v_of(strand / width);
     for (std::size_t k = 0; k < of_state_ - size_; ++k) v[k].set(lane, 0);
     lost_[strand] = 1;
-    const std::scoped_lock lock(guard_);
-    losses_.push_back({strand, std::lround(t / h_s) + 1, t, reason});
+    losses_.add(strand, t, h_s, reason);
   }
 
   HeadOptions options_;
@@ -379,8 +422,7 @@ class SteppingHead final : public Head {
   std::vector<typename Model::Element> elements_;  // (blocks, elements)
   std::vector<T> state_;                           // (blocks; q, v, and a if it iterates)
   std::vector<char> lost_;                         // of each strand
-  mutable std::mutex guard_;
-  std::vector<HeadLoss> losses_;
+  HeadLosses losses_;
 };
 
 }  // namespace tress::models

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "simulation/export/export.h"
+#include "simulation/export/xml_text.h"
 
 namespace tress::simulation {
 namespace {
@@ -11,21 +12,6 @@ namespace {
 template <class T>
 std::string_view raw(const std::vector<T>& x) {
   return {reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size()};
-}
-
-/// As the value of an attribute [XML 1.0, sections 2.3 and 3.3.3]; other control
-/// characters are not allowed in XML.
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&' || c == '<' || c == '>' || c == '"' || c == '\t' || c == '\n' ||
-        c == '\r') {
-      safe += fmt::format("&#{};", static_cast<int>(c));
-    } else {
-      safe += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return safe;
 }
 
 }  // namespace
@@ -54,8 +40,8 @@ std::string vtp(const Animation& animation, const Frame3d& frame) {
     arrays += fmt::format(
         "<DataArray type=\"Float32\" Name=\"{}\" format=\"appended\" "
         "offset=\"{}\"/>\n",
-        escaped(fmt::format("{} [{}]", animation.channels[c].name,
-                            animation.channels[c].help)),
+        xml_text(fmt::format("{} [{}]", animation.channels[c].name,
+                             animation.channels[c].help)),
         append(raw(channel)));
   }
   if (!animation.lines.empty()) {
@@ -99,7 +85,7 @@ std::string pvd(const Animation& animation, const std::string& stem) {
       "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (std::size_t f = 0; f < animation.frames.size(); ++f) {
     text += fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n",
-                        animation.frames[f].series[0], escaped(vtp_name(stem, f)));
+                        animation.frames[f].series[0], xml_text(vtp_name(stem, f)));
   }
   return text + "</Collection>\n</VTKFile>\n";
 }

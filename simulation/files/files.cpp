@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "contract/input_error.h"
 
@@ -40,21 +41,39 @@ void write_all(int descriptor, std::string_view text, const std::string& file) {
   }
 }
 
-void replace_file(const std::string& file, std::string_view text) {
-  // A name unique to this process; a leftover of a killed process with the same id is
-  // removed.
-  const std::string temporary = file + ".tmp" + std::to_string(::getpid());
-  ::unlink(temporary.c_str());
-  try {
-    // Never opens an existing file or a link placed there by others.
-    const File output(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
-    write_all(output.descriptor(), text, file);
-    if (::fsync(output.descriptor()) != 0) cannot_write(file, errno);
-    if (std::rename(temporary.c_str(), file.c_str()) != 0) cannot_write(file, errno);
-  } catch (const InputError&) {
-    ::unlink(temporary.c_str());
-    throw;
+// A name unique to this process; a leftover of a killed process with the same id is
+// removed. Never opens an existing file or a link placed there by others.
+Replacement::Replacement(std::string file)
+    : file_(std::move(file)), temporary_(file_ + ".tmp" + std::to_string(::getpid())) {
+  ::unlink(temporary_.c_str());
+  output_.emplace(temporary_, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
+}
+
+Replacement::~Replacement() {
+  if (output_) ::unlink(temporary_.c_str());
+}
+
+void Replacement::write(std::string_view bytes) {
+  write_all(output_->descriptor(), bytes, file_);
+}
+
+void Replacement::write_over(std::string_view bytes) {
+  const ssize_t written = ::pwrite(output_->descriptor(), bytes.data(), bytes.size(), 0);
+  if (written != static_cast<ssize_t>(bytes.size())) {
+    cannot_write(file_, written < 0 ? errno : ENOSPC);
   }
+}
+
+void Replacement::keep() {
+  if (::fsync(output_->descriptor()) != 0) cannot_write(file_, errno);
+  if (std::rename(temporary_.c_str(), file_.c_str()) != 0) cannot_write(file_, errno);
+  output_.reset();
+}
+
+void replace_file(const std::string& file, std::string_view text) {
+  Replacement replacement(file);
+  replacement.write(text);
+  replacement.keep();
 }
 
 void check_output(const std::string& file) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,25 @@ class File {
 /// Writes all bytes to the descriptor; throws InputError naming `file` when it cannot
 /// (disk full, file too large, device gone).
 void write_all(int descriptor, std::string_view text, const std::string& file);
+
+/// The new content of a file, written in pieces to a temporary neighbour.
+class Replacement {
+ public:
+  explicit Replacement(std::string file);
+  ~Replacement();  // without keep(): the file stays as it was
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  void write(std::string_view bytes);
+  /// Writes over the first bytes.
+  void write_over(std::string_view bytes);
+  /// Syncs the neighbour, then renames it over the file.
+  void keep();
+
+ private:
+  std::string file_, temporary_;
+  std::optional<File> output_;
+};
 
 /// Writes to a temporary neighbour, syncs it, then renames it over `file`: readers see
 /// the old content or the new, never a partial one.

@@ -20,6 +20,7 @@ class Crew {
 
   /// Returns when all is done. `work` must not throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& work);
+  std::size_t workers() const { return workers_; }
 
  private:
   void share(std::size_t worker);

@@ -32,22 +32,35 @@ void HeadRun::share(Use use) {
   });
 }
 
+template <class Use>
+void HeadRun::each_block(Use use) {
+  share([&](std::size_t begin, std::size_t end, Head::Scratch&) {
+    // All blocks before are full.
+    for (std::size_t b = begin; b < end; ++b) use(b, b * head_->strands_of(0));
+  });
+}
+
 void HeadRun::step(double t, double h) {
   share([&](std::size_t first, std::size_t last, Head::Scratch& scratch) {
     head_->step(first, last, t, h, scratch);
   });
+  lost_ = head_->losses(losses_);
+  losses_ += lost_.size();
 }
 
 void HeadRun::positions(double t, std::vector<double>& x) {
   const std::size_t each = head_->numbers();
   x.resize(each * head_->strands());
-  share([&](std::size_t begin, std::size_t end, Head::Scratch&) {
-    for (std::size_t block = begin; block < end; ++block) {
-      // All blocks before are full.
-      const std::size_t first = block * head_->strands_of(0);
-      head_->positions(
-          block, t, std::span(x).subspan(each * first, each * head_->strands_of(block)));
-    }
+  each_block([&](std::size_t block, std::size_t first) {
+    head_->positions(block, t,
+                     std::span(x).subspan(each * first, each * head_->strands_of(block)));
+  });
+}
+
+void HeadRun::energies(double t, std::vector<models::HeadEnergy>& each) {
+  each.resize(head_->strands());
+  each_block([&](std::size_t block, std::size_t first) {
+    head_->energies(block, t, std::span(each).subspan(first, head_->strands_of(block)));
   });
 }
 

@@ -16,20 +16,32 @@ class HeadRun {
   /// From t to t + h (s). Methods that iterate get blocks by the dozen, so that their
   /// lanes find strands to go on with.
   void step(double t, double h);
+  /// Strands that the last step lost, in their order.
+  const std::vector<models::HeadLoss>& lost() const { return lost_; }
   /// Root and tips of elements (m) of every strand, strand after strand.
   void positions(double t, std::vector<double>& x);
+  /// Of every strand.
+  void energies(double t, std::vector<models::HeadEnergy>& each);
   const Head& head() const { return *head_; }
   /// Newton's iterations of all steps so far.
   HeadWork work() const;
+  /// For whoever sets its state.
+  Head& head() { return *head_; }
+  Crew& crew() { return crew_; }
 
  private:
   /// use(first, last, scratch) for the blocks of each part.
   template <class Use>
   void share(Use use);
+  /// use(block, its first strand).
+  template <class Use>
+  void each_block(Use use);
 
   std::unique_ptr<Head> head_;
   Crew crew_;
   std::vector<std::unique_ptr<Head::Scratch>> scratch_;  // of parts of the head
+  std::vector<models::HeadLoss> lost_;
+  std::size_t losses_ = 0;  // of all steps
 };
 
 }  // namespace tress::simulation

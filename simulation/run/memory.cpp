@@ -25,8 +25,17 @@ double held() {
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-/// Bytes available: of the machine, and of the address space if limited (ulimit -v).
-double left() {
+double elements(const Scene& scene) {
+  double sum = 0;
+  for (const Strand& strand : scene.strands) {
+    sum += static_cast<double>(strand.segments.size());
+  }
+  return sum;
+}
+
+}  // namespace
+
+double free_memory() {
   double bytes = std::numeric_limits<double>::infinity();
   std::ifstream file("/proc/meminfo");
   for (std::string key; file >> key;) {
@@ -44,16 +53,6 @@ double left() {
   return bytes;
 }
 
-double elements(const Scene& scene) {
-  double sum = 0;
-  for (const Strand& strand : scene.strands) {
-    sum += static_cast<double>(strand.segments.size());
-  }
-  return sum;
-}
-
-}  // namespace
-
 void refuse_too_large(const Scene& scene) {
   if (scene.strands.size() < small) return;
   Scene few = scene;
@@ -61,7 +60,7 @@ void refuse_too_large(const Scene& scene) {
   const double before = held();
   const World world(few);
   const double needed = (held() - before) * elements(scene) / elements(few);
-  const double free = left();
+  const double free = free_memory();
   if (needed <= free) return;
   throw InputError(
       fmt::format("{} strands of {} elements altogether need about {:.2g} GB "

@@ -9,4 +9,7 @@ namespace tress::simulation {
 /// scenes are not measured.
 void refuse_too_large(const Scene& scene);
 
+/// Bytes that are available: of the machine, and of the address space if it is limited.
+double free_memory();
+
 }  // namespace tress::simulation

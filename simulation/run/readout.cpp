@@ -4,16 +4,10 @@
 #include <cmath>
 
 #include "models/effects/effect.h"
+#include "simulation/run/line_curvature.h"
 
 namespace tress::simulation {
 namespace {
-
-/// Curvature of the circle that turns from one chord into the next over half of each.
-double curvature(const Vec& a, const Vec& b) {
-  const double la = norm(a), lb = norm(b);
-  const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
-  return la + lb > 0 ? 2 * std::tan(angle / 2) / ((la + lb) / 2) : 0;
-}
 
 /// Of points with 3 numbers each.
 std::size_t nearest(const Vec& place, In x) {
@@ -142,11 +136,7 @@ void Readout::read_points(World& world, Frame3d& frame) {
     const auto points = static_cast<std::size_t>(line);
     const auto at = [&](std::size_t i) { return load3(&x[3 * drawn_[first + i]]); };
     for (std::size_t i = 0; i < points; ++i) {
-      const std::size_t inner =
-          std::clamp<std::size_t>(i, 1, std::max<std::size_t>(points, 3) - 2);
-      const double bent =
-          points < 3 ? 0
-                     : curvature(at(inner) - at(inner - 1), at(inner + 1) - at(inner));
+      const double bent = line_curvature(at, i, points);
       const double speed = norm(load3(&u[3 * drawn_[first + i]]));
       frame.channels[first + i] = static_cast<float>(bent);
       frame.channels[drawn_.size() + first + i] = static_cast<float>(speed);

@@ -45,7 +45,7 @@ Scene cut_anew(Scene scene, const Change& changed) {
     throw std::logic_error("strands that no table says cannot be cut anew");
   }
   auto tables = std::make_shared<StrandTables>(changed(*scene.tables));
-  scene.strands = cut_strands(*tables, scene.head, scene.seed).strands;
+  scene.strands = StrandSeries(tables, scene.head, scene.seed, held_at_once).all();
   scene.tables = std::move(tables);
   return scene;
 }

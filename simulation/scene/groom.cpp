@@ -22,7 +22,7 @@ constexpr Parameter own_parameters[] = {
      .help = "number of strands, 0: by density_1_m2",
      .number = 100,
      .min = 0,
-     .max = 1e5,
+     .max = 1e6,
      .whole = true},
     {.name = "density_1_m2",
      .help = "count = 0: strands per area (1/m^2)",
@@ -135,34 +135,32 @@ std::span<const Parameter> groom_table_parameters() {
   return all;
 }
 
-std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
-                                  const Common& common, std::uint64_t first_stream,
-                                  std::size_t most) {
-  const Parameters& p = table.values();
-  table.refuse_unused("shape", shape_uses());
-  const StrandMaterial material = strand_material(common.material, own_material);
-  const Cap cap(p.vec("centre_m"), p.vec("half_axes_m"), direction(table, "cap_axis"),
-                p.number("cap_angle_rad"));
-  const std::size_t n = count(table, cap, most);
-  std::vector<Strand> strands;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t stream = first_stream + i;
-    Random random(common.seed, 2 * stream + 1);  // shapes use the even ones
-    const double length =
-        p.number("length_m") * varied(random, p.number("length_variation"));
-    const double curl = varied(random, p.number("curl_variation"));
-    const double phase = p.word("phase") == "random" ? 2 * pi * random.uniform() : 0;
-    const Shape mean = natural_shape(table, material, common.seed, 2 * stream);
-    strands.push_back(
-        cut_strand(table, material, length, [&](double s) { return curl * mean(s); }));
-    const double share = static_cast<double>(i);
-    const double turns = share * (std::numbers::phi - 1);
-    const Cap::Place place =
-        cap.place((share + 0.5) / static_cast<double>(n), turns - std::floor(turns));
-    set_root(strands.back(), common.head, common.free_root, place.x,
-             root_frame(p, place, phase));
-  }
-  return strands;
+Groom::Groom(const Table& table, const Table* own_material, const Common& common,
+             std::size_t most)
+    : table_(table),
+      common_(common),
+      material_((table.refuse_unused("shape", shape_uses()),
+                 strand_material(common.material, own_material))),
+      cap_(table.values().vec("centre_m"), table.values().vec("half_axes_m"),
+           direction(table, "cap_axis"), table.values().number("cap_angle_rad")),
+      count_(simulation::count(table, cap_, most)) {}
+
+Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
+  const Parameters& p = table_.values();
+  Random random(common_.seed, 2 * stream + 1);  // shapes use the even ones
+  const double length =
+      p.number("length_m") * varied(random, p.number("length_variation"));
+  const double curl = varied(random, p.number("curl_variation"));
+  const double phase = p.word("phase") == "random" ? 2 * pi * random.uniform() : 0;
+  const Shape mean = natural_shape(table_, material_, common_.seed, 2 * stream);
+  Strand strand =
+      cut_strand(table_, material_, length, [&](double s) { return curl * mean(s); });
+  const double share = static_cast<double>(i);
+  const double turns = share * (std::numbers::phi - 1);
+  const Cap::Place place =
+      cap_.place((share + 0.5) / static_cast<double>(count_), turns - std::floor(turns));
+  set_root(strand, common_.head, common_.free_root, place.x, root_frame(p, place, phase));
+  return strand;
 }
 
 }  // namespace tress::simulation

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
+#include "simulation/scene/cap.h"
 #include "simulation/scene/strand_table.h"
 
 namespace tress::simulation {
@@ -11,13 +12,27 @@ namespace tress::simulation {
 std::span<const Parameter> groom_table_parameters();
 
 /// Roots at equal shares of the area of the cap: Fibonacci's lattice (i + 1/2)/n, frac(i
-/// golden) mapped to the ellipsoid by its area, tabulated in 256 x 256 cells. Strand i
-/// draws its length, curl and phase from stream `first_stream` + i of the seed. A root's
+/// golden) mapped to the ellipsoid by its area, tabulated in 256 x 256 cells. A root's
 /// tangent lies between the ellipsoid's normal and the combing direction: down along the
-/// surface, and away from the parting. Throws InputError with the location of an invalid
-/// key, and on more than `most` strands.
-std::vector<Strand> groom_strands(const Table& table, const Table* own_material,
-                                  const Common& common, std::uint64_t first_stream,
-                                  std::size_t most);
+/// surface, and away from the parting.
+class Groom {
+ public:
+  /// All are referred to. Throws InputError with the location of an invalid key, and on
+  /// more than `most` strands.
+  Groom(const Table& table, const Table* own_material, const Common& common,
+        std::size_t most);
+
+  std::size_t count() const { return count_; }
+  /// Strand i < count() draws its length, curl and phase from this stream of the seed.
+  /// Safe for several threads. Throws InputError if an element winds too far.
+  Strand strand(std::size_t i, std::uint64_t stream) const;
+
+ private:
+  const Table& table_;
+  const Common& common_;
+  StrandMaterial material_;
+  Cap cap_;
+  std::size_t count_;
+};
 
 }  // namespace tress::simulation

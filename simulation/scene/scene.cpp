@@ -12,7 +12,6 @@
 #include "integrators/integrator_options.h"
 #include "models/effects/obstacle.h"
 #include "simulation/files/parse.h"
-#include "simulation/scene/groom.h"
 #include "simulation/scene/read_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
@@ -36,12 +35,23 @@ class Reader {
   Reader(const std::string& text, const std::string& file)
       : file_(file), root_(parse_toml(text, file)) {}
 
-  Scene read() {
+  Scene read() { return read(false); }
+
+  SceneOutline read_outline() {
+    SceneOutline outline;
+    outline.scene = read(true);
+    outline.series = std::move(series_);
+    return outline;
+  }
+
+ private:
+  /// `outlined`: with the first strand of each table only.
+  Scene read(bool outlined) {
     read_top();
     read_model();
     read_integrator();
     if (scene_.model->on_strand != nullptr) {
-      read_strands();
+      read_strands(outlined);
       read_effects();
     } else {
       refuse_strand_tables();
@@ -50,7 +60,6 @@ class Reader {
     return std::move(scene_);
   }
 
- private:
   const toml::table* table(std::string_view name) const {
     const toml::node* node = root_.get(name);
     return node == nullptr ? nullptr : &as_table(*node, std::string(name), file_);
@@ -169,7 +178,7 @@ class Reader {
     }
   }
 
-  void read_strands() {
+  void read_strands(bool outlined) {
     StrandTables tables{read_or_default("material", material_table_parameters()),
                         read_or_default("root", root_table_parameters()),
                         {}};
@@ -180,12 +189,18 @@ class Reader {
       throw InputError("a scene without strands", file_ + ":1:1",
                        "give a [strand], or a [groom] for many");
     }
-    CutStrands cut = cut_strands(tables, scene_.head, scene_.seed);
-    scene_.strands = std::move(cut.strands);
-    for (const std::size_t i : cut.source) {
-      places_.strands.push_back(tables.sources[i].table.place());
-    }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
+    series_ = std::make_shared<const StrandSeries>(
+        scene_.tables, scene_.head, scene_.seed, outlined ? made_singly : held_at_once);
+    const auto add = [&](std::size_t k) {
+      scene_.strands.push_back(series_->strand(k));
+      places_.strands.push_back(scene_.tables->sources[series_->source(k)].table.place());
+    };
+    if (outlined) {
+      for (const std::size_t k : series_->first()) add(k);
+    } else {
+      for (std::size_t k = 0; k < series_->size(); ++k) add(k);
+    }
   }
 
   /// Every [name] or [[name]] and its [name.material], if any.
@@ -238,6 +253,7 @@ class Reader {
   const std::string& file_;
   const toml::table root_;
   Scene scene_;
+  std::shared_ptr<const StrandSeries> series_;
   ScenePlaces places_;
 };
 
@@ -289,6 +305,10 @@ std::size_t Scene::last_frame() const {
 
 Scene read_scene(const std::string& file) {
   return parse_scene(read_file(file, most_toml_bytes), file);
+}
+
+SceneOutline read_outline(const std::string& file) {
+  return Reader(read_file(file, most_toml_bytes), file).read_outline();
 }
 
 std::vector<Scene> read_scenes(const std::vector<std::string>& files) {

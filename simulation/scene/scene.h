@@ -14,6 +14,7 @@
 namespace tress::simulation {
 
 struct StrandTables;
+class StrandSeries;
 
 /// One [effects.id] that a scene names.
 struct EffectChoice {
@@ -67,8 +68,17 @@ struct Scene {
   const Parameters* parameters_of(std::string_view effect) const;
 };
 
+/// A scene whose strands may be too many to be held at once.
+struct SceneOutline {
+  Scene scene;  // whose `strands` are the first of each [strand] and [groom] only
+  std::shared_ptr<const StrandSeries> series;  // all of them; null if there are none
+};
+
 /// Throws InputError with file:line:column, what is wrong and what is accepted.
 Scene read_scene(const std::string& file);
+/// As above for up to a million strands; strands after the first of their table are not
+/// checked.
+SceneOutline read_outline(const std::string& file);
 /// As above for several files with different names, which identify scenes in tables.
 std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// As above for a text; `file` is its name in messages, and files that the scene names

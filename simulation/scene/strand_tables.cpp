@@ -13,16 +13,12 @@
 namespace tress::simulation {
 namespace {
 
-constexpr std::size_t most_strands = 10'000, most_elements = 200'000;
+std::size_t elements_of(const StrandSource& source) {
+  return static_cast<std::size_t>(source.table.values().whole("elements"));
+}
 
-std::vector<Strand> strands_of(const StrandSource& source, const Common& common,
-                               std::size_t strands, std::size_t elements) {
-  const Table* own = source.material ? &*source.material : nullptr;
-  if (!source.groom) return {scene_strand(source.table, own, common, strands)};
-  const auto each = static_cast<std::size_t>(source.table.values().whole("elements"));
-  const std::size_t most =
-      std::min(most_strands - strands, (most_elements - elements) / each);
-  return groom_strands(source.table, own, common, strands, most);
+const Table* own_material(const StrandSource& source) {
+  return source.material ? &*source.material : nullptr;
 }
 
 void set_elements(StrandSource& source, long elements) {
@@ -32,27 +28,51 @@ void set_elements(StrandSource& source, long elements) {
 
 }  // namespace
 
-CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
-                       std::uint64_t seed) {
-  const std::optional<FreeRoot> free_root = free_motion(tables.root);
-  const Common common{tables.material, head, free_root, seed};
-  CutStrands all;
-  std::size_t elements = 0;
-  for (std::size_t i = 0; i < tables.sources.size(); ++i) {
-    const StrandSource& source = tables.sources[i];
-    for (Strand& strand : strands_of(source, common, all.strands.size(), elements)) {
-      elements += strand.segments.size();
-      all.strands.push_back(std::move(strand));
-      all.source.push_back(i);
+StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
+                           const RootMotion& head, std::uint64_t seed, StrandLimits most)
+    : tables_(std::move(tables)),
+      head_(head),
+      free_root_(free_motion(tables_->root)),
+      common_{tables_->material, head_, free_root_, seed} {
+  for (const StrandSource& source : tables_->sources) {
+    const std::size_t each = elements_of(source);
+    std::size_t count = 1;
+    grooms_.emplace_back();
+    if (source.groom) {
+      const std::size_t room =
+          std::min(most.strands - size(), (most.elements - elements_) / each);
+      grooms_.back().emplace(source.table, own_material(source), common_, room);
+      count = grooms_.back()->count();
     }
-    if (all.strands.size() <= most_strands && elements <= most_elements) continue;
+    first_.push_back(size() + count);
+    elements_ += each * count;
+    if (size() <= most.strands && elements_ <= most.elements) continue;
     throw InputError(
-        fmt::format("{} strands of {} elements altogether", all.strands.size(), elements),
+        fmt::format("{} strands of {} elements altogether", size(), elements_),
         source.table.place(),
-        fmt::format("give at most {} strands and {} elements", most_strands,
-                    most_elements));
+        fmt::format("give at most {} strands and {} elements", most.strands,
+                    most.elements));
   }
-  return all;
+}
+
+std::size_t StrandSeries::source(std::size_t k) const {
+  return static_cast<std::size_t>(std::ranges::upper_bound(first_, k) - first_.begin()) -
+         1;
+}
+
+Strand StrandSeries::strand(std::size_t k) const {
+  const std::size_t i = source(k);
+  // Strands of one scene differ by their streams.
+  if (grooms_[i]) return grooms_[i]->strand(k - first_[i], k);
+  const StrandSource& source = tables_->sources[i];
+  return scene_strand(source.table, own_material(source), common_, k);
+}
+
+std::vector<Strand> StrandSeries::all() const {
+  std::vector<Strand> strands;
+  strands.reserve(size());
+  for (std::size_t k = 0; k < size(); ++k) strands.push_back(strand(k));
+  return strands;
 }
 
 StrandTables with_elements(StrandTables tables, int elements) {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "models/strand/strand.h"
+#include "simulation/scene/groom.h"
 #include "simulation/scene/table.h"
 
 namespace tress::simulation {
@@ -22,15 +25,44 @@ struct StrandTables {
   std::vector<StrandSource> sources;  // each [strand], then each [groom]
 };
 
-struct CutStrands {
-  std::vector<Strand> strands;
-  std::vector<std::size_t> source;  // of every strand, its index in StrandTables
+/// Of a scene that is read whole, and of one whose strands are made one at a time.
+struct StrandLimits {
+  std::size_t strands, elements;
 };
+inline constexpr StrandLimits held_at_once{10'000, 200'000};
+inline constexpr StrandLimits made_singly{1'000'000, 20'000'000};
 
-/// Throws InputError with the location of an invalid key, and on more strands or elements
-/// than a scene may have. `head` is head_motion(tables.root).
-CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
-                       std::uint64_t seed);
+/// The strands that the tables describe, made one at a time, by any number of threads.
+class StrandSeries {
+ public:
+  /// Throws InputError with the location of an invalid key, and on more strands or
+  /// elements than `most`. `head` is head_motion(tables.root).
+  StrandSeries(std::shared_ptr<const StrandTables> tables, const RootMotion& head,
+               std::uint64_t seed, StrandLimits most);
+  StrandSeries(const StrandSeries&) = delete;
+  StrandSeries& operator=(const StrandSeries&) = delete;
+
+  std::size_t size() const { return first_.back(); }
+  std::size_t elements() const { return elements_; }
+  /// Throws InputError with the location of an invalid key.
+  Strand strand(std::size_t k) const;
+  /// Index in StrandTables::sources of the table that strand k comes from.
+  std::size_t source(std::size_t k) const;
+  /// The first strand of each table.
+  std::span<const std::size_t> first() const {
+    return std::span(first_).first(first_.size() - 1);
+  }
+  std::vector<Strand> all() const;
+
+ private:
+  std::shared_ptr<const StrandTables> tables_;
+  RootMotion head_;
+  std::optional<FreeRoot> free_root_;
+  Common common_;
+  std::vector<std::optional<Groom>> grooms_;  // of each source
+  std::vector<std::size_t> first_{0};         // strand of each source, and the end
+  std::size_t elements_ = 0;
+};
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);

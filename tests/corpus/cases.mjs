@@ -2,7 +2,7 @@
 // the folder where the program runs: texts, null for none, {folder}, {pipe}, {link: to}.
 // `maybe`: chance may have left the input legal.
 import {
-  garbage, grids, malformedCsv, malformedToml, random, scene, special, wrongValues,
+  garbage, grids, headScene, malformedCsv, malformedToml, random, scene, special, wrongValues,
 } from './texts.mjs';
 
 /// How each program is told which scene to look at, without running it where it can.
@@ -120,6 +120,10 @@ const ofAll = ['--elments 3', '--set', '--set x', '--set =1', '--set none_such=1
   '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--options', '-x', '--', '-'];
 const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads nan',
   '--hairs -1', '--hairs 1e308', '--hairs nan', '--progress loud', '--elments 3', '-x', '--out',
+  '--as none', '--as', '--bits 16', '--bits nan', '--bits 1e308', '--lanes 0', '--lanes -8',
+  '--lanes 3', '--lanes 16', '--bits 32 --lanes 4', '--frames 16', '--frames', '--frames nan',
+  'scene.toml --as head --out o', 'head.toml --as head --out o --hairs 3',
+  'head.toml --as head --out o --error-bars', 'head.toml --as head --out file',
   'none.toml', 'scene.toml none.toml', 'scene.toml --out file', 'scene.toml --out loop',
   'scene.toml --out loop/o', 'scene.toml --out /proc/o', 'scene.toml --out /dev/null/o',
   'scene.toml --out file/o', 'scene.toml --out pipe', `scene.toml --out ${'n'.repeat(300)}`,
@@ -127,7 +131,7 @@ const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads n
 
 function* commands(programs) {
   const files = { loop: { link: 'loop' }, pipe: { pipe: true }, file: 'text\n',
-    'scene.toml': scene };
+    'scene.toml': scene, 'head.toml': headScene };
   for (const program of programs) {
     for (const text of program === 'simulate' ? ofSimulate : ofAll) {
       const args = text.split(' ').filter((word) => word !== '');
@@ -205,6 +209,14 @@ function* states() {
       yield { program: 'simulate', kind: `.${ending}`, name, maybe: what.link === 'itself',
         files: { 'scene.toml': scene, 'out/scene.state': 'x', [`out/scene.${ending}`]: what },
         args: ['scene.toml', '--out', 'out', '--resume'] };
+    }
+    for (const ending of ['state', 'h5', 'csv']) {
+      // A table or frames to be written anew are not read.
+      const read = ending === 'state';
+      if (!read && (typeof what === 'string' || Buffer.isBuffer(what))) continue;
+      yield { program: 'simulate', kind: `head's .${ending}`, name, maybe: what.link === 'itself',
+        files: { 'scene.toml': headScene, [`out/scene.${ending}`]: what },
+        args: ['scene.toml', '--as', 'head', '--out', 'out', ...(read ? ['--resume'] : [])] };
     }
   }
 }

@@ -112,6 +112,25 @@ export const wrongValues = ['nan', 'inf', '-inf', '1e999', '-1e308', '1979-05-27
   '""', '[nan, 0, 0]'];
 
 /// A scene with all tables, every value on a line of its own.
+/// One that runs as a head of hair.
+export const headScene = `title = "a head"
+duration_s = 0.05
+frames_1_s = 30
+checkpoint_s = 0.02
+[model]
+tangent = "stiff"
+[integrator]
+id = "semi_implicit_euler"
+dt_s = 0.01
+[groom]
+count = 3
+length_m = 0.1
+elements = 2
+[root]
+motion = "fixed"
+[effects.gravity]
+`;
+
 export const scene = `title = "a strand"
 duration_s = 0.05
 frames_1_s = 30

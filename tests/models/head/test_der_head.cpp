@@ -116,6 +116,72 @@ TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
   }
 }
 
+// States agree to some 1e-11 of a strand, stretches of 1e-5 of an edge then to 1e-6: so
+// does their energy, which is a part of the elastic one.
+TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
+  const RodCase& c = GetParam();
+  constexpr int steps = 20;
+  constexpr double h = 1e-3, t = steps * h;
+  const HeadMethod method = HeadMethod::semi_implicit_euler;
+  const auto n = static_cast<std::size_t>(c.elements);
+  const auto all = head(c, method, {HeadNumber::float64, 8}, 8);
+  advance(*all, steps, h);
+  std::vector<HeadEnergy> each(8);
+  std::vector<double> x(8 * all->numbers()), v(8 * all->numbers());
+  all->energies(0, t, each);
+  all->motion(0, t, x, v);
+  for (std::size_t k = 0; k < 8; ++k) {
+    SCOPED_TRACE(k);
+    const auto system = rod_alone(c, k, "stiff");
+    Options options;
+    options.step = h;
+    std::vector<double> q0(4 * n), v0(4 * n), u(3 * (n + 1));
+    system->initial_state(q0, v0);
+    const auto one = make_integrator("semi_implicit_euler", *system, options);
+    ASSERT_EQ(one->start(0, q0, v0), Status::ok);
+    ASSERT_EQ(one->advance(t), Status::ok);
+    const Energy want = system->energetics()->energy(t, one->q(), one->v());
+    EXPECT_GT(want.kinetic, 0);
+    EXPECT_NEAR(each[k].kinetic, want.kinetic, 1e-6 * want.kinetic);
+    const double weight = rod(c, k).mass() * 9.9 * 2;  // of some 2 m of height
+    EXPECT_NEAR(each[k].elastic + each[k].gravity, want.potential,
+                1e-12 * weight + 1e-6 * each[k].elastic);
+    EXPECT_GT(each[k].elastic, 0);
+    system->material_points()->velocities(t, one->q(), one->v(), u);
+    const In got = In(v).subspan(k * all->numbers(), all->numbers());
+    EXPECT_LE(apart(got, u), 1e-8 * each[k].fastest);
+    double fastest = 0;
+    for (std::size_t i = 0; i <= n; ++i) {
+      fastest = std::max(fastest, norm(load3(&got[3 * i])));
+    }
+    EXPECT_NEAR(each[k].fastest, fastest, 1e-12 * fastest);
+    EXPECT_LE(norm(each[k].tip - load3(&x[(k + 1) * all->numbers() - 3])), 1e-14);
+  }
+}
+
+TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
+  const RodCase c{.name = "", .moves = true, .speed = 3};  // with new references
+  for (const HeadMethod method : methods) {
+    const auto first = head(c, method, {HeadNumber::float64, 8}, 11);
+    advance(*first, 20, 1e-3);
+    std::vector<double> kept(11 * first->kept());
+    first->keep(0, std::span(kept).first(8 * first->kept()));
+    first->keep(1, std::span(kept).subspan(8 * first->kept()));
+    const auto second = head(c, method, {HeadNumber::float64, 4}, 11);
+    EXPECT_NE(second->hash(), first->hash());
+    for (std::size_t b = 0, k = 0; b < second->blocks(); k += second->strands_of(b++)) {
+      second->recall(b, std::span(kept).subspan(k * second->kept(),
+                                                second->strands_of(b) * second->kept()));
+    }
+    EXPECT_EQ(second->hash(), first->hash());
+    for (Head* of : {first.get(), second.get()}) {
+      const auto scratch = of->scratch();
+      for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * 1e-3, 1e-3, *scratch);
+    }
+    EXPECT_EQ(second->hash(), first->hash());
+  }
+}
+
 TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
   const RodCase& c = GetParam();
   for (const HeadMethod method : methods) {

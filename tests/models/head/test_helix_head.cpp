@@ -82,6 +82,99 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{.name = "InVacuum", .drag = 0, .mass_damping = 0}),
     [](const auto& of) { return of.param.name; });
 
+/// Energetics of the strand by itself, in the head's state.
+Energy energy_alone(const Case& c, std::size_t k, double t, const Head& all,
+                    const Effects& effects) {
+  const auto system = super_helix(
+      strand(c, k),
+      {.dofs = c.twist ? 3 : 2, .tangent = ReducedTangent::stiff, .quadrature = c.points},
+      effects);
+  const auto n = static_cast<std::size_t>(3 * c.elements);
+  std::vector<double> q(n), v(n);
+  all.state(k, q, v);
+  if (!c.twist) {
+    for (auto* x : {&q, &v}) {
+      std::vector<double> bent;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (i % 3 != 0) bent.push_back((*x)[i]);
+      }
+      *x = bent;
+    }
+  }
+  return system->energetics()->energy(t, q, v);
+}
+
+// The same sums in another order, over some 3 (elements points) products that do not
+// cancel but for the places of points: 1e-12 of the largest terms.
+TEST_P(HelixHead, EnergiesAreThoseOfTheStrandsAlone) {
+  const Case& c = GetParam();
+  constexpr int steps = 50;
+  for (const int lanes : {1, 8}) {
+    const auto all = head(c, {HeadNumber::float64, lanes}, 10);
+    advance(*all, steps);
+    const double t = steps * h;
+    std::vector<HeadEnergy> each(10);
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < all->blocks(); ++b) {
+      all->energies(b, t, std::span(each).subspan(done));
+      done += all->strands_of(b);
+    }
+    for (std::size_t k = 0; k < 10; ++k) {
+      SCOPED_TRACE(k);
+      const Energy bare = energy_alone(c, k, t, *all, {});
+      const Energy heavy =
+          energy_alone(c, k, t, *all, {std::make_shared<Gravity>(options(c).gravity)});
+      const double weight = strand(c, k).mass() * 9.9 * 2;  // of some 2 m of height
+      EXPECT_GT(bare.kinetic, 0);
+      EXPECT_NEAR(each[k].kinetic, bare.kinetic, 1e-12 * bare.kinetic);
+      EXPECT_NEAR(each[k].elastic, bare.potential, 1e-12 * bare.potential);
+      EXPECT_NEAR(each[k].gravity, heavy.potential - bare.potential,
+                  1e-12 * (weight + bare.potential));
+      EXPECT_GT(each[k].fastest, 0);
+      std::vector<double> x(all->strands_of(0) * all->numbers());
+      if (lanes != 1 || k != 0) continue;
+      all->positions(0, t, x);
+      EXPECT_LE(norm(each[0].tip - load3(&x[x.size() - 3])), 1e-15);
+    }
+  }
+}
+
+TEST(HelixHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
+  const Case c{.name = "", .points = 4, .moves = true};
+  for (const HeadPack& pack : packs) {
+    const auto first = head(c, pack, 11);
+    for (int s = 0; s < 20; ++s) {
+      const auto scratch = first->scratch();
+      for (std::size_t b = 0; b < first->blocks(); ++b)
+        first->step(b, s * h, h, *scratch);
+    }
+    std::vector<double> kept(11 * first->kept());
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < first->blocks(); ++b) {
+      first->keep(b, std::span(kept).subspan(done));
+      done += first->kept() * first->strands_of(b);
+    }
+    ASSERT_EQ(done, kept.size());
+    const HeadPack other{pack.number, pack.lanes == 8 ? 16 : 8};
+    const auto second = head(
+        c, pack.number == HeadNumber::float64 ? HeadPack{pack.number, 4} : other, 11);
+    EXPECT_NE(second->hash(), first->hash());
+    done = 0;
+    for (std::size_t b = 0; b < second->blocks(); ++b) {
+      second->recall(b, std::span(kept).subspan(done));
+      done += second->kept() * second->strands_of(b);
+    }
+    EXPECT_EQ(second->hash(), first->hash());
+    for (Head* all : {first.get(), second.get()}) {
+      const auto scratch = all->scratch();
+      for (int s = 20; s < 40; ++s) {
+        for (std::size_t b = 0; b < all->blocks(); ++b) all->step(b, s * h, h, *scratch);
+      }
+    }
+    EXPECT_EQ(second->hash(), first->hash());
+  }
+}
+
 // In units of length, gravity and mass; hairs let go by a head at rest.
 TEST(HelixHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
   for (const int elements : {5, 20}) {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "experiments/simulate/scene_run.h"
+#include "simulation/export/head_frames.h"
+
+namespace tress::experiments::scene_runs {
+
+/// Strands of a head of so many that pictures show: every k-th, 1000 at most.
+std::vector<std::size_t> shown_strands(std::size_t strands);
+
+/// Pictures of the shown strands at some 50 of the frames at most, in the format of any
+/// scene: all frames of all strands would not fit into memory, or on a page.
+void write_head_pictures(const SceneOutline& outline, const HeadFrames& frames,
+                         const std::vector<std::size_t>& shown,
+                         const SceneRunOptions& options);
+
+}  // namespace tress::experiments::scene_runs

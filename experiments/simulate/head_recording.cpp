@@ -1,0 +1,107 @@
+#include "experiments/simulate/head_recording.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/files.h"
+#include "simulation/files/row.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+/// Checks the outputs before creating any.
+std::string checked(std::string stem) {
+  for (const char* ending : {".csv", ".h5", ".lost.csv"}) check_output(stem + ending);
+  return stem;
+}
+
+std::string line_of(const std::vector<std::string>& columns,
+                    std::span<const double> series) {
+  Row row;
+  std::vector<std::string> cells;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    row.set(columns[i], series[i]);
+    cells.emplace_back(row.text(columns[i]));
+  }
+  return csv_line(cells);
+}
+
+}  // namespace
+
+HeadRecording::HeadRecording(std::string stem, RunKey key, const Scene& scene,
+                             HeadRun& run, StoredFrames stored, bool resume)
+    : stem_(checked(std::move(stem))),
+      key_(std::move(key)),
+      columns_(stored.columns),
+      lock_(stem_ + ".frames", "this scene") {
+  try {
+    open(scene, run, std::move(stored), resume);
+  } catch (...) {
+    if (lock_.read().empty()) lock_.remove();  // not frames that other runs have left
+    throw;
+  }
+}
+
+void HeadRecording::open(const Scene& scene, HeadRun& run, StoredFrames stored,
+                         bool resume) {
+  const std::string state = stem_ + ".state";
+  std::error_code error;
+  if (resume && std::filesystem::exists(state, error)) {
+    progress_ = load_head(state, key_, run.head());
+    frames_.emplace(stem_, run.head(), std::move(stored), progress_.sums);
+  } else {
+    if (std::filesystem::remove(state, error); error) {
+      throw InputError("cannot remove: " + error.message(), state,
+                       "choose another --out");
+    }
+    frames_.emplace(stem_, scene, run.head(), std::move(stored));
+  }
+  std::string table = csv_line(columns_);
+  for (std::size_t frame = 0; frame < frames_->size(); ++frame) {
+    table += line_of(columns_, frames_->series(frame));
+  }
+  replace_file(stem_ + ".csv", table);
+  csv_.emplace(stem_ + ".csv", O_WRONLY | O_APPEND | O_CLOEXEC);
+  std::filesystem::remove(stem_ + ".lost.csv", error);  // of a run before
+  write_lost();
+}
+
+void HeadRecording::write_lost() {
+  if (progress_.lost.size() == lost_written_) return;
+  std::string table = "strand,t_s,reason\n";
+  for (const LostStrand& lost : progress_.lost) {
+    Row row;
+    row.set("t_s", lost.t);
+    table += fmt::format("{},{},its step had no finite result\n", lost.strand,
+                         row.text("t_s"));
+  }
+  replace_file(stem_ + ".lost.csv", table);
+  lost_written_ = progress_.lost.size();
+}
+
+void HeadRecording::add(const std::vector<double>& series) {
+  frames_->write(series);
+  write_all(csv_->descriptor(), line_of(columns_, series), stem_ + ".csv");
+  write_lost();
+  progress_.sums = frames_->sums();
+}
+
+void HeadRecording::save(const Head& head, std::size_t step) {
+  frames_->sync();
+  progress_.step = step;
+  save_head(stem_ + ".state", key_, head, progress_);
+}
+
+void HeadRecording::close() {
+  frames_->sync();
+  lock_.remove();
+  std::error_code ignored;  // a leftover file is harmless
+  std::filesystem::remove(stem_ + ".state", ignored);
+}
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation/export/head_frames.h"
+#include "simulation/export/head_state.h"
+#include "simulation/files/files.h"
+#include "simulation/files/locked_file.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::experiments::scene_runs {
+
+using namespace simulation;
+
+/// What the run of a head leaves on disk as it proceeds: frames (HeadFrames), the time
+/// series <stem>.csv, lost strands <stem>.lost.csv, and the last saved state
+/// <stem>.state. Only one process at a time writes them.
+class HeadRecording {
+ public:
+  /// A new recording, or with `resume` one that goes on at its saved state, which is set
+  /// in the head. Throws InputError where a file cannot be written, is damaged or belongs
+  /// to another run.
+  HeadRecording(std::string stem, RunKey key, const Scene& scene, HeadRun& run,
+                StoredFrames stored, bool resume);
+
+  const HeadProgress& progress() const { return progress_; }
+  const HeadFrames& frames() const { return *frames_; }
+
+  void lose(std::size_t strand, double t) { progress_.lost.push_back({strand, t}); }
+  /// Reads a frame; add() writes it, its series and the lost strands.
+  void read(HeadRun& run, double t) { frames_->read(run, t); }
+  void add(const std::vector<double>& series);
+  /// Saves the state, `step` steps after the last frame.
+  void save(const Head& head, std::size_t step);
+  /// The run is complete: removes what only a resumed run needs.
+  void close();
+
+ private:
+  void open(const Scene& scene, HeadRun& run, StoredFrames stored, bool resume);
+  void write_lost();
+
+  std::string stem_;
+  RunKey key_;
+  std::vector<std::string> columns_;
+  LockedFile lock_;
+  HeadProgress progress_;
+  std::optional<HeadFrames> frames_;
+  std::optional<File> csv_;
+  std::size_t lost_written_ = 0;
+};
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,227 @@
+#include "experiments/simulate/head_scene_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+
+#include "contract/input_error.h"
+#include "experiments/simulate/head_pictures.h"
+#include "experiments/simulate/head_recording.h"
+#include "experiments/simulate/head_series.h"
+#include "experiments/simulate/time_bar.h"
+#include "simulation/run/memory.h"
+#include "simulation/run/scene_head.h"
+#include "simulation/run/timing.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+/// Lets the thread that handles signals ask the run to save itself between two steps: a
+/// copy of the state for whenever a signal comes would take as much memory again.
+class StopRequest {
+ public:
+  bool asked() const { return asked_; }
+  /// By the thread of signals: returns when the run has answered.
+  void ask() {
+    asked_ = true;
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return answered_; });
+    if (!problem_.empty()) throw std::runtime_error(problem_);
+  }
+  /// By the run, when it has saved itself or is over.
+  void answer(std::string problem = {}) {
+    const std::lock_guard lock(mutex_);
+    answered_ = true;
+    problem_ = std::move(problem);
+    changed_.notify_all();
+  }
+
+ private:
+  std::atomic<bool> asked_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool answered_ = false;
+  std::string problem_;
+};
+
+class HeadSceneRun {
+ public:
+  HeadSceneRun(const SceneOutline& outline, RunKey key, const SceneRunOptions& options,
+               Interruption& interruption)
+      : outline_(outline),
+        scene_(outline.scene),
+        options_(options),
+        interruption_(interruption),
+        key_(std::move(
+            key.add("run", fmt::format("head of {} bits, frames of {}",
+                                       bits_of(options.pack), options.frame_bits)))) {}
+
+  SceneRun run() {
+    SceneRun made{SceneRun::End::complete, {}, 0, 0, 0, 0};
+    made.wall_s = seconds_of([&] { run(made); });
+    return made;
+  }
+
+  static int bits_of(const models::HeadPack& pack) {
+    return pack.number == models::HeadNumber::float64 ? 64 : 32;
+  }
+
+ private:
+  void run(SceneRun& made) {
+    HeadOutcome& outcome = made.head.emplace();
+    outcome.build_s = seconds_of([&] {
+      run_.emplace(make_head(outline_, options_.pack, options_.threads),
+                   options_.threads);
+    });
+    const std::vector<std::size_t> shown = shown_strands(run_->head().strands());
+    StoredFrames stored{options_.frame_bits, shown, {}};
+    for (const Reading& column : head_series()) stored.columns.push_back(column.name);
+    recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
+                       options_.resume);
+    advance(outcome);
+    write_head_pictures(outline_, recording_->frames(), shown, options_);
+    const auto whole = interruption_.hold();
+    recording_->close();
+    const Head& head = run_->head();
+    outcome.pack = options_.pack;
+    outcome.strands = head.strands();
+    outcome.lost = recording_->progress().lost.size();
+    outcome.bytes_per_strand =
+        static_cast<double>(head.bytes()) / static_cast<double>(head.strands());
+    outcome.state = fmt::format("{:016x}", head.hash());
+    made.frames = recording_->frames().size();
+    made.simulated_s = scene_.duration;
+    made.work.steps = steps_;
+    if (outcome.lost == 0) return;
+    made.end = SceneRun::End::failed;
+    made.reason = fmt::format("{} of {} strands were lost: {}.lost.csv", outcome.lost,
+                              outcome.strands, options_.stem);
+  }
+
+  /// To the last frame, unless a signal ends the program.
+  void advance(HeadOutcome& outcome) {
+    StopRequest stop;
+    const Interruption::Save save(interruption_, [&] { stop.ask(); });
+    // Before `save` waits for the thread of signals, which waits for an answer.
+    const struct Answer {
+      StopRequest& to;
+      ~Answer() { to.answer(); }
+    } at_the_end{stop};
+    const auto between_saves =
+        static_cast<std::size_t>(std::round(scene_.checkpoint * scene_.frame_rate));
+    TimeBar bar(options_.progress, scene_);
+    if (recording_->progress().sums.empty()) add_frame(0, outcome);
+    std::size_t step = recording_->progress().step;
+    const std::size_t last = scene_.last_frame();
+    while (recording_->frames().size() <= last) {
+      const std::size_t frame = recording_->frames().size();
+      outcome.step_s += seconds_of([&] { take_steps(frame, step, stop); });
+      step = 0;
+      add_frame(scene_.time_of(frame), outcome);
+      bar.show(scene_.time_of(frame));
+      if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
+      outcome.write_s += seconds_of([&] { recording_->save(run_->head(), 0); });
+    }
+  }
+
+  /// Equal steps of dt_s at most, from `done` on.
+  void take_steps(std::size_t frame, std::size_t done, StopRequest& stop) {
+    const double begin = scene_.time_of(frame - 1), end = scene_.time_of(frame),
+                 count =
+                     std::max(1.0, std::ceil((end - begin) / scene_.options.step - 1e-9)),
+                 h = (end - begin) / count;
+    for (std::size_t i = done; i < static_cast<std::size_t>(count); ++i) {
+      if (stop.asked()) end_here(i, stop);
+      const double t = begin + static_cast<double>(i) * h;
+      run_->step(t, h);
+      ++steps_;
+      for (const auto& loss : run_->lost()) recording_->lose(loss.strand, t + h);
+    }
+  }
+
+  /// A signal has come: the thread that handles it ends the program.
+  [[noreturn]] void end_here(std::size_t step, StopRequest& stop) {
+    try {
+      recording_->save(run_->head(), step);
+      stop.answer();
+    } catch (const std::exception& error) {
+      stop.answer(error.what());
+    }
+    const auto never_given_back = interruption_.hold();
+    std::abort();
+  }
+
+  void add_frame(double t, HeadOutcome& outcome) {
+    std::vector<double> series;
+    outcome.read_s += seconds_of([&] {
+      run_->energies(t, energies_);
+      series = head_series_row(t, energies_, recording_->progress().lost.size());
+      recording_->read(*run_, t);
+    });
+    outcome.write_s += seconds_of([&] { recording_->add(series); });
+  }
+
+  const SceneOutline& outline_;
+  const Scene& scene_;
+  const SceneRunOptions& options_;
+  Interruption& interruption_;
+  RunKey key_;
+  std::optional<HeadRun> run_;
+  std::optional<HeadRecording> recording_;
+  std::vector<models::HeadEnergy> energies_;
+  long steps_ = 0;
+};
+
+}  // namespace
+
+void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
+  const Scene& scene = outline.scene;
+  const std::size_t strands = outline.series->size(),
+                    elements = scene.strands.front().segments.size();
+  // A number of six for each coordinate while a saved state is read.
+  const double state = options.resume ? 8.0 * 6 * static_cast<double>(elements) : 0;
+  constexpr double scratch = 5e7;  // of threads, of this program
+  const double count = static_cast<double>(strands),
+               frame =
+                   count * 3 * static_cast<double>(elements + 1) * options.frame_bits / 8,
+               memory = static_cast<double>(head_bytes(outline, options.pack)) + frame +
+                        count * (state + sizeof(models::HeadEnergy)) + scratch,
+               free = free_memory(), frames = static_cast<double>(scene.last_frame() + 1);
+  if (memory > free) {
+    throw InputError(fmt::format("a head of {} strands of {} elements needs about {:.2g} "
+                                 "GB of memory, {:.2g} GB are free",
+                                 strands, elements, memory / 1e9, free / 1e9),
+                     scene.name, "give fewer strands or elements, or --bits 32");
+  }
+  std::error_code unknown;
+  const auto disk =
+      std::filesystem::space(std::filesystem::path(options.stem).parent_path(), unknown);
+  if (!unknown && frame * frames > static_cast<double>(disk.available)) {
+    throw InputError(
+        fmt::format(
+            "{:.0f} frames of {:.3g} MB may take {:.2g} GB of the disk, {:.2g} GB "
+            "are free",
+            frames, frame / 1e6, frame * frames / 1e9,
+            static_cast<double>(disk.available) / 1e9),
+        scene.name, "give fewer frames_1_s, --frames 32 or none, or another --out");
+  }
+  tell(
+      "simulate: {}: a head of {} strands of {} elements, {} bits, {} lanes: about "
+      "{:.0f} "
+      "MB of memory, {:.0f} frames of {:.3g} MB before compression\n",
+      scene.name, strands, elements, HeadSceneRun::bits_of(options.pack),
+      options.pack.lanes, memory / 1e6, frames, frame / 1e6);
+}
+
+SceneRun run_head(const SceneOutline& outline, const RunKey& key,
+                  const SceneRunOptions& options, Interruption& interruption) {
+  return HeadSceneRun(outline, key, options, interruption).run();
+}
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "experiments/run/command_line.h"
+#include "experiments/run/message.h"
+#include "experiments/run/progress.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::experiments::scene_runs {
+
+/// Simulated time, wall time and the remaining time, on standard error.
+class TimeBar {
+ public:
+  TimeBar(ProgressMode mode, const simulation::Scene& scene)
+      : mode_(mode), terminal_(::isatty(STDERR_FILENO) != 0), scene_(scene) {}
+  TimeBar(const TimeBar&) = delete;
+  TimeBar& operator=(const TimeBar&) = delete;
+  ~TimeBar() {
+    if (mode_ == ProgressMode::automatic && terminal_) tell("\r\033[K");
+  }
+
+  void show(double t) {
+    const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
+    last_ = wall;
+    const double left = wall * (scene_.duration - t) / t;
+    if (mode_ == ProgressMode::json) {
+      const nlohmann::json event{
+          {"event", "frame"}, {"scene", scene_.name}, {"t_s", t}, {"wall_s", wall}};
+      tell("{}\n", event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+      return;
+    }
+    constexpr int width = 30;
+    const auto full = static_cast<std::size_t>(width * t / scene_.duration);
+    tell("{}{} [{}{}] {:.2f}/{:.2f} s simulated in {:.1f} s, about {} left{}",
+         terminal_ ? "\r" : "", scene_.name, std::string(full, '#'),
+         std::string(width - full, '.'), t, scene_.duration, wall,
+         readable_duration(left), terminal_ ? "\033[K" : "\n");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressMode mode_;
+  bool terminal_;
+  const simulation::Scene& scene_;
+  Clock::time_point start_ = Clock::now();
+  double last_ = 0;
+};
+
+}  // namespace tress::experiments::scene_runs

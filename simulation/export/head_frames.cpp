@@ -1,0 +1,266 @@
+#include "simulation/export/head_frames.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+
+#include "contract/input_error.h"
+#include "simulation/export/xml_text.h"
+#include "simulation/files/checksum.h"
+#include "simulation/files/files.h"
+
+namespace tress::simulation {
+namespace {
+
+// A whole number of blocks of any lanes; half a megabyte of ten elements, so that chunks
+// are enough for many threads and not many for HDF5.
+constexpr std::size_t most_strands_of_chunk = 2048;
+// Of zlib: higher ones take several times as long and save a few percent of positions.
+constexpr int zlib_level = 1;
+
+constexpr const char* series_name = "series";
+constexpr const char* shown_positions = "shown/positions";
+
+template <class T>
+std::string_view bytes_of(std::span<const T> x) {
+  return {reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size()};
+}
+
+/// As `Number` behind each other.
+template <class Number>
+void put(std::span<const double> x, char* to) {
+  for (const double entry : x) {
+    const auto number = static_cast<Number>(entry);
+    std::memcpy(to, &number, sizeof number);
+    to += sizeof number;
+  }
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ",") + word;
+  return all;
+}
+
+}  // namespace
+
+std::string HeadFrames::dataset(std::size_t frame) {
+  return fmt::format("positions/{:06}", frame);
+}
+
+HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+                       Hdf5File::Mode mode)
+    : stem_(stem),
+      stored_(std::move(stored)),
+      strands_(head.strands()),
+      points_(head.numbers() / 3),
+      each_(std::min(most_strands_of_chunk, strands_)),
+      file_(stem + ".h5", mode),
+      chunks_((strands_ + each_ - 1) / each_),
+      sizes_(chunks_.size()),
+      chunk_sums_(chunks_.size()),
+      shown_(3 * points_ * stored_.shown.size()) {}
+
+HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, const Head& head,
+                       StoredFrames stored)
+    : HeadFrames(stem, head, std::move(stored), Hdf5File::Mode::create) {
+  file_.set("scene", scene.name);
+  file_.set("title", scene.title);
+  file_.set("model", std::string(scene.model->id));
+  file_.set("integrator", scene.integrator);
+  file_.set("dt_s", scene.options.step);
+  file_.set("columns", joined(stored_.columns));
+  file_.set("strands", static_cast<double>(strands_));
+  file_.set("points", static_cast<double>(points_));
+  const std::size_t columns = stored_.columns.size(), shown = stored_.shown.size();
+  file_.create(series_name, {Hdf5Type::float64, {0, columns}, {64, columns}});
+  file_.create(
+      shown_positions,
+      {Hdf5Type::float32, {0, points_ * shown, 3}, {1, points_ * shown, 3}, zlib_level});
+  file_.create("shown/strands", {Hdf5Type::int32, {1, shown}, {1, shown}});
+  const std::vector<std::int32_t> strands(stored_.shown.begin(), stored_.shown.end());
+  file_.write("shown/strands", 0, std::span<const std::int32_t>(strands));
+  if (stored_.bits == 0) return;
+  file_.create("connectivity",
+               {Hdf5Type::int32, {strands_, points_}, {each_, points_}, zlib_level});
+  for (std::size_t k = 0; k < strands_; k += each_) {
+    std::vector<std::int32_t> points(std::min(each_, strands_ - k) * points_);
+    std::iota(points.begin(), points.end(), static_cast<std::int32_t>(k * points_));
+    file_.write("connectivity", k, std::span<const std::int32_t>(points));
+  }
+}
+
+HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+                       std::vector<std::uint64_t> sums)
+    : HeadFrames(stem, head, std::move(stored), Hdf5File::Mode::extend) {
+  const auto damaged = [&] {
+    return InputError("frames are missing or damaged: their checksum does not fit",
+                      stem + ".h5", "leave out --resume to begin again");
+  };
+  const std::vector<std::size_t> series_size{sums.size(), stored_.columns.size()},
+      shown_size{sums.size(), points_ * stored_.shown.size(), 3},
+      positions_size{strands_ * points_, 3};
+  const auto fits = [&](const char* dataset, const std::vector<std::size_t>& want) {
+    if (!file_.has(dataset)) return false;
+    const std::vector<std::size_t> size = file_.size(dataset);
+    return size.size() == want.size() && size.front() >= want.front() &&
+           std::equal(size.begin() + 1, size.end(), want.begin() + 1);
+  };
+  if (!fits(series_name, series_size) || !fits(shown_positions, shown_size)) {
+    throw damaged();
+  }
+  try {
+    for (std::size_t frame = 0; frame < sums.size(); ++frame) {
+      if (stored_.bits != 0 && !fits(dataset(frame).c_str(), positions_size)) {
+        throw damaged();
+      }
+      for (std::size_t c = 0; stored_.bits != 0 && c < chunks_.size(); ++c) {
+        const std::vector<char> bytes = file_.read_chunk(dataset(frame), place_of(c));
+        chunk_sums_[c] = Checksum().add({bytes.data(), bytes.size()}).value();
+      }
+      shown_ = shown(frame);
+      if (sum(series(frame)) != sums[frame]) throw damaged();
+    }
+  } catch (const InputError&) {  // or HDF5 finds no such chunk
+    throw damaged();
+  }
+  sums_ = std::move(sums);
+  for (const char* grown : {series_name, shown_positions}) {
+    file_.resize(grown, sums_.size());
+  }
+  for (std::size_t frame = sums_.size(); file_.has(dataset(frame)); ++frame) {
+    file_.remove(dataset(frame));
+  }
+}
+
+std::vector<std::size_t> HeadFrames::place_of(std::size_t chunk) const {
+  return {chunk * each_ * points_, 0};
+}
+
+void HeadFrames::read(HeadRun& run, double t) {
+  const Head& head = run.head();
+  const std::size_t workers = run.crew().workers();
+  own_.resize(workers);
+  for (Own& own : own_) {
+    own.x.resize(head.numbers() * head.strands_of(0));
+    own.raw.resize(3 * each_ * points_ * static_cast<std::size_t>(stored_.bits) / 8);
+    own.shuffled.resize(own.raw.size());
+  }
+  for (std::vector<char>& chunk : chunks_) {
+    chunk.resize(::compressBound(own_.front().raw.size()));
+  }
+  run.crew().run(chunks_.size(),
+                 [&](std::size_t c) { read_chunk(head, c, t, own_[c % workers]); });
+  if (std::ranges::count(sizes_, std::size_t{0}) > 0) {
+    throw InputError("cannot compress a frame", stem_ + ".h5", "free memory");
+  }
+}
+
+/// A chunk ends with zeros where there are no more strands.
+void HeadFrames::read_chunk(const Head& head, std::size_t chunk, double t, Own& own) {
+  const std::size_t begin = chunk * each_, end = std::min(begin + each_, strands_);
+  const std::size_t lanes = head.strands_of(0), numbers = head.numbers();
+  const std::size_t size = static_cast<std::size_t>(stored_.bits) / 8;
+  if (end < begin + each_) std::ranges::fill(own.raw, '\0');
+  auto next = std::ranges::lower_bound(stored_.shown, begin);
+  for (std::size_t first = begin; first < end; first += lanes) {
+    const std::size_t count = head.strands_of(first / lanes);
+    const bool shows = next != stored_.shown.end() && *next < first + count;
+    if (size == 0 && !shows) continue;
+    const std::span<double> x = std::span(own.x).first(numbers * count);
+    head.positions(first / lanes, t, x);
+    char* const to = own.raw.data() + (first - begin) * numbers * size;
+    if (size == 8) put<double>(x, to);
+    if (size == 4) put<float>(x, to);
+    for (; next != stored_.shown.end() && *next < first + count; ++next) {
+      const auto place = static_cast<std::size_t>(next - stored_.shown.begin());
+      for (std::size_t i = 0; i < numbers; ++i) {
+        shown_[numbers * place + i] =
+            static_cast<float>(x[numbers * (*next - first) + i]);
+      }
+    }
+  }
+  sizes_[chunk] = 1;
+  if (size == 0) return;
+  shuffle(own.raw, size, own.shuffled);
+  uLongf used = chunks_[chunk].size();
+  const int result = ::compress2(reinterpret_cast<Bytef*>(chunks_[chunk].data()), &used,
+                                 reinterpret_cast<const Bytef*>(own.shuffled.data()),
+                                 own.shuffled.size(), zlib_level);
+  sizes_[chunk] = result == Z_OK ? used : 0;
+  chunk_sums_[chunk] = Checksum().add({chunks_[chunk].data(), sizes_[chunk]}).value();
+}
+
+std::uint64_t HeadFrames::sum(std::span<const double> series) const {
+  Checksum all;
+  if (stored_.bits != 0) all.add(bytes_of(std::span(chunk_sums_)));
+  all.add(bytes_of(series));
+  all.add(bytes_of(std::span(shown_)));
+  return all.value();
+}
+
+void HeadFrames::write(std::span<const double> series) {
+  const std::size_t frame = sums_.size();
+  if (stored_.bits != 0) {
+    file_.create(dataset(frame),
+                 {stored_.bits == 64 ? Hdf5Type::float64 : Hdf5Type::float32,
+                  {strands_ * points_, 3},
+                  {each_ * points_, 3},
+                  zlib_level});
+    for (std::size_t c = 0; c < chunks_.size(); ++c) {
+      file_.write_chunk(dataset(frame), place_of(c),
+                        std::span(chunks_[c]).first(sizes_[c]));
+    }
+  }
+  file_.resize(shown_positions, frame + 1);
+  file_.write(shown_positions, frame, std::span<const float>(shown_));
+  file_.resize(series_name, frame + 1);
+  file_.write(series_name, frame, series);
+  sums_.push_back(sum(series));
+  file_.flush();
+}
+
+void HeadFrames::sync() {
+  file_.sync();
+  if (stored_.bits != 0) replace_file(stem_ + ".xdmf", xdmf());
+}
+
+std::vector<double> HeadFrames::series(std::size_t frame) const {
+  std::vector<double> row(stored_.columns.size());
+  file_.read(series_name, frame, std::span(row));
+  return row;
+}
+
+std::vector<float> HeadFrames::shown(std::size_t frame) const {
+  std::vector<float> x(3 * points_ * stored_.shown.size());
+  file_.read(shown_positions, frame, std::span(x));
+  return x;
+}
+
+std::string HeadFrames::xdmf() const {
+  const std::string file =
+      xml_text(std::filesystem::path(stem_).filename().string() + ".h5");
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+      "<Grid Name=\"strands\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (std::size_t frame = 0; frame < size(); ++frame) {
+    text += fmt::format(
+        "<Grid Name=\"strands\" GridType=\"Uniform\">\n<Time Value=\"{}\"/>\n"
+        "<Topology TopologyType=\"Polyline\" NodesPerElement=\"{}\" "
+        "NumberOfElements=\"{}\">\n<DataItem Format=\"HDF\" NumberType=\"Int\" "
+        "Precision=\"4\" Dimensions=\"{} {}\">{}:/connectivity</DataItem>\n</Topology>\n",
+        series(frame).front(), points_, strands_, strands_, points_, file);
+    text += fmt::format(
+        "<Geometry GeometryType=\"XYZ\">\n<DataItem Format=\"HDF\" "
+        "NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{} 3\">{}:/{}</DataItem>\n"
+        "</Geometry>\n</Grid>\n",
+        stored_.bits / 8, strands_ * points_, file, dataset(frame));
+  }
+  return text + "</Grid>\n</Domain>\n</Xdmf>\n";
+}
+
+}  // namespace tress::simulation

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation/export/hdf5_file.h"
+#include "simulation/run/head_run.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::simulation {
+
+/// What is stored of every frame of a head.
+struct StoredFrames {
+  int bits = 32;                     // of a coordinate: 64, 32; 0: none of all strands
+  std::vector<std::size_t> shown;    // strands for pictures, ascending
+  std::vector<std::string> columns;  // of the series, the first of which is the time
+};
+
+/// The frames of a head on disk, <stem>.h5:
+///
+///     positions/000000 ... (strands points, 3), m, one for each frame
+///     connectivity (strands, points)   series (frames, columns)
+///     shown/positions (frames, shown points, 3), shown/strands
+///
+/// and how ParaView reads them as polylines, <stem>.xdmf: its readers of XDMF 2 and 3
+/// agree on whole datasets only, so that each frame is one. Strands are read,
+/// shuffled and compressed by the crew of the head, a thousand or two as one chunk; a
+/// frame is in the file once written. Memory: one compressed frame. A killed run leaves
+/// the frames before the one that it was writing.
+class HeadFrames {
+ public:
+  /// A new file.
+  HeadFrames(const std::string& stem, const Scene& scene, const Head& head,
+             StoredFrames stored);
+  /// The file of an interrupted run whose first frames have these checksums; others are
+  /// dropped. Throws InputError if they are damaged, or of another head.
+  HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+             std::vector<std::uint64_t> sums);
+
+  /// Reads and compresses all strands at the present state.
+  void read(HeadRun& run, double t);
+  /// Adds what was read, and its series.
+  void write(std::span<const double> series);
+  /// All frames so far are on disk, and the .xdmf with them.
+  void sync();
+
+  std::size_t size() const { return sums_.size(); }
+  const std::vector<std::uint64_t>& sums() const { return sums_; }
+  std::vector<double> series(std::size_t frame) const;
+  /// (3 points) of the shown strands.
+  std::vector<float> shown(std::size_t frame) const;
+
+  /// Of the positions of all strands.
+  static std::string dataset(std::size_t frame);
+
+ private:
+  /// Of a worker.
+  struct Own {
+    std::vector<double> x;  // of a block
+    std::vector<char> raw, shuffled;
+  };
+  HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+             Hdf5File::Mode mode);
+  void read_chunk(const Head& head, std::size_t chunk, double t, Own& own);
+  std::vector<std::size_t> place_of(std::size_t chunk) const;
+  std::uint64_t sum(std::span<const double> series) const;
+  std::string xdmf() const;
+
+  std::string stem_;
+  StoredFrames stored_;
+  std::size_t strands_, points_;  // of a strand
+  std::size_t each_;              // strands of a chunk
+  Hdf5File file_;
+  std::vector<std::uint64_t> sums_;  // of frames
+  // The frame that was read.
+  std::vector<std::vector<char>> chunks_;
+  std::vector<std::size_t> sizes_;         // used bytes of chunks
+  std::vector<std::uint64_t> chunk_sums_;  // of these
+  std::vector<float> shown_;
+  std::vector<Own> own_;
+};
+
+}  // namespace tress::simulation

@@ -1,0 +1,207 @@
+#include "simulation/run/scene_head.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <vector>
+
+#include "models/reduced/reduced_strand.h"
+#include "simulation/run/crew.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::simulation {
+namespace {
+
+using models::HeadOptions;
+
+std::optional<NoHead> no_model(const Scene& scene) {
+  if (scene.model->id != "super_helix") {
+    return NoHead{fmt::format("{} does not come as a head", scene.model->id),
+                  "use [model] id = \"super_helix\""};
+  }
+  const Parameters& p = scene.model_options;
+  if (p.word("modes") == "bend_planar") {
+    return NoHead{"strands of a head bend in both directions",
+                  "give [model] modes = \"bend_twist\" or \"bend\""};
+  }
+  if (p.word("tangent") != "stiff") {
+    return NoHead{
+        fmt::format("tangent = \"{}\" does not come as a head", p.word("tangent")),
+        "give [model] tangent = \"stiff\""};
+  }
+  if (p.word("solver") != "recursive") {
+    return NoHead{
+        fmt::format("solver = \"{}\" does not come as a head", p.word("solver")),
+        "leave out [model] solver"};
+  }
+  if (p.whole("quadrature") == 1 || p.whole("quadrature") > 16) {
+    return NoHead{fmt::format("{} points of an element", p.whole("quadrature")),
+                  "give [model] quadrature = 0, or 2 to 16"};
+  }
+  return {};
+}
+
+std::optional<NoHead> no_method(const Scene& scene) {
+  if (scene.integrator != "semi_implicit_euler") {
+    return NoHead{fmt::format("{} does not step a head", scene.integrator),
+                  "use [integrator] id = \"semi_implicit_euler\""};
+  }
+  const Options& options = scene.options;
+  if (options.max_work > 0) {
+    return NoHead{"a head does not count its work", "leave out [integrator] max_work"};
+  }
+  if (1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
+    return NoHead{"more than max_steps steps of dt_s from frame to frame",
+                  "give a longer dt_s, or more frames_1_s"};
+  }
+  return {};
+}
+
+std::optional<NoHead> no_strands(const Scene& scene) {
+  const std::vector<StrandSource>& sources = scene.tables->sources;
+  const int elements = sources.front().table.values().whole("elements");
+  for (const StrandSource& source : sources) {
+    const Parameters& p = source.table.values();
+    if (p.whole("elements") != elements) {
+      return NoHead{
+          fmt::format("strands of {} and of {} elements", elements, p.whole("elements")),
+          "give all equally many elements"};
+    }
+    if (p.number("grading") != 1) {
+      return NoHead{"elements of different lengths", "leave out grading"};
+    }
+  }
+  if (scene.strands.front().free_root) {
+    return NoHead{"free roots", "use another [root] motion"};
+  }
+  return {};
+}
+
+/// Effects that a Head has.
+bool add_effect(const EffectChoice& choice, HeadOptions& options) {
+  const Parameters& p = choice.parameters;
+  if (choice.entry->id == "gravity") {
+    options.gravity = options.gravity + p.vec("gravity_m_s2");
+  } else if (choice.entry->id == "linear_drag") {
+    options.drag += p.number("drag_kg_m_s");
+    options.mass_damping += p.number("mass_damping_1_s");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+HeadOptions options_of(const Scene& scene) {
+  HeadOptions options;
+  options.elements = static_cast<int>(scene.strands.front().segments.size());
+  options.points = scene.model_options.whole("quadrature");
+  options.twist = scene.model_options.word("modes") == "bend_twist";
+  options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
+  options.gravity = {};
+  options.motion = scene.head;
+  for (const EffectChoice& choice : scene.effects) add_effect(choice, options);
+  return options;
+}
+
+/// Calls use(k, strand, part) for k in [begin, end), in parts that work at the same time;
+/// rethrows the error of the first strand that has one.
+template <class Use>
+void each_strand(const StrandSeries& series, Crew& crew, std::size_t begin,
+                 std::size_t end, std::size_t parts, const Use& use) {
+  std::vector<std::exception_ptr> errors(parts);
+  crew.run(parts, [&](std::size_t part) {
+    const std::size_t count = end - begin;
+    try {
+      for (std::size_t i = count * part / parts; i < count * (part + 1) / parts; ++i) {
+        use(begin + i, series.strand(begin + i), part);
+      }
+    } catch (...) {
+      errors[part] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+/// Longest strand and largest angle that an element winds by.
+struct Extent {
+  double length = 0, winding = 0;
+
+  void include(const Strand& strand) {
+    length = std::max(length, strand.length());
+    for (const Segment& segment : strand.segments) {
+      for (const Vec& shape : {segment.natural, segment.initial}) {
+        winding = std::max(winding, segment.length * norm(shape));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+std::optional<NoHead> no_head(const SceneOutline& outline) {
+  const Scene& scene = outline.scene;
+  if (scene.strands.empty()) {
+    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
+                  "use [model] id = \"super_helix\""};
+  }
+  if (auto no = no_model(scene)) return no;
+  if (auto no = no_method(scene)) return no;
+  if (auto no = no_strands(scene)) return no;
+  HeadOptions ignored;
+  for (const EffectChoice& choice : scene.effects) {
+    if (add_effect(choice, ignored)) continue;
+    return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
+                  "leave it out"};
+  }
+  return {};
+}
+
+std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pack,
+                                int threads) {
+  const StrandSeries& series = *outline.series;
+  Crew crew(threads);
+  HeadOptions options = options_of(outline.scene);
+  constexpr std::size_t parts = 64;
+  std::vector<Extent> extents(parts);
+  each_strand(series, crew, 0, series.size(), parts,
+              [&](std::size_t, const Strand& strand, std::size_t part) {
+                extents[part].include(strand);
+              });
+  Extent all;
+  for (const Extent& extent : extents) {
+    all.length = std::max(all.length, extent.length);
+    all.winding = std::max(all.winding, extent.winding);
+  }
+  options.longest = all.length;
+  if (options.points == 0) options.points = models::quadrature_points(all.winding);
+  std::unique_ptr<Head> head = helix_head(options, pack);
+  head->reserve(series.size());
+  constexpr std::size_t at_once = 1024;
+  std::vector<Strand> made(std::min(at_once, series.size()));
+  for (std::size_t begin = 0; begin < series.size(); begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, series.size());
+    each_strand(series, crew, begin, end, parts,
+                [&](std::size_t k, Strand strand, std::size_t) {
+                  made[k - begin] = std::move(strand);
+                });
+    for (std::size_t k = begin; k < end; ++k) head->add(made[k - begin]);
+  }
+  return head;
+}
+
+std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {
+  HeadOptions options = options_of(outline.scene);
+  options.longest = 1;
+  if (options.points == 0) options.points = 8;
+  const std::unique_ptr<Head> block = helix_head(options, pack);
+  const auto lanes = static_cast<std::size_t>(pack.lanes);
+  for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
+  const std::size_t blocks = (outline.series->size() + lanes - 1) / lanes;
+  return block->bytes() * blocks;
+}
+
+}  // namespace tress::simulation

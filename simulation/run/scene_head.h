@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "models/head/head.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::simulation {
+
+/// Why a scene is no head of hair, and what would make it one.
+struct NoHead {
+  std::string reason, remedy;
+};
+
+/// What speaks against running a scene as one Head (models/head/head.h); nothing if it
+/// can. Of strands it sees what their tables say: make_head() throws InputError where a
+/// strand of them does not fit.
+std::optional<NoHead> no_head(const SceneOutline& outline);
+
+/// All strands of a scene that no_head() has nothing against, at t = 0: the largest
+/// number of quadrature points that any strand needs, if the scene does not say how many.
+/// Two passes over the strands by so many threads, a thousand at a time.
+std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pack,
+                                int threads);
+
+/// Bytes that a head of the scene takes, known before it is made.
+std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack);
+
+}  // namespace tress::simulation

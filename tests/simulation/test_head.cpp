@@ -1,0 +1,503 @@
+// Scenes that run as one head of hair: the program `simulate` as its users run it, and
+// what the head is beside strands that run one by one.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "contract/input_error.h"
+#include "models/motion/root_motion.h"
+#include "simulation/export/head_frames.h"
+#include "simulation/files/csv.h"
+#include "simulation/run/head_run.h"
+#include "simulation/run/scene_head.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/strand_tables.h"
+#include "tests/harness/toy_process.h"
+#include "tests/support/apart.h"
+
+namespace tress::test_head {
+
+using namespace simulation;
+
+using testing::HasSubstr;
+
+struct Hair {
+  int count = 21, elements = 6;
+  std::string top = "duration_s = 0.2\nframes_1_s = 20\n";
+  std::string model = "id = \"super_helix\"\ntangent = \"stiff\"\n";
+  std::string integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.004\n";
+  std::string groom = "";
+  std::string root = "motion = \"rotate\"\naxis = [0, 0, 1]\nangle_rad = 0.5\n";
+  std::string more = "[effects.gravity]\n[effects.linear_drag]\n";
+};
+
+std::string text(const Hair& h) {
+  return fmt::format(
+      "title = \"head\"\n{}[model]\n{}[integrator]\n{}[material]\n"
+      "name = \"hair.caucasian\"\n[groom]\ncount = {}\nelements = {}\nlength_m = 0.1\n"
+      "{}[root]\n{}{}",
+      h.top, h.model, h.integrator, h.count, h.elements, h.groom, h.root, h.more);
+}
+
+constexpr const char* as_head = "head.toml --as head --out out --progress none ";
+
+/// Runs it; the result must be `code`.
+Toy::Result run(Toy& toy, const std::string& options, int code = 0) {
+  Toy::Result result = toy.run(as_head + options);
+  EXPECT_EQ(result.code, code) << result.err;
+  return result;
+}
+
+nlohmann::json outcome(const Toy& toy) {
+  return nlohmann::json::parse(toy.read("out/head.meta.json")).at("outcome");
+}
+
+std::string path(const Toy& toy, const std::string& name) {
+  return (std::filesystem::path(toy.path("work")) / name).string();
+}
+
+/// All rows of a dataset, in 64 bits.
+std::vector<double> all_of(const Hdf5File& file, const std::string& dataset) {
+  const std::vector<std::size_t> size = file.size(dataset);
+  std::size_t numbers = 1;
+  for (const std::size_t n : size) numbers *= n;
+  std::vector<double> x(numbers);
+  if (numbers > 0) file.read(dataset, 0, std::span(x));
+  return x;
+}
+
+/// Of all strands in all frames.
+std::vector<double> positions_of(const Hdf5File& file) {
+  std::vector<double> all;
+  for (std::size_t frame = 0; file.has(HeadFrames::dataset(frame)); ++frame) {
+    const std::vector<double> one = all_of(file, HeadFrames::dataset(frame));
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
+TEST(HeadOfHair, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
+  Toy toy;
+  // More than one chunk of frames.
+  toy.write("head.toml", text({.count = 2100, .elements = 3}));
+  for (const auto& [bits, lanes] :
+       {std::pair{64, std::vector{1, 4, 8}}, std::pair{32, std::vector{8, 16}}}) {
+    std::string series, state;
+    std::vector<double> positions;
+    for (const int lane : lanes) {
+      for (const int threads : {1, 2, 3}) {
+        run(toy, fmt::format("--bits {} --lanes {} --threads {}", bits, lane, threads));
+        const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
+        const auto meta = outcome(toy);
+        EXPECT_EQ(meta.at("lanes"), lane);
+        EXPECT_EQ(meta.at("bits"), bits);
+        if (state.empty()) {
+          series = toy.read("out/head.csv");
+          state = meta.at("state");
+          positions = positions_of(file);
+          EXPECT_EQ(positions.size(), 5U * 2100 * 4 * 3);
+        }
+        EXPECT_EQ(toy.read("out/head.csv"), series) << lane << ' ' << threads;
+        EXPECT_EQ(meta.at("state"), state) << lane << ' ' << threads;
+        EXPECT_EQ(positions_of(file), positions) << lane << ' ' << threads;
+      }
+    }
+  }
+}
+
+/// Positions of all strands at the end, by a World whose start differs by `change`.
+std::vector<double> by_world(const Scene& scene, double change) {
+  World world(scene);
+  Snapshot start = world.snapshot();
+  for (auto& strand : start.strands) {
+    for (std::size_t i = 0; i < strand.q.size(); ++i) {
+      strand.q[i] += (i % 2 == 0 ? change : -change) * (std::abs(strand.q[i]) + 10);
+    }
+  }
+  world.restore(start);
+  for (std::size_t frame = 1; frame <= scene.last_frame(); ++frame) {
+    EXPECT_EQ(world.advance(scene.time_of(frame)), Status::ok);
+  }
+  return world.positions();
+}
+
+// As for single strands (tests/models/head): some thousand roundings an element, that are
+// amplified as any change of the start is, differ by less than one of 1e-12 makes.
+TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
+  for (const bool twist : {true, false}) {
+    Toy toy;
+    toy.write("head.toml",
+              text({.count = 8,
+                    .model = "id = \"super_helix\"\ntangent = \"stiff\"\nquadrature = 8\n"
+                             "modes = \"" +
+                             std::string(twist ? "bend_twist" : "bend") + "\"\n",
+                    .more = "[effects.gravity]\n[effects.linear_drag]\n"
+                            "mass_damping_1_s = 0.3\n"}));
+    const Scene scene = read_scene(path(toy, "head.toml"));
+    const std::vector<double> want = by_world(scene, 0);
+    run(toy, "--frames 64");
+    const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
+    const std::vector<double> first = all_of(file, HeadFrames::dataset(0)),
+                              end = all_of(file, HeadFrames::dataset(4));
+    ASSERT_EQ(end.size(), want.size());
+    EXPECT_LE(apart(end, want), apart(by_world(scene, 1e-12), want));
+    EXPECT_GT(apart(first, want), 1e-3);  // it has moved, or this says nothing
+  }
+}
+
+TEST(HeadOfHair, FramesOnDiskAreThePositionsOfTheHead) {
+  Toy toy;
+  toy.write("head.toml", text({}));
+  const SceneOutline outline = read_outline(path(toy, "head.toml"));
+  HeadRun head(make_head(outline, {models::HeadNumber::float64, 4}, 2), 2);
+  std::vector<double> x;
+  head.positions(0, x);
+  for (const std::string bits : {"32", "64", "none"}) {
+    run(toy, "--frames " + bits);
+    const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
+    EXPECT_EQ(file.size("shown/positions"), (std::vector<std::size_t>{5, 21 * 7, 3}));
+    std::vector<double> shown(x.size());
+    file.read("shown/positions", 0, std::span(shown));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_EQ(shown[i], static_cast<double>(static_cast<float>(x[i])));
+    }
+    if (bits == "none") {
+      EXPECT_FALSE(file.has(HeadFrames::dataset(0)));
+      continue;
+    }
+    EXPECT_EQ(all_of(file, HeadFrames::dataset(0)), bits == "64" ? x : shown);
+    std::vector<std::int32_t> line(7);
+    file.read("connectivity", 20, std::span(line));
+    EXPECT_EQ(line.front(), 140);
+    EXPECT_EQ(line.back(), 146);
+    EXPECT_THAT(toy.read("out/head.xdmf"), HasSubstr("head.h5:/positions/000004<"));
+  }
+}
+
+TEST(HeadOfHair, TheSeriesHoldsTheEnergiesOfTheWorld) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 8}));
+  run(toy, "");
+  const CsvTable head = parse_csv(toy.read("out/head.csv"), "csv");
+  ASSERT_EQ(head.rows.size(), 5U);
+  ASSERT_EQ(toy.run("head.toml --out out --progress none").code, 0);
+  const CsvTable world = parse_csv(toy.read("out/head.csv"), "csv");
+  for (std::size_t i = 0; i < 5; ++i) {
+    for (const std::string column :
+         {"t_s", "tip_x_m", "tip_z_m", "kinetic_j", "elastic_j", "gravity_j"}) {
+      // The points of an element are those of any strand's need there, here of the four
+      // beside it: mass matrices agree to 1e-8 (quadrature_points).
+      const double want = world.rows[i].number(column);
+      EXPECT_NEAR(head.rows[i].number(column), want, 1e-6 * std::abs(want)) << column;
+    }
+  }
+  EXPECT_GT(head.rows[4].number("kinetic_j"), 0);
+  EXPECT_GT(head.rows[4].number("fastest_m_s"), 0);
+  EXPECT_EQ(head.rows[4].text("lost_strands"), "0");
+}
+
+TEST(HeadOfHair, IsTakenFromAThousandStrandsOnWhereTheSceneCanBeOne) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 1000, .elements = 1}));
+  const std::string automatic = "head.toml --out out --progress none";
+  EXPECT_THAT(toy.run(automatic).err, HasSubstr("a head of 1000 strands of 1 elements"));
+  EXPECT_TRUE(toy.exists("out/head.h5"));
+  toy.write("head.toml", text({.count = 999, .elements = 1}));
+  EXPECT_THAT(toy.run(automatic).err, testing::Not(HasSubstr("a head of")));
+  toy.write("head.toml", text({.count = 20000,
+                               .elements = 1,
+                               .more = "[effects.gravity]\n[effects.wind]\n"}));
+  const Toy::Result many = toy.run(automatic);
+  EXPECT_EQ(many.code, 2);
+  EXPECT_THAT(many.err, HasSubstr("20000 strands are too many"));
+  EXPECT_THAT(many.err, HasSubstr("[effects.wind]"));
+}
+
+TEST(HeadOfHair, ThePageShowsSomeOfTheStrands) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 1500, .elements = 2}));
+  run(toy, "--vtk --usd");
+  const auto page = nlohmann::json::parse(toy.read("out/head.json"));
+  EXPECT_EQ(page.at("format"), "tress-strands-1");
+  EXPECT_EQ(page.at("times_s").size(), 5U);
+  const std::vector<int> ids = page.at("strand_ids");
+  ASSERT_EQ(ids.size(), 1000U);
+  EXPECT_EQ(ids.front(), 0);
+  EXPECT_EQ(ids.back(), 1499);
+  EXPECT_EQ(page.at("strand_points").size(), 1000U);
+  EXPECT_TRUE(toy.exists("out/head_vtk/head.pvd"));
+  EXPECT_TRUE(toy.exists("out/head.usda"));
+}
+
+/// A thousand frames, long enough to be caught at work.
+Hair long_run() {
+  return {.count = 400,
+          .elements = 10,
+          .top = "duration_s = 2\nframes_1_s = 200\ncheckpoint_s = 0.1\n"};
+}
+
+void await(const Toy& toy, const std::string& file, const std::string& before = "") {
+  const auto there = [&] { return toy.exists(file) && toy.read(file) != before; };
+  for (int i = 0; i < 6000 && !there(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_TRUE(there());
+}
+
+void expect_same_results(const Toy& a, const Toy& b) {
+  EXPECT_EQ(a.read("out/head.csv"), b.read("out/head.csv"));
+  EXPECT_EQ(outcome(a).at("state"), outcome(b).at("state"));
+  EXPECT_EQ(a.read("out/head.json"), b.read("out/head.json"));
+  EXPECT_EQ(a.read("out/head.xdmf"), b.read("out/head.xdmf"));
+  const Hdf5File first(path(a, "out/head.h5"), Hdf5File::Mode::read),
+      second(path(b, "out/head.h5"), Hdf5File::Mode::read);
+  EXPECT_EQ(positions_of(first), positions_of(second));
+  for (const std::string dataset : {"series", "shown/positions"}) {
+    EXPECT_EQ(first.size(dataset), second.size(dataset));
+    EXPECT_EQ(all_of(first, dataset), all_of(second, dataset));
+  }
+}
+
+TEST(HeadOfHair, KilledItGoesOnAtItsCheckpointWithTheSameBits) {
+  Toy through, stopped;
+  for (const Toy* toy : {&through, &stopped}) toy->write("head.toml", text(long_run()));
+  run(through, "");
+  // Killed twice, and by a signal that it may answer, each time with other lanes.
+  const std::string resume = std::string(as_head) + "--resume ";
+  for (const auto& [signal, options] :
+       {std::pair{SIGKILL, "--lanes 8"}, std::pair{SIGKILL, "--lanes 4 --threads 2"},
+        std::pair{SIGTERM, "--lanes 1"}}) {
+    const std::string state =
+        stopped.exists("out/head.state") ? stopped.read("out/head.state") : "";
+    const pid_t process = stopped.start(resume + options);
+    await(stopped, "out/head.state", state);
+    kill(process, signal);
+    const Toy::Result ended = stopped.wait(process);
+    if (signal == SIGTERM) {
+      EXPECT_EQ(ended.code, 130);
+      EXPECT_THAT(ended.err, HasSubstr("--resume"));
+    }
+    // What the run has left can be read.
+    const Hdf5File file(path(stopped, "out/head.h5"), Hdf5File::Mode::read);
+    const std::size_t frames = file.size("series").front();
+    EXPECT_GT(frames, 20U);
+    EXPECT_LT(frames, 401U);
+    EXPECT_EQ(positions_of(file).size(), frames * 400 * 11 * 3);
+  }
+  run(stopped, "--resume");
+  expect_same_results(through, stopped);
+  EXPECT_FALSE(stopped.exists("out/head.state"));
+  EXPECT_FALSE(stopped.exists("out/head.frames"));
+}
+
+TEST(HeadOfHair, AnInterruptedRunWithoutCheckpointsGoesOnWhereItWas) {
+  Hair hair = long_run();
+  hair.top = "duration_s = 1\nframes_1_s = 100\n";
+  hair.integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0005\n";
+  Toy through, stopped;
+  for (const Toy* toy : {&through, &stopped}) toy->write("head.toml", text(hair));
+  run(through, "");
+  const pid_t process = stopped.start(as_head);
+  await(stopped, "out/head.csv");
+  const std::string begun = stopped.read("out/head.csv");
+  await(stopped, "out/head.csv", begun);
+  kill(process, SIGTERM);
+  EXPECT_EQ(stopped.wait(process).code, 130);
+  run(stopped, "--resume");
+  expect_same_results(through, stopped);
+}
+
+/// Behind what was said of its size, and of a machine that is busy.
+void expect_one_error(const Toy::Result& result) {
+  const std::size_t error = result.err.find("simulate: error: ");
+  ASSERT_NE(error, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find('\n', error), result.err.size() - 1) << result.err;
+}
+
+TEST(HeadOfHair, ADamagedStateOrFrameIsRefused) {
+  Toy toy;
+  toy.write("head.toml", text(long_run()));
+  const pid_t process = toy.start(as_head);
+  await(toy, "out/head.state");
+  kill(process, SIGKILL);
+  static_cast<void>(toy.wait(process));
+  for (const std::string name : {"out/head.state", "out/head.h5"}) {
+    const std::string whole = toy.read(name);
+    for (const double place : {0.2, 0.5, 0.9}) {
+      std::string bytes = whole;
+      char& byte =
+          bytes[static_cast<std::size_t>(place * static_cast<double>(bytes.size()))];
+      byte = static_cast<char>(byte ^ 1);
+      // In .h5, of a chunk between two checkpoints nothing is known: only of the frames
+      // before the last one is a change an error.
+      if (name == "out/head.h5" && place > 0.4) continue;
+      toy.write(name, bytes);
+      const Toy::Result result = run(toy, "--resume", 2);
+      EXPECT_THAT(result.err, HasSubstr(name));
+      expect_one_error(result);
+    }
+    toy.write(name, whole);
+  }
+  // Of other numbers, or of another scene.
+  EXPECT_THAT(run(toy, "--resume --bits 32", 2).err, HasSubstr("head of 64 bits"));
+  EXPECT_THAT(run(toy, "--resume --frames 64", 2).err, HasSubstr("frames of 32"));
+  std::filesystem::remove(path(toy, "out/head.h5"));
+  expect_one_error(run(toy, "--resume", 2));
+}
+
+// A step of 0.05 s under ten thousand times gravity overflows on hair as soft as jelly
+// within seconds; hair of a stiffness that nothing bends does not move.
+TEST(HeadOfHair, LostStrandsAreNamedAndTheOthersGoOn) {
+  Toy toy;
+  const Hair hair{.count = 8,
+                  .top = "duration_s = 3\nframes_1_s = 20\n",
+                  .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.05\n",
+                  .groom = "[groom.material]\nyoungs_modulus_pa = 1e3\n",
+                  .root = "motion = \"shake\"\namplitude_m = 0.1\nfrequency_hz = 3\n",
+                  .more = "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e5]\n"};
+  toy.write("head.toml",
+            text(hair) +
+                "[[strand]]\nlength_m = 0.1\nelements = 6\n[strand.material]\n"
+                "youngs_modulus_pa = 1e15\n");
+  EXPECT_THAT(run(toy, "", 3).err, HasSubstr("of 9 strands were lost"));
+  const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
+  const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
+  ASSERT_EQ(series.rows.size(), 61U);
+  EXPECT_GT(lost.rows.size(), 0U);
+  EXPECT_EQ(series.rows.back().number("lost_strands"),
+            static_cast<double>(lost.rows.size()));
+  EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
+  double before = 0;
+  for (const Row& row : lost.rows) {
+    EXPECT_NE(row.text("strand"), "0");  // [[strand]] comes before [groom]
+    EXPECT_GE(row.number("t_s"), before);
+    before = row.number("t_s");
+    EXPECT_THAT(std::string(row.text("reason")), HasSubstr("finite"));
+  }
+}
+
+struct Refused {
+  std::string name;
+  Hair hair;
+  std::string options, reason;
+};
+void PrintTo(const Refused& r, std::ostream* out) { *out << r.name; }  // NOLINT
+class HeadRefused : public testing::TestWithParam<Refused> {};
+
+TEST_P(HeadRefused, InOneLine) {
+  Toy toy;
+  toy.write("head.toml", text(GetParam().hair));
+  const Toy::Result result = run(toy, GetParam().options, 2);
+  EXPECT_THAT(result.err, HasSubstr(GetParam().reason));
+  EXPECT_EQ(result.error_lines(), 1) << result.err;
+  EXPECT_EQ(toy.files(), std::vector<std::string>{"head.toml"});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Heads, HeadRefused,
+    testing::Values(
+        Refused{"Der", {.model = "id = \"der\"\n"}, "", "der does not come as a head"},
+        Refused{"Exact", {.model = "id = \"super_helix\"\n"}, "", "tangent = \"stiff\""},
+        Refused{"Planar",
+                {.model = "tangent = \"stiff\"\nmodes = \"bend_planar\"\n",
+                 .groom = "shape = \"wavy\"\n"},
+                "",
+                "bend in both directions"},
+        Refused{"Solver",
+                {.model = "tangent = \"stiff\"\nsolver = \"composite\"\n"},
+                "",
+                "solver = \"composite\""},
+        Refused{"Points",
+                {.model = "tangent = \"stiff\"\nquadrature = 24\n"},
+                "",
+                "24 points of an element"},
+        Refused{"Method",
+                {.integrator = "id = \"backward_euler\"\n"},
+                "",
+                "backward_euler does not step a head"},
+        Refused{"Graded", {.groom = "grading = 1.5\n"}, "", "leave out grading"},
+        Refused{"Free", {.root = "motion = \"free\"\n"}, "", "free roots"},
+        Refused{"Wind",
+                {.more = "[effects.gravity]\n[effects.wind]\n"},
+                "",
+                "does not know [effects.wind]"},
+        Refused{"Elements",
+                {.more = "[[strand]]\nelements = 7\n"},
+                "",
+                "equally many elements"},
+        Refused{"Hairs", {}, "--hairs 10", "--hairs is not for a head"},
+        Refused{"ErrorBars", {}, "--error-bars", "--error-bars is not for a head"},
+        Refused{"Lanes", {}, "--lanes 16", "16 lanes"},
+        Refused{"NarrowLanes", {}, "--bits 32 --lanes 4", "4 lanes"},
+        Refused{"Bits", {}, "--bits 16", "--bits"},
+        Refused{"Frames", {}, "--frames 16", "--frames"},
+        Refused{"As", {}, "--as one", "--as"},
+        Refused{"Many", {.count = 1000001}, "", "count"},
+        Refused{"ManyElements", {.count = 1000000, .elements = 50}, "", "strands"}),
+    [](const auto& of) { return of.param.name; });
+
+TEST(HeadOfHair, MoreThanTheMemoryIsRefusedBeforeItIsBuilt) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 1000000, .elements = 20}));
+  const Toy::Result result = toy.run(as_head, "ulimit -v 1000000;");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("1000000 strands of 20 elements needs about"));
+  EXPECT_THAT(result.err, HasSubstr("--bits 32"));
+}
+
+TEST(SceneOutline, MakesTheStrandsOfTheScene) {
+  Toy toy;
+  toy.write("head.toml", text({.groom = "shape = \"fuzzy\"\n"}) +
+                             "[[strand]]\nelements = 5\n[[strand]]\nelements = 4\n");
+  const Scene scene = read_scene(path(toy, "head.toml"));
+  const SceneOutline outline = read_outline(path(toy, "head.toml"));
+  ASSERT_EQ(outline.series->size(), scene.strands.size());
+  EXPECT_EQ(outline.scene.strands.size(), 3U);
+  EXPECT_EQ(outline.series->elements(), 9U + 21U * 6U);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    const Strand made = outline.series->strand(k);
+    const Strand& want = scene.strands[k];
+    ASSERT_EQ(made.segments.size(), want.segments.size()) << k;
+    EXPECT_EQ(norm(made.root.position - want.root.position), 0);
+    for (std::size_t i = 0; i < made.segments.size(); ++i) {
+      EXPECT_EQ(norm(made.segments[i].natural - want.segments[i].natural), 0);
+    }
+  }
+}
+
+TEST(Hdf5, KeepsNumbersAndGrows) {
+  Toy toy;
+  const std::string name = path(toy, "x.h5");
+  const std::vector<double> first{1, 2, 3, 4, 5, 6}, second{7, 8, 9, 10, 11, 1e-300};
+  {
+    Hdf5File file(name, Hdf5File::Mode::create);
+    file.set("number", 0.1);
+    file.create("a/x", {Hdf5Type::float64, {1, 2, 3}, {1, 2, 3}});
+    file.write("a/x", 0, std::span(first));
+    file.resize("a/x", 2);
+    file.write("a/x", 1, std::span(second));
+    EXPECT_THROW(file.write("a/x", 2, std::span(second)), InputError);
+    EXPECT_THROW(file.write("a/y", 0, std::span(second)), InputError);
+  }
+  const Hdf5File file(name, Hdf5File::Mode::read);
+  EXPECT_EQ(file.number("number"), 0.1);
+  EXPECT_EQ(file.size("a/x"), (std::vector<std::size_t>{2, 2, 3}));
+  std::vector<double> x(6);
+  file.read("a/x", 1, std::span(x));
+  EXPECT_EQ(x, second);
+  EXPECT_FALSE(file.has("b"));
+  try {
+    Hdf5File(path(toy, "none.h5"), Hdf5File::Mode::read);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("none.h5"));
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+}  // namespace tress::test_head
