@@ -45,37 +45,32 @@ void HelixLoads<T>::place(const Element* elements) {
 template <class T>
 bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
                             bool others) {
-  const std::span<const PointLoad<T>> loads =
-      others ? std::span(others_).subspan(points_ * i, points_)
-             : std::span<const PointLoad<T>>();
-  bool near = false;
-  for (const NearBody& body : block_.bodies) near = near || reaches(body, i, e);
-  bool some = false;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    some = some || any_less(T(0), some_[points_ * i + k]);
-  }
-  if (!near && !some) return false;
-
-  const HelixElement<T> shape(e.q, rate);
-  const LaneFunctions<T> functions(e.q, block_.material->length);
+  const HelixElement<T> helix(e.q, rate);
   Place place;
-  for (std::size_t k = 0; k < points_; ++k) {
-    Point& at = place[k];
-    const T arc = arc_of(k);
-    at.f = functions.at(arc);
-    at.p = shape.position(arc, at.f);
-    at.load = others ? loads[k] : PointLoad<T>{};
-    at.some = others ? some_[points_ * i + k] : T(0);
-  }
-  if (near) {
-    for (const NearBody& body : block_.bodies) {
-      if (!reaches(body, i, e)) continue;
-      std::visit(
-          [&](const auto& surface) { touch(body, surface, i, e, shape, rate, place); },
-          body.contact->body.shape());
+  bool ready = false;
+  const auto prepare = [&] {
+    if (ready) return;
+    ready = true;
+    const LaneFunctions<T> functions(e.q, block_.material->length);
+    for (std::size_t k = 0; k < points_; ++k) {
+      Point& at = place[k];
+      const T arc = arc_of(k);
+      at.f = functions.at(arc);
+      at.p = helix.position(arc, at.f);
+      at.load = others ? others_[points_ * i + k] : PointLoad<T>{};
+      at.some = others ? some_[points_ * i + k] : T(0);
     }
+  };
+  for (std::size_t k = 0; others && k < points_; ++k) {
+    if (any_less(T(0), some_[points_ * i + k])) prepare();
   }
-  return add_up(i, shape, place);
+  for (const NearBody& body : block_.bodies) {
+    if (!reaches(body, i, e)) continue;
+    prepare();
+    std::visit([&](const auto& shape) { touch(body, shape, i, e, helix, rate, place); },
+               body.contact->body.shape());
+  }
+  return ready && add_up(i, helix, place);
 }
 
 template <class T>
@@ -105,16 +100,25 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
   return loaded;
 }
 
-/// By the ball about the middle of the chord, which holds the whole element.
+/// All points are within the ellipsoid of revolution about the tips whose axis is the
+/// length l of the element: with the chord c, a convex function phi is at least
+///
+///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
+///     phi.
 template <class T>
 bool HelixLoads<T>::reaches(const NearBody& body, std::size_t i, const Element& e) const {
   const Start& at = starts_[i];
-  const T half(0.5 * units_.length);
-  const Vec3T middle =
-      in_body(body.pose, at.x + at.frame * (half * e.position) - Vec3T(body.pose.x));
-  const T reach = half * block_.material->length + T(body.contact->body.offset());
+  const Vec3T chord = in_body(body.pose, at.frame * (T(units_.length) * e.position));
+  const Vec3T middle = in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
+  const T length = T(units_.length) * block_.material->length;
+  const T bulge = larger(T(0), length * length - dot(chord, chord));
   return std::visit(
-      [&](const auto& shape) { return any_less(at_least(shape, middle), reach); },
+      [&](const auto& shape) {
+        const DistanceOf<T> to = below(shape, middle);
+        const T along = dot(to.gradient, chord);
+        const T half = square_root(bulge * dot(to.gradient, to.gradient) + along * along);
+        return any_less(to.value - T(0.5) * half, T(body.contact->body.offset()));
+      },
       body.contact->body.shape());
 }
 
