@@ -46,19 +46,16 @@ template <class T>
 bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
                             bool others) {
   const HelixElement<T> helix(e.q, rate);
-  Place place;
+  const Functions functions(e.q, block_.material->length);
   bool ready = false;
   const auto prepare = [&] {
     if (ready) return;
     ready = true;
-    const LaneFunctions<T> functions(e.q, block_.material->length);
     for (std::size_t k = 0; k < points_; ++k) {
-      Point& at = place[k];
       const T arc = arc_of(k);
-      at.f = functions.at(arc);
-      at.p = helix.position(arc, at.f);
-      at.load = others ? others_[points_ * i + k] : PointLoad<T>{};
-      at.some = others ? some_[points_ * i + k] : T(0);
+      at_[k].p = helix.position(arc, functions.at(arc));
+      at_[k].load = others ? others_[points_ * i + k] : PointLoad<T>{};
+      at_[k].some = others ? some_[points_ * i + k] : T(0);
     }
   };
   for (std::size_t k = 0; others && k < points_; ++k) {
@@ -67,21 +64,22 @@ bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
   for (const NearBody& body : block_.bodies) {
     if (!reaches(body, i, e)) continue;
     prepare();
-    std::visit([&](const auto& shape) { touch(body, shape, i, e, helix, rate, place); },
-               body.contact->body.shape());
+    std::visit(
+        [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
+        body.contact->body.shape());
   }
-  return ready && add_up(i, helix, place);
+  return ready && add_up(i, helix, functions);
 }
 
 template <class T>
-bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
-                           const Place& place) {
+bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
+                           const Functions& functions) {
   LoadSums<T>& sums = sums_[i];
-  sums = {};
   bool loaded = false;
   for (std::size_t k = 0; k < points_; ++k) {
-    const Point& at = place[k];
+    const Point& at = at_[k];
     if (!any_less(T(0), at.some)) continue;
+    if (!loaded) sums = {};
     loaded = true;
     sums.some = larger(sums.some, at.some);
     // Of all effects together, linear drag among them, as ReducedSystem has them.
@@ -95,7 +93,7 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
     shift(drag);
     load.block = semidefinite(load.block, at.some);
     shift(-drag);
-    sums.add(at.p, shape.slope(at.f), load);
+    sums.add(at.p, helix.slope(functions.at(arc_of(k))), load);
   }
   return loaded;
 }
@@ -126,7 +124,7 @@ template <class T>
 template <class Shape>
 void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
                           const Element& e, const HelixElement<T>& helix,
-                          const Vec3T& rate, Place& place) const {
+                          const Functions& functions, const Vec3T& rate) {
   const BodyPose& pose = body.pose;
   const BodyContact& law = body.contact->law;
   const Start& at = starts_[i];
@@ -142,7 +140,7 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
                               {-(T(pos) * turns.z), T(vel), T(pos) * turns.x},
                               {T(pos) * turns.y, -(T(pos) * turns.x), T(vel)}};
   for (std::size_t k = 0; k < points_; ++k) {
-    Point& point = place[k];
+    Point& point = at_[k];
     const Vec3T x = start + turn * (length * point.p);
     if constexpr (requires { shape.at_least(x); }) {
       if (!any_less(shape.at_least(x), reach)) continue;
@@ -150,7 +148,8 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
     const NearestOf<T> near = shape.nearest(x);
     const T outside = near.to.value - reach;
     if (!any_less(outside, o)) continue;
-    const Vec3T local = e.v + cross(e.omega, point.p) + helix.slope(point.f) * rate;
+    const Vec3T local =
+        e.v + cross(e.omega, point.p) + helix.slope(functions.at(arc_of(k))) * rate;
     const Vec3T u = turn * (speed * local) - (moves + cross(turns, x));
     ContactSlopesOf<T> slopes;
     const Vec3T force = law.load(near.to, shape.curvature(x, near), u, slopes);
