@@ -19,6 +19,10 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
                                               const Element* elements) {
   block_ = block;
   place(elements);
+  near_.resize(block_.bodies.size() * n_);
+  for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
+    look_for(block_.bodies[b], std::span(near_).subspan(b * n_, n_));
+  }
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
   if (others) take_others(v, elements);
@@ -30,12 +34,13 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
 
 template <class T>
 void HelixLoads<T>::place(const Element* elements) {
-  Start at{block_.from, block_.frame};
+  Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
-    starts_[i] = at;
     const Element& e = elements[i];
-    at.x = at.x + at.frame * (length * e.position);
+    at.chord = at.frame * (length * e.position);
+    starts_[i] = at;
+    at.x = at.x + at.chord;
     at.frame = at.frame * FrameOf<T>{e.rotation.column(0), e.rotation.column(1),
                                      e.rotation.column(2)};
   }
@@ -61,8 +66,9 @@ bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
   for (std::size_t k = 0; others && k < points_; ++k) {
     if (any_less(T(0), some_[points_ * i + k])) prepare();
   }
-  for (const NearBody& body : block_.bodies) {
-    if (!reaches(body, i, e)) continue;
+  for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
+    if (near_[b * n_ + i] == 0) continue;
+    const NearBody& body = block_.bodies[b];
     prepare();
     std::visit(
         [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
@@ -104,18 +110,23 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
 ///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
 ///     phi.
 template <class T>
-bool HelixLoads<T>::reaches(const NearBody& body, std::size_t i, const Element& e) const {
-  const Start& at = starts_[i];
-  const Vec3T chord = in_body(body.pose, at.frame * (T(units_.length) * e.position));
-  const Vec3T middle = in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
+void HelixLoads<T>::look_for(const NearBody& body, std::span<char> near) const {
   const T length = T(units_.length) * block_.material->length;
-  const T bulge = larger(T(0), length * length - dot(chord, chord));
-  return std::visit(
+  const T square = length * length, offset(body.contact->body.offset());
+  std::visit(
       [&](const auto& shape) {
-        const DistanceOf<T> to = below(shape, middle);
-        const T along = dot(to.gradient, chord);
-        const T half = square_root(bulge * dot(to.gradient, to.gradient) + along * along);
-        return any_less(to.value - T(0.5) * half, T(body.contact->body.offset()));
+        for (std::size_t i = 0; i < n_; ++i) {
+          const Start& at = starts_[i];
+          const Vec3T chord = in_body(body.pose, at.chord);
+          const Vec3T middle =
+              in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
+          const T bulge = larger(T(0), square - dot(chord, chord));
+          const DistanceOf<T> to = below(shape, middle);
+          const T along = dot(to.gradient, chord);
+          const T half =
+              square_root(bulge * dot(to.gradient, to.gradient) + along * along);
+          near[i] = any_less(to.value - T(0.5) * half, offset) ? 1 : 0;
+        }
       },
       body.contact->body.shape());
 }

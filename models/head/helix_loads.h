@@ -69,6 +69,7 @@ class HelixLoads {
   struct Start {
     Vec3T x;  // m, from the head's position
     FrameOf<T> frame;
+    Vec3T chord;  // to the tip
   };
   struct Point {
     Vec3T p;  // from the start, in its components
@@ -81,7 +82,7 @@ class HelixLoads {
   void place(const Element* elements);
   bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
   bool add_up(std::size_t i, const HelixElement<T>& helix, const Functions& functions);
-  bool reaches(const NearBody& body, std::size_t i, const Element& e) const;
+  void look_for(const NearBody& body, std::span<char> near) const;
   template <class Shape>
   void touch(const NearBody& body, const Shape& shape, std::size_t i, const Element& e,
              const HelixElement<T>& helix, const Functions& functions, const Vec3T& rate);
@@ -101,7 +102,8 @@ class HelixLoads {
   std::size_t n_, points_;
   Block block_{};
   std::vector<Start> starts_;
-  std::vector<Point> at_;  // of an element
+  std::vector<char> near_;  // (bodies, elements) whether one may touch the other
+  std::vector<Point> at_;   // of an element
   std::vector<LoadSums<T>> sums_;
   std::vector<const LoadSums<T>*> loads_;
   // Of effects other than bodies, by points.
