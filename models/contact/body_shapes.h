@@ -136,11 +136,24 @@ class Ellipsoid : public DistanceByNearest<Ellipsoid> {
   /// and changes per length by at most 1 over the least half axis.
   template <class T>
   T at_least(const Vec3<T>& x) const {
-    const Vec3<T> scaled{T(inverse_.x) * x.x, T(inverse_.y) * x.y, T(inverse_.z) * x.z};
-    return T(least_) * (square_root(dot(scaled, scaled)) - T(1));
+    return T(least_) * (size(x) - T(1));
+  }
+  template <class T>
+  DistanceOf<T> below(const Vec3<T>& x) const {
+    const T r = size(x), by = T(least_) / where_less(T(0), r, r, T(1));
+    return {
+        T(least_) * (r - T(1)),
+        {(by * T(inverse_.x * inverse_.x)) * x.x, (by * T(inverse_.y * inverse_.y)) * x.y,
+         (by * T(inverse_.z * inverse_.z)) * x.z}};
   }
 
  private:
+  template <class T>
+  T size(const Vec3<T>& x) const {  // |x_i/a_i|
+    const Vec3<T> scaled{T(inverse_.x) * x.x, T(inverse_.y) * x.y, T(inverse_.z) * x.z};
+    return square_root(dot(scaled, scaled));
+  }
+
   Vec a_, inverse_;  // half axes, 1 over them
   double least_;     // of them
   Vec above_;        // a_i^2 - least^2 >= 0
@@ -223,14 +236,15 @@ Mat3Of<T> Ellipsoid::curvature(const Vec3<T>& /*x*/, const NearestOf<T>& at) con
           {b, c, all(zz, n.z, n.z, 1)}};
 }
 
-/// A lower bound of the distance where it is positive, without a search where there is
-/// one; it changes by no more than the place.
+/// A convex function with a gradient of at most length 1 that is no more than the
+/// distance where it is positive, without a search: the distance itself where that takes
+/// none, for all shapes but grids are convex.
 template <class T, class Shape>
-T at_least(const Shape& shape, const Vec3<T>& x) {
-  if constexpr (requires { shape.at_least(x); }) {
-    return shape.at_least(x);
+DistanceOf<T> below(const Shape& shape, const Vec3<T>& x) {
+  if constexpr (requires { shape.below(x); }) {
+    return shape.below(x);
   } else {
-    return shape.nearest(x).to.value;
+    return shape.nearest(x).to;
   }
 }
 

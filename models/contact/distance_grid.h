@@ -52,18 +52,19 @@ class DistanceGrid {
   /// Distance from the grid's box outside of it, where no surface is; minus infinity
   /// within.
   template <class T>
-  T at_least(const Vec3<T>& x) const {
+  DistanceOf<T> below(const Vec3<T>& x) const {
     const Vec end = s_.origin + s_.spacing * Vec{static_cast<double>(s_.nx - 1),
                                                  static_cast<double>(s_.ny - 1),
                                                  static_cast<double>(s_.nz - 1)};
-    const auto beyond = [](const T& at, double from, double to) {
-      return larger(T(0), larger(T(from) - at, at - T(to)));
+    const T o(0);
+    const auto beyond = [&o](const T& at, double from, double to) {
+      return smaller(o, at - T(from)) + larger(o, at - T(to));
     };
     const Vec3<T> out{beyond(x.x, s_.origin.x, end.x), beyond(x.y, s_.origin.y, end.y),
                       beyond(x.z, s_.origin.z, end.z)};
-    const T square = dot(out, out);
-    return where_less(T(0), square, square_root(square),
-                      T(-std::numeric_limits<double>::infinity()));
+    const T r = square_root(dot(out, out));
+    return {where_less(o, r, r, T(-std::numeric_limits<double>::infinity())),
+            T(1) / where_less(o, r, r, T(1)) * out};
   }
   const Samples& samples() const { return s_; }
   /// The least value in the two outermost layers (m).

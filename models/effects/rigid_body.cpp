@@ -109,7 +109,9 @@ std::optional<Distance> RigidBody::distance(const Vec& x, double reach) const {
 bool RigidBody::reaches(const BodyPose& now, const Ball& ball) const {
   const Vec centre = now.frame.back(ball.centre - now.x);
   return std::visit(
-      [&](const auto& shape) { return at_least(shape, centre) - ball.radius < offset_; },
+      [&](const auto& shape) {
+        return below(shape, centre).value - ball.radius < offset_;
+      },
       shape_);
 }
 

@@ -299,7 +299,7 @@ class HelixHead final : public Head {
       const Vec3<T> seen = FrameOf<T>{f.e0, f.e1, f.e2}.back(from - Vec3<T>(body.pose.x));
       const T reach = radius + T(body.contact->body.offset());
       const bool near = std::visit(
-          [&](const auto& shape) { return any_less(at_least(shape, seen), reach); },
+          [&](const auto& shape) { return any_less(below(shape, seen).value, reach); },
           body.contact->body.shape());
       if (near) scratch.near.push_back(body);
     }

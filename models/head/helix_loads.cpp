@@ -19,6 +19,10 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
                                               const Element* elements) {
   block_ = block;
   place(elements);
+  near_.resize(block_.bodies.size() * n_);
+  for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
+    look_for(block_.bodies[b], std::span(near_).subspan(b * n_, n_));
+  }
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
   if (others) take_others(v, elements);
@@ -30,12 +34,13 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
 
 template <class T>
 void HelixLoads<T>::place(const Element* elements) {
-  Start at{block_.from, block_.frame};
+  Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
-    starts_[i] = at;
     const Element& e = elements[i];
-    at.x = at.x + at.frame * (length * e.position);
+    at.chord = at.frame * (length * e.position);
+    starts_[i] = at;
+    at.x = at.x + at.chord;
     at.frame = at.frame * FrameOf<T>{e.rotation.column(0), e.rotation.column(1),
                                      e.rotation.column(2)};
   }
@@ -45,48 +50,42 @@ void HelixLoads<T>::place(const Element* elements) {
 template <class T>
 bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
                             bool others) {
-  const std::span<const PointLoad<T>> loads =
-      others ? std::span(others_).subspan(points_ * i, points_)
-             : std::span<const PointLoad<T>>();
-  bool near = false;
-  for (const NearBody& body : block_.bodies) near = near || reaches(body, i, e);
-  bool some = false;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    some = some || any_less(T(0), some_[points_ * i + k]);
-  }
-  if (!near && !some) return false;
-
-  const HelixElement<T> shape(e.q, rate);
-  const LaneFunctions<T> functions(e.q, block_.material->length);
-  Place place;
-  for (std::size_t k = 0; k < points_; ++k) {
-    Point& at = place[k];
-    const T arc = arc_of(k);
-    at.f = functions.at(arc);
-    at.p = shape.position(arc, at.f);
-    at.load = others ? loads[k] : PointLoad<T>{};
-    at.some = others ? some_[points_ * i + k] : T(0);
-  }
-  if (near) {
-    for (const NearBody& body : block_.bodies) {
-      if (!reaches(body, i, e)) continue;
-      std::visit(
-          [&](const auto& surface) { touch(body, surface, i, e, shape, rate, place); },
-          body.contact->body.shape());
+  const HelixElement<T> helix(e.q, rate);
+  const Functions functions(e.q, block_.material->length);
+  bool ready = false;
+  const auto prepare = [&] {
+    if (ready) return;
+    ready = true;
+    for (std::size_t k = 0; k < points_; ++k) {
+      const T arc = arc_of(k);
+      at_[k].p = helix.position(arc, functions.at(arc));
+      at_[k].load = others ? others_[points_ * i + k] : PointLoad<T>{};
+      at_[k].some = others ? some_[points_ * i + k] : T(0);
     }
+  };
+  for (std::size_t k = 0; others && k < points_; ++k) {
+    if (any_less(T(0), some_[points_ * i + k])) prepare();
   }
-  return add_up(i, shape, place);
+  for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
+    if (near_[b * n_ + i] == 0) continue;
+    const NearBody& body = block_.bodies[b];
+    prepare();
+    std::visit(
+        [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
+        body.contact->body.shape());
+  }
+  return ready && add_up(i, helix, functions);
 }
 
 template <class T>
-bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
-                           const Place& place) {
+bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
+                           const Functions& functions) {
   LoadSums<T>& sums = sums_[i];
-  sums = {};
   bool loaded = false;
   for (std::size_t k = 0; k < points_; ++k) {
-    const Point& at = place[k];
+    const Point& at = at_[k];
     if (!any_less(T(0), at.some)) continue;
+    if (!loaded) sums = {};
     loaded = true;
     sums.some = larger(sums.some, at.some);
     // Of all effects together, linear drag among them, as ReducedSystem has them.
@@ -100,21 +99,35 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& shape,
     shift(drag);
     load.block = semidefinite(load.block, at.some);
     shift(-drag);
-    sums.add(at.p, shape.slope(at.f), load);
+    sums.add(at.p, helix.slope(functions.at(arc_of(k))), load);
   }
   return loaded;
 }
 
-/// By the ball about the middle of the chord, which holds the whole element.
+/// All points are within the ellipsoid of revolution about the tips whose axis is the
+/// length l of the element: with the chord c, a convex function phi is at least
+///
+///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
+///     phi.
 template <class T>
-bool HelixLoads<T>::reaches(const NearBody& body, std::size_t i, const Element& e) const {
-  const Start& at = starts_[i];
-  const T half(0.5 * units_.length);
-  const Vec3T middle =
-      in_body(body.pose, at.x + at.frame * (half * e.position) - Vec3T(body.pose.x));
-  const T reach = half * block_.material->length + T(body.contact->body.offset());
-  return std::visit(
-      [&](const auto& shape) { return any_less(at_least(shape, middle), reach); },
+void HelixLoads<T>::look_for(const NearBody& body, std::span<char> near) const {
+  const T length = T(units_.length) * block_.material->length;
+  const T square = length * length, offset(body.contact->body.offset());
+  std::visit(
+      [&](const auto& shape) {
+        for (std::size_t i = 0; i < n_; ++i) {
+          const Start& at = starts_[i];
+          const Vec3T chord = in_body(body.pose, at.chord);
+          const Vec3T middle =
+              in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
+          const T bulge = larger(T(0), square - dot(chord, chord));
+          const DistanceOf<T> to = below(shape, middle);
+          const T along = dot(to.gradient, chord);
+          const T half =
+              square_root(bulge * dot(to.gradient, to.gradient) + along * along);
+          near[i] = any_less(to.value - T(0.5) * half, offset) ? 1 : 0;
+        }
+      },
       body.contact->body.shape());
 }
 
@@ -122,7 +135,7 @@ template <class T>
 template <class Shape>
 void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
                           const Element& e, const HelixElement<T>& helix,
-                          const Vec3T& rate, Place& place) const {
+                          const Functions& functions, const Vec3T& rate) {
   const BodyPose& pose = body.pose;
   const BodyContact& law = body.contact->law;
   const Start& at = starts_[i];
@@ -138,7 +151,7 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
                               {-(T(pos) * turns.z), T(vel), T(pos) * turns.x},
                               {T(pos) * turns.y, -(T(pos) * turns.x), T(vel)}};
   for (std::size_t k = 0; k < points_; ++k) {
-    Point& point = place[k];
+    Point& point = at_[k];
     const Vec3T x = start + turn * (length * point.p);
     if constexpr (requires { shape.at_least(x); }) {
       if (!any_less(shape.at_least(x), reach)) continue;
@@ -146,7 +159,8 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
     const NearestOf<T> near = shape.nearest(x);
     const T outside = near.to.value - reach;
     if (!any_less(outside, o)) continue;
-    const Vec3T local = e.v + cross(e.omega, point.p) + helix.slope(point.f) * rate;
+    const Vec3T local =
+        e.v + cross(e.omega, point.p) + helix.slope(functions.at(arc_of(k))) * rate;
     const Vec3T u = turn * (speed * local) - (moves + cross(turns, x));
     ContactSlopesOf<T> slopes;
     const Vec3T force = law.load(near.to, shape.curvature(x, near), u, slopes);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -35,6 +34,7 @@ class HelixLoads {
         n_(static_cast<std::size_t>(kernel.elements())),
         points_(static_cast<std::size_t>(kernel.points())),
         starts_(n_),
+        at_(points_),
         sums_(n_),
         loads_(n_) {}
 
@@ -55,27 +55,26 @@ class HelixLoads {
                                  const Element* elements);
 
  private:
-  static constexpr auto most = static_cast<std::size_t>(Kernel::most_points);
-
   struct Start {
     Vec3T x;  // m, from the head's position
     FrameOf<T> frame;
+    Vec3T chord;  // to the tip
   };
   struct Point {
-    HelixFunctions<T> f;
     Vec3T p;  // from the start, in its components
     PointLoad<T> load;
     T some;  // 1 in lanes with a load, 0 in others
   };
-  using Place = std::array<Point, most>;
+
+  using Functions = LaneFunctions<T>;
 
   void place(const Element* elements);
   bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
-  bool add_up(std::size_t i, const HelixElement<T>& shape, const Place& place);
-  bool reaches(const NearBody& body, std::size_t i, const Element& e) const;
+  bool add_up(std::size_t i, const HelixElement<T>& helix, const Functions& functions);
+  void look_for(const NearBody& body, std::span<char> near) const;
   template <class Shape>
   void touch(const NearBody& body, const Shape& shape, std::size_t i, const Element& e,
-             const HelixElement<T>& helix, const Vec3T& rate, Place& place) const;
+             const HelixElement<T>& helix, const Functions& functions, const Vec3T& rate);
   void take_others(const Vec3T* v, const Element* elements);
   void take_others(int lane);
   void put(std::size_t i, int lane);
@@ -92,6 +91,8 @@ class HelixLoads {
   std::size_t n_, points_;
   Block block_{};
   std::vector<Start> starts_;
+  std::vector<char> near_;  // (bodies, elements) whether one may touch the other
+  std::vector<Point> at_;   // of an element
   std::vector<LoadSums<T>> sums_;
   std::vector<const LoadSums<T>*> loads_;
   // Of effects other than bodies, by points.
