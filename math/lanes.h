@@ -21,6 +21,10 @@ template <class Number, int width>
 double lane_of(const PackOf<Number, width>& x, int lane) {
   return static_cast<double>(x[lane]);
 }
+template <class T>
+Vec lane_of(const Vec3<T>& x, int lane) {
+  return {lane_of(x.x, lane), lane_of(x.y, lane), lane_of(x.z, lane)};
+}
 inline void set_lane(double& x, int /*lane*/, double value) { x = value; }
 template <class Number, int width>
 void set_lane(PackOf<Number, width>& x, int lane, double value) {

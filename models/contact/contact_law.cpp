@@ -31,8 +31,6 @@ constexpr Parameter parameters_of_contact[] = {
      .max = 1e3},
 };
 
-constexpr double rounded_off = 1e-3;  // of P: rho against |d|
-
 }  // namespace
 
 std::span<const Parameter> contact_parameters() { return parameters_of_contact; }
@@ -63,34 +61,18 @@ double ContactLaw::rho(const Vec& d) const noexcept {
   return std::sqrt(dot(d, d) + off * off);
 }
 
-double ContactLaw::weight(double rho) const noexcept {
-  const double s = std::clamp((rho - law_.inner) / (law_.outer - law_.inner), 0.0, 1.0);
-  return 1 - s * s * (3 - 2 * s);
-}
-
-double ContactLaw::weight_slope(double rho) const noexcept {
-  const double width = law_.outer - law_.inner;
-  const double s = std::clamp((rho - law_.inner) / width, 0.0, 1.0);
-  return -6 * s * (1 - s) / width;
-}
-
 Vec ContactLaw::force(const Vec& d, const Vec& u) const noexcept {
-  const double r = rho(d);
-  const double push = std::max(0.0, law_.stiffness * (law_.inner / r - 1));
-  return push * d - (law_.viscosity * weight(r)) * u;
+  const Factors<double> at = factors(d);
+  return at.push * d - at.drag * u;
 }
 
 ContactLaw::Slopes ContactLaw::slopes(const Vec& d, const Vec& u) const noexcept {
-  const double r = rho(d);
-  const bool pushes = r < law_.inner;
-  const double along = pushes ? law_.stiffness * (law_.inner / r - 1) : 0;
-  const double across = pushes ? -law_.stiffness * law_.inner / (r * r * r) : 0;
-  // along I + (across d - D w'/rho u) d^T
-  const Vec column = across * d - (law_.viscosity * weight_slope(r) / r) * u;
-  return {{along + column.x * d.x, column.x * d.y, column.x * d.z,  //
-           column.y * d.x, along + column.y * d.y, column.y * d.z,  //
-           column.z * d.x, column.z * d.y, along + column.z * d.z},
-          -law_.viscosity * weight(r)};
+  const Factors<double> at = factors(d);
+  const Vec column = at.push_slope * d - at.drag_slope * u;
+  return {{at.push + column.x * d.x, column.x * d.y, column.x * d.z,  //
+           column.y * d.x, at.push + column.y * d.y, column.y * d.z,  //
+           column.z * d.x, column.z * d.y, at.push + column.z * d.z},
+          -at.drag};
 }
 
 double ContactLaw::potential(const Vec& d) const noexcept {

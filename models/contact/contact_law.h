@@ -6,6 +6,7 @@
 
 #include "contract/layers.h"
 #include "contract/parameters.h"
+#include "math/lane_functions.h"
 #include "math/vec3.h"
 
 namespace tress::models {
@@ -47,18 +48,40 @@ class ContactLaw {
   /// Distance beyond which there is no force, m.
   double reach() const { return law_.viscosity > 0 ? law_.outer : law_.inner; }
 
+  /// F = push d - drag u, dF/du = -drag I, and
+  /// dF/dd = push I + (push_slope d - drag_slope u) d^T.
+  template <class T>
+  struct Factors {
+    T push, drag, push_slope, drag_slope;
+  };
+  /// Of one gap, or one per lane of a pack.
+  template <class T>
+  Factors<T> factors(const Vec3<T>& d) const noexcept;
+
   Vec force(const Vec& d, const Vec& u) const noexcept;
   Slopes slopes(const Vec& d, const Vec& u) const noexcept;
   /// Potential of the repulsion, J/m.
   double potential(const Vec& d) const noexcept;
-  double weight(double rho) const noexcept;        // w
-  double weight_slope(double rho) const noexcept;  // w'
 
  private:
+  static constexpr double rounded_off = 1e-3;  // of P: rho against |d|
+
   double rho(const Vec& d) const noexcept;
 
   Values law_;
 };
+
+template <class T>
+[[gnu::always_inline]] inline ContactLaw::Factors<T> ContactLaw::factors(const Vec3<T>& d) const noexcept {
+  const double off = rounded_off * law_.inner, width = law_.outer - law_.inner;
+  const T rho = root(dot(d, d) + T(off * off)), inverse = T(1) / rho;
+  const T over = T(law_.inner) * inverse;  // P/rho
+  const T s = larger(T(0), smaller(T(1), (rho - T(law_.inner)) * T(1 / width)));
+  return {larger(T(0), T(law_.stiffness) * (over - T(1))),
+          T(law_.viscosity) * (T(1) - s * s * (T(3) - T(2) * s)),
+          where_less(T(1), over, T(-law_.stiffness) * over * inverse * inverse, T(0)),
+          T(-6 * law_.viscosity / width) * s * (T(1) - s) * inverse};
+}
 
 /// The table entries that give a ContactLaw.
 std::span<const Parameter> contact_parameters();

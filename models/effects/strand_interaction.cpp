@@ -1,14 +1,14 @@
 #include "models/effects/strand_interaction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "contract/input_error.h"
-#include "models/contact/nearest_pieces.h"
+#include "math/lanes.h"
+#include "models/contact/point_groups.h"
+#include "models/effects/crowding.h"
 
 namespace tress::models {
 namespace {
@@ -47,44 +47,28 @@ StrandInteraction::StrandInteraction(const Parameters& parameters,
     : StrandInteraction(ContactLaw(parameters, where_interaction), std::move(points)) {}
 
 StrandInteraction::StrandInteraction(const ContactLaw& law, std::vector<int> points)
-    : law_(law), grid_(checked(points), law.reach()), points_(std::move(points)) {}
+    : law_(law), partners_(checked(std::move(points)), law.reach()) {}
 
-void StrandInteraction::update(In x, In v) {
-  motion_.hold(x, v);
-  move(0, 0, x);
+void StrandInteraction::update(In x, In v, const Loop& loop) {
+  end_ = 0;
+  partners_.hold(x, v, loop);
 }
 
-void StrandInteraction::extrapolate(double t, double end, In x, In v) {
-  motion_.extrapolate(t, x, v);
-  move(t, end, x);
-}
-
-void StrandInteraction::interpolate(double t, double end, In x, In v, In y, In w) {
-  motion_.interpolate(t, end, x, v, y, w);
-  move(t, end, x);
-}
-
-void StrandInteraction::move(double t, double end, In x) {
-  x_.assign(x.begin(), x.end());
+void StrandInteraction::extrapolate(double t, double end, In x, In v, const Loop& loop) {
   end_ = end;
-  grid_.update(x, end > t ? motion_.range(end - t) : 0);
-  ++updates_;
+  partners_.extrapolate(t, end, x, v, loop);
 }
 
-StraightPiece StrandInteraction::piece(int segment, double elapsed) const {
-  const auto point = static_cast<std::size_t>(grid_.point(segment));
-  return {motion_.place(point, elapsed), motion_.place(point + 1, elapsed)};
-}
-
-Vec StrandInteraction::velocity(int segment, double s, double elapsed) const {
-  const auto point = static_cast<std::size_t>(grid_.point(segment));
-  return (1 - s) * motion_.velocity(point, elapsed) +
-         s * motion_.velocity(point + 1, elapsed);
+void StrandInteraction::interpolate(double t, double end, In x, In v, In y, In w,
+                                    const Loop& loop) {
+  end_ = end;
+  partners_.interpolate(t, end, x, v, y, w, loop);
 }
 
 class StrandInteraction::OnStrand final : public Effect {
  public:
-  OnStrand(const StrandInteraction& all, int strand) : all_(all), strand_(strand) {}
+  OnStrand(const StrandInteraction& all, int strand)
+      : all_(all), groups_(all.partners_, strand) {}
 
   std::string_view name() const override { return "strand_interaction"; }
   Needs needs() const override {
@@ -92,32 +76,21 @@ class StrandInteraction::OnStrand final : public Effect {
   }
 
   void add_load(double t, const Points& p, InOut f) const noexcept override {
-    each_loaded(t, p, [&](std::size_t i, const Vec& force) {
-      store3(load3(&f[3 * i]) + force, &f[3 * i]);
+    look(t, p);
+    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
+      store3(load3(&f[3 * i]) + p.length[i] * lane_of(loads.force, lane), &f[3 * i]);
     });
   }
 
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override {
-    const double elapsed = all_.motion_.elapsed(t);
-    each_contact(elapsed, p, [&](std::size_t i, const NearestPiece& c) {
-      const StraightPiece piece = all_.piece(c.segment, elapsed);
-      const Vec v = load3(&p.v[3 * i]);
-      const ContactLaw::Slopes slope =
-          all_.law_.slopes(c.gap, v - all_.velocity(c.segment, c.s, elapsed));
-      // Between the ends of a segment its nearest point follows x: ds/dx = `along`.
-      const bool inside = c.s > 0 && c.s < 1;
-      const Vec along = inside ? piece.inverse * piece.edge : Vec{};
-      const Vec faster =
-          all_.velocity(c.segment, 1, elapsed) - all_.velocity(c.segment, 0, elapsed);
-      const double sliding[] = {faster.x, faster.y, faster.z};
+    look(t, p);
+    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
       for (std::size_t row = 0; row < 3; ++row) {
         double* block = &blocks[9 * i + 3 * row];
-        const Vec by_gap = load3(&slope.by_gap[3 * row]);
-        const double by_s = dot(by_gap, piece.edge) + slope.by_velocity * sliding[row];
-        const Vec by_x = by_gap - by_s * along;
-        store3(load3(block) + (pos * p.length[i]) * by_x, block);
-        block[row] += vel * p.length[i] * slope.by_velocity;
+        store3(load3(block) + (pos * p.length[i]) * lane_of(loads.by_place[row], lane),
+               block);
+        block[row] += vel * p.length[i] * loads.by_velocity[lane];
       }
     });
   }
@@ -128,126 +101,68 @@ class StrandInteraction::OnStrand final : public Effect {
   }
 
   double power(double t, const Points& p) const noexcept override {
+    look(t, p);
     double sum = 0;
-    each_loaded(t, p, [&](std::size_t i, const Vec& force) {
-      sum += dot(force, load3(&p.v[3 * i]));
+    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
+      sum += p.length[i] * dot(lane_of(loads.force, lane), load3(&p.v[3 * i]));
     });
     return sum;
   }
 
  private:
-  template <class F>
-  void each_contact(double elapsed, const Points& p, F of_contact) const noexcept {
-    find(elapsed, p);
-    for (const auto& [i, c] : found_) of_contact(i, c);
-  }
-
-  /// Sets found_ for the current points. A step needs load and derivatives at the same
-  /// positions, and the search dominates the cost of both.
-  void find(double elapsed, const Points& p) const {
-    if (found_after_ == all_.updates_ && elapsed == found_when_ &&
-        std::ranges::equal(p.x, found_at_)) {
+  /// Sets loads_ for the current points. A step needs load and derivatives at the same
+  /// state, and has them of one search.
+  void look(double t, const Points& p) const {
+    const StrandPartners& partners = all_.partners_;
+    if (!partners.updated()) return;
+    const double elapsed = partners.motion().elapsed(t);
+    if (update_ == partners.updates() && elapsed == elapsed_ &&
+        std::ranges::equal(p.x, x_) && std::ranges::equal(p.v, v_)) {
       return;
     }
-    found_.clear();
-    if (elapsed == 0) {
-      search(p, [&](int segment) -> const StraightPiece& {
-        return all_.grid_.piece(segment);
-      });
-    } else {
-      search(p, [&](int segment) { return all_.piece(segment, elapsed); });
+    groups_.ready(p.x, p.length, elapsed);
+    loads_.resize(groups_.groups());
+    for (std::size_t g = 0; g < loads_.size(); ++g) {
+      loads_[g] = groups_.loads(g, all_.law_, p.v, elapsed);
     }
-    found_at_.assign(p.x.begin(), p.x.end());
-    found_when_ = elapsed;
-    found_after_ = all_.updates_;
+    x_.assign(p.x.begin(), p.x.end());
+    v_.assign(p.v.begin(), p.v.end());
+    elapsed_ = elapsed;
+    update_ = partners.updates();
   }
 
-  template <class Pieces>
-  void search(const Points& p, const Pieces& piece_of) const {
-    for (std::size_t i = 0; i < p.length.size(); ++i) {
-      if (p.length[i] == 0) continue;
-      each_nearest(all_.grid_, piece_of, all_.law_.reach(), strand_, load3(&p.x[3 * i]),
-                   [&](const NearestPiece& c) { found_.emplace_back(i, c); });
-    }
-  }
-
+  /// Calls act(point, loads, lane) for points that feel anything.
   template <class F>
-  void each_loaded(double t, const Points& p, F of_force) const noexcept {
-    const double elapsed = all_.motion_.elapsed(t);
-    each_contact(elapsed, p, [&](std::size_t i, const NearestPiece& c) {
-      const Vec u = load3(&p.v[3 * i]) - all_.velocity(c.segment, c.s, elapsed);
-      of_force(i, p.length[i] * all_.law_.force(c.gap, u));
-    });
+  void each_point(const Points& p, F act) const {
+    for (std::size_t g = 0; g < loads_.size(); ++g) {
+      if (!groups_.feels(g)) continue;
+      for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+        const std::size_t i = Pack::lanes * g + lane;
+        if (i < p.length.size()) act(i, loads_[g], static_cast<int>(lane));
+      }
+    }
   }
 
   const StrandInteraction& all_;
-  int strand_;
-  mutable std::vector<std::pair<std::size_t, NearestPiece>> found_;
-  mutable std::vector<double> found_at_;
-  mutable double found_when_ = 0;
-  mutable long found_after_ = -1;
+  mutable PointGroups groups_;
+  mutable std::vector<FourLoads> loads_;
+  // Where they are those of.
+  mutable std::vector<double> x_, v_;
+  mutable double elapsed_ = 0;
+  mutable long update_ = -1;
 };
 
 std::unique_ptr<const Effect> StrandInteraction::effect(std::size_t strand) const {
   return std::make_unique<OnStrand>(*this, static_cast<int>(strand));
 }
 
-/// Calls of_sample(strand, place, length that it stands for).
-template <class F>
-void StrandInteraction::each_sample(F of_sample) const {
-  for (int i = 0; i < static_cast<int>(grid_.segments()); ++i) {
-    const StraightPiece& piece = grid_.piece(i);
-    const double length = std::sqrt(dot(piece.edge, piece.edge));
-    const double samples = std::clamp(std::ceil(length / law_.inner()), 1.0, 64.0);
-    for (double k = 0.5; k < samples; ++k) {
-      of_sample(grid_.polyline(i), piece.at(k / samples), length / samples);
-    }
-  }
+long StrandInteraction::touching_pairs(const Loop& loop) const {
+  return partners_.updated() ? models::touching_pairs(partners_, law_.inner(), loop) : 0;
 }
 
-long StrandInteraction::touching_pairs() const {
-  std::set<std::pair<int, int>> pairs;
-  each_sample([&](int strand, const Vec& x, double) {
-    each_nearest(grid_, law_.inner(), strand, x, [&](const NearestPiece& c) {
-      pairs.insert(std::minmax(strand, grid_.polyline(c.segment)));
-    });
-  });
-  return static_cast<long>(pairs.size());
-}
-
-double StrandInteraction::mean_distance() const {
-  if (points_.size() < 2 || x_.empty()) return std::numeric_limits<double>::infinity();
-  struct Sample {
-    int strand;
-    Vec x;
-    double length;
-  };
-  std::vector<Sample> open, still;
-  double total = 0, sum = 0;
-  each_sample([&](int strand, const Vec& x, double length) {
-    open.push_back({strand, x, length});
-    total += length;
-  });
-  // Grids of increasing reach, for samples without a neighbour so far.
-  for (double reach = law_.reach(); !open.empty(); reach *= 2) {
-    if (!std::isfinite(reach * reach)) return std::nan("");  // so are the places
-    SegmentGrid grid(points_, reach);
-    grid.update(x_);
-    still.clear();
-    for (const Sample& sample : open) {
-      double least = reach * reach;
-      each_nearest(grid, reach, sample.strand, sample.x, [&](const NearestPiece& c) {
-        least = std::min(least, dot(c.gap, c.gap));
-      });
-      if (least < reach * reach) {
-        sum += sample.length * std::sqrt(least);
-      } else {
-        still.push_back(sample);
-      }
-    }
-    open.swap(still);
-  }
-  return sum / total;
+double StrandInteraction::mean_distance(const Loop& loop) const {
+  return partners_.updated() ? models::mean_distance(partners_, law_.inner(), loop)
+                             : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace tress::models

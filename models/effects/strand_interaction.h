@@ -6,9 +6,8 @@
 
 #include "contract/parameters.h"
 #include "models/contact/contact_law.h"
-#include "models/contact/segment_grid.h"
+#include "models/contact/strand_partners.h"
 #include "models/effects/effect.h"
-#include "models/effects/point_motion.h"
 
 namespace tress::models {
 
@@ -30,8 +29,10 @@ std::span<const Parameter> strand_interaction_parameters();
 /// of the two strands. Contacts are resolved only if points are closer to each other than
 /// the inner radius.
 ///
-/// A load takes one query of the broad phase per point, O(points + candidates); update()
-/// is O(segments).
+/// Four points of a strand share a kept list of the segments that may come near
+/// (PointGroups), made when first asked for by whoever asks; load and derivatives at the
+/// same state come from one search. Cost: O(points in reach), whatever the number of
+/// strands; update() is O(points).
 class StrandInteraction {
  public:
   /// points[k]: material points of strand k, a polyline. Throws InputError if a strand
@@ -44,42 +45,34 @@ class StrandInteraction {
   std::unique_ptr<const Effect> effect(std::size_t strand) const;
 
   /// At the start and after every step: positions and velocities (3 each) of all strands'
-  /// material points, strand after strand.
-  void update(In x, In v);
+  /// material points, strand after strand. The loop may share its parts among threads:
+  /// the results are the same.
+  void update(In x, In v, const Loop& loop = in_turn);
   /// As above at t, for an interval up to `end` (s) in which the points keep their
   /// velocities; `end` is a breakpoint of the effects.
-  void extrapolate(double t, double end, In x, In v);
+  void extrapolate(double t, double end, In x, In v, const Loop& loop = in_turn);
   /// As above; they move along cubics to y with the velocities w.
-  void interpolate(double t, double end, In x, In v, In y, In w);
+  void interpolate(double t, double end, In x, In v, In y, In w,
+                   const Loop& loop = in_turn);
   /// Longest distance (m) at which strands feel each other.
   double reach() const { return law_.reach(); }
 
   // Readouts of the strands where the last call put them, too costly for every step.
   // Strands are sampled at most one inner radius apart (up to 64 samples a segment).
   /// Number of pairs of strands closer to each other than the inner radius.
-  long touching_pairs() const;
+  long touching_pairs(const Loop& loop = in_turn) const;
   /// Distance from a strand to the nearest other one, mean over the length of all
   /// strands, m. Infinite for a single strand or before update().
-  double mean_distance() const;
+  double mean_distance(const Loop& loop = in_turn) const;
 
-  const SegmentGrid& grid() const { return grid_; }
+  const StrandPartners& partners() const { return partners_; }
 
  private:
   class OnStrand;
 
-  StraightPiece piece(int segment, double elapsed) const;
-  Vec velocity(int segment, double s, double elapsed) const;
-  void move(double t, double end, In x);
-  template <class F>
-  void each_sample(F of_sample) const;
-
   ContactLaw law_;
-  SegmentGrid grid_;
-  std::vector<int> points_;
-  std::vector<double> x_;
-  PointMotion motion_;
+  StrandPartners partners_;
   double end_ = 0;  // of the interval
-  long updates_ = 0;
 };
 
 }  // namespace tress::models

@@ -11,12 +11,14 @@ constexpr double margin = 0.5;  // of the reach: pairs may come so much nearer
 }  // namespace
 
 StrandContacts::StrandContacts(const ContactLaw& law, std::vector<int> points, In x)
-    : law_(law), grid_(points, (1 + margin) * law.reach()) {
-  grid_.update(x);
-  for (int i = 0; i < static_cast<int>(grid_.segments()); ++i) {
-    const Vec edge = grid_.piece(i).edge;
-    const double length = norm(edge);
+    : law_(law), cells_(points) {
+  for (int i = 0; i < static_cast<int>(cells_.points()); ++i) {
+    segment_.push_back(static_cast<int>(point_.size()));
+    if (cells_.last(i)) continue;
+    const auto at = static_cast<std::size_t>(i);
+    const double length = norm(load3(&x[3 * at + 3]) - load3(&x[3 * at]));
     const int count = std::max(1, static_cast<int>(std::ceil(2 * length / law.inner())));
+    point_.push_back(at);
     samples_.push_back({count, length / count});
   }
   renew(x);
@@ -33,24 +35,25 @@ bool StrandContacts::update(In x) {
 
 bool StrandContacts::renew(In x) {
   made_at_.assign(x.begin(), x.end());
-  grid_.update(x);
   const double wide = (1 + margin) * law_.reach();
-  std::vector<int> start{0}, partner;
+  cells_.fill(x, wide, in_turn);
+  const auto piece = [&](std::size_t from) {
+    return StraightPiece(load3(&x[3 * from]), load3(&x[3 * from + 3]));
+  };
+  std::vector<int> start{0}, partner, near;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const auto segment = static_cast<int>(i);
-    const StraightPiece& piece = grid_.piece(segment);
-    const auto first = static_cast<std::ptrdiff_t>(partner.size());
-    for (int k = 0; k < samples_[i].count; ++k) {
-      const Vec sample = piece.at((k + 0.5) / samples_[i].count);
-      for (const SegmentGrid::Entry& entry : grid_.near(sample)) {
-        if (entry.polyline == grid_.polyline(segment)) continue;
-        const StraightPiece& other = grid_.piece(entry.segment);
+    const StraightPiece own = piece(point_[i]);
+    cells_.near(own, wide, strand(static_cast<int>(i)), near);
+    for (const int from : near) {
+      const StraightPiece other = piece(static_cast<std::size_t>(from));
+      for (int k = 0; k < samples_[i].count; ++k) {
+        const Vec sample = own.at((k + 0.5) / samples_[i].count);
         const Vec gap = sample - other.at(other.nearest(sample));
-        if (dot(gap, gap) <= wide * wide) partner.push_back(entry.segment);
+        if (!(dot(gap, gap) <= wide * wide)) continue;
+        partner.push_back(segment_[static_cast<std::size_t>(from)]);
+        break;
       }
     }
-    std::sort(partner.begin() + first, partner.end());
-    partner.erase(std::unique(partner.begin() + first, partner.end()), partner.end());
     start.push_back(static_cast<int>(partner.size()));
   }
   if (start == start_ && partner == partner_) return false;

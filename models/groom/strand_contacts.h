@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/contact/contact_law.h"
-#include "models/contact/segment_grid.h"
+#include "models/contact/segment_cells.h"
 #include "models/effects/piece_contact.h"
 
 namespace tress::models {
@@ -39,7 +39,7 @@ class StrandContacts {
   }
   /// Index of a segment's first point among all points.
   std::size_t point(int segment) const {
-    return static_cast<std::size_t>(grid_.point(segment));
+    return point_[static_cast<std::size_t>(segment)];
   }
 
   /// Calls of_contact(points, contact) for every contact of points at x with velocities
@@ -53,9 +53,15 @@ class StrandContacts {
     double length;  // per sample, m
   };
 
+  int strand(int segment) const {
+    return cells_.polyline(static_cast<int>(point(segment)));
+  }
+
   ContactLaw law_;
-  SegmentGrid grid_;
-  std::vector<Samples> samples_;  // per segment
+  SegmentCells cells_;
+  std::vector<std::size_t> point_;  // first one of each segment
+  std::vector<int> segment_;        // that begins at each point
+  std::vector<Samples> samples_;    // per segment
   std::vector<double> made_at_;
   std::vector<int> start_, partner_;
 };
@@ -72,10 +78,10 @@ void StrandContacts::each_contact(In x, In v, F of_contact) const {
       const double sigma = (k + 0.5) / samples_[i].count;
       const Vec sample = piece.at(sigma);
       for (std::size_t j = 0; j < all.size();) {
-        const int other = grid_.polyline(all[j]);
+        const int other = strand(all[j]);
         double least = far, at = 0;
         std::size_t nearest = 0;
-        for (; j < all.size() && grid_.polyline(all[j]) == other; ++j) {
+        for (; j < all.size() && strand(all[j]) == other; ++j) {
           const std::size_t from = point(all[j]);
           const StraightPiece partner(load3(&x[3 * from]), load3(&x[3 * from + 3]));
           const double s = partner.nearest(sample);

@@ -329,7 +329,13 @@ const std::vector<double>& World::velocities() {
 }
 
 void World::exchange() {
-  if (interaction_) interaction_->update(positions(), velocities());
+  if (interaction_) interaction_->update(positions(), velocities(), loop());
+}
+
+Loop World::loop() {
+  return [this](std::size_t count, const std::function<void(std::size_t)>& work) {
+    crew_.run(count, work);
+  };
 }
 
 void World::look(const std::function<void(Body&, Out)>& read, Read& to) {

@@ -103,6 +103,8 @@ class World {
   const std::vector<int>& points() const { return points_; }
   const std::vector<double>& positions();   // (3 points)
   const std::vector<double>& velocities();  // (3 points)
+  /// Shares work among the threads.
+  Loop loop();
 
  private:
   /// One strand, or several that are advanced as one system.

@@ -87,11 +87,7 @@ Status World::advance(double t_end) {
 }
 
 Status World::rub(double h) {
-  const Status done = rubbing_->after_step(
-      t_, h, positions(), velocities(),
-      [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-        crew_.run(count, work);
-      });
+  const Status done = rubbing_->after_step(t_, h, positions(), velocities(), loop());
   for (const std::size_t k : rubbing_->friction().touching()) {
     bodies_[k].keep(t_, bodies_[k].integrator->q(), bodies_[k].integrator->v());
   }

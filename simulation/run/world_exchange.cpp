@@ -78,12 +78,12 @@ Status World::next_interval(double t_end) {
     const double end = now.whole ? stop : begin + now.h;
     const bool last = end == t_end;
     Difference found;
-    interaction_->extrapolate(begin, end, x, u);
+    interaction_->extrapolate(begin, end, x, u, loop());
     bool solved = pass(begin, end,
                        [&](Body& body) { body.status = body.integrator->advance(end); });
     if (solved) {
       const std::vector<double> y = positions(), w = velocities();
-      interaction_->interpolate(begin, end, x, u, y, w);
+      interaction_->interpolate(begin, end, x, u, y, w, loop());
       solved = pass(begin, end, [&](Body& body) { advance(body, end, last); });
       if (solved) found = difference(y, w);
     }

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -117,7 +119,7 @@ Vec expected_force(const Polylines& partners, std::size_t own, const Vec& x,
   return sum;
 }
 
-TEST(StrandInteraction, MeetsEveryOtherStrandOnceWhateverTheGridSaw) {
+TEST(StrandInteraction, MeetsEveryOtherStrandOnceWhateverTheListsSaw) {
   Polylines strands(30, 8, 0.05, 0.01, 1, 11);
   StrandInteraction interaction(law(), strands.points);
   long touched = 0;
@@ -140,10 +142,105 @@ TEST(StrandInteraction, MeetsEveryOtherStrandOnceWhateverTheGridSaw) {
     strands.move(1e-3);
   }
   EXPECT_GT(touched, 1000);
-  EXPECT_LT(interaction.grid().fillings(), 15);
+  EXPECT_LT(interaction.partners().epochs(), 15);
 }
 
-/// Far from where the grid was filled too: partners move by 8 reaches.
+/// Loads and derivatives of all strands at carriers(strands), whose points may have moved
+/// on since the update.
+std::vector<double> everything(const StrandInteraction& interaction,
+                               const std::vector<std::unique_ptr<const Effect>>& effects,
+                               const Polylines& strands) {
+  std::vector<double> all;
+  const std::vector<Own> own = carriers(strands);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    std::vector<double> f = load(*effects[k], own[k]), blocks(3 * f.size());
+    effects[k]->add_derivatives(0, own[k].points(), 2, 3, blocks);
+    all.insert(all.end(), f.begin(), f.end());
+    all.insert(all.end(), blocks.begin(), blocks.end());
+  }
+  EXPECT_TRUE(interaction.partners().updated());
+  return all;
+}
+
+std::vector<std::unique_ptr<const Effect>> effects_of(
+    const StrandInteraction& interaction, std::size_t strands) {
+  std::vector<std::unique_ptr<const Effect>> all;
+  for (std::size_t k = 0; k < strands; ++k) all.push_back(interaction.effect(k));
+  return all;
+}
+
+/// Kept lists against new ones, to the last bit: motions from far less than the margin to
+/// many times the reach, of own points within a step too, dense and sparse, two strands.
+TEST(StrandInteraction, KeptListsMissNothingWhateverMoves) {
+  for (const int count : {2, 25}) {
+    for (const double box : {count == 2 ? 2e-3 : 0.02, count == 2 ? 5e-3 : 0.2}) {
+      Polylines strands(count, 8, box, 0.01, 1, 5);
+      StrandInteraction kept(law(), strands.points);
+      const auto effects = effects_of(kept, strands.points.size());
+      long felt = 0;
+      for (int step = 0; step < 60; ++step) {
+        kept.update(strands.x, strands.v);
+        StrandInteraction fresh(law(), strands.points);
+        fresh.update(strands.x, strands.v);
+        // As during a step: twice from the same update, points moving on.
+        for (const double h : {0.0, 1e-3, step % 7 == 0 ? 0.02 : 1e-4}) {
+          Polylines later = strands;
+          later.move(h);
+          const auto expected =
+              everything(fresh, effects_of(fresh, strands.points.size()), later);
+          EXPECT_EQ(everything(kept, effects, later), expected);
+          felt += std::ranges::count_if(expected, [](double f) { return f != 0; });
+        }
+        const double h[] = {1e-4, 3e-4, 1e-3, 1e-5, 0.03};
+        strands.move((step / 8 % 2 == 0 ? 1 : -1) * h[step % 5]);
+      }
+      EXPECT_GT(felt, 100);
+    }
+  }
+}
+
+TEST(StrandInteraction, ListsStandWhileAllMoveWithTheHead) {
+  const Polylines rest(30, 8, 0.05, 0.01, 1, 11);
+  StrandInteraction moving(law(), rest.points);
+  const auto effects = effects_of(moving, rest.points.size());
+  for (int step = 0; step < 40; ++step) {
+    const Frame turn = rotation({0, 0.6, 0.8}, 0.2 * step);
+    Polylines now = rest;
+    for (std::size_t i = 0; i < now.x.size(); i += 3) {
+      store3(turn * load3(&rest.x[i]) + Vec{0.1 * step, 0, 0}, &now.x[i]);
+    }
+    moving.update(now.x, now.v);
+    StrandInteraction fresh(law(), rest.points);
+    fresh.update(now.x, now.v);
+    EXPECT_EQ(everything(moving, effects, now),
+              everything(fresh, effects_of(fresh, rest.points.size()), now));
+  }
+  EXPECT_EQ(moving.partners().epochs(), 1);
+}
+
+TEST(StrandInteraction, LeavesOutStrandsThatAreNowhere) {
+  for (const double lost : {std::nan(""), 1e4, 1e200}) {
+    Polylines strands(20, 8, 0.04, 0.01, 1, 4), without = strands;
+    for (std::size_t i = 0; i < 27; ++i) {
+      strands.x[i] = lost;
+      without.x[i] += 100;
+    }
+    StrandInteraction interaction(law(), strands.points), far(law(), strands.points);
+    for (int step = 0; step < 5; ++step) {
+      interaction.update(strands.x, strands.v);
+      far.update(without.x, without.v);
+      const auto found = everything(interaction, effects_of(interaction, 20), strands),
+                 expected = everything(far, effects_of(far, 20), without);
+      EXPECT_GT(std::ranges::count_if(found, [](double f) { return f != 0; }), 100);
+      EXPECT_EQ(found, expected);
+      for (Polylines* all : {&strands, &without}) all->move(1e-3);
+    }
+    // Where a place is none, nothing is sorted anew for it.
+    EXPECT_EQ(interaction.partners().epochs(), far.partners().epochs());
+  }
+}
+
+/// Far from where lists were made too: partners move by 8 reaches.
 TEST(StrandInteraction, PartnersThatMoveAreMetWhereTheyAreThen) {
   const Polylines strands(20, 8, 0.05, 0.01, 1, 8);
   const double begin = 0.5, end = 0.55, t = 0.54;

@@ -1,13 +1,8 @@
-#include "models/effects/point_motion.h"
+#include "models/contact/point_motion.h"
 
 #include <algorithm>
 
 namespace tress::models {
-
-void PointMotion::hold(In x, In v) {
-  extrapolate(0, x, v);
-  moves_ = 0;
-}
 
 void PointMotion::extrapolate(double t, In x, In v) {
   t_ = t;

@@ -12,14 +12,13 @@ namespace tress::models {
 /// Where points are, and how fast they move, as seen by others that do not wait for them.
 class PointMotion {
  public:
-  /// The points stay at x (3 each) for all time, yet have the velocities v.
-  void hold(In x, In v);
-  /// From (x, v) at time t (s) straight on.
+  /// The points stay; who wants to know where has to ask another.
+  void hold() { moves_ = 0; }
+  /// From x (3 each) and v at time t (s) straight on.
   void extrapolate(double t, In x, In v);
   /// From (x, v) at t to (y, w) at `end`, along cubics.
   void interpolate(double t, double end, In x, In v, In y, In w);
 
-  std::size_t count() const { return at_.size(); }
   /// Time since the start, 0 for points that stay.
   double elapsed(double t) const { return moves_ * (t - t_); }
   Vec place(std::size_t point, double elapsed) const {

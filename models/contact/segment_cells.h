@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "contract/system.h"
+#include "math/closest.h"
+#include "models/contact/box_pairs.h"
+
+namespace tress::models {
+
+/// A Loop without threads.
+inline void in_turn(std::size_t count, const std::function<void(std::size_t)>& work) {
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
+/// Calls work(from, to) for parts of [0, count) of so many at most.
+inline constexpr std::size_t loop_part = 8192;
+inline void in_parts(std::size_t count, const Loop& loop,
+                     const std::function<void(std::size_t, std::size_t)>& work) {
+  loop((count + loop_part - 1) / loop_part,
+       [&](std::size_t i) { work(i * loop_part, std::min(count, (i + 1) * loop_part)); });
+}
+
+/// Broad phase: which segments of many polylines may come within a distance of a given
+/// piece. A segment lies in the cell of its middle alone, one much longer than usual in
+/// parts; cells lie in rows of one uniform grid, in memory one after the other, so that a
+/// search compares the boxes of few runs of consecutive ones. What lies outside the grid,
+/// which spans where most points are, lies in the cells of its border. Long segments,
+/// such as those of a run that fails, are candidates of every search. Memory and filling
+/// are O(segments), some 100 bytes a segment; a search is O(parts nearby).
+class SegmentCells {
+ public:
+  /// points[k] >= 2: number of points of polyline k.
+  explicit SegmentCells(std::span<const int> points);
+
+  /// Takes the positions of all points (3 each), polyline after polyline, for searches of
+  /// about `reach` (m). The result does not depend on who runs the loop's parts.
+  void fill(In x, double reach, const Loop& loop);
+
+  /// Numbers of polylines, points and segments count over all. A segment is known by the
+  /// number of its first point.
+  std::size_t polylines() const { return first_.size() - 1; }
+  std::size_t points() const { return polyline_.size(); }
+  int polyline(int point) const { return polyline_[static_cast<std::size_t>(point)]; }
+  int first(std::size_t polyline) const { return first_[polyline]; }
+  bool last(int point) const {
+    return point + 1 == first_[static_cast<std::size_t>(polyline(point)) + 1];
+  }
+
+  /// Sets `found` to every segment of polylines other than `but` that comes within
+  /// `radius` of the piece, and some others; ascending, each once.
+  void near(const StraightPiece& piece, double radius, int but,
+            std::vector<int>& found) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Range {
+    int from, to;
+  };
+  Range cells(int axis, double from, double to) const noexcept;
+  std::size_t row(int y, int z) const noexcept {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
+            static_cast<std::size_t>(y)) *
+           static_cast<std::size_t>(count_[0]);
+  }
+  void choose_parts(In x, double reach);
+  void choose_cells(In x, std::size_t parts);
+  int parts_of(int segment, In x) const noexcept;
+  void sort(In x, const Loop& loop);
+
+  std::vector<int> polyline_;  // of each point
+  std::vector<int> first_;     // point of each polyline, and the number of all
+  double longest_ = 1;         // part, m
+  double cell_ = 1, inverse_cell_ = 1;
+  Vec corner_;
+  int count_[3] = {1, 1, 1};
+  // Parts of segment i are [part_[i], part_[i + 1]), none if it is long; their cells.
+  std::vector<int> part_, cell_of_;
+  // Sorted by cells, those of cell c are [start_[c], start_[c + 1]): segments, and boxes
+  // about their parts.
+  std::vector<int> start_, segment_;
+  std::vector<float> least_[3], most_[3];
+  std::vector<int> long_;
+};
+
+}  // namespace tress::models
