@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "math/vec3.h"
 
@@ -48,6 +49,31 @@ inline NearestPoints nearest(const StraightPiece& first, const StraightPiece& se
   s = determinant > parallel * a * e || t == 0 || t == 1 ? first.nearest(second.at(t))
                                                          : s;
   return {s, t};
+}
+
+/// Weights (>= 0, sum 1) of the corners of a triangle in its point nearest to x [Ericson
+/// 2005, section 5.1.5]. One without area counts as its edges.
+inline std::array<double, 3> nearest(const std::array<Vec, 3>& corner, const Vec& x) {
+  const Vec ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+  const Vec ax = x - corner[0], bx = x - corner[1], cx = x - corner[2];
+  const double d1 = dot(ab, ax), d2 = dot(ac, ax);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  const double d3 = dot(ab, bx), d4 = dot(ac, bx);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double of_c = d1 * d4 - d3 * d2;
+  if (of_c <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  const double d5 = dot(ab, cx), d6 = dot(ac, cx);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double of_b = d5 * d2 - d1 * d6;
+  if (of_b <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double of_a = d3 * d6 - d5 * d4;
+  const double from_b = d4 - d3, from_c = d5 - d6;
+  if (of_a <= 0 && from_b >= 0 && from_c >= 0) {
+    const double s = from_b / (from_b + from_c);
+    return {0, 1 - s, s};
+  }
+  const double sum = of_a + of_b + of_c;
+  return {1 - (of_b + of_c) / sum, of_b / sum, of_c / sum};
 }
 
 }  // namespace tress

@@ -90,7 +90,7 @@ std::vector<Row> by_steps(const Curve& work, Scene scene, const Row& identity) {
 /// Strands that touch exchange forces at every fixed step.
 bool exchanges(const Scene& scene) {
   const Parameters* const between = scene.interaction();
-  return scene.friction() != nullptr ||
+  return scene.friction() != nullptr || scene.mesh() != nullptr ||
          (between != nullptr && between->word("coupling") != "monolithic");
 }
 

@@ -7,6 +7,7 @@
 #include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/effects/constant_force.h"
+#include "models/effects/control_mesh.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/effects/self_contact.h"
@@ -28,6 +29,7 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
       EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15; Alart & Curnier 1991", body_parameters(), make_body, true, true},
       EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact, false, true},
+      EffectEntry{"control_mesh", "guides tied to their neighbours by breakable links, with strips of triangles between them that others touch", "Chang, Jin & Yu 2002", control_mesh_parameters(), nullptr, false, true},
       EffectEntry{"strand_friction", "strands, and parts of one, do not pass through each other and rub: exact contact", "Moreau 1999; de Saxcé & Feng 1998", strand_friction_parameters(), nullptr, false, true},
       EffectEntry{"strand_interaction", "strands repel and drag each other", "Wang, thesis, NCTU", strand_interaction_parameters(), nullptr, false, true},
   };

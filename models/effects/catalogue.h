@@ -20,7 +20,7 @@ struct EffectEntry {
   std::span<const Parameter> parameters;
   /// `head`: the rigid motion of all roots, for bodies that follow it. Null for
   /// effects between strands, which are made for all of them at once (StrandInteraction,
-  /// StrandFriction).
+  /// StrandFriction, ControlMesh).
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
   bool many = false;     // a scene may name several: [[effects.id]]
   bool contact = false;  // its load begins where parts meet

@@ -70,6 +70,7 @@ std::string state_text(const std::string& key, const Saved& saved) {
   }
   bytes.put_sized(s.guards);
   bytes.put_sized(s.rubs);
+  bytes.put_sized(s.mesh);
   return sealed(bytes.text());
 }
 
@@ -85,7 +86,9 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
   bool whole = bytes.take(head, 3) && bytes.take(t, 1);
   Saved saved;
   if (whole) {
-    saved = {head[0], head[1], {.t = t[0], .strands = {}, .guards = {}, .rubs = {}}};
+    saved = {head[0],
+             head[1],
+             {.t = t[0], .strands = {}, .guards = {}, .rubs = {}, .mesh = {}}};
     saved.snapshot.strands.resize(head[2]);
   }
   for (auto& strand : saved.snapshot.strands) {
@@ -94,7 +97,7 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
     }
   }
   if (!whole || !bytes.take_sized(saved.snapshot.guards) ||
-      !bytes.take_sized(saved.snapshot.rubs)) {
+      !bytes.take_sized(saved.snapshot.rubs) || !bytes.take_sized(saved.snapshot.mesh)) {
     throw std::runtime_error("it ends too early");
   }
   return saved;

@@ -51,6 +51,12 @@ Readout::Readout(const Scene& scene, const World& world)
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "from a strand to the nearest other one, mean");
+  if (world.mesh() != nullptr) {
+    add("broken_links",
+        "of the control mesh, of " + std::to_string(world.mesh()->mesh().links.size()));
+    add("mesh_contacts", "points near a strip of the control mesh");
+    add("control_mesh_j", "energy of the links that hold");
+  }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
   add("rejected_steps", "steps tried again with shorter ones since the last frame");
@@ -89,6 +95,11 @@ Frame3d Readout::read(World& world) {
   }
   row.push_back(touching);
   row.push_back(interaction != nullptr ? interaction->mean_distance() : std::nan(""));
+  if (const ControlMesh* mesh = world.mesh(); mesh != nullptr) {
+    row.push_back(static_cast<double>(mesh->broken()));
+    row.push_back(static_cast<double>(mesh->contacts()));
+    row.push_back(mesh->energy());
+  }
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
@@ -213,6 +224,10 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first,
     }
   };
   // Effects between strands come after the others, in alphabetical order.
+  if (world.mesh() != nullptr) {
+    const auto effect = world.mesh()->effect(k);
+    read_between([&](InOut f) { effect->add_load(world.time(), p, f); });
+  }
   if (world.friction() != nullptr) {
     read_between([&](InOut f) { world.friction()->add_loads(k, f); });
   }

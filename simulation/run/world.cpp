@@ -110,10 +110,15 @@ std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
   std::vector<GuardedStrand> all;
   for (std::size_t k = first; k < first + count; ++k) {
     Effects effects = effects_;
-    if (interaction_) effects.push_back(interaction_->effect(k));
+    add_effects_between(k, effects);
     all.push_back(guarded_strand(scene.strands[k], std::move(effects)));
   }
   return all;
+}
+
+void World::add_effects_between(std::size_t strand, Effects& effects) const {
+  if (interaction_) effects.push_back(interaction_->effect(strand));
+  if (mesh_) effects.push_back(mesh_->effect(strand));
 }
 
 /// Each strand separately, or up to four of equal discretisation together; strands that
@@ -123,13 +128,16 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
   if (between != nullptr) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
+  if (const Parameters* mesh = scene.mesh(); mesh != nullptr) {
+    mesh_ = std::make_unique<ControlMesh>(*mesh, segment_lengths(strands));
+  }
   if (const Parameters* rubs = scene.friction(); rubs != nullptr) {
     rubbing_ = std::make_unique<Rubbing>(strands, *rubs, effects_);
   }
   std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
   const auto effects_of = [&](std::size_t k) {
     Effects effects = metered(effects_, meters);
-    if (interaction_) effects.push_back(interaction_->effect(k));
+    add_effects_between(k, effects);
     return effects;
   };
   for (std::size_t k = 0; k < strands.size();) {
@@ -197,6 +205,9 @@ void World::ready(const Scene& scene) {
   x_.values.resize(3 * points);
   u_.values.resize(3 * points);
   restore(begin);
+  if (!mesh_) return;
+  mesh_->tie(positions());
+  exchange();
 }
 
 void World::restore(const Snapshot& snapshot) {
@@ -222,6 +233,7 @@ void World::restore(const Snapshot& snapshot) {
   failure_.clear();
   x_.done = u_.done = false;
   if (rubbing_) rubbing_->restart(snapshot.rubs);
+  if (mesh_) mesh_->recall(snapshot.mesh);
   exchange();
   if (interaction_ && options_.tolerance > 0) start_control();
   for (Body& body : bodies_) {
@@ -236,8 +248,9 @@ void World::restore(const Snapshot& snapshot) {
 }
 
 Snapshot World::snapshot() {
-  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}, .rubs = {}};
+  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}, .rubs = {}, .mesh = {}};
   if (rubbing_) snapshot.rubs = rubbing_->memory();
+  if (mesh_) snapshot.mesh = mesh_->memory();
   for (const Body& body : bodies_) {
     append_strands(body.integrator->q(), body.integrator->v(), body.system->memory(),
                    body.coordinates, body.memory, snapshot);
@@ -330,6 +343,7 @@ const std::vector<double>& World::velocities() {
 
 void World::exchange() {
   if (interaction_) interaction_->update(positions(), velocities(), loop());
+  if (mesh_) mesh_->update(positions(), velocities());
 }
 
 Loop World::loop() {

@@ -8,6 +8,7 @@
 #include "integrators/control/point_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
+#include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/run/crew.h"
@@ -28,6 +29,7 @@ struct Snapshot {
   std::vector<OfStrand> strands;
   std::vector<double> guards;  // their Guard::memory(); empty: they start here
   std::vector<double> rubs;    // StrandFriction::memory()
+  std::vector<double> mesh;    // ControlMesh::memory()
 };
 
 /// Exchanges between strands whose intervals error control chose.
@@ -93,6 +95,7 @@ class World {
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
   const StrandInteraction* interaction() const { return interaction_.get(); }
+  const ControlMesh* mesh() const { return mesh_.get(); }
   const StrandFriction* friction() const {
     return rubbing_ ? &rubbing_->friction() : nullptr;
   }
@@ -149,6 +152,7 @@ class World {
   void guard(std::vector<GuardedStrand> strands);
   std::vector<GuardedStrand> guarded(const Scene& scene, std::size_t first,
                                      std::size_t count) const;
+  void add_effects_between(std::size_t strand, Effects& effects) const;
   void build_strands(const Scene& scene, const Parameters* between);
   void build_coupled(const Scene& scene, const Parameters& between);
   void ready(const Scene& scene);
@@ -182,6 +186,7 @@ class World {
   Options options_;
   const Effects effects_;  // on each strand
   std::unique_ptr<StrandInteraction> interaction_;
+  std::unique_ptr<ControlMesh> mesh_;
   std::unique_ptr<Rubbing> rubbing_;
   std::optional<StepControl> control_;  // of the exchanges, with a tolerance
   Exchanges exchanges_;

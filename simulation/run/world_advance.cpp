@@ -59,7 +59,7 @@ Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
-  const double count = interaction_ || rubbing_
+  const double count = interaction_ || rubbing_ || mesh_
                            ? std::max(1.0, std::ceil(span / options_.step - 1e-9))
                            : 1.0;
   const double begin = t_;

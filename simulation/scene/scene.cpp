@@ -11,6 +11,7 @@
 #include "contract/read_file.h"
 #include "integrators/integrator_options.h"
 #include "models/effects/obstacle.h"
+#include "models/strand/geometry.h"
 #include "simulation/files/parse.h"
 #include "simulation/scene/read_table.h"
 #include "simulation/scene/root_table.h"
@@ -258,6 +259,15 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::vector<double>> segment_lengths(const std::vector<Strand>& strands) {
+  std::vector<std::vector<double>> all(strands.size());
+  for (std::size_t k = 0; k < strands.size(); ++k) {
+    check_unbranched(strands[k], fmt::format("effects.control_mesh, strand {}", k));
+    for (const Segment& segment : strands[k].segments) all[k].push_back(segment.length);
+  }
+  return all;
+}
 
 std::shared_ptr<const Effect> make_effect(const Scene& scene,
                                           const EffectChoice& choice) {

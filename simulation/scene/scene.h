@@ -55,7 +55,10 @@ struct Scene {
   // Of effects between strands; null if the scene names none.
   const Parameters* interaction() const { return parameters_of("strand_interaction"); }
   const Parameters* friction() const { return parameters_of("strand_friction"); }
-  bool strands_touch() const { return interaction() != nullptr || friction() != nullptr; }
+  const Parameters* mesh() const { return parameters_of("control_mesh"); }
+  bool strands_touch() const {
+    return interaction() != nullptr || friction() != nullptr || mesh() != nullptr;
+  }
 
   /// The first frame is 0, at t = 0; the last is at the end, which may cut the last
   /// interval short.
@@ -84,6 +87,10 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// As above for a text; `file` is its name in messages, and files that the scene names
 /// are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
+
+/// Lengths of the segments of each strand, root to tip, m. Throws InputError, naming the
+/// strand, where one has branches.
+std::vector<std::vector<double>> segment_lengths(const std::vector<Strand>& strands);
 
 /// An effect on each strand; null: it acts between strands. Where strands rub, bodies are
 /// obstacles that may be (Effect::obstacle).

@@ -6,6 +6,7 @@
 
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
+#include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
 
 namespace tress::simulation {
@@ -30,12 +31,31 @@ Effects effects_of(const Scene& scene, const ScenePlaces& places) {
     at_place(places.effects[i], [&] {
       if (&choice.parameters == scene.interaction()) {
         StrandInteraction(choice.parameters, {});
+      } else if (&choice.parameters == scene.mesh()) {
+        ControlMesh(choice.parameters, segment_lengths(scene.strands));
       } else if (auto made = make_effect(scene, choice)) {
         all.push_back(std::move(made));
       }
     });
   }
   return all;
+}
+
+/// Whether the scene's method can have guides in a mesh.
+void check_mesh(const Scene& scene, const ScenePlaces& places) {
+  if (scene.mesh() == nullptr) return;
+  const Parameters* interaction = scene.interaction();
+  if (interaction != nullptr && interaction->word("coupling") == "monolithic") {
+    throw InputError("strands that are one system do not see each other as they were",
+                     places.integrator,
+                     "use coupling = \"lagged\", or leave out [effects.control_mesh]");
+  }
+  if (!places.tolerance.empty()) {
+    throw InputError(
+        "contacts of [effects.control_mesh] are found once a step, an error that no "
+        "tolerance controls",
+        places.tolerance, "give dt_s, or leave out [effects.control_mesh]");
+  }
 }
 
 /// Whether the scene's method can have strands that rub.
@@ -89,6 +109,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
     return;
   }
   check_friction(scene, places);
+  check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
   if (!places.tolerance.empty() && interaction != nullptr &&
       interaction->word("coupling") != "monolithic" &&
