@@ -61,10 +61,6 @@ Vec3<Real> sum_over(const Vec3<Pack>& points) {
 }
 
 template <class T>
-Vec lane_of(const Vec3<T>& x, int lane) {
-  return {lane_of(x.x, lane), lane_of(x.y, lane), lane_of(x.z, lane)};
-}
-template <class T>
 void set_lane(Vec3<T>& to, int lane, const Vec& x) {
   set_lane(to.x, lane, x.x);
   set_lane(to.y, lane, x.y);
