@@ -37,6 +37,7 @@ struct HeadEnergy {
   double gravity = 0;               // J, its potential, 0 at the origin of the world
   double fastest = 0;               // m/s, of the root and the tips of elements
   Vec tip;                          // m
+  double mass = 0;                  // kg
 };
 
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
@@ -70,6 +71,8 @@ class Head {
   /// blocks at once, each thread with its own scratch.
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
   virtual bool lost(std::size_t strand) const = 0;
+  /// The same for a strand whose state somebody else takes for impossible.
+  virtual void lose(std::size_t strand) = 0;
 
   /// Of the strands of a block: root and tips of elements (m), strand after strand,
   /// `numbers` each = 3 (elements + 1).

@@ -118,9 +118,15 @@ class HelixHead final : public Head {
       const T all = q[i].x + q[i].y + q[i].z;
       finite += all - all;
     }
-    if (!all_up_to(finite, 0)) freeze(block, finite, scratch);
+    if (!all_up_to(finite, 0) || any_lost(block)) freeze(block, finite, scratch);
   }
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
+  void lose(std::size_t strand) override {
+    for (std::size_t i = 0; i < n_; ++i) {
+      set_lane(v_[n_ * (strand / width) + i], static_cast<int>(strand % width), Vec{});
+    }
+    lost_[strand] = 1;
+  }
 
   std::size_t numbers() const override { return 3 * (n_ + 1); }
   std::size_t strands_of(std::size_t block) const override {
@@ -189,10 +195,12 @@ class HelixHead final : public Head {
                           lane_of(materials_[block].length, lane);
       const Vec first =
           mass * pose.x + units_.density * length * length * of_lane(sums.first, lane);
-      each[k] = {unit * lane_of(sums.kinetic, lane), unit * lane_of(sums.elastic, lane),
+      each[k] = {unit * lane_of(sums.kinetic, lane),
+                 unit * lane_of(sums.elastic, lane),
                  -dot(options_.gravity, first),
                  speed * std::sqrt(lane_of(sums.fastest, lane)),
-                 pose.x + length * of_lane(sums.tip, lane)};
+                 pose.x + length * of_lane(sums.tip, lane),
+                 mass};
     }
   }
 
@@ -269,14 +277,21 @@ class HelixHead final : public Head {
             root.frame.back(alpha)};
   }
 
+  bool any_lost(std::size_t block) const {
+    const char* const first = &lost_[width * block];
+    return std::any_of(first, first + strands_of(block), [](char c) { return c != 0; });
+  }
+
+  /// What was lost before, and what is not finite now.
   void freeze(std::size_t block, const T& finite, const Own& scratch) {
     for (int lane = 0; lane < T::lanes; ++lane) {
-      if (finite[lane] == 0) continue;
+      const std::size_t strand = width * block + static_cast<std::size_t>(lane);
+      const bool was_lost = strand < lost_.size() && lost_[strand] != 0;
+      if (finite[lane] == 0 && !was_lost) continue;
       for (std::size_t i = 0; i < n_; ++i) {
         set_lane(q_[n_ * block + i], lane, of_lane(scratch.before[i], lane));
         set_lane(v_[n_ * block + i], lane, Vec{});
       }
-      const std::size_t strand = width * block + static_cast<std::size_t>(lane);
       if (strand < lost_.size()) lost_[strand] = 1;
     }
   }
