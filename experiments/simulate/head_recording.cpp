@@ -77,8 +77,9 @@ void HeadRecording::write_lost() {
   for (const LostStrand& lost : progress_.lost) {
     Row row;
     row.set("t_s", lost.t);
-    table += fmt::format("{},{},its step had no finite result\n", lost.strand,
-                         row.text("t_s"));
+    table += fmt::format("{},{},{}\n", lost.strand, row.text("t_s"),
+                         lost.fast ? "it was faster than its energy allows"
+                                   : "its step had no finite result");
   }
   replace_file(stem_ + ".lost.csv", table);
   lost_written_ = progress_.lost.size();
@@ -91,9 +92,10 @@ void HeadRecording::add(const std::vector<double>& series) {
   progress_.sums = frames_->sums();
 }
 
-void HeadRecording::save(const Head& head, std::size_t step) {
+void HeadRecording::save(const Head& head, std::size_t step, double speed) {
   frames_->sync();
   progress_.step = step;
+  progress_.speed = speed;
   save_head(stem_ + ".state", key_, head, progress_);
 }
 

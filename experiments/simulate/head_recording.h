@@ -29,12 +29,12 @@ class HeadRecording {
   const HeadProgress& progress() const { return progress_; }
   const HeadFrames& frames() const { return *frames_; }
 
-  void lose(std::size_t strand, double t) { progress_.lost.push_back({strand, t}); }
+  void lose(const LostStrand& strand) { progress_.lost.push_back(strand); }
   /// Reads a frame; add() writes it, its series and the lost strands.
   void read(HeadRun& run, double t) { frames_->read(run, t); }
   void add(const std::vector<double>& series);
-  /// Saves the state, `step` steps after the last frame.
-  void save(const Head& head, std::size_t step);
+  /// Saves the state, `step` steps after the last frame; `speed`: of its guard.
+  void save(const Head& head, std::size_t step, double speed);
   /// The run is complete: removes what only a resumed run needs.
   void close();
 

@@ -14,6 +14,7 @@
 #include "experiments/simulate/head_recording.h"
 #include "experiments/simulate/head_series.h"
 #include "experiments/simulate/time_bar.h"
+#include "simulation/run/head_guard.h"
 #include "simulation/run/memory.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/run/timing.h"
@@ -75,15 +76,18 @@ class HeadSceneRun {
  private:
   void run(SceneRun& made) {
     HeadOutcome& outcome = made.head.emplace();
+    HeadReach reach;
     outcome.build_s = seconds_of([&] {
-      run_.emplace(make_head(outline_, options_.pack, options_.threads),
-                   options_.threads);
+      SceneHead made_head = make_head(outline_, options_.pack, options_.threads);
+      run_.emplace(std::move(made_head.head), options_.threads);
+      reach = std::move(made_head.reach);
     });
     const std::vector<std::size_t> shown = shown_strands(run_->head().strands());
     StoredFrames stored{options_.frame_bits, shown, {}};
     for (const Reading& column : head_series()) stored.columns.push_back(column.name);
     recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
                        options_.resume);
+    guard_.emplace(std::move(reach), recording_->progress().speed);
     advance(outcome);
     write_head_pictures(outline_, recording_->frames(), shown, options_);
     const auto whole = interruption_.hold();
@@ -126,7 +130,7 @@ class HeadSceneRun {
       add_frame(scene_.time_of(frame), outcome);
       bar.show(scene_.time_of(frame));
       if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
-      outcome.write_s += seconds_of([&] { recording_->save(run_->head(), 0); });
+      outcome.write_s += seconds_of([&] { save_state(0); });
     }
   }
 
@@ -141,14 +145,31 @@ class HeadSceneRun {
       const double t = begin + static_cast<double>(i) * h;
       run_->step(t, h);
       ++steps_;
-      for (const auto& loss : run_->lost()) recording_->lose(loss.strand, t + h);
+      guard_->step(t, h);
+      for (const auto& loss : run_->lost()) recording_->lose({loss.strand, t + h});
+    }
+  }
+
+  void save_state(std::size_t step) {
+    recording_->save(run_->head(), step, guard_->speed());
+  }
+
+  /// Strands that go on where physics does not are lost from this frame on.
+  void check(double t) {
+    if (t == 0) guard_->start(energies_);
+    if (!scene_.guard) return;
+    Head& head = run_->head();
+    for (std::size_t k = 0; k < energies_.size(); ++k) {
+      if (head.lost(k) || !guard_->breached(t, energies_[k])) continue;
+      head.lose(k);
+      recording_->lose({k, t, true});
     }
   }
 
   /// A signal has come: the thread that handles it ends the program.
   [[noreturn]] void end_here(std::size_t step, StopRequest& stop) {
     try {
-      recording_->save(run_->head(), step);
+      save_state(step);
       stop.answer();
     } catch (const std::exception& error) {
       stop.answer(error.what());
@@ -161,7 +182,8 @@ class HeadSceneRun {
     std::vector<double> series;
     outcome.read_s += seconds_of([&] {
       run_->energies(t, energies_);
-      series = head_series_row(t, energies_, recording_->progress().lost.size());
+      check(t);
+      series = head_series_row(t, run_->head(), energies_);
       recording_->read(*run_, t);
     });
     outcome.write_s += seconds_of([&] { recording_->add(series); });
@@ -174,6 +196,7 @@ class HeadSceneRun {
   RunKey key_;
   std::optional<HeadRun> run_;
   std::optional<HeadRecording> recording_;
+  std::optional<HeadGuard> guard_;
   std::vector<models::HeadEnergy> energies_;
   long steps_ = 0;
 };

@@ -180,7 +180,9 @@ Job job_of(const std::string& file, const Arguments& a) {
 bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
              Interruption& interruption) {
   const std::string& file = job.file;
-  Scene scene = job.head ? job.outline.scene : read_scene(file);
+  SceneOutline outline = job.outline;
+  Scene& scene = outline.scene;
+  if (!job.head) scene = read_scene(file);
   if (a.no_guard) scene.guard = false;
   SceneRunOptions options;
   options.stem = a.out + "/" + scene.name;
@@ -202,7 +204,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   if (job.head) check_room(job.outline, options);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
-  const SceneRun run = job.head ? run_head(job.outline, key, options, interruption)
+  const SceneRun run = job.head ? run_head(outline, key, options, interruption)
                                 : run_scene(scene, key, options, interruption);
   Row row = outcome(scene, run);
   bool complete = run.end != SceneRun::End::failed;

@@ -51,7 +51,7 @@ constexpr Column columns_of_outcome[] = {
     {"space_parted", "strands whose two runs part"},
     {"space_error_missing", "why there is no estimate"},
     {"strands", "of a head of hair"},
-    {"lost_strands", "of a head: those whose step had no finite result"},
+    {"lost_strands", "of a head: those whose step was impossible"},
     {"bits", "of a head's numbers"},
     {"lanes", "strands of a head computed side by side"},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},

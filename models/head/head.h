@@ -88,6 +88,7 @@ struct HeadEnergy {
   double gravity = 0;               // J, its potential, 0 at the origin of the world
   double fastest = 0;               // m/s, of the root and the tips of elements
   Vec tip;                          // m
+  double mass = 0;                  // kg
 };
 
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
@@ -137,6 +138,8 @@ class Head {
   /// All but the first `known` that were found, by strand.
   virtual std::vector<HeadLoss> losses(std::size_t known) const = 0;
   std::vector<HeadLoss> losses() const { return losses(0); }
+  /// The same for a strand whose state somebody else takes for impossible.
+  virtual void lose(std::size_t strand) = 0;
 
   /// Of the strands of a block: root and tips of elements (m), strand after strand,
   /// `numbers` each = 3 (elements + 1).

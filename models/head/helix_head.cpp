@@ -143,6 +143,14 @@ class HelixHead final : public Head {
   std::vector<HeadLoss> losses(std::size_t known) const override {
     return losses_.after(known);
   }
+  void lose(std::size_t strand) override {
+    const std::size_t block = strand / width;
+    for (std::size_t i = 0; i < n_; ++i) {
+      set_lane(v_[n_ * block + i], static_cast<int>(strand % width), Vec{});
+    }
+    hurt_[block] = 1;
+    lost_[strand] = 1;
+  }
 
   std::size_t numbers() const override { return 3 * (n_ + 1); }
   std::size_t strands_of(std::size_t block) const override {

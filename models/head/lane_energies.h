@@ -28,9 +28,12 @@ struct LaneEnergies {
                 const Vec& gravity) const {
     const double unit = units.force() * units.length;
     const Vec moment = mass * from + units.mass() * units.length * lane_of(first, lane);
-    return {unit * lane_of(kinetic, lane), unit * lane_of(elastic, lane),
-            -dot(gravity, moment), units.speed() * std::sqrt(lane_of(fastest, lane)),
-            from + units.length * lane_of(tip, lane)};
+    return {unit * lane_of(kinetic, lane),
+            unit * lane_of(elastic, lane),
+            -dot(gravity, moment),
+            units.speed() * std::sqrt(lane_of(fastest, lane)),
+            from + units.length * lane_of(tip, lane),
+            mass};
   }
 };
 

@@ -120,6 +120,12 @@ class SteppingHead final : public Head {
   std::vector<HeadLoss> losses(std::size_t known) const override {
     return losses_.after(known);
   }
+  void lose(std::size_t strand) override {
+    const auto lane = static_cast<int>(strand % width);
+    T* const v = v_of(strand / width);
+    for (std::size_t k = 0; k < of_state_ - size_; ++k) v[k].set(lane, 0);
+    lost_[strand] = 1;
+  }
 
   std::size_t numbers() const override { return 3 * (n_ + 1); }
   std::size_t strands_of(std::size_t block) const override {
@@ -406,10 +412,7 @@ class SteppingHead final : public Head {
   }
 
   void lose(std::size_t strand, double t, double h_s, std::string_view reason) {
-    const auto lane = static_cast<int>(strand % width);
-    T* const v = v_of(strand / width);
-    for (std::size_t k = 0; k < of_state_ - size_; ++k) v[k].set(lane, 0);
-    lost_[strand] = 1;
+    lose(strand);
     losses_.add(strand, t, h_s, reason);
   }
 

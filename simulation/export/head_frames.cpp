@@ -104,9 +104,9 @@ HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames s
   const std::vector<std::size_t> series_size{sums.size(), stored_.columns.size()},
       shown_size{sums.size(), points_ * stored_.shown.size(), 3},
       positions_size{strands_ * points_, 3};
-  const auto fits = [&](const char* dataset, const std::vector<std::size_t>& want) {
-    if (!file_.has(dataset)) return false;
-    const std::vector<std::size_t> size = file_.size(dataset);
+  const auto fits = [&](const std::string& name, const std::vector<std::size_t>& want) {
+    if (!file_.has(name)) return false;
+    const std::vector<std::size_t> size = file_.size(name);
     return size.size() == want.size() && size.front() >= want.front() &&
            std::equal(size.begin() + 1, size.end(), want.begin() + 1);
   };
@@ -115,7 +115,7 @@ HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames s
   }
   try {
     for (std::size_t frame = 0; frame < sums.size(); ++frame) {
-      if (stored_.bits != 0 && !fits(dataset(frame).c_str(), positions_size)) {
+      if (stored_.bits != 0 && !fits(dataset(frame), positions_size)) {
         throw damaged();
       }
       for (std::size_t c = 0; stored_.bits != 0 && c < chunks_.size(); ++c) {

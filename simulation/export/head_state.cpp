@@ -70,9 +70,11 @@ HeadProgress parse(std::string_view text, const RunKey& key, const std::string& 
   progress.sums = bytes.take<std::uint64_t>(sizes[3]);
   const auto which = bytes.take<std::uint64_t>(sizes[4]);
   const auto when = bytes.take<double>(sizes[4]);
+  const auto fast = bytes.take<char>(sizes[4]);
   for (std::size_t i = 0; i < which.size(); ++i) {
-    progress.lost.push_back({which[i], when[i]});
+    progress.lost.push_back({which[i], when[i], fast[i] != 0});
   }
+  progress.speed = bytes.take<double>(1).front();
   for (std::size_t b = 0; b < head.blocks(); ++b) {
     head.recall(b, bytes.take<double>(head.kept() * head.strands_of(b)));
   }
@@ -90,12 +92,16 @@ void save_head(const std::string& file, const RunKey& key, const models::Head& h
   out.put(progress.sums);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
+  std::vector<char> fast;
   for (const LostStrand& lost : progress.lost) {
     which.push_back(lost.strand);
     when.push_back(lost.t);
+    fast.push_back(lost.fast ? 1 : 0);
   }
   out.put(which);
   out.put(when);
+  out.put(fast);
+  out.put(std::vector{progress.speed});
   std::vector<double> kept;
   for (std::size_t b = 0; b < head.blocks(); ++b) {
     kept.resize(head.kept() * head.strands_of(b));

@@ -126,12 +126,22 @@ void each_strand(const StrandSeries& series, Crew& crew, std::size_t begin,
   }
 }
 
-/// Longest strand and largest angle that an element winds by.
+/// Longest strand, farthest end from the motion's place, largest angle that an element
+/// winds by, largest drag over mass.
 struct Extent {
-  double length = 0, winding = 0;
+  double length = 0, radius = 0, winding = 0, lightest = 0;
 
-  void include(const Strand& strand) {
+  void include(const Extent& other) {
+    length = std::max(length, other.length);
+    radius = std::max(radius, other.radius);
+    winding = std::max(winding, other.winding);
+    lightest = std::max(lightest, other.lightest);
+  }
+  void include(const Strand& strand, const HeadOptions& options) {
     length = std::max(length, strand.length());
+    radius = std::max(
+        radius, strand.length() + norm(strand.root.position - options.motion.position));
+    lightest = std::max(lightest, strand.length() / strand.mass());
     for (const Segment& segment : strand.segments) {
       for (const Vec& shape : {segment.natural, segment.initial}) {
         winding = std::max(winding, segment.length * norm(shape));
@@ -160,8 +170,7 @@ std::optional<NoHead> no_head(const SceneOutline& outline) {
   return {};
 }
 
-std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pack,
-                                int threads) {
+SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
   const StrandSeries& series = *outline.series;
   Crew crew(threads);
   HeadOptions options = options_of(outline.scene);
@@ -169,13 +178,10 @@ std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pac
   std::vector<Extent> extents(parts);
   each_strand(series, crew, 0, series.size(), parts,
               [&](std::size_t, const Strand& strand, std::size_t part) {
-                extents[part].include(strand);
+                extents[part].include(strand, options);
               });
   Extent all;
-  for (const Extent& extent : extents) {
-    all.length = std::max(all.length, extent.length);
-    all.winding = std::max(all.winding, extent.winding);
-  }
+  for (const Extent& extent : extents) all.include(extent);
   options.longest = all.length;
   if (options.points == 0) options.points = models::quadrature_points(all.winding);
   std::unique_ptr<Head> head = helix_head(options, pack);
@@ -190,7 +196,9 @@ std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pac
                 });
     for (std::size_t k = begin; k < end; ++k) head->add(made[k - begin]);
   }
-  return head;
+  return {std::move(head),
+          {options.motion, options.gravity, all.radius,
+           options.drag * all.lightest + options.mass_damping}};
 }
 
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {

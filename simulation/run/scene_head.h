@@ -19,11 +19,22 @@ struct NoHead {
 /// strand of them does not fit.
 std::optional<NoHead> no_head(const SceneOutline& outline);
 
+/// What bounds the motion of a head, from its options and its strands (HeadGuard).
+struct HeadReach {
+  RootMotion motion;
+  Vec gravity;        // m/s^2
+  double radius = 0;  // m, from the place of the motion to the farthest end of a strand
+  double drag = 0;    // 1/s, largest force of the air over mass and velocity
+};
+
 /// All strands of a scene that no_head() has nothing against, at t = 0: the largest
 /// number of quadrature points that any strand needs, if the scene does not say how many.
 /// Two passes over the strands by so many threads, a thousand at a time.
-std::unique_ptr<Head> make_head(const SceneOutline& outline, const HeadPack& pack,
-                                int threads);
+struct SceneHead {
+  std::unique_ptr<Head> head;
+  HeadReach reach;
+};
+SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
 
 /// Bytes that a head of the scene takes, known before it is made.
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack);

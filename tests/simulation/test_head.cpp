@@ -13,6 +13,7 @@
 #include "models/motion/root_motion.h"
 #include "simulation/export/head_frames.h"
 #include "simulation/files/csv.h"
+#include "simulation/run/head_guard.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/run/world.h"
@@ -154,7 +155,7 @@ TEST(HeadOfHair, FramesOnDiskAreThePositionsOfTheHead) {
   Toy toy;
   toy.write("head.toml", text({}));
   const SceneOutline outline = read_outline(path(toy, "head.toml"));
-  HeadRun head(make_head(outline, {models::HeadNumber::float64, 4}, 2), 2);
+  HeadRun head(make_head(outline, {models::HeadNumber::float64, 4}, 2).head, 2);
   std::vector<double> x;
   head.positions(0, x);
   for (const std::string bits : {"32", "64", "none"}) {
@@ -350,35 +351,84 @@ TEST(HeadOfHair, ADamagedStateOrFrameIsRefused) {
   expect_one_error(run(toy, "--resume", 2));
 }
 
-// A step of 0.05 s under ten thousand times gravity overflows on hair as soft as jelly
-// within seconds; hair of a stiffness that nothing bends does not move.
+// A step of 0.05 s under ten thousand times gravity makes nonsense of hair as soft as
+// jelly within seconds; hair of a stiffness that nothing bends does not move.
 TEST(HeadOfHair, LostStrandsAreNamedAndTheOthersGoOn) {
-  Toy toy;
   const Hair hair{.count = 8,
                   .top = "duration_s = 3\nframes_1_s = 20\n",
                   .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.05\n",
                   .groom = "[groom.material]\nyoungs_modulus_pa = 1e3\n",
                   .root = "motion = \"shake\"\namplitude_m = 0.1\nfrequency_hz = 3\n",
                   .more = "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e5]\n"};
-  toy.write("head.toml",
-            text(hair) +
-                "[[strand]]\nlength_m = 0.1\nelements = 6\n[strand.material]\n"
-                "youngs_modulus_pa = 1e15\n");
-  EXPECT_THAT(run(toy, "", 3).err, HasSubstr("of 9 strands were lost"));
-  const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
-  const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
-  ASSERT_EQ(series.rows.size(), 61U);
-  EXPECT_GT(lost.rows.size(), 0U);
-  EXPECT_EQ(series.rows.back().number("lost_strands"),
-            static_cast<double>(lost.rows.size()));
-  EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
-  double before = 0;
-  for (const Row& row : lost.rows) {
-    EXPECT_NE(row.text("strand"), "0");  // [[strand]] comes before [groom]
-    EXPECT_GE(row.number("t_s"), before);
-    before = row.number("t_s");
-    EXPECT_THAT(std::string(row.text("reason")), HasSubstr("finite"));
+  for (const bool guard : {true, false}) {
+    Toy toy;
+    toy.write("head.toml", text(hair) +
+                               "[[strand]]\nlength_m = 0.1\nelements = 6\n"
+                               "[strand.material]\nyoungs_modulus_pa = 1e15\n");
+    EXPECT_THAT(run(toy, guard ? "--frames 64" : "--frames 64 --no-guard", 3).err,
+                HasSubstr("of 9 strands were lost"));
+    const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
+    const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
+    ASSERT_EQ(series.rows.size(), 61U);
+    EXPECT_GT(lost.rows.size(), 0U);
+    EXPECT_EQ(series.rows.back().number("lost_strands"),
+              static_cast<double>(lost.rows.size()));
+    EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
+    // In hair that is left there is no more than falling for 3 s gives, with a tenth.
+    if (guard) {
+      EXPECT_LT(series.rows.back().number("most_kinetic_j"), 1e-4 * 3.3e5 * 3.3e5 / 2);
+    }
+    const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
+    double before = 0;
+    for (const Row& row : lost.rows) {
+      EXPECT_NE(row.text("strand"), "0");  // [[strand]] comes before [groom]
+      const double t = row.number("t_s");
+      EXPECT_GE(t, before);
+      before = t;
+      EXPECT_THAT(std::string(row.text("reason")),
+                  HasSubstr(guard ? "faster than its energy allows" : "finite"));
+      // Its shape stays from then on: the tip is as far from the root.
+      const auto frame = static_cast<std::size_t>(std::lround(t * 20));
+      const auto strand = static_cast<std::size_t>(row.number("strand"));
+      const auto reach = [&](std::size_t at) {
+        const std::vector<double> x = all_of(file, HeadFrames::dataset(at));
+        return norm(load3(&x[21 * strand + 18]) - load3(&x[21 * strand]));
+      };
+      // Roundings of places of some 0.2 m.
+      EXPECT_NEAR(reach(60), reach(frame), 1e-15);
+    }
   }
+}
+
+// What falls freely for a second is as fast as it may be.
+TEST(HeadGuard, AllowsWhatGravityAndTheHeadCanGive) {
+  HeadReach reach;
+  reach.gravity = {0, 0, -10};
+  reach.radius = 0.5;
+  const auto moving = [](double speed) {
+    models::HeadEnergy one;
+    one.mass = 2e-5;
+    one.kinetic = one.mass * speed * speed / 2;
+    return one;
+  };
+  HeadGuard guard(reach);
+  guard.start(std::vector{moving(0)});
+  for (int i = 0; i < 100; ++i) guard.step(0.01 * i, 0.01);
+  EXPECT_NEAR(guard.speed(), 10, 1e-12);
+  EXPECT_FALSE(guard.breached(1, moving(10)));
+  EXPECT_FALSE(guard.breached(1, moving(10.9)));
+  EXPECT_TRUE(guard.breached(1, moving(11.1)));
+  EXPECT_TRUE(guard.breached(1, moving(std::nan(""))));
+  models::HeadEnergy bent = moving(0);
+  bent.elastic = 2e-5 * 12 * 12 / 2;
+  EXPECT_TRUE(guard.breached(1, bent));
+  // A head that turns at 4 rad/s moves its farthest points by 2 m/s more.
+  reach.motion.rotations = {{{0, 0, 1}, [](double t) {
+                               return models::SignalValue{4 * t, 4, 0};
+                             }}};
+  HeadGuard turning(reach, guard.speed());
+  EXPECT_FALSE(turning.breached(1, moving(13.1)));
+  EXPECT_TRUE(turning.breached(1, moving(13.3)));
 }
 
 struct Refused {

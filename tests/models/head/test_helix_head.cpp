@@ -227,6 +227,26 @@ TEST(HelixHeadWithLosses, OtherStrandsGoOn) {
   }
 }
 
+// Even where its next step would be finite.
+TEST(HelixHeadWithLosses, WhatIsLostStaysWhereItIs) {
+  const Case c{"", 10, 4};
+  for (const HeadPack& pack : packs) {
+    const auto sound = head(c, pack, 20), hurt = head(c, pack, 20);
+    for (Head* all : {sound.get(), hurt.get()}) advance(*all, 10);
+    hurt->lose(3);
+    std::vector<double> q(30), v(30), want_q(30), want_v(30), held(30);
+    hurt->state(3, held, v);
+    for (Head* all : {sound.get(), hurt.get()}) advance(*all, 10);
+    for (std::size_t k = 0; k < 20; ++k) {
+      hurt->state(k, q, v);
+      sound->state(k, want_q, want_v);
+      EXPECT_EQ(hurt->lost(k), k == 3);
+      EXPECT_EQ(q, k == 3 ? held : want_q) << k;
+      EXPECT_EQ(v, k == 3 ? std::vector<double>(30) : want_v) << k;
+    }
+  }
+}
+
 TEST(HelixHeadMemory, IsTheStateAndTwentyNumbers) {
   const Case c{"", 10, 4};
   const auto all = head(c, {HeadNumber::float64, 8}, 16);
