@@ -103,29 +103,18 @@ double difference(const Work& work, int steps, const std::vector<double>& x) {
 }  // namespace
 
 void run_head(const Work& work, Row& row) {
-  std::optional<models::StrandInteraction> between;
-  if (work.acting == Acting::interaction) {
-    between.emplace(Parameters(models::strand_interaction_parameters(), "heads"),
-                    std::vector<int>(work.strands, work.elements + 1));
-  }
   std::optional<simulation::HeadRun> moving;
   row.set("build_s", seconds_of([&] {
-            moving.emplace(head(work, between ? &*between : nullptr), work.threads);
+            std::unique_ptr<models::StrandInteraction> between;
+            if (work.acting == Acting::interaction) {
+              between = std::make_unique<models::StrandInteraction>(
+                  Parameters(models::strand_interaction_parameters(), "heads"),
+                  std::vector<int>(work.strands, work.elements + 1));
+            }
+            auto made = head(work, between.get());
+            moving.emplace(std::move(made), work.threads, std::move(between));
           }));
   const Head& all = moving->head();
-  std::vector<double> places, speeds;
-  const auto exchange = [&](double t) {
-    if (!between) return;
-    places.resize(work.strands * all.numbers());
-    speeds.resize(places.size());
-    for (std::size_t b = 0, first = 0; b < all.blocks(); ++b) {
-      const std::size_t size = all.strands_of(b) * all.numbers();
-      all.motion(b, t, std::span(places).subspan(first, size),
-                 std::span(speeds).subspan(first, size));
-      first += size;
-    }
-    between->update(places, speeds);
-  };
   row.set("bytes_per_strand",
           static_cast<double>(all.bytes()) / static_cast<double>(work.strands));
   // Of steps longer than a frame the reading of points is timed with each.
@@ -135,10 +124,7 @@ void run_head(const Work& work, Row& row) {
   for (int f = 0; f < work.frames; ++f) {
     of_frames.push_back(seconds_of([&] {
       for (int s = 0; s < steps; ++s) {
-        of_steps.push_back(seconds_of([&] {
-          exchange(taken * work.dt);
-          moving->step(taken++ * work.dt, work.dt);
-        }));
+        of_steps.push_back(seconds_of([&] { moving->step(taken++ * work.dt, work.dt); }));
       }
       moving->positions(taken * work.dt, x);
     }));
@@ -164,7 +150,8 @@ void run_head(const Work& work, Row& row) {
                first.step, first.time, first.reason);
   }
   // Few hairs alone lack the neighbours that the others have.
-  if (!between) row.set("difference_rel", difference(work, taken, x));
+  if (work.acting != Acting::interaction)
+    row.set("difference_rel", difference(work, taken, x));
   row.set("state", fmt::format("{:016x}", all.hash()));
 }
 

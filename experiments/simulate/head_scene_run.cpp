@@ -76,10 +76,11 @@ class HeadSceneRun {
  private:
   void run(SceneRun& made) {
     HeadOutcome& outcome = made.head.emplace();
-    HeadReach reach;
+    std::optional<HeadReach> reach;
     outcome.build_s = seconds_of([&] {
       SceneHead made_head = make_head(outline_, options_.pack, options_.threads);
-      run_.emplace(std::move(made_head.head), options_.threads);
+      run_.emplace(std::move(made_head.head), options_.threads,
+                   std::move(made_head.interaction));
       reach = std::move(made_head.reach);
     });
     const std::vector<std::size_t> shown = shown_strands(run_->head().strands());
@@ -87,7 +88,7 @@ class HeadSceneRun {
     for (const Reading& column : head_series()) stored.columns.push_back(column.name);
     recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
                        options_.resume);
-    guard_.emplace(std::move(reach), recording_->progress().speed);
+    if (reach) guard_.emplace(std::move(*reach), recording_->progress().speed);
     advance(outcome);
     write_head_pictures(outline_, recording_->frames(), shown, options_);
     const auto whole = interruption_.hold();
@@ -145,17 +146,18 @@ class HeadSceneRun {
       const double t = begin + static_cast<double>(i) * h;
       run_->step(t, h);
       ++steps_;
-      guard_->step(t, h);
+      if (guard_) guard_->step(t, h);
       for (const auto& loss : run_->lost()) recording_->lose({loss.strand, t + h});
     }
   }
 
   void save_state(std::size_t step) {
-    recording_->save(run_->head(), step, guard_->speed());
+    recording_->save(run_->head(), step, guard_ ? guard_->speed() : 0);
   }
 
   /// Strands that go on where physics does not are lost from this frame on.
   void check(double t) {
+    if (!guard_) return;
     if (t == 0) guard_->start(energies_);
     if (!scene_.guard) return;
     Head& head = run_->head();

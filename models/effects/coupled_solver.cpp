@@ -11,11 +11,11 @@ namespace {
 
 /// Pattern of the derivatives of contacts between points that are means of coordinates
 /// (each P q).
-Pattern coupling_pattern(int coordinates, const std::vector<FourPoints>& contacts,
+Pattern coupling_pattern(int coordinates, const std::vector<CoupledPoints>& contacts,
                          const std::vector<MaterialPoints::Mean>& means) {
   std::vector<std::vector<int>> columns(static_cast<std::size_t>(coordinates));
   std::vector<int> all;
-  for (const FourPoints& contact : contacts) {
+  for (const CoupledPoints& contact : contacts) {
     all.clear();
     for (const std::size_t point : contact) {
       const MaterialPoints::Mean& mean = means[point];

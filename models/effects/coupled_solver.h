@@ -13,8 +13,8 @@
 namespace tress::models {
 
 /// Numbers of the four points of a contact.
-using FourPoints = std::array<std::size_t, 4>;
-inline FourPoints points_of(const Coupling& contact) {
+using CoupledPoints = std::array<std::size_t, 4>;
+inline CoupledPoints points_of(const Coupling& contact) {
   const auto& e = contact.ends;
   return {e[0].point, e[1].point, e[2].point, e[3].point};
 }
@@ -50,7 +50,7 @@ class CoupledSolver {
 
   std::vector<const Pattern*> uncoupled_;
   std::vector<Mean> means_;
-  std::vector<FourPoints> touching_, touched_;  // current, and in the pattern
+  std::vector<CoupledPoints> touching_, touched_;  // current, and in the pattern
   Pattern coupling_;
   std::vector<double> coupling_values_;
   std::unique_ptr<BlockMatrix> matrix_;  // the uncoupled ones, then the coupling

@@ -71,7 +71,7 @@ void CoupledStrands::check_and_join(std::size_t k) {
 
 /// Couples the coordinates of all segments that may touch.
 void CoupledStrands::couple() {
-  std::vector<FourPoints> touching;
+  std::vector<CoupledPoints> touching;
   for (std::size_t i = 0; i < contacts_->segments(); ++i) {
     const std::size_t own = contacts_->point(static_cast<int>(i));
     for (const int partner : contacts_->partners(i)) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,15 @@ struct HeadOptions {
   /// couple points (self_contact) or hold contact forces (friction_law = exact).
   Effects effects = {};
 };
+
+/// Why a head cannot have an effect, and what would help; nothing if it can.
+struct HeadRefusal {
+  std::string reason, remedy;
+};
+std::optional<HeadRefusal> refused_by_heads(const Effect& effect);
+/// Effects that the other numbers say as well, uniform accelerations and linear drag,
+/// join them; the others are left.
+HeadOptions with_uniform_effects(HeadOptions options);
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
 /// shorter numbers are faster on machines with registers of that size; the lanes of a

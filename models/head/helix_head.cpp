@@ -26,6 +26,7 @@ class HelixHead final : public Head {
         units_(HeadUnits::of(options.longest)) {
     options_.motion.frame = {};
     for (const auto& effect : options_.effects) {
+      check_for_head(*effect);
       if (effect->rigid_contact() != nullptr) {
         bodies_.push_back(effect->rigid_contact());
       } else {

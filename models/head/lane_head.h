@@ -59,34 +59,11 @@ inline void check_for_head(const Strand& strand, std::size_t elements) {
   }
 }
 
-/// Throws InputError on an effect that acts between points, or holds forces between
-/// steps.
+/// Throws InputError on an effect that heads refuse.
 inline void check_for_head(const Effect& effect) {
-  const std::string name(effect.name());
-  refuse_if(effect.for_strand(0) != nullptr,
-            "effect " + name + " holds contact forces between steps", place_of_head,
-            "set friction_law = \"regularised\", or run the strands one by one");
-  refuse_if(effect.needs().couplings,
-            "effect " + name + " couples the points of a strand", place_of_head,
-            "leave it out, or run the strands one by one");
-}
-
-/// Effects that the other numbers say as well, uniform accelerations and linear drag,
-/// join them; the others are left.
-inline HeadOptions with_uniform_effects(HeadOptions options) {
-  std::erase_if(options.effects, [&](const auto& effect) {
-    check_for_head(*effect);
-    if (const auto acceleration = effect->uniform_acceleration()) {
-      options.gravity = options.gravity + *acceleration;
-      return true;
-    }
-    const auto viscosity = effect->viscosity();
-    if (!viscosity) return false;
-    options.drag += viscosity->per_length;
-    options.mass_damping += viscosity->per_mass;
-    return true;
-  });
-  return options;
+  if (const auto no = refused_by_heads(effect)) {
+    throw InputError(no->reason, place_of_head, no->remedy);
+  }
 }
 
 /// What several threads find.

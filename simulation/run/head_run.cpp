@@ -13,8 +13,9 @@ constexpr std::size_t parts_of_worker = 32, blocks_of_part = 12;
 
 }  // namespace
 
-HeadRun::HeadRun(std::unique_ptr<Head> head, int threads)
-    : head_(std::move(head)), crew_(threads) {
+HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
+                 std::unique_ptr<models::StrandInteraction> interaction)
+    : interaction_(std::move(interaction)), head_(std::move(head)), crew_(threads) {
   const std::size_t blocks = head_->blocks(), workers = static_cast<std::size_t>(threads);
   const std::size_t parts = std::max(
       std::min(blocks, workers), std::min((blocks + blocks_of_part - 1) / blocks_of_part,
@@ -40,7 +41,24 @@ void HeadRun::each_block(Use use) {
   });
 }
 
+void HeadRun::exchange(double t) {
+  if (!interaction_) return;
+  const std::size_t each = head_->numbers();
+  x_.resize(each * head_->strands());
+  v_.resize(x_.size());
+  each_block([&](std::size_t block, std::size_t first) {
+    const std::size_t size = each * head_->strands_of(block);
+    head_->motion(block, t, std::span(x_).subspan(each * first, size),
+                  std::span(v_).subspan(each * first, size));
+  });
+  interaction_->update(
+      x_, v_, [this](std::size_t count, const std::function<void(std::size_t)>& work) {
+        crew_.run(count, work);
+      });
+}
+
 void HeadRun::step(double t, double h) {
+  exchange(t);
   share([&](std::size_t first, std::size_t last, Head::Scratch& scratch) {
     head_->step(first, last, t, h, scratch);
   });

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/run/crew.h"
 
@@ -11,7 +12,9 @@ namespace tress::simulation {
 /// A head that is advanced and read by a crew, each worker with its share of the blocks.
 class HeadRun {
  public:
-  HeadRun(std::unique_ptr<Head> head, int threads);
+  /// With the interaction whose effects the head's strands have, if there is one.
+  HeadRun(std::unique_ptr<Head> head, int threads,
+          std::unique_ptr<models::StrandInteraction> interaction = {});
 
   /// From t to t + h (s). Methods that iterate get blocks by the dozen, so that their
   /// lanes find strands to go on with.
@@ -37,7 +40,12 @@ class HeadRun {
   template <class Use>
   void each_block(Use use);
 
+  /// Strands see each other where they are at t.
+  void exchange(double t);
+
+  std::unique_ptr<models::StrandInteraction> interaction_;
   std::unique_ptr<Head> head_;
+  std::vector<double> x_, v_;  // of exchange()
   Crew crew_;
   std::vector<std::unique_ptr<Head::Scratch>> scratch_;  // of parts of the head
   std::vector<models::HeadLoss> lost_;

@@ -79,18 +79,31 @@ std::optional<NoHead> no_strands(const Scene& scene) {
   return {};
 }
 
-/// Effects that a Head has.
-bool add_effect(const EffectChoice& choice, HeadOptions& options) {
-  const Parameters& p = choice.parameters;
-  if (choice.entry->id == "gravity") {
-    options.gravity = options.gravity + p.vec("gravity_m_s2");
-  } else if (choice.entry->id == "linear_drag") {
-    options.drag += p.number("drag_kg_m_s");
-    options.mass_damping += p.number("mass_damping_1_s");
-  } else {
-    return false;
+std::optional<NoHead> no_effects(const Scene& scene) {
+  for (const EffectChoice& choice : scene.effects) {
+    const auto effect = make_effect(scene, choice);
+    if (effect != nullptr) {
+      if (auto no = models::refused_by_heads(*effect))
+        return NoHead{no->reason, no->remedy};
+    } else if (&choice.parameters != scene.interaction()) {
+      return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
+                    "leave it out"};
+    } else if (choice.parameters.word("coupling") == "monolithic") {
+      return NoHead{"strands of a head are no system of one",
+                    "give [effects.strand_interaction] coupling = \"lagged\""};
+    }
   }
-  return true;
+  return {};
+}
+
+/// Whether what acts beside gravity and drag does no work in the frame of the head.
+bool at_rest_in_head(const Scene& scene) {
+  return std::ranges::all_of(scene.effects, [&](const EffectChoice& choice) {
+    const auto effect = make_effect(scene, choice);
+    return effect != nullptr && (effect->uniform_acceleration() || effect->viscosity() ||
+                                 (effect->rigid_contact() != nullptr &&
+                                  choice.parameters.word("moves") == "head"));
+  });
 }
 
 HeadOptions options_of(const Scene& scene) {
@@ -101,8 +114,8 @@ HeadOptions options_of(const Scene& scene) {
   options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
   options.gravity = {};
   options.motion = scene.head;
-  for (const EffectChoice& choice : scene.effects) add_effect(choice, options);
-  return options;
+  options.effects = make_effects(scene);
+  return with_uniform_effects(std::move(options));
 }
 
 /// Calls use(k, strand, part) for k in [begin, end), in parts that work at the same time;
@@ -161,13 +174,7 @@ std::optional<NoHead> no_head(const SceneOutline& outline) {
   if (auto no = no_model(scene)) return no;
   if (auto no = no_method(scene)) return no;
   if (auto no = no_strands(scene)) return no;
-  HeadOptions ignored;
-  for (const EffectChoice& choice : scene.effects) {
-    if (add_effect(choice, ignored)) continue;
-    return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
-                  "leave it out"};
-  }
-  return {};
+  return no_effects(scene);
 }
 
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
@@ -184,7 +191,13 @@ SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threa
   for (const Extent& extent : extents) all.include(extent);
   options.longest = all.length;
   if (options.points == 0) options.points = models::quadrature_points(all.winding);
-  std::unique_ptr<Head> head = helix_head(options, pack);
+  SceneHead made_head;
+  if (const Parameters* between = outline.scene.interaction()) {
+    made_head.interaction = std::make_unique<models::StrandInteraction>(
+        *between, std::vector<int>(series.size(), options.elements + 1));
+  }
+  made_head.head = helix_head(options, pack);
+  Head* const head = made_head.head.get();
   head->reserve(series.size());
   constexpr std::size_t at_once = 1024;
   std::vector<Strand> made(std::min(at_once, series.size()));
@@ -194,11 +207,17 @@ SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threa
                 [&](std::size_t k, Strand strand, std::size_t) {
                   made[k - begin] = std::move(strand);
                 });
-    for (std::size_t k = begin; k < end; ++k) head->add(made[k - begin]);
+    for (std::size_t k = begin; k < end; ++k) {
+      models::Effects own;
+      if (made_head.interaction) own.push_back(made_head.interaction->effect(k));
+      head->add(made[k - begin], std::move(own));
+    }
   }
-  return {std::move(head),
-          {options.motion, options.gravity, all.radius,
-           options.drag * all.lightest + options.mass_damping}};
+  if (at_rest_in_head(outline.scene)) {
+    made_head.reach = {options.motion, options.gravity, all.radius,
+                       options.drag * all.lightest + options.mass_damping};
+  }
+  return made_head;
 }
 
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {
@@ -209,7 +228,15 @@ std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {
   const auto lanes = static_cast<std::size_t>(pack.lanes);
   for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
   const std::size_t blocks = (outline.series->size() + lanes - 1) / lanes;
-  return block->bytes() * blocks;
+  std::size_t bytes = block->bytes() * blocks;
+  if (outline.scene.interaction() != nullptr) {
+    // Places and velocities of the points, and what StrandPartners keeps of them with as
+    // many candidates as hairs of a dense head have.
+    constexpr std::size_t kept_of_point = 500;
+    bytes += outline.series->size() *
+             (16 * block->numbers() + kept_of_point * block->numbers() / 3);
+  }
+  return bytes;
 }
 
 }  // namespace tress::simulation

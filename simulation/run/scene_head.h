@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/scene/scene.h"
 
@@ -31,8 +32,9 @@ struct HeadReach {
 /// number of quadrature points that any strand needs, if the scene does not say how many.
 /// Two passes over the strands by so many threads, a thousand at a time.
 struct SceneHead {
+  std::unique_ptr<models::StrandInteraction> interaction;  // or null; outlives the head
   std::unique_ptr<Head> head;
-  HeadReach reach;
+  std::optional<HeadReach> reach;  // none: more acts than the bound knows
 };
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
 
