@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "models/head/helix_energies.h"
 #include "models/head/helix_loads.h"
+#include "models/head/helix_places.h"
 #include "models/head/helix_strand.h"
 #include "models/head/lane_head.h"
 
@@ -159,31 +160,11 @@ class HelixHead final : public Head {
   }
 
   void positions(std::size_t block, double t, std::span<double> x) const override {
-    follow(block, t, [&](std::size_t i, const Vec& from, const Vec3<T>& at, const auto&) {
-      store(from, units_.length, at, i, block, x);
-    });
+    places(block, t).write(strands_of(block), x, {});
   }
   void motion(std::size_t block, double t, std::span<double> x,
               std::span<double> v) const override {
-    const HelixRoot<T> root = root_of(roots_[block], options_.motion.at(t));
-    const T length = materials_[block].length;
-    Vec3<T> velocity = root.v, omega = root.omega;
-    follow(
-        block, t,
-        [&](std::size_t i, const Vec& from, const Vec3<T>& at, const FrameOf<T>& frame) {
-          store(from, units_.length, at, i, block, x);
-          store({}, units_.speed(), frame * velocity, i, block, v);
-          if (i == n_) return;
-          const Vec3<T>&kappa = q_[n_ * block + i], &rate = v_[n_ * block + i];
-          const HelixElement<T> element(kappa, rate);
-          const LaneFunctions<T> functions(kappa, length);
-          const HelixFunctions<T> f = functions.at(length);
-          const auto turn = element.turn(length, f, functions.x2());
-          velocity =
-              turn.rotation.back(velocity + cross(omega, element.position(length, f)) +
-                                 element.slope(f) * rate);
-          omega = turn.rotation.back(omega + turn.velocity);
-        });
+    places(block, t).write(strands_of(block), x, v);
   }
   void state(std::size_t strand, std::span<double> q,
              std::span<double> v) const override {
@@ -374,34 +355,19 @@ class HelixHead final : public Head {
     }
   }
 
-  /// Calls see(i, the head's position, the root or the tip of an element seen from there,
-  /// its frame) from the root to the tip.
-  template <class See>
-  void follow(std::size_t block, double t, See see) const {
+  HelixPlaces<T> places(std::size_t block, double t) const {
     const RootPose pose = options_.motion.at(t);
     const Root& root = roots_[block];
-    const T length = materials_[block].length;
-    FrameOf<T> frame = FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2};
-    Vec3<T> at = frame * root.from;
-    frame = frame * root.frame;
-    see(0, pose.x, at, frame);
-    for (std::size_t i = 0; i < n_; ++i) {
-      const Vec3<T>& kappa = q_[n_ * block + i];
-      const HelixElement<T> element(kappa, {});
-      const LaneFunctions<T> functions(kappa, length);
-      const HelixFunctions<T> f = functions.at(length);
-      at = at + frame * element.position(length, f);
-      const Matrix3<T> turn = element.turn(length, f, functions.x2()).rotation;
-      frame = frame * FrameOf<T>{turn.column(0), turn.column(1), turn.column(2)};
-      see(i + 1, pose.x, at, frame);
-    }
-  }
-  /// from + unit x, of all strands.
-  void store(const Vec& from, double unit, const Vec3<T>& x, std::size_t i,
-             std::size_t block, std::span<double> to) const {
-    for (std::size_t k = 0; k < strands_of(block); ++k) {
-      store3(from + unit * lane_of(x, static_cast<int>(k)), &to[3 * (k * (n_ + 1) + i)]);
-    }
+    return {pose,
+            root.from,
+            root.frame,
+            root_of(root, pose),
+            materials_[block].length,
+            n_,
+            &q_[n_ * block],
+            &v_[n_ * block],
+            units_.length,
+            units_.speed()};
   }
 
   HeadOptions options_;
