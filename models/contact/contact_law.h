@@ -72,7 +72,8 @@ class ContactLaw {
 };
 
 template <class T>
-[[gnu::always_inline]] inline ContactLaw::Factors<T> ContactLaw::factors(const Vec3<T>& d) const noexcept {
+[[gnu::always_inline]] inline ContactLaw::Factors<T> ContactLaw::factors(
+    const Vec3<T>& d) const noexcept {
   const double off = rounded_off * law_.inner, width = law_.outer - law_.inner;
   const T rho = root(dot(d, d) + T(off * off)), inverse = T(1) / rho;
   const T over = T(law_.inner) * inverse;  // P/rho

@@ -66,7 +66,7 @@ void choose(const Pack& square, const Pack& least, const Vec3<Pack>& from,
 
 template <class Segments>
 FourLoads sum_loads(const ContactLaw& law, double reach, std::span<const int> list,
-                    const Segments& segments, const FourPoints& p) {
+                    const Segments& segments, const PointLanes& p) {
   FourLoads sum{};
   const Pack far(reach * reach);
   for (std::size_t k = 0; k < list.size();) {
@@ -124,7 +124,7 @@ bool within(const Vec3<Pack>& x, const Segment& segment, double square) {
 }  // namespace
 
 PointGroups::PointGroups(const StrandPartners& partners, int strand, double beyond)
-    : partners_(partners), strand_(strand), reach_(partners.reach() + beyond) {}
+    : partners_(&partners), strand_(strand), reach_(partners.reach() + beyond) {}
 
 void PointGroups::ready(In x, In length, double elapsed) {
   groups_.resize((length.size() + four - 1) / four);
@@ -143,9 +143,9 @@ void PointGroups::ready(In x, In length, double elapsed) {
 /// Whether all that is near now is listed: own points and partners have not come nearer
 /// to each other than by the margin.
 bool PointGroups::stands(const Group& group) const {
-  if (group.epoch != partners_.epochs()) return false;
-  const double room = partners_.margin() - partners_.moved() - group.moved;
-  const Vec3<Pack> moved = partners_.at_epoch(group.x) - group.listed;
+  if (group.epoch != partners_->epochs()) return false;
+  const double room = partners_->margin() - partners_->moved() - group.moved;
+  const Vec3<Pack> moved = partners_->at_epoch(group.x) - group.listed;
   // Lanes without a point have not moved.
   const Pack square =
       where_less(dot(group.x, group.x), Pack(infinity), dot(moved, moved), Pack(0));
@@ -153,9 +153,9 @@ bool PointGroups::stands(const Group& group) const {
 }
 
 void PointGroups::list(Group& group, double elapsed) {
-  group.listed = partners_.at_epoch(group.x);
-  group.epoch = partners_.epochs();
-  group.moved = partners_.moved();
+  group.listed = partners_->at_epoch(group.x);
+  group.epoch = partners_->epochs();
+  group.moved = partners_->moved();
   group.list.clear();
   // The points lie about the piece from the first to the last one.
   Vec ends[2];
@@ -173,11 +173,11 @@ void PointGroups::list(Group& group, double elapsed) {
     const Vec at = lane_of(group.listed, lane);
     if (is_finite(at)) beside = std::max(beside, norm(at - axis.at(axis.nearest(at))));
   }
-  const double wide = (reach_ + partners_.margin()) * rounding;
-  partners_.near(axis, wide + beside, strand_, found_);
-  const SegmentCells& all = partners_.segments();
+  const double wide = (reach_ + partners_->margin()) * rounding;
+  partners_->near(axis, wide + beside, strand_, found_);
+  const SegmentCells& all = partners_->segments();
   group.list.reserve(found_.size());
-  with_segments(partners_, elapsed, [&](const auto& segments) {
+  with_segments(*partners_, elapsed, [&](const auto& segments) {
     for (const int i : found_) {
       if (within(group.x, segments(i), wide * wide)) group.list.push_back(2 * i);
     }
@@ -194,21 +194,21 @@ FourLoads PointGroups::loads(std::size_t group, const ContactLaw& law, In v,
                              double elapsed) const {
   const Group& g = groups_[group];
   if (g.list.empty()) return FourLoads{};
-  FourPoints p{g.x, {}};
+  PointLanes p{g.x, {}};
   for (std::size_t lane = 0; lane < four; ++lane) {
     const std::size_t i = four * group + lane;
     if (3 * i < v.size()) set_lane(p.v, static_cast<int>(lane), load3(&v[3 * i]));
   }
-  return with_segments(partners_, elapsed, [&](const auto& segments) {
+  return with_segments(*partners_, elapsed, [&](const auto& segments) {
     return sum_loads(law, reach_, g.list, segments, p);
   });
 }
 
-bool PointGroups::touched(std::size_t group, double elapsed) const {
+bool PointGroups::touched(std::size_t group, double radius, double elapsed) const {
   const Group& g = groups_[group];
-  return with_segments(partners_, elapsed, [&](const auto& segments) {
+  return with_segments(*partners_, elapsed, [&](const auto& segments) {
     return std::ranges::any_of(g.list, [&](int entry) {
-      return within(g.x, segments(entry >> 1), reach_ * reach_);
+      return within(g.x, segments(entry >> 1), radius * radius);
     });
   });
 }

@@ -11,7 +11,7 @@
 namespace tress::models {
 
 /// Four neighbouring points of a strand, one per lane; NaN where there is none.
-struct FourPoints {
+struct PointLanes {
   Vec3<Pack> x, v;
 };
 
@@ -40,8 +40,9 @@ class PointGroups {
   bool feels(std::size_t group) const { return !groups_[group].list.empty(); }
   /// Of a group made ready, at the same time.
   FourLoads loads(std::size_t group, const ContactLaw& law, In v, double elapsed) const;
-  /// Whether some segment is within the reach and what is beyond.
-  bool touched(std::size_t group, double elapsed) const;
+  /// Whether some segment comes as near as that (m), at most the reach and what is
+  /// beyond.
+  bool touched(std::size_t group, double radius, double elapsed) const;
 
   std::size_t bytes() const;
 
@@ -57,7 +58,7 @@ class PointGroups {
   bool stands(const Group& group) const;
   void list(Group& group, double elapsed);
 
-  const StrandPartners& partners_;
+  const StrandPartners* partners_;
   int strand_;
   double reach_;
   std::vector<Group> groups_;

@@ -7,7 +7,7 @@ namespace tress::models {
 namespace {
 
 constexpr int most_iterations = 30;  // two or three where the points moved rigidly
-constexpr double flat = 1e-9;        // determinant over the cube of the size
+constexpr double flat = 1e-9;        // second singular value over the first
 constexpr double done = 1e-14;
 
 double square(const Frame& a) {
@@ -31,9 +31,16 @@ RigidMotion rigid_motion(std::span<const Vec> before, std::span<const Vec> now) 
     const Vec a = before[i] - from, b = now[i] - to;
     h = {h.e0 + a.x * b, h.e1 + a.y * b, h.e2 + a.z * b};
   }
-  const double size = std::sqrt(square(h) / 3);
-  if (!(dot(h.e0, cross(h.e1, h.e2)) > flat * size * size * size)) return {};
+  const double size = std::sqrt(square(h));
+  if (!(size > 0)) return {};
   h = {(1 / size) * h.e0, (1 / size) * h.e1, (1 / size) * h.e2};
+  // With H = U S V^T the matrix of cofactors is U cof(S) V^T: added, it leaves the polar
+  // factor as it is and gives points in a plane their normal.
+  const Frame normal{cross(h.e1, h.e2), cross(h.e2, h.e0), cross(h.e0, h.e1)};
+  const double area = std::sqrt(square(normal));
+  if (!(area > flat)) return {};
+  h = {h.e0 + (1 / area) * normal.e0, h.e1 + (1 / area) * normal.e1,
+       h.e2 + (1 / area) * normal.e2};
   for (int k = 0; k < most_iterations; ++k) {
     // The inverse's transpose has the cross products of columns over the determinant.
     const double by = 1 / dot(h.e0, cross(h.e1, h.e2));

@@ -22,9 +22,8 @@ struct RigidMotion {
 
 /// The rigid motion that takes points `before` to `now` with the least sum of squared
 /// distances: the rotation is the polar factor of sum (now - mean)(before - mean)^T, by
-/// Newton's iteration [Higham, Computing the polar decomposition, SIAM J. Sci. Stat.
-/// Comput. 7(4), 1986]. Where points lie in a plane or do not determine it, or are not
-/// finite: no motion.
+/// Newton's iteration [Higham 1986]. Where points lie on a line, which does not determine
+/// it, or are not finite: no motion.
 RigidMotion rigid_motion(std::span<const Vec> before, std::span<const Vec> now);
 
 }  // namespace tress::models

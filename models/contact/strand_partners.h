@@ -10,7 +10,8 @@
 namespace tress::models {
 
 /// The polylines of many strands as others see them until the next update, and what is
-/// needed to keep lists of those nearby: all that comes within `reach` + margin() of a
+/// needed to keep lists of those nearby, since they hardly change from step to step
+/// [Bertails et al. 2006, section 4.1]: all that comes within `reach` + margin() of a
 /// place is a candidate there while nothing has moved too far since the epoch. Distances
 /// moved are relative to the head, whose rigid motion is that of the strands' first
 /// points, or to the ground, whichever is less. An epoch ends, and segments are sorted

@@ -131,9 +131,13 @@ TEST(RigidMotion, IsFoundFromPointsThatMovedWithIt) {
     // Rounding of 5 m.
     EXPECT_LT(norm(found.back(now[i]) - before[i]), 1e-14);
   }
-  // Two points, or all in a plane, do not determine it.
-  const std::vector<Vec> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  EXPECT_EQ(norm(rigid_motion(flat, flat).back(shift) - shift), 0);
+  // In a plane as well; on a line they do not determine it.
+  const std::vector<Vec> flat{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}},
+      turned{turn * flat[0], turn * flat[1], turn * flat[2]};
+  const RigidMotion of_flat = rigid_motion(flat, turned);
+  EXPECT_LT(norm(of_flat.back(turn * Vec{0, 0, 1}) - Vec{0, 0, 1}), 1e-14);
+  const std::vector<Vec> line{{0, 0, 0}, {1, 0, 0}}, elsewhere{{0, 0, 1}, {0, 1, 1}};
+  EXPECT_EQ(norm(rigid_motion(line, elsewhere).back(shift) - shift), 0);
   before.back().x = std::nan("");
   EXPECT_EQ(norm(rigid_motion(before, now).back(shift) - shift), 0);
 }
