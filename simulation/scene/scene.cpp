@@ -183,6 +183,7 @@ class Reader {
     }
     CutStrands cut = cut_strands(tables, scene_.head, scene_.seed);
     scene_.strands = std::move(cut.strands);
+    scene_.followers = std::move(cut.followers);
     for (const std::size_t i : cut.source) {
       places_.strands.push_back(tables.sources[i].table.place());
     }

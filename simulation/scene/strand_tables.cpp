@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "simulation/scene/groom.h"
+#include "simulation/scene/guide_choice.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/strand_table.h"
 
@@ -25,6 +26,24 @@ std::vector<Strand> strands_of(const StrandSource& source, const Common& common,
   return groom_strands(source.table, own, common, strands, most);
 }
 
+/// Leaves the guides of a groom, if it has any, and moves the others to the followers.
+void keep_guides(const Table& groom, std::uint64_t seed, std::vector<Strand>& strands,
+                 std::vector<Strand>& followers) {
+  const auto guides = static_cast<std::size_t>(groom.values().whole("guides"));
+  if (guides == 0) return;
+  if (guides > strands.size()) {
+    throw InputError(fmt::format("{} guides of {} strands", guides, strands.size()),
+                     groom.place("guides"), "give at most as many as there are strands");
+  }
+  const std::vector<std::size_t> chosen = choose_guides(strands, guides, seed);
+  std::vector<Strand> kept;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    const bool guide = std::ranges::binary_search(chosen, i);
+    (guide ? kept : followers).push_back(std::move(strands[i]));
+  }
+  strands = std::move(kept);
+}
+
 void set_elements(StrandSource& source, long elements) {
   const std::string place = source.table.place("elements");
   source.table.set("elements", std::to_string(elements), place);
@@ -40,7 +59,9 @@ CutStrands cut_strands(const StrandTables& tables, const RootMotion& head,
   std::size_t elements = 0;
   for (std::size_t i = 0; i < tables.sources.size(); ++i) {
     const StrandSource& source = tables.sources[i];
-    for (Strand& strand : strands_of(source, common, all.strands.size(), elements)) {
+    std::vector<Strand> made = strands_of(source, common, all.strands.size(), elements);
+    if (source.groom) keep_guides(source.table, seed, made, all.followers);
+    for (Strand& strand : made) {
       elements += strand.segments.size();
       all.strands.push_back(std::move(strand));
       all.source.push_back(i);

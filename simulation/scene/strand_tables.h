@@ -25,6 +25,7 @@ struct StrandTables {
 struct CutStrands {
   std::vector<Strand> strands;
   std::vector<std::size_t> source;  // of every strand, its index in StrandTables
+  std::vector<Strand> followers;    // of grooms with guides, all others
 };
 
 /// Throws InputError with the location of an invalid key, and on more strands or elements
