@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contract/input_error.h"
+#include "simulation/scene/guide_choice.h"
 
 namespace tress::simulation {
 namespace {
@@ -20,19 +21,59 @@ Frame turned(const RootMotion& head, double t) {
 
 FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs)
     : head_(scene.head) {
-  if (hairs == 0) return;
+  const bool follows = !scene.followers.empty();
+  if (hairs == 0 && !follows) return;
+  if (hairs > 0 && follows) {
+    throw InputError("hairs beside those that follow the guides of a groom", "--hairs",
+                     "leave it out, or the groom's guides");
+  }
   const bool alike = std::ranges::all_of(guides, [&](int n) { return n == guides[0]; });
-  if (scene.strands.size() < 3 || guides.size() != scene.strands.size() || !alike) {
+  const auto as_guides = [&](const Strand& strand) {
+    return static_cast<int>(strand.segments.size()) + 1 == guides[0];
+  };
+  if (scene.strands.size() < 3 || guides.size() != scene.strands.size() || !alike ||
+      !std::ranges::all_of(scene.followers, as_guides)) {
     throw InputError(
         "hairs between strands need three strands or more, all of as many "
         "elements",
-        "--hairs", "leave it out for scene " + scene.name);
+        follows ? "guides" : "--hairs", "leave it out for scene " + scene.name);
   }
   std::vector<Vec> roots;
   for (const Strand& strand : scene.strands) roots.push_back(strand.root.position);
   points_ = static_cast<std::size_t>(guides[0]);
+  if (follows) {
+    follow(scene, roots);
+    return;
+  }
   hair_.emplace(roots, scatter_roots(roots, hairs, scene.seed), points_,
                 GuideHairOptions{.seed = scene.seed});
+}
+
+void FullHair::follow(const Scene& scene, const std::vector<Vec>& roots) {
+  std::vector<Vec> hair_roots, guides, hairs;
+  for (const Strand& strand : scene.strands) {
+    const std::vector<Vec> x = initial_points(strand);
+    guides.insert(guides.end(), x.begin(), x.end());
+  }
+  for (const Strand& strand : scene.followers) {
+    hair_roots.push_back(strand.root.position);
+    const std::vector<Vec> x = initial_points(strand);
+    hairs.insert(hairs.end(), x.begin(), x.end());
+  }
+  // Sparse guides are farther apart than those between which hair has no shape of its
+  // own.
+  GuideHairOptions options{.clumpiness = 0, .seed = scene.seed};
+  const GuideHair near(roots, hair_roots, points_, options);
+  double sum = 0;
+  for (std::size_t h = 0; h < near.hairs(); ++h) {
+    const auto& guide = near.neighbours(h).guide;
+    sum +=
+        norm(guides[(guide[0] + 1) * points_ - 1] - guides[(guide[1] + 1) * points_ - 1]);
+  }
+  options.tip_limit =
+      std::max(options.tip_limit, 2 * sum / static_cast<double>(near.hairs()));
+  hair_.emplace(roots, hair_roots, points_, options);
+  hair_->keep_shapes(guides, turned(head_, 0), hairs);
 }
 
 std::vector<int> FullHair::lines(std::span<const int> guides) const {

@@ -11,11 +11,12 @@ namespace tress::simulation {
 
 /// Hairs drawn between simulated strands (GuideHair), after them in every frame; in about
 /// 60 evenly chosen frames of a recording. A hair takes the channel values of its own
-/// guide.
+/// guide. Where grooms have guides, the strands that follow these, with their own shapes.
 class FullHair {
  public:
   /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
-  /// lines are not strands of equally many points, three at least. hairs = 0: draws none.
+  /// lines are not strands of equally many points, three at least, and beside followers.
+  /// hairs = 0: draws the followers only.
   FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
 
   std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }
@@ -25,6 +26,8 @@ class FullHair {
 
  private:
   Frame3d grown(const Frame3d& guides) const;
+
+  void follow(const Scene& scene, const std::vector<Vec>& roots);
 
   const RootMotion& head_;
   std::size_t points_ = 0;  // of each line

@@ -219,9 +219,34 @@ void GuideHair::grow(std::span<const Vec> guides, const Frame& head,
       const double width = 1 - options_.clumpiness * s * (1 - options_.tip_width);
       const Vec lock = guides[own + i] + width * (carried[own + i] * offset);
       const double m = smooth(2 * (s - 1 + 1.5 * clumpiness_[h]));
-      hairs[h * n + i] = (1 - m) * mean + m * lock;
+      Vec& hair = hairs[h * n + i];
+      hair = (1 - m) * mean + m * lock;
+      if (!own_shapes_.empty()) {
+        hair = hair + carried[own + i] * own_shapes_[h * n + i];
+      }
     }
   }
+}
+
+void GuideHair::keep_shapes(std::span<const Vec> guides, const Frame& head,
+                            std::span<const Vec> hairs) {
+  own_shapes_.clear();
+  std::vector<Vec> shapes(hairs.size());
+  grow(guides, head, shapes);
+  std::vector<Frame> carried(guides.size());
+  for (std::size_t g = 0; g < guide_roots_.size(); ++g) {
+    const std::size_t first = g * points_;
+    carry(guides.subspan(first, points_), head,
+          std::span(carried).subspan(first, points_));
+  }
+  for (std::size_t h = 0; h < hair_roots_.size(); ++h) {
+    const std::size_t own = neighbours_[h].guide[0] * points_;
+    for (std::size_t i = 0; i < points_; ++i) {
+      Vec& shape = shapes[h * points_ + i];
+      shape = carried[own + i].back(hairs[h * points_ + i] - shape);
+    }
+  }
+  own_shapes_ = std::move(shapes);
 }
 
 }  // namespace tress::simulation

@@ -70,6 +70,13 @@ class GuideHair {
   const Neighbours& neighbours(std::size_t hair) const { return neighbours_[hair]; }
   std::size_t hairs() const { return hair_roots_.size(); }
 
+  /// From now on every hair keeps its own shape: it differs from that of the formula
+  /// above by as much as it does now, carried along by T_o(s) H of its own guide.
+  /// Arguments as for grow(); `hairs` is where they are while the guides are where they
+  /// are told.
+  void keep_shapes(std::span<const Vec> guides, const Frame& head,
+                   std::span<const Vec> hairs);
+
   /// One frame, in the world. guides: guide after guide, root to tip; head: maps
   /// components in the head's frame to world components; hairs (out): in the same order
   /// as their roots. Throws InputError if a length is not guides x points or hairs x
@@ -82,6 +89,7 @@ class GuideHair {
   GuideHairOptions options_;
   std::vector<Neighbours> neighbours_;
   std::vector<double> clumpiness_;  // of each hair
+  std::vector<Vec> own_shapes_;     // of each hair, in its guide's cross-sections
 };
 
 }  // namespace tress::simulation

@@ -69,6 +69,9 @@ std::optional<NoHead> no_strands(const Scene& scene) {
           fmt::format("strands of {} and of {} elements", elements, p.whole("elements")),
           "give all equally many elements"};
     }
+    if (source.groom && p.whole("guides") > 0) {
+      return NoHead{"all strands of a head are simulated", "leave out guides"};
+    }
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};
     }

@@ -45,7 +45,9 @@ Scene cut_anew(Scene scene, const Change& changed) {
     throw std::logic_error("strands that no table says cannot be cut anew");
   }
   auto tables = std::make_shared<StrandTables>(changed(*scene.tables));
-  scene.strands = StrandSeries(tables, scene.head, scene.seed, held_at_once).all();
+  CutStrands cut = StrandSeries(tables, scene.head, scene.seed, held_at_once).all();
+  scene.strands = std::move(cut.strands);
+  scene.followers = std::move(cut.followers);
   scene.tables = std::move(tables);
   return scene;
 }

@@ -29,6 +29,14 @@ constexpr Parameter own_parameters[] = {
      .number = 0,
      .min = 0,
      .max = 1e9},
+    {.name = "guides",
+     .help =
+         "so many strands are simulated, chosen among all, and the others follow them "
+         "in pictures; 0: every strand is simulated",
+     .number = 0,
+     .min = 0,
+     .max = 1e5,
+     .whole = true},
     {.name = "centre_m",
      .help = "of the head, an ellipsoid x, y, z (m)",
      .min = -1e3,

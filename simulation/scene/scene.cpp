@@ -193,14 +193,11 @@ class Reader {
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
     series_ = std::make_shared<const StrandSeries>(
         scene_.tables, scene_.head, scene_.seed, outlined ? made_singly : held_at_once);
-    const auto add = [&](std::size_t k) {
-      scene_.strands.push_back(series_->strand(k));
-      places_.strands.push_back(scene_.tables->sources[series_->source(k)].table.place());
-    };
-    if (outlined) {
-      for (const std::size_t k : series_->first()) add(k);
-    } else {
-      for (std::size_t k = 0; k < series_->size(); ++k) add(k);
+    CutStrands cut = outlined ? series_->outline() : series_->all();
+    scene_.strands = std::move(cut.strands);
+    scene_.followers = std::move(cut.followers);
+    for (const std::size_t i : cut.source) {
+      places_.strands.push_back(scene_.tables->sources[i].table.place());
     }
   }
 

@@ -39,6 +39,8 @@ struct Scene {
   /// Ready to simulate: material, discretisation, shapes, and the root's rest position
   /// and motion, which is `head` for all of them.
   std::vector<Strand> strands;
+  /// The other strands of grooms with guides: not simulated, drawn as these carry them.
+  std::vector<Strand> followers;
   /// The tables that describe them; null if there are none.
   std::shared_ptr<const StrandTables> tables;
   RootMotion head;  // the rigid motion of roots and of bodies that follow them

@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "simulation/scene/groom.h"
+#include "simulation/scene/guide_choice.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/strand_table.h"
 
@@ -19,6 +20,24 @@ std::size_t elements_of(const StrandSource& source) {
 
 const Table* own_material(const StrandSource& source) {
   return source.material ? &*source.material : nullptr;
+}
+
+/// Leaves the guides of a groom, if it has any, and moves the others to the followers.
+void keep_guides(const Table& groom, std::uint64_t seed, std::vector<Strand>& strands,
+                 std::vector<Strand>& followers) {
+  const auto guides = static_cast<std::size_t>(groom.values().whole("guides"));
+  if (guides == 0) return;
+  if (guides > strands.size()) {
+    throw InputError(fmt::format("{} guides of {} strands", guides, strands.size()),
+                     groom.place("guides"), "give at most as many as there are strands");
+  }
+  const std::vector<std::size_t> chosen = choose_guides(strands, guides, seed);
+  std::vector<Strand> kept;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    const bool guide = std::ranges::binary_search(chosen, i);
+    (guide ? kept : followers).push_back(std::move(strands[i]));
+  }
+  strands = std::move(kept);
 }
 
 void set_elements(StrandSource& source, long elements) {
@@ -68,11 +87,27 @@ Strand StrandSeries::strand(std::size_t k) const {
   return scene_strand(source.table, own_material(source), common_, k);
 }
 
-std::vector<Strand> StrandSeries::all() const {
-  std::vector<Strand> strands;
-  strands.reserve(size());
-  for (std::size_t k = 0; k < size(); ++k) strands.push_back(strand(k));
-  return strands;
+CutStrands StrandSeries::all() const {
+  CutStrands all;
+  for (std::size_t i = 0; i < grooms_.size(); ++i) {
+    std::vector<Strand> made;
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) made.push_back(strand(k));
+    if (grooms_[i]) {
+      keep_guides(tables_->sources[i].table, common_.seed, made, all.followers);
+    }
+    all.source.insert(all.source.end(), made.size(), i);
+    std::ranges::move(made, std::back_inserter(all.strands));
+  }
+  return all;
+}
+
+CutStrands StrandSeries::outline() const {
+  CutStrands all;
+  for (std::size_t i = 0; i < grooms_.size(); ++i) {
+    all.strands.push_back(strand(first_[i]));
+    all.source.push_back(i);
+  }
+  return all;
 }
 
 StrandTables with_elements(StrandTables tables, int elements) {

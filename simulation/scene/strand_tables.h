@@ -25,6 +25,12 @@ struct StrandTables {
   std::vector<StrandSource> sources;  // each [strand], then each [groom]
 };
 
+struct CutStrands {
+  std::vector<Strand> strands;
+  std::vector<std::size_t> source;  // of every strand, its index in StrandTables
+  std::vector<Strand> followers;    // of grooms with guides, all others
+};
+
 /// Of a scene that is read whole, and of one whose strands are made one at a time.
 struct StrandLimits {
   std::size_t strands, elements;
@@ -48,11 +54,9 @@ class StrandSeries {
   Strand strand(std::size_t k) const;
   /// Index in StrandTables::sources of the table that strand k comes from.
   std::size_t source(std::size_t k) const;
-  /// The first strand of each table.
-  std::span<const std::size_t> first() const {
-    return std::span(first_).first(first_.size() - 1);
-  }
-  std::vector<Strand> all() const;
+  CutStrands all() const;
+  /// The first strand of each table alone.
+  CutStrands outline() const;
 
  private:
   std::shared_ptr<const StrandTables> tables_;

@@ -61,6 +61,41 @@ TEST(GuideHair, AtAGuidesRootIsThatGuide) {
   }
 }
 
+/// Hair of any shape is itself where the guides are where its shape was told, and is
+/// carried rigidly by guides that move so; one at a guide's root is still that guide.
+TEST(GuideHair, KeepsShapesOfItsOwn) {
+  Groom groom(12);
+  std::mt19937 random(9);
+  const Frame tilt = rotation({0.6, 0, 0.8}, 0.7);
+  const Vec shift{0.2, -0.1, 0.3};
+  groom.hair_roots.insert(groom.hair_roots.end(), groom.roots.begin(), groom.roots.end());
+  std::vector<Vec> own;
+  for (const Vec& root : groom.hair_roots) {
+    const bool guide = own.size() >= 200 * points;
+    for (std::size_t i = 0; i < points; ++i) {
+      if (guide) {
+        own.push_back(groom.guide_points[own.size() - 200 * points]);
+      } else {
+        const double s = static_cast<double>(i) / (points - 1);
+        own.push_back(root + s * Vec{static_cast<double>(random()) * 1e-11, 0.02, -0.2});
+      }
+    }
+  }
+  GuideHair hair(groom.roots, groom.hair_roots, points, {.clumpiness = 0});
+  hair.keep_shapes(groom.guide_points, {}, own);
+  std::vector<Vec> grown(own.size());
+  hair.grow(groom.guide_points, {}, grown);
+  // Sums of numbers below 0.3 m and a rotation forth and back.
+  for (std::size_t i = 0; i < own.size(); ++i)
+    EXPECT_LT(apart(grown[i], own[i]), 10 * eps);
+  std::vector<Vec> moved;
+  for (const Vec& x : groom.guide_points) moved.push_back(shift + tilt * x);
+  hair.grow(moved, tilt, grown);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_LT(apart(grown[i], shift + tilt * own[i]), 100 * eps);
+  }
+}
+
 TEST(GuideHair, WeightsSumToOneAndTheNearestHasMost) {
   for (const std::size_t guides : {1, 2, 3, 4, 30}) {
     const Groom groom(guides);

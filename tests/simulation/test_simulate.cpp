@@ -182,6 +182,9 @@ std::string controlled_groom() {
 
 std::string continued(const std::string& which) {
   if (which == "groom") return groom();
+  if (which == "meshed_groom") {
+    return groom() + "[effects.control_mesh]\nwidth_m = 0.2\nbreak_m = 1e-3\n";
+  }
   return which == "controlled_groom" ? controlled_groom() : falling(which);
 }
 
@@ -216,7 +219,7 @@ TEST_P(Continued, AStoppedRunEndsBitByBitLikeOneThatGoesThrough) {
 
 INSTANTIATE_TEST_SUITE_P(Models, Continued,
                          testing::Values("super_helix", "der", "corde", "groom",
-                                         "controlled_groom"),
+                                         "controlled_groom", "meshed_groom"),
                          [](const auto& tested) { return tested.param; });
 
 TEST(Simulate, RunsByToleranceAndVerifiesIt) {
