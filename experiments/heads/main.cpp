@@ -39,10 +39,13 @@ constexpr Column columns[] = {
     {"cost_per_step_s", "wall time of a step, median", true},
     {"cost_per_element_step_s", "the same by hairs and elements", true},
     {"cost_per_frame_s", "wall time of 1/60 s of motion and of reading all points", true},
-    {"iterations_per_step", "Newton's, of a hair, side by side with others"},
+    {"iterations_per_step", "Newton's, of a hair"},
     {"lanes_per_iteration",
-     "lanes computed over hairs iterated, on one thread: what lanes without hairs waste"},
-    {"retried", "steps of hairs that needed damped iterations or shorter steps"},
+     "lanes computed over hairs iterated, by whole corrections: what lanes without hairs "
+     "waste"},
+    {"retried_share", "of the steps of hairs: those that needed damped corrections"},
+    {"lanes_of_retries", "share of all lanes that they took"},
+    {"alone_per_step", "iterations of hairs one at a time, where damped ones failed"},
     {"lost", "hairs without a solution; the first one's step and reason on stderr"},
     {"difference_rel",
      "largest distance of a point from that in 64 bits, over the length; every 97th "
@@ -202,10 +205,15 @@ void run(const Work& work, Row& row) {
   row.set("cost_per_frame_s", median(of_frames));
   const models::HeadWork done = moving->work();
   if (done.iterations > 0) {
-    const auto iterations = static_cast<double>(done.iterations);
-    row.set("iterations_per_step", iterations / static_cast<double>(done.steps));
-    row.set("lanes_per_iteration", static_cast<double>(done.lanes) / iterations);
-    row.set("retried", static_cast<int>(done.retried));
+    const auto share = [](long of, long by) {
+      return static_cast<double>(of) / static_cast<double>(by);
+    };
+    row.set("iterations_per_step",
+            share(done.iterations + done.again_iterations, done.steps));
+    row.set("lanes_per_iteration", share(done.lanes, done.iterations));
+    row.set("retried_share", share(done.retried, done.steps));
+    row.set("lanes_of_retries", share(done.again_lanes, done.lanes + done.again_lanes));
+    row.set("alone_per_step", share(done.alone, done.steps));
   }
   int lost = 0;
   for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;
