@@ -136,10 +136,15 @@ void run_head(const Work& work, Row& row) {
   row.set("cost_per_frame_s", median(of_frames));
   const models::HeadWork done = moving->work();
   if (done.iterations > 0) {
-    const auto iterations = static_cast<double>(done.iterations);
-    row.set("iterations_per_step", iterations / static_cast<double>(done.steps));
-    row.set("lanes_per_iteration", static_cast<double>(done.lanes) / iterations);
-    row.set("retried", static_cast<int>(done.retried));
+    const auto share = [](long of, long by) {
+      return static_cast<double>(of) / static_cast<double>(by);
+    };
+    row.set("iterations_per_step",
+            share(done.iterations + done.again_iterations, done.steps));
+    row.set("lanes_per_iteration", share(done.lanes, done.iterations));
+    row.set("retried_share", share(done.retried, done.steps));
+    row.set("lanes_of_retries", share(done.again_lanes, done.lanes + done.again_lanes));
+    row.set("alone_per_step", share(done.alone, done.steps));
   }
   int lost = 0;
   for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;

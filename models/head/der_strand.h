@@ -1,25 +1,15 @@
 #pragma once
 
+#include <type_traits>
+
 #include "contract/system.h"
 #include "math/frame.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
+#include "models/head/der_elimination.h"
 #include "models/head/lane_energies.h"
-#include "models/head/matrix3.h"
 
 namespace tress::models {
-
-/// What the edges of a discrete rod have in common, in consistent units.
-template <class T>
-struct DerMaterial {
-  T length;           // of an edge at rest
-  T mass, drag;       // of a node: kg, force per velocity; half of it at the tip
-  T inertia;          // of an angle
-  T stretch;          // EA/l
-  Vec3<T> stiffness;  // of a joint between edges: diag(GJ, EI1, EI2)/l; clamp: twice
-  T friction;         // of a joint: gamma/l; clamp: twice
-  T rate;             // typical: speeds are of the order of `rate` lengths
-};
 
 /// What an edge remembers.
 template <class T>
@@ -77,34 +67,13 @@ class DerStrand {
  public:
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
-  using Symmetric = Symmetric3<T>;
 
   static constexpr int per_element = 4;
 
-  /// An edge and the joint before it at a state.
-  struct Placed {
-    FrameOf<T> frame;
-    T length, inverse_length;
-    Vec p;
-    Matrix turn;  // from the frame to that of the edge before
-    Vec moment;   // of the joint on the edge, components of the frame
-    T tension;
-    Vec force;       // residual of the node at its end, without those of edges
-    T turning;       // inertia times theta''
-    Symmetric both;  // derivatives of the moment by the rotation, of either edge
-    Matrix across;   // if exact: of the moment on the edge before by omega
-    T beside;        // a . t + 1, inverse
-    Vec a;           // the reference tangent in components of the frame
-  };
-  /// Elimination of an edge.
-  struct Factor {
-    Symmetric pivot;       // inverse, of omega
-    Matrix of_x, of_turn;  // omega = own - of_x x + of_turn (rotation of the edge before)
-    Vec sigma_x, sigma_omega;
-    T sigma;  // inverse pivot
-    Vec own;
-    T own_sigma;
-  };
+  using Elimination =
+      std::conditional_t<exact, DerExactElimination<T>, DerStiffElimination<T>>;
+  using Placed = typename Elimination::Placed;
+  using Factor = typename Elimination::Factor;
 
   DerStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
 
@@ -118,7 +87,7 @@ class DerStrand {
                             const T* a, T* correction, Placed* placed,
                             Factor* factors) const {
     place<true>(m, edges, clamp, w, q, v, a, placed);
-    eliminate(m, w, placed, factors);
+    Elimination::run(n_, m, w, placed, factors);
     return substitute(m, w, placed, factors, correction);
   }
 
@@ -143,8 +112,8 @@ class DerStrand {
                         (e.inverse_length * (moment.y - along * p.y)) * e.frame.e2;
       const Vec node = e.force + force - from_behind;
       from_behind = force;
-      reduce(placed[i], factors[i], node, (e.turning + along) * placed[i].p, T(0), f_x,
-             f_omega);
+      Elimination::reduce(placed[i], factors[i], node, (e.turning + along) * placed[i].p,
+                          T(0), f_x, f_omega);
       f_omega = placed[i].turn * f_omega;
     }
     return substitute(m, w, placed, factors, correction);
@@ -214,54 +183,17 @@ class DerStrand {
   }
 
  private:
-  /// The joint's strains from turn(a, b) = (axis a before) . (axis b of the edge), and
-  /// their gradients by the rotation of the edge in its components:
-  /// models/maximal/joint_strain.h with all products written out.
-  struct Joint {
-    explicit Joint(const Matrix& r)
-        : by(T(1) / (T(1) + r.row[0].x)),
-          value{arc_tangent(r.row[2].y - r.row[1].z, r.row[1].y + r.row[2].z),
-                by * (r.row[0].z - r.row[2].x), by * (r.row[1].x - r.row[0].y)},
-          k{T(0), by * r.row[0].z, -(by * r.row[0].y)},
-          twist{T(1), by * r.row[0].y, by * r.row[0].z},
-          curvature1{-(by * r.row[0].y), by * (r.row[0].x + r.row[2].z) + value.y * k.y,
-                     -(by * r.row[2].y) + value.y * k.z},
-          curvature2{-(by * r.row[0].z), -(by * r.row[1].z) + value.z * k.y,
-                     by * (r.row[0].x + r.row[1].y) + value.z * k.z} {}
-    T by;
-    Vec value, k, twist, curvature1, curvature2;
+  struct Rate {
+    Vec spin;
+    T lengthening;
   };
-
-  static void add_square(Symmetric& s, const T& w, const Vec& x) {
-    const Vec y = w * x;
-    s.xx += y.x * x.x;
-    s.yy += y.y * x.y;
-    s.zz += y.z * x.z;
-    s.xy += y.x * x.y;
-    s.xz += y.x * x.z;
-    s.yz += y.y * x.z;
-  }
-  /// s += w (x y^T + y x^T)/2.
-  static void add_product(Symmetric& s, const T& w, const Vec& x, const Vec& y) {
-    const Vec z = (T(0.5) * w) * x;
-    s.xx += T(2) * z.x * y.x;
-    s.yy += T(2) * z.y * y.y;
-    s.zz += T(2) * z.z * y.z;
-    s.xy += z.x * y.y + z.y * y.x;
-    s.xz += z.x * y.z + z.z * y.x;
-    s.yz += z.y * y.z + z.z * y.y;
-  }
-  static Symmetric less_square(const Symmetric& s, const T& w, const Vec& x) {
-    Symmetric all = s;
-    add_square(all, -w, x);
-    return all;
-  }
 
   template <bool with_tangent>
   void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const DerClamp<T>& clamp,
              Weights w, const T* q, const T* v, const T* a, Placed* placed) const {
     Vec node_v{}, node_a{}, spin_before = clamp.frame.back(clamp.omega);
     FrameOf<T> before = clamp.frame;
+    [[maybe_unused]] T lengthening_before(0);
     for (int i = 0; i < n_; ++i) {
       Placed& e = placed[i];
       const Vec edge = load3(q + 4 * i), given = load3(v + 4 * i);
@@ -273,18 +205,17 @@ class DerStrand {
       e.length = square * e.inverse_length;
       const Vec t = e.inverse_length * edge;
       const Vec& reference = edges[i].tangent;
-      e.beside = T(1) / (T(1) + dot(reference, t));
-      e.frame = frame(edges[i], t, e.beside, q[4 * i + 3]);
-      const T a1 = dot(reference, e.frame.e1), a2 = dot(reference, e.frame.e2);
-      e.p = {T(1), e.beside * a1, e.beside * a2};
-      if constexpr (exact && with_tangent) e.a = {T(0), a1, a2};
+      const T beside = T(1) / (T(1) + dot(reference, t));
+      e.frame = frame(edges[i], t, beside, q[4 * i + 3]);
+      e.p = {T(1), beside * dot(reference, e.frame.e1),
+             beside * dot(reference, e.frame.e2)};
       // theta' = spin . p.
       const T spin1 = -(e.inverse_length * dot(rate, e.frame.e2)),
               spin2 = e.inverse_length * dot(rate, e.frame.e1);
       const Vec spin{v[4 * i + 3] - spin1 * e.p.y - spin2 * e.p.z, spin1, spin2};
       e.turn = {
           {e.frame.back(before.e0), e.frame.back(before.e1), e.frame.back(before.e2)}};
-      const Joint joint(e.turn);
+      const DerJoint<T> joint(e.turn);
       const Vec relative = spin - e.turn.back(spin_before);
       const T half(i == 0 ? 2 : 1);
       const Vec stiffness = half * m.stiffness;
@@ -302,142 +233,57 @@ class DerStrand {
       e.force = part * (m.mass * (node_a - gravity_) + m.drag * node_v);
       if constexpr (with_tangent) {
         const T damped = T(w.vel) * friction;
-        Symmetric both;
-        add_square(both, T(w.pos) * stiffness.x + damped, joint.twist);
-        add_square(both, T(w.pos) * stiffness.y + damped, joint.curvature1);
-        add_square(both, T(w.pos) * stiffness.z + damped, joint.curvature2);
-        if constexpr (exact) add_second(joint, T(w.pos) * stress, both, e);
-        e.both = both;
+        e.stiff = joint.stiff(T(w.pos) * stiffness + Vec{damped, damped, damped});
+        if constexpr (exact) {
+          second_of_joint(joint, T(w.pos) * stress, e);
+          const T lengthening = dot(t, rate);
+          add_friction(joint, T(w.pos) * friction, {spin, lengthening},
+                       {spin_before, lengthening_before},
+                       i > 0 ? &placed[i - 1] : nullptr, e);
+          lengthening_before = lengthening;
+        }
       }
       before = e.frame;
       spin_before = spin;
     }
   }
 
-  /// The sum of stress times second derivative of each strain by the rotations of both
-  /// edges, as JointStrain::second(), in components of the edge behind.
-  static void add_second(const Joint& joint, const Vec& stress, Symmetric& both,
-                         Placed& e) {
-    const Matrix& r = e.turn;
-    const T s2 = joint.by * stress.z, s1 = -(joint.by * stress.y);
-    const T s = s2 * joint.value.z - s1 * joint.value.y;
-    const Vec minus = s2 * r.row[1] + s1 * r.row[2], plus{s, s2, s1};
-    const Vec t_minus = r.row[0], t_plus{T(1), T(0), T(0)};
-    const Vec g = T(2) * stress.y * joint.curvature1 +
-                  T(2) * stress.z * joint.curvature2 + stress.x * joint.twist;
-    Symmetric relative = both;
-    relative.xx -= s;
-    relative.yy -= s;
-    relative.zz -= s;
-    add_product(relative, T(1), g, joint.k);
-    const T half = T(0.5) * stress.x;
-    e.across = half * cross_matrix(joint.twist) - full(relative);
-    e.across = {{e.across.row[0] + plus.x * t_minus - minus,
-                 e.across.row[1] + plus.y * t_minus, e.across.row[2] + plus.z * t_minus}};
-    both = relative;
-    add_product(both, T(1), minus, t_plus);
-    add_product(both, T(-1), plus, t_minus);
+  static void second_of_joint(const DerJoint<T>& joint, const Vec& stress, Placed& e) {
+    const auto form = joint.second(e.turn, stress);
+    e.ww = full(e.stiff + form.alike);
+    e.oo = e.ww;
+    e.ow = form.across - full(e.stiff);
+    e.wo = e.ow.transposed();
   }
 
-  /// From the tip to the root; right sides as well.
-  void eliminate(const DerMaterial<T>& m, Weights w, const Placed* placed,
-                 Factor* factors) const {
-    const T inertia = T(w.acc) * m.mass + T(w.vel) * m.drag;
-    Symmetric xx{}, ww{};
-    Matrix xw{};
-    Vec f_x{}, f_omega{};
-    Vec moment_behind{};  // on the edge by the joint behind it
-    for (int i = n_ - 1; i >= 0; --i) {
-      const Placed& e = placed[i];
-      Factor& f = factors[i];
-      const T own = T(i + 1 < n_ ? 1 : 0.5) * inertia;
-      xx.xx += own;
-      xx.yy += own;
-      xx.zz += own;
-      // The end's displacement is x + sigma t + L (omega_2 m1 - omega_1 m2).
-      const Vec &t = e.frame.e0, &m1 = e.frame.e1, &m2 = e.frame.e2;
-      const Vec x_t = xx * t, x_1 = e.length * (xx * m1), x_2 = e.length * (xx * m2);
-      const Vec c0 = xw.column(0), c1 = xw.column(1), c2 = xw.column(2);
-      const Vec lever1 = e.length * m1, lever2 = e.length * m2;
-      Vec h0 = c0, h1 = c1 - x_2, h2 = c2 + x_1;  // of x and omega
-      Symmetric h;
-      h.xx = ww.xx;
-      h.xy = ww.xy - dot(lever2, c0);
-      h.xz = ww.xz + dot(lever1, c0);
-      h.yy = ww.yy - dot(lever2, c1 + h1);
-      h.yz = ww.yz - dot(lever2, h2) + dot(lever1, c1);
-      h.zz = ww.zz + dot(lever1, c2 + h2);
-      add_square(h, T(w.acc) * m.inertia, e.p);
-      Vec s_omega{dot(t, h0), dot(t, h1), dot(t, h2)};
-      T sigma = dot(t, x_t) + T(w.pos) * m.stretch;
-      if constexpr (exact) {
-        add_second_of_edge(m, T(w.pos), e, e.moment - moment_behind, h, s_omega);
+  /// The rate of a strain changes with the place: its gradient times the second
+  /// derivative along the motion.
+  static void add_friction(const DerJoint<T>& joint, const T& friction, const Rate& own,
+                           const Rate& before, const Placed* edge_before, Placed& e) {
+    const Vec spin_before = e.turn.back(before.spin);
+    const T o(0), one(1);
+    const auto add = [&](const Vec& slope, const Vec& unit) {
+      const auto form = joint.second(e.turn, unit);
+      const DerEdgeForm<T> of_edge(e.p, e.inverse_length, slope);
+      const Vec by_w = form.across.back(spin_before) + form.alike * own.spin +
+                       of_edge.omega * own.spin + own.lengthening * of_edge.sigma;
+      Vec by_o = form.alike * spin_before + form.across * own.spin;
+      if (edge_before != nullptr) {
+        const DerEdgeForm<T> of_before(edge_before->p, edge_before->inverse_length,
+                                       Vec{} - e.turn * slope);
+        by_o = by_o + e.turn.back(of_before.omega * before.spin +
+                                  before.lengthening * of_before.sigma);
       }
-      f.sigma = T(1) / sigma;
-      f.sigma_x = x_t;
-      f.sigma_omega = s_omega;
-      xx = less_square(xx, f.sigma, x_t);
-      h = less_square(h, f.sigma, s_omega);
-      const Vec by = f.sigma * s_omega;
-      h0 = h0 - by.x * x_t;
-      h1 = h1 - by.y * x_t;
-      h2 = h2 - by.z * x_t;
-      const Matrix of_omega{{h0, h1, h2}};  // rows: omega, columns: x
-      f.pivot = inverse(h + e.both);
-      f.of_x = f.pivot * of_omega;
-      if constexpr (exact) {
-        f.of_turn = T(-1) * (f.pivot * e.across.transposed());
-      } else {
-        f.of_turn = f.pivot * full(e.both);
-      }
-      reduce(e, f, e.force, e.turning * e.p + e.moment, e.tension, f_x, f_omega);
-      moment_behind = e.turn * e.moment;
-      f_omega = e.turn * f_omega - moment_behind;
-      if (i == 0) break;
-      xx = xx - upper(of_omega.transposed(), f.of_x.transposed());
-      xw = of_omega.transposed() * f.of_turn * e.turn.transposed();
-      Symmetric turned;
-      if constexpr (exact) {
-        turned = e.both + upper(e.across * f.of_turn);
-      } else {
-        // K - K (K + H)^-1 K without cancellation.
-        turned = upper(f.of_turn.transposed(), full(h));
-      }
-      ww = congruent(e.turn, turned);
-    }
-  }
-
-  /// pos times the second derivative of the rotation and of the length of an edge, with
-  /// the moment and the tension on it.
-  static void add_second_of_edge(const DerMaterial<T>&, const T& pos, const Placed& e,
-                                 const Vec& moment, Symmetric& h, Vec& s_omega) {
-    const T turned = pos * moment.x * e.beside;
-    // (omega . (t x moment)) (omega . t)
-    h.xy -= T(0.5) * pos * moment.z;
-    h.xz += T(0.5) * pos * moment.y;
-    // (moment . t)/(1 + a . t)^2 (omega . a) (omega . (t x a))
-    add_product(h, turned * e.beside, e.a, {T(0), -e.a.z, e.a.y});
-    const T pull = pos * e.tension * e.length;
-    h.yy += pull;
-    h.zz += pull;
-    const T by = pos * e.inverse_length;
-    s_omega =
-        s_omega + e.inverse_length * (turned * e.a) - by * Vec{T(0), moment.y, moment.z};
-  }
-
-  /// Right sides of an edge's unknowns, given residuals of the node at its end and of
-  /// omega and sigma; passes on what is left to the start and to the edge before, in the
-  /// edge's components.
-  static void reduce(const Placed& e, Factor& f, const Vec& force, const Vec& moment,
-                     const T& tension, Vec& f_x, Vec& f_omega) {
-    f_x = f_x + force;
-    const T f1 = e.length * dot(e.frame.e1, f_x), f2 = e.length * dot(e.frame.e2, f_x);
-    f.own_sigma = dot(e.frame.e0, f_x) + tension;
-    const T by = f.sigma * f.own_sigma;
-    const Vec tau = f_omega + moment + Vec{T(0), -f2, f1} - by * f.sigma_omega;
-    f.own = f.pivot * tau;
-    f_x = f_x - by * f.sigma_x - f.of_x.back(tau);
-    f_omega = f.of_turn.back(tau);
+      const Matrix w = outer(friction * slope, by_w),
+                   turned = outer(friction * slope, by_o);
+      e.ww = e.ww + w;
+      e.wo = e.wo + turned;
+      e.ow = e.ow - w;
+      e.oo = e.oo - turned;
+    };
+    add(joint.twist, {one, o, o});
+    add(joint.curvature1, {o, one, o});
+    add(joint.curvature2, {o, o, one});
   }
 
   T substitute(const DerMaterial<T>& m, Weights w, const Placed* placed,
@@ -451,7 +297,7 @@ class DerStrand {
       if (i > 0) own = own + f.of_turn * e.turn.back(omega);
       omega = own;
       const T sigma =
-          f.sigma * (f.own_sigma - dot(f.sigma_x, x) - dot(f.sigma_omega, omega));
+          f.by * (f.own_sigma - dot(f.sigma_x, x) - dot(f.sigma_omega, omega));
       const Vec edge = sigma * e.frame.e0 + (e.length * omega.z) * e.frame.e1 -
                        (e.length * omega.y) * e.frame.e2;
       const T theta = dot(e.p, omega);
@@ -464,18 +310,6 @@ class DerStrand {
       angle = larger(magnitude(theta), angle);
     }
     return larger(T(w.pos), T(w.vel) / m.rate) * larger(most / m.length, angle) + finite;
-  }
-
-  static Symmetric inverse(const Symmetric& h) {
-    const T first = h.yy * h.zz - h.yz * h.yz;
-    const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
-    const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
-    return {first * by,
-            (h.xx * h.zz - h.xz * h.xz) * by,
-            (h.xx * h.yy - h.xy * h.xy) * by,
-            second * by,
-            third * by,
-            (h.xy * h.xz - h.xx * h.yz) * by};
   }
 
   /// Where `far` > 0.

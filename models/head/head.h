@@ -72,21 +72,24 @@ struct HeadLoss {
   std::string_view reason;
 };
 
-/// Newton's iterations of steps.
+/// Newton's iterations of steps: of strands, and of lanes, those without a strand
+/// included.
 struct HeadWork {
-  long steps = 0;       // of strands
-  long iterations = 0;  // of strands, side by side
-  long lanes = 0;       // of lanes, those that had no strand included
-  long alone = 0;       // damped and of shorter steps, one strand at a time
-  long retried = 0;     // steps of strands that needed them
-  long shortened = 0;   // of those, in shorter steps
+  long steps = 0;                              // of strands
+  long iterations = 0, lanes = 0;              // whole corrections, strands side by side
+  long retried = 0;                            // steps of strands on which they failed
+  long again_iterations = 0, again_lanes = 0;  // of these, damped
+  long alone = 0;      // of the last, iterations of one strand at a time
+  long shortened = 0;  // steps of strands taken in shorter ones
 
   HeadWork& operator+=(const HeadWork& more) {
     steps += more.steps;
     iterations += more.iterations;
     lanes += more.lanes;
-    alone += more.alone;
     retried += more.retried;
+    again_iterations += more.again_iterations;
+    again_lanes += more.again_lanes;
+    alone += more.alone;
     shortened += more.shortened;
     return *this;
   }

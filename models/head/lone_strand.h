@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "models/head/lane_work.h"
-#include "models/head/newton_judge.h"
+#include "models/head/newton_course.h"
 
 namespace tress::models {
 
-/// The step of one strand on which Newton's iteration has failed, in all lanes of a pack
-/// alike: damped iterations as integrators/stage.h's, from the guess, from zero
+/// The step of one strand on which iterations side by side have failed, in all lanes of a
+/// pack alike: damped iterations as integrators/stage.h's, from the guess, from zero
 /// acceleration and from standstill; then 2, 4, ... shorter steps.
 template <class Model>
 class LoneStrand {
@@ -30,7 +30,7 @@ class LoneStrand {
   bool solve(const PoseAt& pose, double h) {
     const std::vector<T> start = work_.state;
     work_.begin(model_, pose(0), pose(1), h);
-    if (damped_from_anywhere(start)) return true;
+    if (damped_from_anywhere(start, Start::zero)) return true;
     for (int parts = 2; parts <= most_parts; parts *= 2) {
       shortened = true;
       work_.state = start;
@@ -44,16 +44,17 @@ class LoneStrand {
 
  private:
   static constexpr int most_parts = 64;
-  static constexpr int patience = 3;  // damped steps are shorter: more of them
-  static constexpr double shortest = 1e-4;
 
-  bool damped_from_anywhere(const std::vector<T>& start) {
+  enum Start { guess, zero, standstill };
+
+  /// Of the starts, from `first` on.
+  bool damped_from_anywhere(const std::vector<T>& start, Start first) {
     T* const a = work_.a();
-    for (int from = 0; from < 3; ++from) {
+    for (int from = first; from <= standstill; ++from) {
       for (std::size_t k = 0; k < n_; ++k) {
-        a[k] = from == 0   ? start[2 * n_ + k]
-               : from == 1 ? T(0)
-                           : T(-1 / work_.weights.vel) * work_.v_n()[k];
+        a[k] = from == guess  ? start[2 * n_ + k]
+               : from == zero ? T(0)
+                              : T(-1 / work_.weights.vel) * work_.v_n()[k];
       }
       work_.place();
       if (damped()) return true;
@@ -62,32 +63,15 @@ class LoneStrand {
   }
 
   bool damped() {
-    const NewtonJudge::Rules rules =
-        NewtonJudge::rules(tolerance_, iterations_, work_.resolved(model_, 0));
-    for (int i = 0; i < patience * rules.iterations; ++i) {
-      const double size = lane_of(work_.newton(model_), 0);
+    DampedCourse<Model> course(model_, tolerance_, iterations_);
+    course.start(0, work_);
+    NewtonVerdict verdict = NewtonVerdict::go_on;
+    while (verdict == NewtonVerdict::go_on) {
+      verdict = course.go_on(work_, work_.newton(model_))[0];
       ++iterations;
-      if (!std::isfinite(size)) return false;
-      if (size <= rules.tolerance) {
-        work_.move(T(1), work_.step.data());
-        return true;
-      }
-      if (!halve_until_smaller(size)) return size <= rules.rounding;
     }
-    return false;
-  }
-
-  /// Takes the step, or the largest halving of it after which the next correction with
-  /// the same matrix is smaller [Deuflhard 2011, section 3.3].
-  bool halve_until_smaller(double size) {
-    const std::vector<T> from(work_.a(), work_.a() + n_), step = work_.step;
-    for (double part = 1; part >= shortest; part /= 2) {
-      std::copy(from.begin(), from.end(), work_.a());
-      work_.move(T(part), step.data());
-      ++iterations;
-      if (lane_of(work_.again(model_), 0) <= (1 - part / 4) * size) return true;
-    }
-    return false;
+    iterations += course.iterations;
+    return verdict == NewtonVerdict::converged;
   }
 
   bool in_parts(const PoseAt& pose, double h, int parts) {
@@ -95,7 +79,7 @@ class LoneStrand {
       const std::vector<T> start = work_.state;
       work_.begin(model_, pose(static_cast<double>(i) / parts),
                   pose(static_cast<double>(i + 1) / parts), h / parts);
-      if (!damped_from_anywhere(start)) return false;
+      if (!damped_from_anywhere(start, Start::guess)) return false;
       if (i + 1 == parts) return true;
       std::copy(work_.q.begin(), work_.q.end(), work_.q_n());
       std::copy(work_.v.begin(), work_.v.end(), work_.v_n());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -222,11 +223,13 @@ class SteppingHead final : public Head {
   static constexpr std::size_t width = T::lanes;
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
+  using Lanes = std::array<std::size_t, width>;  // the strand in each, or none
+
   struct Own final : Scratch {
     explicit Own(const Model& model) : work(model) {}
     LaneWork<Model> work;
     RootPose from, to;
-    std::vector<std::size_t> failed;
+    std::vector<std::size_t> failed, stuck;
   };
 
   /// No effect but those that the options' numbers say as well.
@@ -299,79 +302,94 @@ class SteppingHead final : public Head {
                        [](char lost) { return lost != 0; });
   }
 
-  /// Newton's iteration of the strands of these blocks: lanes that are done take the next
-  /// strand. Strands on which it fails are solved one by one in the end.
+  /// Strands that wait for a lane: those of blocks, or of a list.
+  struct Queue {
+    std::size_t next, end;
+    const std::vector<std::size_t>* list = nullptr;
+    std::size_t strand() const { return list == nullptr ? next : (*list)[next]; }
+  };
+
+  /// Newton's iteration, damped iterations of the strands on which it fails, and those on
+  /// which they fail one by one.
   void iterate(std::size_t first, std::size_t last, double t, double h_s, Own& own) {
     const double h = h_s / units_.time;
-    LaneWork<Model>& work = own.work;
     HeadWork& done = own.Scratch::work;
-    std::size_t home[width];
-    NewtonJudge judges[width];
-    NewtonJudge::Rules rules[width]{};
-    std::fill_n(home, width, none);
+    for (std::size_t block = first; block < last; ++block) {
+      done.steps += static_cast<long>(strands_of(block));
+    }
+    PlainCourse<Model> plain(model_, options_.newton_tolerance,
+                             options_.newton_iterations);
     own.failed.clear();
-    std::size_t next = width * first;
-    const std::size_t end = std::min(width * last, lost_.size());
+    run({width * first, std::min(width * last, lost_.size())}, plain, h, own, own.failed,
+        done.iterations, done.lanes);
+    if (own.failed.empty()) return;
+    done.retried += static_cast<long>(own.failed.size());
+    DampedCourse<Model> damped(model_, options_.newton_tolerance,
+                               options_.newton_iterations);
+    own.stuck.clear();
+    run({0, own.failed.size(), &own.failed}, damped, h, own, own.stuck,
+        done.again_iterations, done.again_lanes);
+    done.again_iterations += damped.iterations;
+    done.again_lanes += damped.lanes;
+    for (const std::size_t strand : own.stuck) alone(strand, t, h_s, own);
+  }
+
+  /// Lanes that are done take the next strand of the queue.
+  template <class Course>
+  void run(Queue queue, Course& course, double h, Own& own,
+           std::vector<std::size_t>& failed, long& iterations, long& lanes) {
+    LaneWork<Model>& work = own.work;
+    Lanes home;
+    home.fill(none);
     for (bool refill = true;;) {
       if (refill) {
-        fill(home, judges, next, end, work);
+        const Lanes before = home;
+        fill(home, queue, work);
         if (std::ranges::all_of(home, [](std::size_t k) { return k == none; })) break;
         work.begin(model_, own.from, own.to, h);
         for (std::size_t k = 0; k < width; ++k) {
-          rules[k] =
-              NewtonJudge::rules(options_.newton_tolerance, options_.newton_iterations,
-                                 work.resolved(model_, static_cast<int>(k)));
+          if (before[k] == none) course.start(static_cast<int>(k), work);
         }
         refill = false;
       }
-      const T size = work.newton(model_);
-      work.move(T(1), work.step.data());
-      done.lanes += T::lanes;
-      for (int lane = 0; lane < T::lanes; ++lane) {
-        const auto k = static_cast<std::size_t>(lane);
+      const auto verdicts = course.go_on(work, work.newton(model_));
+      lanes += T::lanes;
+      for (std::size_t k = 0; k < width; ++k) {
         if (home[k] == none) continue;
-        ++done.iterations;
-        switch (judges[k].judge(rules[k], lane_of(size, lane))) {
-          case NewtonJudge::Verdict::go_on:
-            continue;
-          case NewtonJudge::Verdict::converged:
-            put_home(work, lane, home[k]);
-            break;
-          case NewtonJudge::Verdict::failed:
-            own.failed.push_back(home[k]);
-            break;
+        ++iterations;
+        if (verdicts[k] == NewtonVerdict::go_on) continue;
+        if (verdicts[k] == NewtonVerdict::converged) {
+          put_home(work, static_cast<int>(k), home[k]);
+        } else {
+          failed.push_back(home[k]);
         }
-        ++done.steps;
         home[k] = none;
         refill = true;
       }
     }
-    for (const std::size_t strand : own.failed) alone(strand, t, h_s, own);
   }
 
   /// Takes the next strands into free lanes; into all lanes of a whole block at once.
-  void fill(std::size_t (&home)[width], NewtonJudge (&judges)[width], std::size_t& next,
-            std::size_t end, LaneWork<Model>& work) {
+  void fill(Lanes& home, Queue& queue, LaneWork<Model>& work) {
     const bool all_free =
         std::ranges::all_of(home, [](std::size_t k) { return k == none; });
-    if (all_free && next < end && next % width == 0) {
-      const std::size_t block = next / width;
+    if (all_free && queue.list == nullptr && queue.next < queue.end &&
+        queue.next % width == 0) {
+      const std::size_t block = queue.next / width;
       work.strand = strands_[block];
       std::copy_n(&elements_[n_ * block], n_, work.elements.begin());
       std::copy_n(q_of(block), of_state_, work.state.begin());
-      for (std::size_t k = 0; k < width; ++k, ++next) {
-        if (next < end && lost_[next] == 0) home[k] = next;
-        judges[k] = {};
+      for (std::size_t k = 0; k < width && queue.next < queue.end; ++k, ++queue.next) {
+        if (lost_[queue.next] == 0) home[k] = queue.next;
       }
-      next = std::min(next, end);
     }
     for (std::size_t k = 0; k < width; ++k) {
       if (home[k] != none) continue;
-      while (next < end && lost_[next] != 0) ++next;
-      if (next == end) return;
-      take(next, work, static_cast<int>(k));
-      home[k] = next++;
-      judges[k] = {};
+      while (queue.next < queue.end && lost_[queue.strand()] != 0) ++queue.next;
+      if (queue.next == queue.end) return;
+      home[k] = queue.strand();
+      take(home[k], work, static_cast<int>(k));
+      ++queue.next;
     }
   }
 
@@ -401,8 +419,9 @@ class SteppingHead final : public Head {
                            own.work);
     const bool solved =
         lone.solve([&](double part) { return pose(t + part * h_s); }, h_s / units_.time);
-    ++own.Scratch::work.retried;
     own.Scratch::work.alone += lone.iterations;
+    own.Scratch::work.again_iterations += lone.iterations;
+    own.Scratch::work.again_lanes += T::lanes * lone.iterations;
     own.Scratch::work.shortened += lone.shortened ? 1 : 0;
     if (solved) {
       put_home(own.work, 0, strand);

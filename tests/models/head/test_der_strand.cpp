@@ -56,7 +56,7 @@ struct Rod {
 struct State {
   std::vector<double> q, v, a;  // of the System
 };
-State state(System& system, double seed) {
+State state(System& system, double seed, const Rod* unstretched) {
   const auto size = static_cast<std::size_t>(system.layout().coordinates);
   State s{std::vector<double>(size), std::vector<double>(size),
           std::vector<double>(size)};
@@ -67,6 +67,14 @@ State state(System& system, double seed) {
     s.q[i] += (i < nodes ? 2e-3 : 0.4) * x;
     s.v[i] += (i < nodes ? 0.3 : 8.0) * std::cos(3 * x + 1);
     s.a[i] += (i < nodes ? 5.0 : 90.0) * std::sin(5 * x + 2);
+  }
+  if (unstretched == nullptr) return s;
+  const std::vector<double> edges = as_edges(s.q, unstretched->root);
+  Vec x = unstretched->root;
+  for (std::size_t i = 0; i < nodes / 3; ++i) {
+    const Vec e = load3(&edges[4 * i]);
+    x = x + unstretched->m.length[0] / norm(e) * e;
+    store3(x, &s.q[3 * i]);
   }
   return s;
 }
@@ -88,11 +96,13 @@ std::vector<double> wanted(System& system, Weights w, const State& linear,
   return as_edges(x, {});
 }
 
+/// `off`: of the largest correction.
 template <bool exact>
-void compare(const RodCase& c, double h) {
+void compare(const RodCase& c, double h, bool unstretched, double off) {
   const Rod rod(c);
   const auto system = rod_alone(c, 3, exact ? "exact" : "stiff");
-  const State first = state(*system, 0), second = state(*system, 1);
+  const State first = state(*system, 0, unstretched ? &rod : nullptr),
+              second = state(*system, 1, unstretched ? &rod : nullptr);
   const Weights w{1, h, h * h};
   const DerStrand<One, exact> kernel(c.elements, Vec3<One>(rod_options(c).gravity));
   std::vector<typename DerStrand<One, exact>::Placed> placed(rod.n()), now(rod.n());
@@ -113,13 +123,11 @@ void compare(const RodCase& c, double h) {
       }
       typical = std::max(typical, std::abs(want[4 * i + 3]));
     }
-    // Both eliminate some ten numbers an edge with roundings of 1e-16 of the largest;
-    // stretching is up to 1e8 times as stiff as bending at this step.
-    EXPECT_LE(apart(got, want), 1e-16 * 1e8 * std::max(most, typical));
+    EXPECT_LE(apart(got, want), off * std::max(most, typical));
     EXPECT_GT(typical, 0);
     const double length = rod.m.length[0], rate = rod.m.rate[0];
     const double scale = std::max(w.pos, w.vel / rate);
-    EXPECT_NEAR(size, scale * std::max(most / length, typical), 1e-8 * size);
+    EXPECT_NEAR(size, scale * std::max(most / length, typical), off * size);
   };
   const auto [q, v, a] = of(first);
   double size =
@@ -135,14 +143,20 @@ void compare(const RodCase& c, double h) {
 
 class DerStrands : public testing::TestWithParam<RodCase> {};
 
+// Both eliminate some ten numbers an edge with roundings of 1e-16 of the largest;
+// stretching is up to 1e8 times as stiff as bending at these steps.
+constexpr double rounding = 1e-16 * 1e8;
+
 TEST_P(DerStrands, TakeTheStepOfTheSystem) {
   for (const double h : {1e-4, 1e-3, 1e-2}) {
     SCOPED_TRACE(h);
-    compare<false>(GetParam(), h);
-    // The System's exact tangent has the slopes of rates of friction as well.
+    compare<false>(GetParam(), h, false, rounding);
     RodCase frictionless = GetParam();
     frictionless.friction = 0;
-    compare<true>(frictionless, h);
+    compare<true>(frictionless, h, false, rounding);
+    // Slopes of rates of friction by lengths are left out. Edges at rest lengthen by
+    // loads over EA, some 1e-5 of an edge where rotations are of order one.
+    if (GetParam().youngs_modulus > 1e9) compare<true>(GetParam(), h, true, 1e-4);
   }
 }
 

@@ -2,7 +2,8 @@
 import { succeeded } from '../../src/tables.mjs';
 import { number, rows_of, table } from '../markdown.mjs';
 
-const all_heads = (tables) => rows_of(tables, 'heads').filter(succeeded);
+const all = (tables) => rows_of(tables, 'heads').filter(succeeded);
+const all_heads = (tables) => all(tables).filter((row) => row.model !== 'der');
 const heads = (tables) => all_heads(tables).filter((row) => (row.effects ?? 'drag') === 'drag');
 const largest = (tables) => {
   const rows = heads(tables);
@@ -96,3 +97,45 @@ export const two_threads = (tables) =>
       return number(of(1).cost_per_step_s / of(2).cost_per_step_s);
     })
     .join(' and ');
+
+/// Discrete rods, one thread.
+export const rods_table = (tables) =>
+  table(
+    [
+      'method',
+      'step, ms',
+      'hairs',
+      'bits',
+      'side by side',
+      'memory of a hair, bytes',
+      'a step, ms',
+      'of an element, ns',
+      'iterations a step',
+      'lanes over hairs iterated',
+      'damped steps, %',
+      'lanes they take, %',
+      'off 64 bits',
+      'checksum of the states',
+    ],
+    all(tables)
+      .filter((row) => row.model === 'der' && Number(row.threads) === 1)
+      .map((row) => {
+        const newton = row.integrator === 'backward_euler';
+        return [
+          row.integrator,
+          number(1e3 * row.dt_s),
+          row.strands,
+          row.bits,
+          row.lanes,
+          number(row.bytes_per_strand),
+          number(1e3 * row.cost_per_step_s),
+          number(1e9 * row.cost_per_element_step_s),
+          newton ? number(row.iterations_per_step) : '1',
+          newton ? number(row.lanes_per_iteration) : '1',
+          newton ? number(100 * row.retried_share) : '0',
+          newton ? number(100 * row.lanes_of_retries) : '0',
+          Number(row.difference_rel) === 0 ? '0' : number(row.difference_rel),
+          row.state.slice(0, 8),
+        ];
+      }),
+  );

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "models/head/matrix3.h"
+
+/// What the kernel of discrete rods does with 3 x 3 matrices beyond
+/// models/head/matrix3.h.
+namespace tress::models {
+
+/// s += w x x^T.
+template <class T>
+void add_square(Symmetric3<T>& s, const T& w, const Vec3<T>& x) {
+  const Vec3<T> y = w * x;
+  s.xx += y.x * x.x;
+  s.yy += y.y * x.y;
+  s.zz += y.z * x.z;
+  s.xy += y.x * x.y;
+  s.xz += y.x * x.z;
+  s.yz += y.y * x.z;
+}
+/// s += w (x y^T + y x^T)/2.
+template <class T>
+void add_product(Symmetric3<T>& s, const T& w, const Vec3<T>& x, const Vec3<T>& y) {
+  const Vec3<T> z = (T(0.5) * w) * x;
+  s.xx += T(2) * z.x * y.x;
+  s.yy += T(2) * z.y * y.y;
+  s.zz += T(2) * z.z * y.z;
+  s.xy += z.x * y.y + z.y * y.x;
+  s.xz += z.x * y.z + z.z * y.x;
+  s.yz += z.y * y.z + z.z * y.y;
+}
+template <class T>
+Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) {
+  Symmetric3<T> all = s;
+  add_square(all, -w, x);
+  return all;
+}
+
+/// By cofactors: of graded definite matrices, too.
+template <class T>
+Symmetric3<T> inverse(const Symmetric3<T>& h) {
+  const T first = h.yy * h.zz - h.yz * h.yz;
+  const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
+  const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
+  return {first * by,
+          (h.xx * h.zz - h.xz * h.xz) * by,
+          (h.xx * h.yy - h.xy * h.xy) * by,
+          second * by,
+          third * by,
+          (h.xy * h.xz - h.xx * h.yz) * by};
+}
+
+template <class T>
+Matrix3<T> inverse(const Matrix3<T>& h) {
+  const Vec3<T> c0 = cross(h.row[1], h.row[2]), c1 = cross(h.row[2], h.row[0]),
+                c2 = cross(h.row[0], h.row[1]);
+  const T by = T(1) / dot(h.row[0], c0);
+  return Matrix3<T>::columns(by * c0, by * c1, by * c2);
+}
+/// a b^T.
+template <class T>
+Matrix3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {
+  return {{a.x * b, a.y * b, a.z * b}};
+}
+
+}  // namespace tress::models
