@@ -22,8 +22,7 @@ constexpr double more_stretch = 2, least_stretch = 1e-9;
 // needs few trials otherwise.
 constexpr double first_part = 0.1;
 // After so many steps without a solution, each a quarter of the one before, the first is
-// tried with more effort, which costs 40 to 100 ordinary steps. (Hairs without friction:
-// with it at once they took ten times the work; never: hard cases of long steps fail.)
+// tried with more effort, which cost 40 to 100 ordinary steps on hairs without friction.
 constexpr int plain_steps = 3;
 // Steps below this part of that time are lost in rounding.
 constexpr double shortest_part = 1e-11;
