@@ -61,10 +61,10 @@ class ControlledEsdirk final : public ErrorControlled {
         stages_(dynamics(), with_control(options), table, whole_newton_part) {}
 
  private:
-  Status try_step(const State& from, double h, State& to, Out error_q,
-                  Out error_v) override {
+  Status try_step(const State& from, double h, Stage::Effort effort, State& to,
+                  Out error_q, Out error_v) override {
     const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda,
-                                  unseen_part * seen_speed());
+                                  unseen_part * seen_speed(), effort);
     if (s != Status::ok) return s;
     std::ranges::copy(stages_.q(), to.q.begin());
     std::ranges::copy(stages_.v(), to.v.begin());
@@ -135,8 +135,8 @@ bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
   return contacts != nullptr && contacts->approach(t, q, v) > gently;
 }
 
-Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda,
-                          double gently) noexcept {
+Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
+                          Stage::Effort effort) noexcept {
   look_back(t);
   impact_ = stopped(t, q, v, gently);
   if (impact_) return impact(t, h, q, v);
@@ -155,9 +155,9 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda,
     }
     add(q_bar_, hg, v_bar_);
     guess(i, h);
-    const Status s =
-        stage_.solve(t + h * table_.c(i), q_bar_, v_bar_, {1, hg, hg * hg}, a_[i],
-                     lambda_, i == 1 ? Stage::Matrix::own : Stage::Matrix::shared);
+    const Status s = stage_.solve(
+        t + h * table_.c(i), q_bar_, v_bar_, {1, hg, hg * hg}, a_[i], lambda_,
+        i == 1 ? Stage::Matrix::own : Stage::Matrix::shared, effort);
     if (s != Status::ok) return s;
     std::ranges::copy(stage_.v(), v_[i].begin());
   }

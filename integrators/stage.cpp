@@ -101,8 +101,10 @@ Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
 }
 
 Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-                    Matrix matrix) noexcept {
-  if (contacts_ == nullptr) return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix);
+                    Matrix matrix, Effort effort) noexcept {
+  if (contacts_ == nullptr) {
+    return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, effort);
+  }
   std::ranges::copy(a, a_held_.begin());
   std::ranges::copy(lambda, lambda_held_.begin());
   Status s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix);
@@ -119,7 +121,7 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
     if (violation <= contact_tolerance_ || i == contact_iterations_) break;
     std::ranges::copy(a, a_held_.begin());
     std::ranges::copy(lambda, lambda_held_.begin());
-    s = solve_smooth(t, q_bar, v_bar, w, a, lambda, Matrix::own);
+    s = solve_smooth(t, q_bar, v_bar, w, a, lambda, Matrix::own, Effort::whole);
     if (s == Status::ok) continue;
     if (s == Status::fatal) return s;
     std::ranges::copy(a_held_, a.begin());
@@ -139,11 +141,11 @@ Status Stage::first_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
   const double tau = w.pos / w.vel;
   shifted(q_start_, q_bar, -tau, v_bar);
   contacts_->begin(t, tau, q_start_, v_bar);
-  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix);
+  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, Effort::whole);
 }
 
 Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-                           Matrix matrix) noexcept {
+                           Matrix matrix, Effort effort) noexcept {
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, refresh_, matrix, a, lambda);
@@ -153,6 +155,7 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
     s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
   }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
+  if (effort == Effort::plain) return s;
   // From the guess, from zero acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
     for (std::size_t i = 0; i < a.size(); ++i) {

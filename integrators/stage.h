@@ -41,13 +41,17 @@ class Stage {
   /// then serves the next stages no more: they have their own.
   enum class Matrix { own, shared };
 
+  /// How far a solution is sought: by Newton's iteration and on jumps alone (plain), or
+  /// also by all that costs a hundred times as much (whole).
+  enum class Effort { plain, whole };
+
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
   /// With exact contact (ContactForm): repeats solution and improvement of its
   /// multipliers until the law holds within Options::contact_tolerance; where a later
   /// solution fails, or after Options::contact_iterations, the one before stands, and
   /// stats tell by how much the law is violated.
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-               Matrix matrix = Matrix::own) noexcept;
+               Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
 
   /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
   /// with the matrix at acceleration a_matrix.
@@ -72,7 +76,7 @@ class Stage {
                        Matrix matrix) noexcept;
   /// The equations with multipliers of contact as they are.
   Status solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-                      Matrix matrix) noexcept;
+                      Matrix matrix, Effort effort) noexcept;
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh, Matrix matrix,

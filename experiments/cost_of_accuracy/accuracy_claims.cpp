@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
@@ -26,6 +29,34 @@ bool meets(const Row& row, const Row& winner) {
          judged + row.number("reference_gap") <= winner.number("target_error_rel");
 }
 
+/// Of every model and target, over the scenes where both sides have a run and the search
+/// came to its end: one that is cut may have tried an option on one side only.
+void check_control(const std::vector<Row>& rows, Verdicts& verdicts) {
+  struct Factors {
+    double logarithms = 0, largest = 0;
+    int scenes = 0;
+  };
+  std::map<std::pair<std::string, double>, Factors> all;
+  for (const Row& row : rows) {
+    if (row.text("kind") != "by_tolerance" || !row.ok() || !row.has("cost_factor"))
+      continue;
+    if (row.text("search").find("cut") != row.text("search").npos) continue;
+    const double factor = row.number("cost_factor");
+    Factors& of = all[{std::string(row.text("model")), row.number("target_error_rel")}];
+    of.logarithms += std::log(factor);
+    of.largest = std::max(of.largest, factor);
+    ++of.scenes;
+  }
+  for (const auto& [key, of] : all) {
+    const std::string what = fmt::format(
+        "{}, error {}, {} scenes: time of the best run with error control "
+        "over the best without",
+        key.first, key.second, of.scenes);
+    verdicts.figure(what + ", geometric mean", std::exp(of.logarithms / of.scenes));
+    verdicts.figure(what + ", largest", of.largest);
+  }
+}
+
 }  // namespace
 
 void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
@@ -47,6 +78,7 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
                                                   winner.number("wall_s_per_sim_s"));
     }
   }
+  check_control(rows, verdicts);
   for (const auto& [scene, worst] : scenes) {
     // Advice runs without a refined reference to answer sooner.
     if (worst.refined > 0) {

@@ -29,6 +29,8 @@ struct StudyPlan {
   std::vector<double> targets;          // errors of the tip over the length, descending
   std::vector<int> elements, substeps;  // coarse ladders
   MethodChoice methods;
+  /// Models on which methods with error control are compared with those without.
+  std::vector<std::string> control;
   ReferenceCut reference;
   std::string references;   // folder of stored references
   double rate = 60;         // frames per second
@@ -60,6 +62,11 @@ constexpr double parted = 0.01 / believed;
 ///                its best options; on the same model another integrator; the winner
 ///                with another value of one option, with twice as many elements, and with
 ///                half the step. Elements and step are tuned anew.
+///     by_step    of a model of StudyPlan::control, the cheapest of the methods that know
+///                steps only
+///     by_tolerance  of the same model, the cheapest of the methods with error control,
+///                by tolerance or fixed steps, extrapolated in elements or not; its
+///                cost_factor is over by_step
 ///     budget     the most accurate run within the given time per frame
 ///     front      runs that no other beats in both error and time
 ///     as_given   the scene as its file has it

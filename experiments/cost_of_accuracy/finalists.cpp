@@ -4,11 +4,16 @@
 #include <limits>
 #include <set>
 
+#include "integrators/catalogue.h"
+
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
 /// Number of the cheapest runs that are timed again before one of them wins.
 constexpr std::size_t contenders = 5;
+
+/// Times of two runs that are compared with each other are taken alternately so often.
+constexpr int turns = 3;
 
 /// If no more methods than this are considered they are tried near the winner, with up to
 /// `dearest` times its substeps.
@@ -236,6 +241,44 @@ std::optional<BestRuns> Finalists::of(double target) {
     return !model(methods_[run.method]) || !integrator(methods_[run.method]);
   });
   return best;
+}
+
+/// The run's method with the options of another one, from the run's place.
+void Finalists::try_options(const Trial& run, const Trial& with, double target) {
+  Method method = methods_[run.method];
+  method.options = methods_[with.method].options;
+  const auto known = std::ranges::find_if(
+      methods_, [&method](const Method& one) { return same(one, method); });
+  const auto index = static_cast<std::size_t>(known - methods_.begin());
+  if (known == methods_.end()) methods_.push_back(method);
+  search_.fewest_that_hold(index, run.elements, target, run.substeps,
+                           dearest * run.substeps);
+  search_.refine(index, target);
+}
+
+ControlCompared Finalists::control(const ModelEntry& model, double target) {
+  const auto best = settled(
+      target, [&](const Trial& run) { return methods_[run.method].model == &model; });
+  if (!best) return {};
+  const auto side = [&](bool controlled) {
+    return replaced(*best, target, [&model, controlled](const Method& method) {
+      return method.model == &model &&
+             find_integrator(method.integrator).error_controlled == controlled;
+    });
+  };
+  ControlCompared both{side(false), side(true)};
+  if (!both.by_step || !both.by_tolerance) return both;
+  // What options do for one side they may do for the other.
+  try_options(*both.by_step, *both.by_tolerance, target);
+  try_options(*both.by_tolerance, *both.by_step, target);
+  both = {side(false), side(true)};
+  for (int turn = 0; turn < turns; ++turn) {
+    for (Trial* run : {&*both.by_step, &*both.by_tolerance}) {
+      double& least_s = times_.at(place(*run)).least_s;
+      run->wall_s = least_s = std::min(least_s, time_(*run).least_s);
+    }
+  }
+  return both;
 }
 
 std::optional<Trial> Finalists::within(double wall_s, double floor) {

@@ -31,6 +31,13 @@ struct BestRuns {
   std::vector<std::pair<std::string, std::optional<Trial>>> without;
 };
 
+/// Of one model, for one target error: the cheapest run by methods that know steps only,
+/// and by those with error control, by tolerance or not, extrapolated or not. Empty where
+/// none meets the target.
+struct ControlCompared {
+  std::optional<Trial> by_step, by_tolerance;
+};
+
 /// The result of a search: the few runs that are shown, timed again, each by its least
 /// time. Variants of a winner's options that the search did not try are added to its
 /// methods.
@@ -44,6 +51,8 @@ class Finalists {
 
   /// Empty where no run meets the target.
   std::optional<BestRuns> of(double target);
+  /// The two are timed in turns.
+  ControlCompared control(const ModelEntry& model, double target);
   std::optional<Trial> within(double wall_s, double floor);
   /// The run judged best, examined or not; the cheapest of equals.
   std::optional<Trial> nearest();
@@ -71,6 +80,7 @@ class Finalists {
   std::optional<Trial> settled(double target, const Accept& accept);
   std::optional<Trial> replaced(const Trial& winner, double target,
                                 const std::function<bool(const Method&)>& other);
+  void try_options(const Trial& run, const Trial& with, double target);
   bool varied(const Method& method, std::string_view choice);
   std::optional<Trial> twice_the_elements(const Trial& winner, double target);
   std::optional<Trial> half_the_step(const Trial& winner, double target);

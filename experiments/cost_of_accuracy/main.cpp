@@ -64,6 +64,11 @@ constexpr Parameter own_settings[] = {
      .min = 1,
      .max = 1e4,
      .whole = true},
+    {.name = "control",
+     .help = "models on which methods with error control are compared with those that "
+             "know steps only",
+     .text = true,
+     .fallback = "super_helix"},
     {.name = "search_work",
      .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
              "--quick, else 60",
@@ -117,6 +122,10 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
   plan.elements = {3, 4, 6, 9, 13, 19, 28, 42, 63};
   plan.substeps = {1, 2, 4, 8, 16, 32, 64, 128};
   plan.methods.models = line.models;
+  if (!own.word("control").empty() && own.word("advise").empty()) {
+    plan.control = split(own.word("control"), ',', "control");
+    for (const std::string& id : plan.control) static_cast<void>(find_model(id));
+  }
   plan.methods.integrators = line.integrators;
   if (line.quick) {
     if (line.models.empty()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
@@ -33,9 +34,14 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity)
   const auto kept = [&](const ReferenceCut& cut, const std::string& as) {
     return kept_reference(study.given, study.comparison, cut, plan.references, as);
   };
-  const SceneReference whole = kept(plan.reference, name);
+  SceneReference whole = kept(plan.reference, name);
   std::optional<SceneReference> fine;
   if (plan.refine) fine = kept(plan.reference.refined(), name + ".refined");
+  // Where the reference cannot resolve the tightest target the refined one takes its
+  // place, and its own check is that both sides agree.
+  if (fine && believed * whole.tips.gap > plan.targets.back()) {
+    whole = *std::exchange(fine, std::nullopt);
+  }
   study.reference = agreed(whole, study.comparison, parted);
   study.changed = kept_changed_tips(study.given, study.comparison, study.reference,
                                     plan.reference.halved(), plan.references, name);
@@ -99,6 +105,18 @@ class SearchProgress {
   Clock::time_point last_ = Clock::now();
 };
 
+/// The first method that has the model and integrator of this one, and chooses the
+/// accuracy of a run alike: they differ in options.
+std::size_t kind_of(const std::vector<Method>& methods, std::size_t index) {
+  const Method& own = methods[index];
+  const auto first = std::ranges::find_if(methods, [&own](const Method& other) {
+    return other.model == own.model && other.integrator == own.integrator &&
+           other.by_tolerance == own.by_tolerance &&
+           other.extrapolated == own.extrapolated;
+  });
+  return static_cast<std::size_t>(first - methods.begin());
+}
+
 /// Repeats all answers until none changes: a replaced choice of a winner must not turn
 /// out cheaper than the winner. Every round but the last tries or times a new run, so
 /// there are few.
@@ -107,7 +125,12 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
   std::size_t before = 0;
   while (finalists.known() != before && !deadline.passed()) {
     before = finalists.known();
-    for (const double target : targets) static_cast<void>(finalists.of(target));
+    for (const double target : targets) {
+      static_cast<void>(finalists.of(target));
+      for (const std::string& id : study.plan.control) {
+        static_cast<void>(finalists.control(find_model(id), target));
+      }
+    }
     static_cast<void>(finalists.front(study.floor(), study.plan.targets.front()));
   }
 }
@@ -121,6 +144,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
       .substeps = plan.substeps,
       .longest_run = plan.longest_run,
       .unit = [&study](std::size_t method) { return steps_unit(study.methods[method]); },
+      .kind = [&study](std::size_t method) { return kind_of(study.methods, method); },
       .slack = 0};
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
@@ -167,7 +191,10 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
                         plan.repeat);
   });
   settle(study, finalists, search_plan.targets, deadline);
-  for (const double target : plan.targets) add_target(study, finalists, target, rows);
+  for (const double target : plan.targets) {
+    add_target(study, finalists, target, rows);
+    add_control(study, finalists, target, rows);
+  }
   add_budget(study, finalists, rows);
   for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {
     rows.push_back(row_of(study, "front", run));

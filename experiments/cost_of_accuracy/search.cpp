@@ -9,6 +9,9 @@ namespace {
 /// Ratio of errors on halving the step above which the remaining error is not temporal.
 constexpr double little_gain = 0.8;
 
+/// A method of the same kind may need this many times the substeps.
+constexpr int alike = 2;
+
 /// Apparent cost ratio that may be due to noise in a single run.
 constexpr double noise = 1.2;
 
@@ -169,6 +172,23 @@ void Search::climb(std::size_t method) {
   }
 }
 
+bool Search::follow(std::size_t method) {
+  if (!plan_.kind) return false;
+  const auto same_kind = [&](const Trial& run) {
+    return run.method != method && plan_.kind(run.method) == plan_.kind(method);
+  };
+  // The tightest target says whether the kind has climbed: it may meet no other.
+  if (cheapest(runs_, plan_.targets.back(), same_kind) == nullptr) return false;
+  for (const double target : plan_.targets) {
+    const Trial* leader = robust(target, same_kind);
+    if (cut_) return true;
+    if (leader == nullptr) continue;
+    fewest_substeps(method, leader->elements, target, leader->substeps,
+                    alike * leader->substeps);
+  }
+  return true;
+}
+
 /// By cost to a factor of 2, then in the order of the catalogue: the same order under any
 /// load of the machine.
 std::vector<std::size_t> Search::promising_first() {
@@ -191,7 +211,7 @@ std::vector<std::size_t> Search::promising_first() {
 void Search::coarse() {
   for (const std::size_t method : promising_first()) {
     if (stopped()) return;
-    climb(method);
+    if (!follow(method)) climb(method);
     ++tried_;
   }
 }

@@ -19,6 +19,10 @@ struct SearchPlan {
   long longest_run;  // elements x substeps; longer runs are not tried
   /// "Substeps" of a method that its ladder counts as one; without it 1.
   std::function<int(std::size_t method)> unit = {};
+  /// Methods of one kind need similar elements and substeps: once one of a kind has
+  /// climbed to the tightest target the others begin near its answer. Without it each
+  /// method is a kind of its own.
+  std::function<std::size_t(std::size_t method)> kind = {};
   /// Tolerance for the coarseness of the ladders: a method whose cheapest run on them
   /// costs more than `slack` times the cheapest of all is dropped (see ladder_slack).
   double slack;
@@ -37,7 +41,8 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///            error x time go first, so that later ones can be compared with them
 ///   coarse   every method climbs from few elements and long steps: more substeps until
 ///            they gain little (the remaining error is spatial), then more elements,
-///            from a step or two longer than where the last climb ended
+///            from a step or two longer than where the last climb ended; a method of a
+///            kind that has climbed begins near the answer of that kind
 ///   prune    for each target the methods within `slack` of the cheapest continue
 ///   refine   from a method's cheapest run so far, numbers of elements around it, each
 ///            with the fewest substeps that meet the target, by bisection; repeated from
@@ -102,6 +107,8 @@ class Search {
   bool stopped();
   std::vector<std::size_t> promising_first();
   void climb(std::size_t method);
+  /// Near the answers of another method of its kind; false: there is none yet.
+  bool follow(std::size_t method);
 
   SearchPlan plan_;
   std::size_t methods_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "simulation/scene/scene_tables.h"
 
@@ -99,6 +101,32 @@ void add_target(const Study& study, Finalists& finalists, double target,
     Row row = begin(study, "without");
     row.set("target_error_rel", target).set("choice", choice);
     rows.push_back(row.failed("not_met", "none that was tried meets the target"));
+  }
+}
+
+void add_control(const Study& study, Finalists& finalists, double target,
+                 std::vector<Row>& rows) {
+  if (target < study.floor()) return;
+  for (const std::string& id : study.plan.control) {
+    const ModelEntry& model = find_model(id);
+    if (std::ranges::find(study.methods, &model, &Method::model) == study.methods.end()) {
+      continue;
+    }
+    const ControlCompared both = finalists.control(model, target - study.gap());
+    const auto add = [&](std::string_view kind, const std::optional<Trial>& run) {
+      Row row = run ? row_of(study, kind, *run) : begin(study, kind);
+      row.set("model", id).set("target_error_rel", target);
+      if (run) {
+        row.set("margin", (run->neighbours + study.gap()) / target);
+        row.set("time_scatter", finalists.scatter(*run));
+        if (both.by_step) row.set("cost_factor", run->wall_s / both.by_step->wall_s);
+      } else {
+        row.failed("not_met", not_met(finalists.cut()));
+      }
+      rows.push_back(std::move(row));
+    };
+    add("by_step", both.by_step);
+    add("by_tolerance", both.by_tolerance);
   }
 }
 

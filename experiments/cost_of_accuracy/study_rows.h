@@ -35,6 +35,9 @@ SceneMeasure measure_of(const Study& study);
 /// Winner, runner-up and replaced choices of one target.
 void add_target(const Study& study, Finalists& finalists, double target,
                 std::vector<Row>& rows);
+/// Error control against steps, on the models for which that is asked.
+void add_control(const Study& study, Finalists& finalists, double target,
+                 std::vector<Row>& rows);
 /// The best run within the time per frame, if requested.
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
 /// The scene with the file's own model, integrator, elements and step; steps end at the

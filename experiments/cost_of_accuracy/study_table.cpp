@@ -15,7 +15,9 @@ constexpr Column columns[] = {
     {"scene", "name of the scene"},
     {"kind",
      "winner, runner_up (another model or integrator), without (one choice replaced), "
-     "budget, front (Pareto), as_given (by the scene file); method: the cheapest of one "
+     "by_step and by_tolerance (of one model, the cheapest without and with error "
+     "control), budget, front (Pareto), as_given (by the scene file); method: the "
+     "cheapest of one "
      "model by one integrator"},
     {"choice",
      "of kind without: what is replaced; elements: twice, dt_s: half (or the tolerance "
@@ -65,7 +67,8 @@ constexpr Column columns[] = {
      "energy"},
     {"unknowns", "of kind method: coordinates and multipliers"},
     {"nonzeros", "of the matrix of a step; unknowns squared where it is dense"},
-    {"cost_factor", "wall time over the winner's", true},
+    {"cost_factor", "wall time over the winner's; of kind by_tolerance over by_step's",
+     true},
     {"time_scatter", "how badly that time repeats: two halves of its repeats, less 1",
      true},
     {"tied", "whether the time cannot be told from the winner's", true},

@@ -63,6 +63,9 @@ std::vector<Column> columns_of_table() {
                "what value compares, of the model of reduced coordinates: the "
                "largest stable step (s), or elements"},
               {"maximal", "the same of der"},
+              {"horizon_s",
+               "time from which on two independent methods part, so that the error is "
+               "up to there; empty: they agree to the end"},
               {"gap", "what the answer is uncertain by, relative to the length"}});
   return all;
 }
@@ -112,7 +115,9 @@ void add_cases(const CommandLine& line, const Parameters& own, const Study& stud
   identity.set("tolerance", own.number("tolerance"));
   identity.set("most_calls", calls_of(line, own));
   const auto models = line.quick ? study.models.first(study.quick.models) : study.models;
-  for (const std::string_view model : models) add(Row(identity).set("model", model));
+  for (const std::string_view model : models) {
+    if (wanted(line.models, model)) add(Row(identity).set("model", model));
+  }
 }
 
 std::vector<Case> cases(const CommandLine& line) {
@@ -121,6 +126,7 @@ std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
   for (const Study& study : studies()) {
     if (own.word("study") != "all" && own.word("study") != study.id) continue;
+    if (study.models.empty() && !line.models.empty()) continue;  // compares its own
     add_cases(line, own, study, all);
   }
   return all;
@@ -142,8 +148,7 @@ bool finding(const Row& row) {
   return std::ranges::find(without_answer, row.status()) != without_answer.end();
 }
 
-constexpr Unused unused[] = {{"models", "each study compares its own"},
-                             {"integrators", "each study compares its own"},
+constexpr Unused unused[] = {{"integrators", "each study compares its own"},
                              {"elements", "each study compares its own"},
                              not_repeated};
 

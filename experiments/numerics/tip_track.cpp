@@ -85,7 +85,8 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
   const bool timed = repeat > 0 && first.status == Status::ok;
   const double wall = timed ? time_run(repeat, [&] { static_cast<void>(run({})); }) : 0;
   return {first.status, first.failure,        first.stats,
-          wall,         std::move(seen.tips), system.layout().coordinates};
+          wall,         std::move(seen.tips), system.layout().coordinates,
+          first.limit};
 }
 
 double tip_error(In tip, In reference, double length) {

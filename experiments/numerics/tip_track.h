@@ -55,6 +55,7 @@ struct TipRun {
   double wall_s;            // stepping only, without setup and reading the tip
   std::vector<double> tip;  // (3 samples) m; fewer when the run failed
   int unknowns;             // coordinates
+  Limit limit;              // of Options that ended it, if any
 };
 
 /// Runs to t_end; samples the tip by TipSamples. With a tolerance steps are long, and the

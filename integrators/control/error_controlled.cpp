@@ -21,6 +21,9 @@ constexpr double more_stretch = 2, least_stretch = 1e-9;
 // estimate is far below any threshold for a motion that starts smoothly, and the control
 // needs few trials otherwise.
 constexpr double first_part = 0.1;
+// After so many steps without a solution, each a quarter of the one before, the first is
+// tried with more effort, which cost 40 to 100 ordinary steps on hairs without friction.
+constexpr int plain_steps = 3;
 // Steps below this part of that time are lost in rounding.
 constexpr double shortest_part = 1e-11;
 
@@ -113,6 +116,9 @@ Status ErrorControlled::next_step(double t_end) {
       contacts == nullptr ? std::vector<double>{} : contacts->multipliers();
   const double longest =
       options_.max_step > 0 ? options_.max_step : std::numeric_limits<double>::infinity();
+  Attempts attempts{.before = control_};
+  // With contact Stage solves several times, and the effort is for all of them.
+  if (contacts != nullptr) attempts.effort = Stage::Effort::whole;
   for (;;) {
     const double breaks = dynamics_.system().next_breakpoint(begin_.t);
     double stop = breaks;
@@ -123,8 +129,12 @@ Status ErrorControlled::next_step(double t_end) {
     }
     end_.t = now.whole ? stop : begin_.t + now.h;
     if (contacts != nullptr) contacts->set_multipliers(held);
-    const Status s = try_step(begin_, now.h, end_, error_q_, error_v_);
+    const Status s = try_step(begin_, now.h, attempts.effort, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
+    if (s == Status::retry && attempts.effort == Stage::Effort::plain) {
+      without_solution(now, attempts);
+      continue;
+    }
     if (s == Status::retry) {
       if (const Status r = unsolved(now); r != Status::ok) return r;
       continue;
@@ -153,6 +163,17 @@ Status ErrorControlled::next_step(double t_end) {
     done.smallest_step_cause = control_.shortest().cause;
     return Status::ok;
   }
+}
+
+void ErrorControlled::without_solution(const StepControl::Trial& failed,
+                                       Attempts& attempts) {
+  if (attempts.plain == 0) attempts.before = control_;
+  ++dynamics_.stats.rejected_by_newton;
+  ++dynamics_.stats.rejected;
+  control_.unsolved(failed, "newton");
+  if (++attempts.plain < plain_steps && !control_.too_short()) return;
+  attempts.effort = Stage::Effort::whole;
+  control_ = attempts.before;
 }
 
 Status ErrorControlled::unsolved(const StepControl::Trial& failed) {

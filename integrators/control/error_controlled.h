@@ -11,6 +11,7 @@
 #include "integrators/control/step_control.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "integrators/stage.h"
 
 namespace tress::integrators {
 
@@ -26,7 +27,9 @@ namespace tress::integrators {
 /// The system must not be changed from outside between two calls of advance(), except
 /// before rewind().
 ///
-/// Step control: StepControl; where Newton's iteration fails there is no solution.
+/// Step control: StepControl. Where Newton's iteration fails, shorter steps are tried
+/// first, which are cheap; where several fail too, the first one with all that Stage has,
+/// and from then on shorter ones likewise.
 class ErrorControlled : public Integrator, public Rewindable {
  public:
   Status start(double t, In q, In v) final;
@@ -51,9 +54,10 @@ class ErrorControlled : public Integrator, public Rewindable {
     std::vector<double> q, v, a, lambda;
   };
 
-  /// From `from` over h to `to`, with the estimated errors of its q and v.
-  virtual Status try_step(const State& from, double h, State& to, Out error_q,
-                          Out error_v) = 0;
+  /// From `from` over h to `to`, with the estimated errors of its q and v. `retry`: no
+  /// solution was found with this effort.
+  virtual Status try_step(const State& from, double h, Stage::Effort effort, State& to,
+                          Out error_q, Out error_v) = 0;
   /// The next step does not go on from the last one: nothing may be guessed from it.
   virtual void forget_steps() = 0;
 
@@ -71,6 +75,14 @@ class ErrorControlled : public Integrator, public Rewindable {
   /// Finds the next step: end_. A step as long as those whose polynomial failed ends at
   /// `t_end` at the latest.
   Status next_step(double t_end);
+  /// Those of one step.
+  struct Attempts {
+    Stage::Effort effort = Stage::Effort::plain;
+    int plain = 0;       // without a solution
+    StepControl before;  // as it was then at first
+  };
+  /// After a plain attempt found none: a shorter step, or the first one with more effort.
+  void without_solution(const StepControl::Trial& failed, Attempts& attempts);
   /// After Newton's iteration failed, in a stage or in the projection.
   Status unsolved(const StepControl::Trial& failed);
   /// Fails where the next step is too short after a rejection for `reason`.

@@ -110,6 +110,29 @@ TEST(Search, FindsTheCheapestOfKnownErrorsAndCosts) {
   EXPECT_GT(looked, 400);
 }
 
+// A second method of the same kind costs a few runs, not a climb, and is found as well.
+TEST(Search, BeginsNearTheAnswerOfAMethodOfTheSameKind) {
+  const Known first{0.3, 2, 0.03, 2, 1e-4}, cheaper{0.3, 2, 0.03, 2, 0.5e-4};
+  const auto runs_with = [&](bool kinds) {
+    Counted counted{{first, cheaper}};
+    SearchPlan made = plan({0.001});
+    if (kinds) made.kind = [](std::size_t) { return std::size_t{0}; };
+    Search search(made, 2, counted.measure(), steady, no_end);
+    search.coarse();
+    const int coarse = counted.runs;
+    search.refine();
+    const Trial* found = cheapest(search.runs(), 0.001);
+    EXPECT_NE(found, nullptr);
+    if (found != nullptr) {
+      EXPECT_EQ(found->method, 1u);
+      const double of_elements = std::max(1.1, 1 + 1.0 / found->elements);
+      EXPECT_LE(found->wall_s, 1.1 * of_elements * least_cost({cheaper}, 0.001));
+    }
+    return coarse;
+  };
+  EXPECT_LT(runs_with(true), runs_with(false));
+}
+
 TEST(Search, PruningNeverDropsTheWinner) {
   std::mt19937 random(2);
   for (int round = 0; round < 100; ++round) {

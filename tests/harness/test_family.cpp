@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/family/family.h"
+#include "experiments/family/horizon.h"
 #include "experiments/numerics/tip_track.h"
 #include "simulation/run/simulation.h"
 
@@ -178,6 +179,50 @@ TEST(Family, Tolerance_CountsARunCutShortAsWithoutSolution) {
   EXPECT_EQ(rows[0].text("holds"), "false");
   EXPECT_NE(rows[0].text("failure").find("max_work"), std::string_view::npos);
   EXPECT_EQ(rows[1].status(), "no_reference");
+}
+
+// A head that turns carries the root of one hair away and leaves the other's in place.
+TEST(Family, Horizon_EndsBeforeTheFirstSampleAtWhichTwoRunsAreApart) {
+  const Hair hair = short_hair();
+  Hair other = hair;
+  other.drive = Drive::release;
+  const auto one = make_system(hair, "super_helix", elements_of(hair));
+  const auto same = make_system(hair, "super_helix", elements_of(hair));
+  const auto beside = make_system(other, "super_helix", elements_of(hair));
+  Options fine, coarse;
+  fine.tolerance = 1e-5;
+  coarse.tolerance = 1e-4;
+  constexpr int samples = 8;
+  constexpr double t_end = 0.1, apart = 1e-3;
+  const Horizon whole = horizon({*one, "esdirk43", fine}, {*same, "tr_bdf2", coarse},
+                                t_end, samples, hair.length, apart);
+  EXPECT_FALSE(whole.parted);
+  EXPECT_EQ(whole.samples(), samples);
+  EXPECT_LE(tip_error(whole.tip, whole.other, hair.length), apart);
+  // The root moves by 10 cm x 0.5 rad: the length.
+  constexpr double far = 0.3;
+  const Horizon cut = horizon({*one, "esdirk43", fine}, {*beside, "esdirk43", fine},
+                              t_end, samples, hair.length, far);
+  EXPECT_TRUE(cut.parted);
+  EXPECT_GT(cut.samples(), 0);
+  EXPECT_LT(cut.samples(), samples);
+  EXPECT_LE(tip_error(cut.tip, cut.other, hair.length), far);
+  fine.max_work = 1;
+  const Horizon ended = horizon({*one, "esdirk43", fine}, {*same, "tr_bdf2", coarse},
+                                t_end, samples, hair.length, apart);
+  EXPECT_FALSE(ended.parted);
+  EXPECT_LT(ended.samples(), samples);
+}
+
+// With all its means at once the method took 4e5 calls for two thirds of the way.
+TEST(Family, ErrorControl_TriesShorterStepsBeforeItMakesAnEffort) {
+  const Hair hair = latin_hypercube(48, 1)[17];
+  const auto system = make_system(hair, "super_helix", elements_of(hair));
+  Options options;
+  options.tolerance = asked;
+  options.max_work = 2e5 * (system->layout().coordinates + 10);
+  const TipRun run = run_tip("esdirk43", *system, options, 0.4, 24);
+  EXPECT_EQ(run.status, Status::ok) << run.failure;
 }
 
 // Between the ends of such steps a cubic would add an error of its own, and of a step
