@@ -1,13 +1,17 @@
 // Exact contact by impulses: how a strand responds to forces on its points (assembly),
 // the contacts of one strand with a plane, and a sweep over the contacts of a head of
-// hair.
+// hair; requirements as multiples of the reference kernel in the same process.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "experiments/benchmarks/fixture.h"
+#include "experiments/benchmarks/reference_strands.h"
 #include "integrators/control/impulse_response.h"
 #include "models/contact/contact_problem.h"
 #include "simulation/scene/scene.h"
@@ -87,62 +91,83 @@ ContactProblem::Contact thrown(std::mt19937& random) {
   return contact;
 }
 
-/// To the tolerance that is the default, from nothing or from the forces of a step
-/// before, since when velocities have changed by 1 %.
-void on_plane(benchmark::State& state, std::string_view model, bool warm) {
-  const auto contacts = static_cast<int>(state.range(0));
-  std::mt19937 random(1);
-  std::vector<ContactProblem::Contact> all;
-  for (int i = 0; i < contacts; ++i) {
-    ContactProblem::Contact contact = thrown(random);
-    put(contact, 0, 0, (elements - 1) * (i + 0.5) / contacts, 1);
-    put(contact, 2, 0, 0, 0);
-    all.push_back(contact);
+/// Contacts of one strand with a plane, to the tolerance that is the default, from
+/// nothing or from the forces of a step before, since when velocities have changed by 1
+/// %.
+class OnPlane {
+ public:
+  OnPlane(std::string_view model, int contacts, bool warm)
+      : compliance_(compliance_of(model)) {
+    std::mt19937 random(1);
+    for (int i = 0; i < contacts; ++i) {
+      ContactProblem::Contact contact = thrown(random);
+      put(contact, 0, 0, (elements - 1) * (i + 0.5) / contacts, 1);
+      put(contact, 2, 0, 0, 0);
+      all_.push_back(contact);
+    }
+    if (!warm) return;
+    solve();
+    all_.assign(problem_.contacts().begin(), problem_.contacts().end());
+    for (auto& contact : all_) contact.free = 1.01 * contact.free;
   }
-  const std::vector<Mat3> compliance = compliance_of(model);
-  ContactProblem problem;
+  void solve() {
+    problem_.clear();
+    problem_.add_body(compliance_, elements);
+    for (const auto& contact : all_) problem_.add(contact);
+    outcome = problem_.solve(proximal, tolerance, most_sweeps);
+  }
+  bool solved() const { return outcome.violation <= tolerance; }
   ContactProblem::Outcome outcome;
-  const auto solve = [&] {
-    problem.clear();
-    problem.add_body(compliance, elements);
-    for (const auto& contact : all) problem.add(contact);
-    outcome = problem.solve(1e-2, 1e-6, 10'000);
-  };
-  if (warm) {
-    solve();
-    all.assign(problem.contacts().begin(), problem.contacts().end());
-    for (auto& contact : all) contact.free = 1.01 * contact.free;
-  }
+
+ private:
+  static constexpr double proximal = 1e-2, tolerance = 1e-6;  // 1, m/s
+  static constexpr int most_sweeps = 10'000;
+  std::vector<Mat3> compliance_;
+  std::vector<ContactProblem::Contact> all_;
+  ContactProblem problem_;
+};
+
+void on_plane(benchmark::State& state, std::string_view model, bool warm) {
+  OnPlane plane(model, static_cast<int>(state.range(0)), warm);
   for ([[maybe_unused]] auto _ : state) {
-    solve();
+    plane.solve();
     benchmark::ClobberMemory();
   }
-  if (outcome.violation > 1e-6) state.SkipWithError("not solved");
-  state.counters["sweeps"] = outcome.sweeps;
+  if (!plane.solved()) state.SkipWithError("not solved");
+  state.counters["sweeps"] = plane.outcome.sweeps;
 }
 
-/// Contacts between neighbours of a thousand strands; time per contact and sweep.
+/// Contacts between neighbours of a thousand strands.
+class BetweenStrands {
+ public:
+  static constexpr int strands = 1000, contacts = 5000, sweeps = 10;
+
+  explicit BetweenStrands(std::string_view model) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> part(0, elements - 1);
+    std::uniform_int_distribution<int> any(0, strands - 1), apart(1, 8);
+    const std::vector<Mat3> compliance = compliance_of(model);
+    for (int k = 0; k < strands; ++k) problem_.add_body(compliance, elements);
+    for (int i = 0; i < contacts; ++i) {
+      ContactProblem::Contact contact = thrown(random);
+      const int first = any(random);
+      put(contact, 0, first, part(random), 1);
+      put(contact, 2, (first + apart(random)) % strands, part(random), -1);
+      problem_.add(contact);
+    }
+  }
+  void sweep() { benchmark::DoNotOptimize(problem_.solve(1e-2, 0, sweeps).violation); }
+
+ private:
+  ContactProblem problem_;
+};
+
+/// Time per contact and sweep.
 void between_strands(benchmark::State& state, std::string_view model) {
-  constexpr int strands = 1000, contacts = 5000, sweeps = 10;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> part(0, elements - 1);
-  std::uniform_int_distribution<int> any(0, strands - 1), apart(1, 8);
-  const std::vector<Mat3> compliance = compliance_of(model);
-  ContactProblem problem;
-  for (int k = 0; k < strands; ++k) problem.add_body(compliance, elements);
-  for (int i = 0; i < contacts; ++i) {
-    ContactProblem::Contact contact = thrown(random);
-    const int first = any(random);
-    put(contact, 0, first, part(random), 1);
-    put(contact, 2, (first + apart(random)) % strands, part(random), -1);
-    problem.add(contact);
-  }
-  for ([[maybe_unused]] auto _ : state) {
-    const auto outcome = problem.solve(1e-2, 0, sweeps);
-    benchmark::DoNotOptimize(outcome.violation);
-  }
+  BetweenStrands between(model);
+  for ([[maybe_unused]] auto _ : state) between.sweep();
   state.counters["per_contact_sweep_s"] = benchmark::Counter(
-      static_cast<double>(contacts) * sweeps,
+      static_cast<double>(BetweenStrands::contacts) * BetweenStrands::sweeps,
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
@@ -164,10 +189,62 @@ void register_all() {
   }
 }
 
+// Requirements are times (s) on a machine that takes this for one element and step of the
+// reference kernel.
+constexpr double unit = 82e-9;  // s
+
+/// Time of one call, of which `of` makes so many, over an element and step of the
+/// reference.
+double over_reference(const std::function<void()>& of, double calls) {
+  constexpr std::size_t strands = 64;
+  constexpr int steps = 40;
+  ReferenceStrands kernel(strands);
+  const double ratio = time_ratio(of, [&] {
+    for (int i = 0; i < steps; ++i) kernel.step();
+  });
+  return ratio * steps * strands * reference_elements / calls;
+}
+
+std::function<void()> repeated(int times, const std::function<void()>& call) {
+  return [=] {
+    for (int i = 0; i < times; ++i) call();
+  };
+}
+
+bool requirements_met(std::string_view model) {
+  bool met = true;
+  const auto require = [&](std::string_view what, double value, double most_s) {
+    met = kept("contact", fmt::format("{}, {}, over the reference", model, what), value,
+               most_s / unit) &&
+          met;
+  };
+  Falling strand(model);
+  require("response of 10 points",
+          over_reference(repeated(40, [&] { (void)strand.assemble(); }), 40), 60e-6);
+  BetweenStrands between(model);
+  require("a contact and sweep of a head",
+          over_reference([&] { between.sweep(); },
+                         double{BetweenStrands::contacts} * BetweenStrands::sweeps),
+          0.5e-6);
+  for (const bool warm : {true, false}) {
+    for (const auto& [contacts, most] : {std::pair(11, 10e-6), std::pair(40, 65e-6)}) {
+      OnPlane plane(model, contacts, warm);
+      require(fmt::format("{} contacts {}", contacts, warm ? "again" : "from nothing"),
+              over_reference(repeated(40, [&] { plane.solve(); }), 40), most);
+    }
+  }
+  return met;
+}
+
 }  // namespace
 }  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::experiments::benchmarks::register_all();
-  return tress::experiments::benchmarks::run_benchmarks(argc, argv).exit_code;
+  using namespace tress::experiments::benchmarks;
+  register_all();
+  const Measured measured = run_benchmarks(argc, argv);
+  if (measured.exit_code != 0) return measured.exit_code;
+  bool met = true;
+  for (const std::string_view model : models) met = requirements_met(model) && met;
+  return met ? 0 : 3;
 }

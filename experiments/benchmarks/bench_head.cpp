@@ -7,9 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "contract/constants.h"
 #include "experiments/benchmarks/fixture.h"
-#include "experiments/benchmarks/reference_kernel.h"
+#include "experiments/benchmarks/reference_strands.h"
 #include "models/effects/body.h"
 #include "models/head/head.h"
 #include "simulation/run/head_run.h"
@@ -22,22 +21,8 @@ using models::Head;
 using models::HeadNumber;
 using models::HeadPack;
 
-constexpr int elements = 10;
-constexpr double length = 0.2, h = 1e-3;  // m, s
-
-/// Curls that differ a little from strand to strand.
-double curl(std::size_t k) {  // 1/m
-  return 20 * (1 + 0.3 * std::sin(0.37 * static_cast<double>(k % 97)));
-}
-
-models::Strand hair(std::size_t k) {
-  models::Material material;
-  material.youngs_modulus = 1e9;
-  material.shear_modulus = models::Material::shear_modulus_of(1e9, 0.48);
-  material.internal_friction = 1e-10;
-  return make_strand(material, {}, {.elements = elements, .length = length},
-                     models::uniform_shape({0, curl(k), 0}));
-}
+constexpr int elements = reference_elements;
+constexpr double length = reference_length, h = reference_step;  // m, s
 
 using Make = std::unique_ptr<Head> (*)(const models::HeadOptions&, const HeadPack&);
 
@@ -49,7 +34,7 @@ std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag,
   options.longest = length;
   auto made = make(options, pack);
   made->reserve(strands);
-  for (std::size_t k = 0; k < strands; ++k) made->add(hair(k));
+  for (std::size_t k = 0; k < strands; ++k) made->add(reference_hair(k));
   return made;
 }
 
@@ -84,66 +69,13 @@ std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
     const Vec e2 = 1 / norm(level) * level;
     const Vec uphill = cross(e2, normal);
     const Vec tangent = std::sqrt(0.5) * (normal - uphill);
-    models::Strand one = hair(k);
+    models::Strand one = reference_hair(k);
     one.root.position = x;
     one.root.frame = {tangent, cross(e2, tangent), e2};
     made->add(one);
   }
   return made;
 }
-
-class Reference {
- public:
-  explicit Reference(std::size_t strands)
-      : blocks_(strands / reference::lanes),
-        state_(blocks_ * elements),
-        scratch_(elements) {
-    const models::Strand one = hair(0);
-    const models::CrossSection& section = one.segments.front().section;
-    const Vec moduli = stiffness(one.material, section);
-    // Units of length, gravity and mass, as a Head has them.
-    const double mu = one.material.density * section.area(),
-                 tau2 = length / earth_gravity, unit = mu * std::pow(length, 4) / tau2;
-    strand_ = {elements,
-               1.0 / elements,
-               1,
-               moduli.x / unit,
-               moduli.y / unit,
-               one.material.internal_friction / (unit * std::sqrt(tau2)),
-               1,
-               h / std::sqrt(tau2)};
-    for (std::size_t b = 0; b < blocks_; ++b) {
-      for (std::size_t i = 0; i < elements; ++i) {
-        reference::State& s = state_[b * elements + i];
-        s = reference::State{};
-        for (int lane = 0; lane < reference::lanes; ++lane) {
-          s.k.y[lane] =
-              length * curl(b * reference::lanes + static_cast<std::size_t>(lane));
-        }
-        s.rest = s.k;
-      }
-    }
-  }
-  void step() {
-    by(widest_instructions(), [this] {
-      for (std::size_t b = 0; b < blocks_; ++b) {
-        reference::step(strand_, &state_[b * elements], scratch_.data());
-      }
-    });
-  }
-  /// 1/m.
-  double curvature(std::size_t strand, std::size_t element) const {
-    return state_[strand / reference::lanes * elements + element]
-               .k.y[static_cast<int>(strand % reference::lanes)] /
-           length;
-  }
-
- private:
-  std::size_t blocks_;
-  reference::Strand strand_{};
-  std::vector<reference::State> state_;
-  std::vector<reference::Record> scratch_;
-};
 
 struct Stepping {
   std::unique_ptr<Head> head;
@@ -154,17 +86,6 @@ struct Stepping {
     t += h;
   }
 };
-
-/// Median of the ratios of neighbouring runs, in turn.
-double ratio(const std::function<void()>& of, const std::function<void()>& to) {
-  std::vector<double> ratios;
-  for (int i = 0; i < 31; ++i) {
-    const double first = seconds_of(i % 2 == 0 ? of : to),
-                 second = seconds_of(i % 2 == 0 ? to : of);
-    ratios.push_back(i % 2 == 0 ? first / second : second / first);
-  }
-  return median(ratios);
-}
 
 struct Line {
   std::string_view name;
@@ -188,7 +109,7 @@ constexpr Line lines[] = {
 
 void register_all() {
   benchmark::RegisterBenchmark("reference/64", [](benchmark::State& state) {
-    Reference kernel(64);
+    ReferenceStrands kernel(64);
     for ([[maybe_unused]] auto _ : state) kernel.step();
     count_per_element(state, 64 * elements);
   });
@@ -203,16 +124,9 @@ void register_all() {
   }
 }
 
-bool kept(const std::string& what, double value, double most) {
-  const bool good = value <= most;
-  fmt::print("requirement on heads: {}: {} takes {:.3g} (at most {:.3g})\n",
-             good ? "met" : "NOT met", what, value, most);
-  return good;
-}
-
 /// The reference moves as heads do: the same motion, to the error of its shorter series.
 bool same_motion() {
-  Reference kernel(64);
+  ReferenceStrands kernel(64);
   Stepping of{head(64, {HeadNumber::float64, 4}, 0)};
   for (int s = 0; s < 20; ++s) {
     kernel.step();
@@ -227,13 +141,13 @@ bool same_motion() {
           std::max(most, std::abs(q[3 * i + 1] - kernel.curvature(k, i)) / q[3 * i + 1]);
     }
   }
-  return kept("the reference, its relative difference from a head,", most, 1e-2);
+  return kept("heads", "the reference, its relative difference from a head,", most, 1e-2);
 }
 
 bool costs_met() {
   bool met = true;
   for (const Line& line : lines) {
-    Reference kernel(line.strands);
+    ReferenceStrands kernel(line.strands);
     Stepping of{head(line.strands, line.pack, line.drag, line.make)};
     const int repeat = static_cast<int>(40960 / line.strands);
     const auto repeated = [repeat](auto& what) {
@@ -241,8 +155,9 @@ bool costs_met() {
         for (int i = 0; i < repeat; ++i) what.step();
       };
     };
-    met = kept(fmt::format("{}, {} strands, over the reference", line.name, line.strands),
-               ratio(repeated(of), repeated(kernel)), line.most) &&
+    met = kept("heads",
+               fmt::format("{}, {} strands, over the reference", line.name, line.strands),
+               time_ratio(repeated(of), repeated(kernel)), line.most) &&
           met;
   }
   return met;
@@ -256,7 +171,7 @@ bool bodies_met() {
     const HeadPack pack{HeadNumber::float64, lanes};
     Stepping without{combed(strands, pack, {})}, on{combed(strands, pack, 0.0)},
         beside{combed(strands, pack, 5.0)};
-    Reference kernel(strands);
+    ReferenceStrands kernel(strands);
     for (Stepping* one : {&without, &on, &beside}) {
       for (int s = 0; s < 500; ++s) one->step();
     }
@@ -297,12 +212,13 @@ bool head_met() {
     const double time = median(times);
     if (threads == 1) {
       const double bytes = static_cast<double>(run->head().bytes());
-      met = kept("building 200 000 strands, s,", building, 10) && met;
-      met = kept("memory of a strand, bytes,", bytes / strands, 2048) && met;
+      met = kept("heads", "building 200 000 strands, s,", building, 10) && met;
+      met = kept("heads", "memory of a strand, bytes,", bytes / strands, 2048) && met;
       one = time;
     } else {
-      met = kept("a step of 200 000 strands on 2 threads, s,", time, 0.25) && met;
-      met = kept("on 2 threads over 1, its time,", time / one, 1 / 1.8) && met;
+      met =
+          kept("heads", "a step of 200 000 strands on 2 threads, s,", time, 0.25) && met;
+      met = kept("heads", "on 2 threads over 1, its time,", time / one, 1 / 1.8) && met;
     }
   }
   return met;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/benchmarks/fixture.h"
-#include "experiments/benchmarks/reference_kernel.h"
+#include "experiments/benchmarks/reference_strands.h"
 #include "models/effects/strand_interaction.h"
 #include "simulation/run/timing.h"
 
@@ -120,24 +120,15 @@ class Hanging {
 
 /// Time of an element's step of the reference kernel, s.
 double reference_time() {
-  constexpr int blocks = 16, steps = 40;
-  const reference::Strand strand{elements, 0.1, 1, 1, 1, 1e-3, 1, 1e-3};
-  std::vector<reference::State> state(blocks * elements);
-  std::vector<reference::Record> scratch(elements);
+  constexpr int strands = 64, steps = 40;
+  ReferenceStrands kernel(strands);
   std::vector<double> times;
   for (int k = 0; k < 15; ++k) {
-    std::ranges::fill(state, reference::State{});
-    for (reference::State& s : state) s.rest.y = s.k.y = reference::all(1);
     times.push_back(seconds_of([&] {
-      for (int s = 0; s < steps; ++s) {
-        for (int b = 0; b < blocks; ++b) {
-          reference::step(strand, &state[static_cast<std::size_t>(b * elements)],
-                          scratch.data());
-        }
-      }
+      for (int s = 0; s < steps; ++s) kernel.step();
     }));
   }
-  return median(times) / (steps * blocks * reference::lanes * elements);
+  return median(times) / (steps * strands * reference_elements);
 }
 
 struct Line {

@@ -10,6 +10,7 @@
 #include "integrators/formulation/dynamics.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/source_state.h"
+#include "simulation/run/timing.h"
 
 namespace tress::experiments::benchmarks {
 namespace {
@@ -109,6 +110,24 @@ Moving& MovingFamily::at(int size) {
   const auto found = made_.find(size);
   if (found != made_.end()) return found->second;
   return made_.emplace(size, set_in_motion(model_, settings_(size))).first->second;
+}
+
+double time_ratio(const std::function<void()>& of, const std::function<void()>& to) {
+  constexpr int runs = 31;
+  std::vector<double> ratios;
+  for (int i = 0; i < runs; ++i) {
+    const double first = seconds_of(i % 2 == 0 ? of : to),
+                 second = seconds_of(i % 2 == 0 ? to : of);
+    ratios.push_back(i % 2 == 0 ? first / second : second / first);
+  }
+  return median(ratios);
+}
+
+bool kept(std::string_view subject, std::string_view what, double value, double most) {
+  const bool good = value <= most;
+  fmt::print("requirement on {}: {}: {} takes {:.3g} (at most {:.3g})\n", subject,
+             good ? "met" : "NOT met", what, value, most);
+  return good;
 }
 
 void count_per_element(benchmark::State& state, int elements) {

@@ -69,6 +69,13 @@ void count_per_element(benchmark::State& state, int elements);
 /// Registers the sizes of a family and the fit of time against size.
 void with_sizes(benchmark::internal::Benchmark* registered, std::span<const int> sizes);
 
+/// Median of the ratios of the times of neighbouring runs, taken in turn: what else the
+/// machine does falls on both.
+double time_ratio(const std::function<void()>& of, const std::function<void()>& to);
+
+/// Prints a requirement with what was measured; false when it is not met.
+bool kept(std::string_view subject, std::string_view what, double value, double most);
+
 /// What a program measured, by "name/size": CPU time of one call in s, the median when
 /// there were repetitions.
 struct Measured {

@@ -101,6 +101,7 @@ void BoxPairs::search(std::size_t b, std::span<const Box> boxes, Listed& listed,
   const std::size_t count = start_[b + 1] - start_[b];
   if (count < 2) return;
   listed.box.clear();
+  listed.cell.clear();
   for (std::size_t d = 0; d < 3; ++d) {
     listed.least[d].clear();
     listed.most[d].clear();
@@ -111,6 +112,7 @@ void BoxPairs::search(std::size_t b, std::span<const Box> boxes, Listed& listed,
     if (!listed.box.empty() && listed.box.back() == i) continue;
     listed.box.push_back(i);
     const Box& box = boxes[static_cast<std::size_t>(i)];
+    listed.cell.push_back(cell(box.least));
     const double least[3] = {box.least.x, box.least.y, box.least.z};
     const double most[3] = {box.most.x, box.most.y, box.most.z};
     for (std::size_t d = 0; d < 3; ++d) {
@@ -134,12 +136,10 @@ void BoxPairs::search(std::size_t b, std::span<const Box> boxes, Listed& listed,
     }
     for (std::size_t j = i + 1; j < n; ++j) {
       if (overlaps[j] == 0) continue;
-      const auto first = static_cast<std::size_t>(listed.box[i]);
-      const auto second = static_cast<std::size_t>(listed.box[j]);
-      // A pair counts in one of its cells: that of the corner of its common part.
-      const Vec a = boxes[first].least, c = boxes[second].least;
-      const Vec corner{std::max(a.x, c.x), std::max(a.y, c.y), std::max(a.z, c.z)};
-      if (bucket(cell(corner)) != b) continue;
+      // A pair counts in one of its cells: that of the least corner of its common part.
+      const Cell &a = listed.cell[i], &c = listed.cell[j];
+      const Cell corner{std::max(a.x, c.x), std::max(a.y, c.y), std::max(a.z, c.z)};
+      if (bucket(corner) != b) continue;
       if (keep(listed.box[i], listed.box[j])) {
         found.emplace_back(listed.box[i], listed.box[j]);
       }

@@ -47,6 +47,7 @@ class BoxPairs {
   struct Listed {
     std::vector<float> least[3], most[3];
     std::vector<int> box, overlaps;
+    std::vector<Cell> cell;  // of their least corners
   };
   Cell cell(const Vec& x) const;
   std::size_t bucket(const Cell& c) const;

@@ -44,6 +44,7 @@ PieceSearch::PieceSearch(std::span<const Strand> strands, double thickness, bool
   }
   room_ = more_room * widest_;
   boxes_.resize(strand_.size());
+  motion_.resize(strand_.size());
   roomy_.resize(strand_.size());
   arc_.resize(first_.back());
 }
@@ -98,6 +99,16 @@ double PieceSearch::gap(const Found& pair, In x) const {
   return dot(pair.at.normal, sum) - thickness(pair.first, pair.second);
 }
 
+double PieceSearch::depth(const Found& pair) const {
+  const MovingPieces pieces = moving(pair.first, pair.second);
+  const StraightPiece first(pieces.to[0], pieces.to[1]),
+      second(pieces.to[2], pieces.to[3]);
+  const NearestPoints near = nearest(first, second);
+  const double distance = norm(first.at(near.of_first) - second.at(near.of_second));
+  const bool passed = gap_now(pair) < 0 && touch(pieces, 0).has_value();
+  return thickness(pair.first, pair.second) + (passed ? distance : -distance);
+}
+
 MovingPieces PieceSearch::moving(int first, int second) const {
   MovingPieces all;
   const std::array<std::size_t, 4> points = ends(first, second);
@@ -108,14 +119,19 @@ MovingPieces PieceSearch::moving(int first, int second) const {
   return all;
 }
 
-void PieceSearch::place_boxes() {
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const std::size_t at = 3 * point_of(static_cast<int>(i));
-    Box box{load3(&from_[at]), load3(&from_[at])};
-    box.include(load3(&from_[at + 3]));
-    box.include(load3(&now_[at]));
-    box.include(load3(&now_[at + 3]));
-    boxes_[i] = box;
+/// Those that have moved since they were looked at.
+void PieceSearch::place_pieces() {
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    if (moved_[k] == 0) continue;
+    for (std::size_t i = first_[k] - k; i + k + 1 < first_[k + 1]; ++i) {
+      const std::size_t at = 3 * (i + k);
+      const Vec from0 = load3(&from_[at]), from1 = load3(&from_[at + 3]),
+                to0 = load3(&now_[at]), to1 = load3(&now_[at + 3]);
+      Box box{from0, from0};
+      for (const Vec& x : {from1, to0, to1}) box.include(x);
+      boxes_[i] = box;
+      motion_[i] = {from0, to0, from1, to1};
+    }
   }
 }
 
@@ -125,7 +141,9 @@ bool PieceSearch::may_touch(int first, int second) const {
   if (strand_of(first) == strand_of(second) && (!own_ || second - first < 2)) {
     return false;
   }
-  return may_come_within((1 + stays) * widest_ + 2 * room_, moving(first, second));
+  return may_come_within((1 + stays) * widest_ + 2 * room_,
+                         motion_[static_cast<std::size_t>(first)],
+                         motion_[static_cast<std::size_t>(second)]);
 }
 
 /// The box of the step with what may touch it, and room.
@@ -168,15 +186,22 @@ void PieceSearch::gather_moved(const Loop& loop) {
   }
 }
 
-bool PieceSearch::look(int first, int second, bool wider, Found& found) const {
+bool PieceSearch::look(int first, int second, const std::function<bool(int, int)>& wider,
+                       Found& found) const {
   const double thick = thickness(first, second);
-  const double reach = wider ? (1 + stays) * thick : thick;
-  Box box = boxes_[static_cast<std::size_t>(first)];
-  box.grow(reach);
-  if (apart(box, boxes_[static_cast<std::size_t>(second)])) return false;
-  const MovingPieces pieces = moving(first, second);
-  if (!may_come_within(reach, pieces)) return false;
-  const std::optional<PieceTouch> at = touch(pieces, reach);
+  // A strand that is still has moved a little since its motion was taken.
+  const auto within = [&](double reach) {
+    return may_come_within(reach + still * widest_,
+                           motion_[static_cast<std::size_t>(first)],
+                           motion_[static_cast<std::size_t>(second)]);
+  };
+  double reach = (1 + stays) * thick;
+  if (!within(reach)) return false;
+  if (!wider(first, second)) {
+    reach = thick;
+    if (!within(reach)) return false;
+  }
+  const std::optional<PieceTouch> at = touch(moving(first, second), reach);
   if (!at) return false;
   found = {first, second, *at};
   // Along a bend a strand is near itself by its thickness.
@@ -186,7 +211,7 @@ bool PieceSearch::look(int first, int second, bool wider, Found& found) const {
 
 const std::vector<PieceSearch::Found>& PieceSearch::find(
     const Loop& loop, const std::function<bool(int, int)>& wider) {
-  place_boxes();
+  place_pieces();
   gathered_.empty() ? gather(loop) : gather_moved(loop);
   found_of_.resize((near_.size() + group - 1) / group);
   loop(found_of_.size(), [&](std::size_t g) {
@@ -195,9 +220,7 @@ const std::vector<PieceSearch::Found>& PieceSearch::find(
       const auto [first, second] = near_[i];
       if (moved_[strand_of(first)] == 0 && moved_[strand_of(second)] == 0) continue;
       Found found{};
-      if (look(first, second, wider(first, second), found)) {
-        found_of_[g].push_back(found);
-      }
+      if (look(first, second, wider, found)) found_of_[g].push_back(found);
     }
   });
   for (std::size_t k = 0; k < moved_.size(); ++k) {

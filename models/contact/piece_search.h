@@ -73,17 +73,21 @@ class PieceSearch {
   double gap(const Found& pair, In x) const;
   double gap_before(const Found& pair) const { return gap(pair, from_); }
   double gap_now(const Found& pair) const { return gap(pair, now_); }
+  /// How far two pieces that touch are in each other at the end of the step, with the
+  /// forces, m; more than their thickness if they have passed through each other.
+  double depth(const Found& pair) const;
   /// Of a place on a piece along its strand at the start of the step, m.
   double arc(int piece, double part) const;
 
  private:
   MovingPieces moving(int first, int second) const;
-  void place_boxes();
+  void place_pieces();
   void make_room(std::size_t piece);
   void gather(const Loop& loop);
   void gather_moved(const Loop& loop);
   bool may_touch(int first, int second) const;
-  bool look(int first, int second, bool wider, Found& found) const;
+  bool look(int first, int second, const std::function<bool(int, int)>& wider,
+            Found& found) const;
 
   bool own_;
   double thickness_;
@@ -92,9 +96,10 @@ class PieceSearch {
   std::vector<std::size_t> first_;   // points of strands, and the number of all
   std::vector<std::size_t> strand_;  // of pieces
   std::vector<double> from_, to_, now_;
-  std::vector<double> arc_;  // of points, m
-  std::vector<Box> boxes_;   // of pieces during the step
-  std::vector<Box> roomy_;   // the same with room
+  std::vector<double> arc_;          // of points, m
+  std::vector<PieceMotion> motion_;  // of pieces during the step
+  std::vector<Box> boxes_;           // the same
+  std::vector<Box> roomy_;           // with room
   BoxPairs broad_;
   std::vector<BoxPairs::Pair> near_;  // may touch while points are up to room_ from
   std::vector<double> gathered_;      // here; empty: not gathered in this step

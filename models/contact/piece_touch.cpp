@@ -85,18 +85,31 @@ std::optional<PieceTouch> crossing(const MovingPieces& p, double part) {
 
 }  // namespace
 
-bool may_come_within(double reach, const MovingPieces& p) {
-  double square = 0;
-  for (const std::size_t a : {0u, 1u}) {
-    for (const std::size_t b : {2u, 3u}) {
-      const Vec relative = (p.to[a] - p.from[a]) - (p.to[b] - p.from[b]);
-      square = std::fmax(square, dot(relative, relative));
-    }
+PieceMotion::PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1,
+                         const Vec& to1)
+    : middle(0.25 * (from0 + to0 + from1 + to1)),
+      half(0.25 * (from1 + to1 - from0 - to0)),
+      moved(0.5 * (to0 - from0 + to1 - from1)),
+      turned(0.5 * norm(to1 - from1 - (to0 - from0))) {}
+
+bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
+  const double far = reach + 0.5 * (norm(p.moved - q.moved) + p.turned + q.turned);
+  const Vec between = p.middle - q.middle;
+  // Most are farther apart along the common normal of their lines, or beside one of them,
+  // which takes no division.
+  const Vec normal = cross(p.half, q.half);
+  const double square = dot(normal, normal), along = dot(between, normal);
+  if (along * along > far * far * square) return false;
+  const double sine = std::sqrt(square);
+  for (const Vec& half : {p.half, q.half}) {
+    const Vec beside = cross(between, half);
+    const double most = sine + far * std::sqrt(dot(half, half));
+    if (dot(beside, beside) > most * most) return false;
   }
-  const Pieces middle = at(p, 0.5);
-  const NearestPoints near = nearest(middle.first, middle.second);
-  const Vec gap = middle.first.at(near.of_first) - middle.second.at(near.of_second);
-  const double far = reach + 0.5 * std::sqrt(square);
+  const StraightPiece first(p.middle - p.half, p.middle + p.half),
+      second(q.middle - q.half, q.middle + q.half);
+  const NearestPoints near = nearest(first, second);
+  const Vec gap = first.at(near.of_first) - second.at(near.of_second);
   return dot(gap, gap) <= far * far;
 }
 

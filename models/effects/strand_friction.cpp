@@ -215,8 +215,18 @@ void StrandFriction::find_on_obstacles(const Loop& loop) {
   }
 }
 
+/// Where the step ends.
+void StrandFriction::measure_depth() {
+  for (const Known& known : known_) {
+    if (known.second >= 0) deepest_ = std::max(deepest_, search_.depth(known));
+  }
+}
+
 bool StrandFriction::find(const Loop& loop) {
-  if (rounds_++ == most_rounds) return false;
+  if (rounds_++ == most_rounds) {
+    measure_depth();
+    return false;
+  }
   found_.clear();
   find_on_obstacles(loop);
   // A pair that pushed in the last step counts a little farther apart.
@@ -229,7 +239,10 @@ bool StrandFriction::find(const Loop& loop) {
     found_.insert(found_.end(), found.begin(), found.end());
   }
   stale_.clear();
-  if (found_.empty()) return false;
+  if (found_.empty()) {
+    measure_depth();
+    return false;
+  }
   known_.insert(known_.end(), found_.begin(), found_.end());
   std::ranges::stable_sort(known_, by_pair);
   touch_points();
@@ -321,7 +334,7 @@ void StrandFriction::respond(std::size_t strand, In compliance) {
   }
 }
 
-void StrandFriction::solve() {
+void StrandFriction::solve(const Loop& loop) {
   problem_.clear();
   for (const std::size_t k : touching_) {
     Touched& strand = strands_[k];
@@ -330,7 +343,7 @@ void StrandFriction::solve() {
   }
   for (const Known& known : known_) problem_.add(contact(known));
   const ContactProblem::Outcome outcome =
-      problem_.solve(proximal, law_.tolerance, law_.sweeps);
+      problem_.solve(proximal, law_.tolerance, law_.sweeps, loop);
   outcome_ = {outcome_.sweeps + outcome.sweeps, outcome.violation};
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const ContactProblem::Contact& solved = problem_.contacts()[i];
@@ -387,7 +400,7 @@ std::vector<StrandFriction::Touch> StrandFriction::touches() const {
 }
 
 std::vector<double> StrandFriction::memory() const {
-  std::vector<double> all;
+  std::vector<double> all{deepest_};
   for (const Known& known : known_) {
     const Vec& f = known.force;
     for (const double x : {static_cast<double>(known.first),
@@ -400,7 +413,8 @@ std::vector<double> StrandFriction::memory() const {
 
 void StrandFriction::recall(In memory) {
   known_.clear();
-  for (std::size_t i = 0; i < memory.size(); i += 5) {
+  deepest_ = memory.empty() ? 0 : memory[0];
+  for (std::size_t i = 1; i < memory.size(); i += 5) {
     known_.push_back({{static_cast<int>(memory[i]), static_cast<int>(memory[i + 1]), {}},
                       load3(&memory[i + 2]),
                       {}});

@@ -63,7 +63,7 @@ class StrandFriction {
   /// Velocities (m/s) of those points per force (N) on each, row-major 3x3 blocks: those
   /// of the force on the first point, of the second ...
   void respond(std::size_t strand, In compliance);
-  void solve();
+  void solve(const Loop& loop);
   /// Where all points of a strand are with the forces found, 3 numbers each.
   void place(std::size_t strand, In x);
 
@@ -91,7 +91,12 @@ class StrandFriction {
   /// Pairs of segments that touched in the step.
   std::size_t contacts() const { return known_.size(); }
 
-  /// Forces of the last step, from which the next one starts: pairs and vectors.
+  /// How far strands that touched have been in each other at the ends of steps so far, m;
+  /// more than the thickness if they have passed through each other.
+  double deepest() const { return deepest_; }
+
+  /// deepest() and the forces of the last step, from which the next one starts: pairs and
+  /// vectors. Empty: those of a new run.
   std::vector<double> memory() const;
   void recall(In memory);
 
@@ -132,6 +137,7 @@ class StrandFriction {
   void find_on_obstacles(const Loop& loop);
   OnPoints on_points(const Known& known) const;
   void touch_points();
+  void measure_depth();
   ContactProblem::Contact contact(const Known& known) const;
 
   Law law_;
@@ -149,6 +155,7 @@ class StrandFriction {
   std::vector<std::size_t> stale_, touching_;
   ContactProblem problem_;
   ContactProblem::Outcome outcome_;
+  double deepest_ = 0;
 };
 
 }  // namespace tress::models

@@ -19,6 +19,7 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
       : Base(std::move(strand)),
         always_dense_(dense),
         sweeps_(kinematics_, dynamics_, Base::mass_),
+        of_mass_(kinematics_, dynamics_, Base::acceleration_),
         dense_(Base::exact_ || dense ? kinematics_.unknowns() : 0, false),
         gyroscopic_(Base::full_, dense_.matrix) {}
 
@@ -59,10 +60,10 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
  private:
   Status acceleration(double t, In q, In v, Out a) noexcept override {
     dynamics_.residual(t, q, v, zero_, scratch_);
-    const Status s = sweeps_.factor(q, {1, 0, 0});
+    const Status s = of_mass_.factor(q, {1, 0, 0});
     if (s != Status::ok) return s;
     for (double& entry : scratch_) entry = -entry;
-    sweeps_.solve(scratch_, a);
+    of_mass_.solve(scratch_, a);
     return Base::finite(a);
   }
 
@@ -79,7 +80,7 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
   }
 
   bool always_dense_;
-  TransportSweeps<BallLink, dofs> sweeps_;
+  TransportSweeps<BallLink, dofs> sweeps_, of_mass_;
   DenseFactor dense_;
   CompositeMatrix<ExactShape<dofs>> gyroscopic_;
   bool dense_in_use_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "contract/system.h"
@@ -144,6 +145,39 @@ class Kinematics {
     return (free_root_ ? free_root_->frame() : root_motions_.front().at(t).frame) * frame;
   }
 
+  /// Where a tip is and how it moves; v and omega in the components of its frame.
+  struct Tip {
+    Frame frame;
+    Vec x, v, omega;
+  };
+  /// The root and the tips of all segments, without what only move() needs. A function of
+  /// its arguments alone, whatever was computed before.
+  const std::vector<Tip>& tips(double t, In q, In v) {
+    static_assert(may_be_free);
+    if (free_root_) free_root_->place(q.last(6));
+    const FrameMotion root = root_motion(t, q, v, v);
+    tips_.resize(segments_.size() + 1);
+    tips_[0] = {root.frame, root.x, root.v, root.omega};
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const Segment& segment = segments_[i];
+      Tip from = tips_[static_cast<std::size_t>(segment.parent + 1)];
+      if (segment.mounted) {
+        from.frame = from.frame * segment.mount;
+        from.v = segment.mount.back(from.v);
+        from.omega = segment.mount.back(from.omega);
+      }
+      const Kernel kernel(segment.held + components(q, i), segment.length);
+      const auto tip = kernel.tip();
+      const Vec position = kernel.position().at(tip), rate = components(v, i);
+      const Frame rotation = kernel.rotation(tip);
+      tips_[i + 1] = {from.frame * rotation, from.x + from.frame * position,
+                      rotation.back(from.v + cross(from.omega, position) +
+                                    kernel.first(rate).at(tip)),
+                      rotation.back(from.omega + kernel.W(rate).at(tip))};
+    }
+    return tips_;
+  }
+
   /// Measures accelerations relative to a frame that falls with this one (m/s^2) from now
   /// on: inertial forces then include the uniform load at no cost.
   void fall(const Vec& acceleration) { falling_ = acceleration; }
@@ -172,11 +206,14 @@ class Kinematics {
  private:
   static constexpr bool may_be_free = lanes<Real> == 1;
 
-  FrameMotion root_motion(double t, In q, In v, In a) const {
+  FrameMotion root_motion(double t, In q, In v, In a) {
     if constexpr (may_be_free) {
       if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));
     }
-    FrameMotion root;
+    // Several calls of a step are at one time.
+    if (t == posed_at_) return posed_;
+    posed_at_ = t;
+    FrameMotion& root = posed_;
     for (int lane = 0; lane < lanes<Real>; ++lane) {
       const RootPose pose = root_motions_[static_cast<std::size_t>(lane)].at(t);
       const FrameOf<double>& f = pose.frame;
@@ -268,6 +305,9 @@ class Kinematics {
   std::vector<SegmentMotion> motion_;
   std::vector<FrameMotion> mounted_;  // starts of mounted segments
   FrameMotion root_;
+  double posed_at_ = std::numeric_limits<double>::quiet_NaN();
+  FrameMotion posed_;  // of a prescribed root, then
+  std::vector<Tip> tips_;
   Vec falling_;
   std::vector<Real> shaped_;  // q of geometry_
 };

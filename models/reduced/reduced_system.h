@@ -301,18 +301,15 @@ class ReducedSystem : public System,
                   : kinematics_.segments()[static_cast<std::size_t>(i) - 1].parent + 1;
   }
   void positions(double t, In q, Out x) override {
-    kinematics_.move(t, q, zero_, zero_);
-    store3(kinematics_.root().x, &x[0]);
-    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      store3(kinematics_.motion(i).tip.x, &x[3 * (i + 1)]);
+    for (const auto& tip : kinematics_.tips(t, q, zero_)) {
+      store3(tip.x, x.data());
+      x = x.subspan(3);
     }
   }
   void velocities(double t, In q, In v, Out u) override {
-    kinematics_.move(t, q, v, zero_);
-    store3(kinematics_.root().frame * kinematics_.root().v, &u[0]);
-    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const FrameMotion& tip = kinematics_.motion(i).tip;
-      store3(tip.frame * tip.v, &u[3 * (i + 1)]);
+    for (const auto& tip : kinematics_.tips(t, q, v)) {
+      store3(tip.frame * tip.v, u.data());
+      u = u.subspan(3);
     }
   }
   /// A point moves by the slope of every segment before it, and turns about its tip.

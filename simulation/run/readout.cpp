@@ -60,6 +60,9 @@ Readout::Readout(const Scene& scene, const World& world)
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
   add("rejected_steps", "steps tried again with shorter ones since the last frame");
+  if (scene.friction() != nullptr) {
+    add("overlap_m", "deepest overlap of strands that rub, so far");
+  }
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
 
@@ -113,6 +116,7 @@ Frame3d Readout::read(World& world) {
                           : std::nan(""));
   row.push_back(iterations / steps);
   row.push_back(static_cast<double>(now.rejected - before_.rejected));
+  if (world.friction() != nullptr) row.push_back(world.friction()->deepest());
   before_ = now;
   return frame;
 }

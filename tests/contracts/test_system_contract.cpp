@@ -114,6 +114,33 @@ TEST_P(SystemContract, RecallContinuesWhereMemoryWasTaken) {
   EXPECT_EQ(r, expected);
 }
 
+/// Guards and impulses read states between a step and the use of its matrix.
+TEST_P(SystemContract, ReadingAStateKeepsTheMatrix) {
+  if (!system_->traits().regular_mass)
+    GTEST_SKIP() << "S is singular without constraints";
+  States s(*system_), other(*system_);
+  s.shake(0.05);
+  other.shake(0.1);
+  const std::vector<double> b = s.random(s.a_typ);
+  std::vector<double> expected(s.n), x(s.n);
+  ASSERT_EQ(system_->linearize(t0, s.q, s.v, s.a, {1, 0.1, 0.01}), Status::ok);
+  ASSERT_EQ(system_->solve(b, expected), Status::ok);
+  if (Energetics* energetics = system_->energetics()) {
+    (void)energetics->energy(t0, other.q, other.v);
+    (void)energetics->power(t0, other.q, other.v);
+    (void)energetics->momentum(t0, other.q, other.v);
+  }
+  if (MaterialPoints* points = system_->material_points()) {
+    std::vector<double> of_points(3 * static_cast<std::size_t>(points->count())),
+        slopes(of_points.size() * s.n);
+    points->positions(t0, other.q, of_points);
+    points->velocities(t0, other.q, other.v, of_points);
+    (void)points->jacobian(t0, other.q, slopes);
+  }
+  ASSERT_EQ(system_->solve(b, x), Status::ok);
+  EXPECT_EQ(x, expected);
+}
+
 TEST_P(SystemContract, MeansOfCoordinatesMoveThePoints) {
   MaterialPoints* points = system_->material_points();
   if (points == nullptr || !points->mean(0)) GTEST_SKIP() << "no means";

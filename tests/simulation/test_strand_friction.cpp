@@ -372,6 +372,9 @@ TEST(StrandFriction, HoldsShakenGuidesApart) {
   }
   EXPECT_GT(world.friction()->contacts(), 100u);
   EXPECT_GT(least, thickness / 2);
+  EXPECT_GT(world.friction()->deepest(), 0);
+  // At the end of every step: none has passed through another.
+  EXPECT_LT(world.friction()->deepest(), thickness);
   EXPECT_LT(world.stats().contact_violation, 1e-3);
 }
 
@@ -394,6 +397,7 @@ TEST(StrandFriction, ContinuesASnapshotBitByBitOnAnyThreads) {
     }
     EXPECT_GT(whole.friction()->contacts(), 0u);
     EXPECT_EQ(whole.positions(), rest.positions()) << model;
+    EXPECT_EQ(whole.friction()->deepest(), rest.friction()->deepest()) << model;
   }
 }
 

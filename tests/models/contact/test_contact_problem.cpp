@@ -1,7 +1,10 @@
 // The laws of Signorini and Coulomb, at one contact and at many.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <thread>
+#include <vector>
 
 #include "models/contact/cone.h"
 #include "tests/models/contact/random_contacts.h"
@@ -119,7 +122,7 @@ TEST(ContactProblem, ForcesOfItsContactsChangeTheVelocities) {
       for (std::size_t of = 0; of < 4; ++of) {
         expected = expected + all.bodies[body].compliance[4 * of + p] * forces[of];
       }
-      EXPECT_LE(norm(problem.change(body)[p] - expected), 1e-11 * (1 + norm(expected)));
+      EXPECT_LE(norm(problem.change(body, p) - expected), 1e-11 * (1 + norm(expected)));
     }
   }
   EXPECT_GT(size, 0.01);
@@ -134,6 +137,44 @@ TEST(ContactProblem, GoesOnFromForcesThatAreRight) {
   for (const auto& body : all.bodies) again.add_body(body.compliance, body.points);
   for (const auto& contact : problem.contacts()) again.add(contact);
   EXPECT_EQ(again.solve(1e-2, 1e-9, 2000).sweeps, 0);
+}
+
+TEST(ContactProblem, OfManyContactsDoesNotDependOnWhoVisitsItsParts) {
+  constexpr int bodies = 500, contacts = 2500;  // enough for several parts
+  RandomContacts all = random_contacts(bodies, 4, 12, contacts, 5);
+  for (int c = 0; c < contacts; ++c) {
+    auto& ends = all.contacts[static_cast<std::size_t>(c)].ends;
+    ends[0].body = ends[1].body = c % bodies;
+    ends[2].body = ends[3].body = (c + 1 + c % 7) % bodies;
+  }
+  const auto solved = [&](const Loop& loop) {
+    ContactProblem problem = all.problem();
+    const auto outcome = problem.solve(1e-2, 1e-8, 5000, loop);
+    EXPECT_LE(outcome.violation, 1e-8);
+    return problem;
+  };
+  std::size_t parts = 0;
+  const ContactProblem forward = solved([&](std::size_t count, const auto& work) {
+    parts = std::max(parts, count);
+    for (std::size_t i = 0; i < count; ++i) work(i);
+  });
+  EXPECT_GT(parts, 1u);
+  const ContactProblem backward = solved([](std::size_t count, const auto& work) {
+    for (std::size_t i = count; i-- > 0;) work(i);
+  });
+  const ContactProblem at_once = solved([](std::size_t count, const auto& work) {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < count; ++i) threads.emplace_back([&, i] { work(i); });
+  });
+  for (std::size_t c = 0; c < contacts; ++c) {
+    const auto& contact = forward.contacts()[c];
+    EXPECT_LE(
+        contact_violation(contact.local, forward.velocity(contact), contact.force, 0.3),
+        1e-8);
+    for (const ContactProblem* other : {&backward, &at_once}) {
+      EXPECT_EQ(norm(contact.force - other->contacts()[c].force), 0);
+    }
+  }
 }
 
 }  // namespace tress::test_contact_problem
