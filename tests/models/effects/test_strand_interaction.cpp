@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "models/effects/felt_segments.h"
 #include "models/effects/strand_interaction.h"
 #include "tests/models/effects/polylines.h"
 #include "tests/support/catalogue_cases.h"
@@ -283,48 +282,6 @@ TEST(StrandInteraction, PartnersThatMoveAreMetWhereTheyAreThen) {
   compare(straight, strands.v);
   moving.interpolate(begin, end, strands.x, strands.v, y, w);
   compare(curved, late);
-}
-
-/// Segments that are told of nothing feel nothing, however they bulge; most of those told
-/// of something are near to it.
-TEST(StrandInteraction, SegmentsWithoutPartnersAreKnown) {
-  constexpr double bulge = 1e-3;
-  Polylines strands(40, 8, 0.08, 0.01, 1, 8);
-  StrandInteraction interaction(law(), strands.points);
-  FeltSegments segments(interaction.partners(), bulge);
-  std::vector<unsigned char> felt(strands.x.size() / 3), backwards(felt.size());
-  long told = 0, feeling = 0, all = 0;
-  for (int step = 0; step < 20; ++step) {
-    interaction.update(strands.x, strands.v);
-    segments.find(strands.x, felt);
-    const Loop reversed = [](std::size_t count,
-                             const std::function<void(std::size_t)>& work) {
-      for (std::size_t i = count; i-- > 0;) work(i);
-    };
-    FeltSegments(interaction.partners(), bulge).find(strands.x, backwards, reversed);
-    EXPECT_EQ(felt, backwards);
-    for (std::size_t k = 0, point = 0; k < 40; ++k, ++point) {
-      for (int i = 0; i < 8; ++i, ++point) {
-        ++all;
-        told += felt[point];
-        const Vec a = load3(&strands.x[3 * point]), b = load3(&strands.x[3 * point + 3]);
-        Own own;
-        for (int s = 0; s <= 20; ++s) {
-          const Vec aside = 2 * strands.random_vec();
-          own.add(a + (0.05 * s) * (b - a) + (bulge / norm(aside)) * aside, {1, 2, 3}, 1);
-        }
-        const std::vector<double> f = load(*interaction.effect(k), own);
-        const bool feels = std::ranges::any_of(f, [](double one) { return one != 0; });
-        feeling += feels ? 1 : 0;
-        EXPECT_TRUE(felt[point] == 1 || !feels);
-      }
-    }
-    strands.move(2e-3);
-  }
-  EXPECT_GT(feeling, 100);
-  EXPECT_LT(told, all);
-  // Within 6 + 1 + 10/6 (and a tenth) mm of a sample in place of 6 + 1 of a point.
-  EXPECT_LT(told, 2 * feeling);
 }
 
 TEST(StrandInteraction, DoesNotDependOnHowStrandsAreCut) {
