@@ -65,10 +65,9 @@ constexpr Parameter own_settings[] = {
      .max = 1e4,
      .whole = true},
     {.name = "control",
-     .help = "models on which methods with error control are compared with those that "
-             "know steps only",
-     .text = true,
-     .fallback = "super_helix"},
+     .help = "models, as in super_helix,der, on which methods with error control are "
+             "compared with those that know steps only: as long a search again for each",
+     .text = true},
     {.name = "search_work",
      .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
              "--quick, else 60",
