@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "integrators/control/impulsive.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
@@ -19,30 +17,18 @@ class SemiImplicitEuler final : public FixedStep, public Impulsive {
  private:
   Status go_on(In q, In v) override { return replace(q, v); }
 
-  bool has_matrix(double h) const override {
-    // h is a difference of times.
-    constexpr double rounding = 1e-9;
-    return dynamics_.m() == 0 && matrix_ == dynamics_.matrix() &&
-           std::abs(h - h_) <= rounding * h;
-  }
-
   Status reset(double /*t*/) override {
     step_.reset();
-    matrix_ = -1;
     return Status::ok;
   }
 
   Status step(double t, double h) override {
     const Status s = step_.take(t, h, q_, v_, lambda_);
     take(step_.q(), step_.v());
-    matrix_ = s == Status::ok ? dynamics_.matrix() : -1;
-    h_ = h;
     return s;
   }
 
   SemiImplicitStep step_;
-  long matrix_ = -1;  // of the last step
-  double h_ = 0;
 };
 
 }  // namespace

@@ -47,7 +47,6 @@ Status ImpulseResponse::prepare(double h, In v_before) noexcept {
   std::ranges::copy(method_.v(), v_.begin());
   for (std::size_t i = 0; i < a_.size(); ++i) a_[i] = (v_[i] - v_before[i]) / h;
   if (!linear_) differentiate();
-  if (impulsive_.has_matrix(h)) return Status::ok;
   return dynamics_.linearize(method_.time(), q_, v_, a_, lambda_, {1, h, h * h});
 }
 

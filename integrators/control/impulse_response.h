@@ -14,11 +14,9 @@ namespace tress::integrators {
 ///
 ///     v = v* + h a,   q = q* + h^2 a,   S(1, h, h^2) a = J^T f,   J = du/dv
 ///
-/// S is that of the step itself where the method has left it (one linearisation then
-/// serves both), otherwise taken at the state (q*, v*) at the end of the step without
-/// them, with the acceleration that led there; constraints of the strand are held. J
-/// comes from MaterialPoints::mean() or jacobian(), or column by column from
-/// velocities().
+/// S at the state (q*, v*) at the end of the step without them, with the acceleration
+/// that led there; constraints of the strand are held. J comes from
+/// MaterialPoints::mean() or jacobian(), or column by column from velocities().
 class ImpulseResponse {
  public:
   /// Throws InputError if the method cannot go on after impulses.

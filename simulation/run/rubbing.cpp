@@ -48,7 +48,6 @@ void Rubbing::add(System& system, Integrator& method, const Options& options) {
                       &method,
                       std::make_unique<ImpulseResponse>(system, method, options),
                       static_cast<std::size_t>(system.material_points()->count()),
-                      {},
                       {}});
 }
 
@@ -63,7 +62,6 @@ void Rubbing::before_step(In x) {
   for (Rubbed& strand : strands_) {
     strand.v_before.assign(strand.method->v().begin(), strand.method->v().end());
     strand.prepared = false;
-    strand.forces.clear();
   }
 }
 
@@ -102,12 +100,8 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
     friction_.solve(loop);
     const Status moved =
         each(friction_.touching(), t, loop, [&](Rubbed& strand, std::size_t k) {
-          std::vector<double> forces = friction_.forces(k);
-          // Contacts that have settled keep their forces in later rounds.
-          if (forces == strand.forces) return Status::ok;
-          strand.forces = std::move(forces);
           const Status done =
-              strand.response->respond(friction_.points_of(k), strand.forces);
+              strand.response->respond(friction_.points_of(k), friction_.forces(k));
           std::vector<double> placed(3 * strand.points);
           strand.system->material_points()->positions(t, strand.response->q(), placed);
           friction_.place(k, placed);

@@ -42,7 +42,7 @@ class Rubbing {
     Integrator* method;
     std::unique_ptr<ImpulseResponse> response;
     std::size_t points;
-    std::vector<double> v_before, forces;
+    std::vector<double> v_before;
     bool prepared = false;  // its matrix is that of this step
     Status status = Status::ok;
   };
