@@ -13,8 +13,9 @@ Instructions widest_instructions();
 /// "avx512" and so on; of `base` what the compiler was allowed, such as "avx2".
 const char* name(Instructions set);
 
-// Without fused products in the base, bits would depend on the machine. Clang inlines less
-// than is asked for, and then passes packs in registers that a callee does not look at.
+// Without fused products in the base, bits would depend on the machine. Clang inlines
+// less than is asked for, and then passes packs in registers that a callee does not look
+// at.
 #if defined(__x86_64__) && defined(__FMA__) && defined(__GNUC__) && !defined(__clang__)
 #define TRESS_HAS_AVX512 1
 #else

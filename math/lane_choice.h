@@ -24,6 +24,12 @@ inline bool any_less(double x, double y) { return x < y; }
 template <class Number, int width>
 bool any_less(const PackOf<Number, width>& x, const PackOf<Number, width>& y) {
   const auto less = x.v < y.v;
+#ifdef __AVX__
+  if constexpr (width == 4 && sizeof(Number) == sizeof(double)) {
+    return __builtin_ia32_movmskpd256(
+               reinterpret_cast<typename PackOf<Number, width>::Vector>(less)) != 0;
+  }
+#endif
   auto any = less[0];
   for (int lane = 1; lane < width; ++lane) any |= less[lane];
   return any != 0;

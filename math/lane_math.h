@@ -4,23 +4,12 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "math/lane_choice.h"
 #include "math/pack.h"
 
 /// Elementary functions of packs in additions and multiplications only: a lane does not
 /// depend on its neighbours, so results are the same bits for any number of lanes.
 namespace tress {
-
-/// |x|.
-template <class Number, int width>
-PackOf<Number, width> magnitude(const PackOf<Number, width>& x) {
-  return PackOf<Number, width>(x.v < 0 ? -x.v : x.v);
-}
-/// The larger of each lane; y where x is NaN.
-template <class Number, int width>
-PackOf<Number, width> larger(const PackOf<Number, width>& x,
-                             const PackOf<Number, width>& y) {
-  return PackOf<Number, width>(x.v > y.v ? x.v : y.v);
-}
 
 /// 1/sqrt(x) for normal x > 0, within 2 roundings; NaN stays NaN. The guess from the
 /// exponent is off by 3.4 % at most [Lomont 2003]; each of Newton's steps squares that,

@@ -6,7 +6,7 @@
 
 #include "contract/layers.h"
 #include "contract/parameters.h"
-#include "math/lane_functions.h"
+#include "math/lane_choice.h"
 #include "math/vec3.h"
 
 namespace tress::models {
@@ -75,10 +75,10 @@ template <class T>
 [[gnu::always_inline]] inline ContactLaw::Factors<T> ContactLaw::factors(
     const Vec3<T>& d) const noexcept {
   const double off = rounded_off * law_.inner, width = law_.outer - law_.inner;
-  const T rho = root(dot(d, d) + T(off * off)), inverse = T(1) / rho;
+  const T rho = square_root(dot(d, d) + T(off * off)), inverse = T(1) / rho;
   const T over = T(law_.inner) * inverse;  // P/rho
-  const T s = larger(T(0), smaller(T(1), (rho - T(law_.inner)) * T(1 / width)));
-  return {larger(T(0), T(law_.stiffness) * (over - T(1))),
+  const T s = larger(smaller((rho - T(law_.inner)) * T(1 / width), T(1)), T(0));
+  return {larger(T(law_.stiffness) * (over - T(1)), T(0)),
           T(law_.viscosity) * (T(1) - s * s * (T(3) - T(2) * s)),
           where_less(T(1), over, T(-law_.stiffness) * over * inverse * inverse, T(0)),
           T(-6 * law_.viscosity / width) * s * (T(1) - s) * inverse};

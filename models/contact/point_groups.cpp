@@ -54,7 +54,7 @@ struct Nearest {
 };
 Nearest nearest(const Vec3<Pack>& x, const Segment& to) {
   const Vec3<Pack> d = x - Vec3<Pack>(to.x), edge(to.edge);
-  const Pack s = larger(Pack(0), smaller(Pack(1), Pack(to.inverse) * dot(d, edge)));
+  const Pack s = larger(smaller(Pack(to.inverse) * dot(d, edge), Pack(1)), Pack(0));
   return {s, x - (Vec3<Pack>(to.x) + s * edge)};
 }
 

@@ -58,7 +58,7 @@ Matrix3<T> inverse(const Matrix3<T>& h) {
 }
 /// a b^T.
 template <class T>
-Matrix3<T> outer(const Vec3<T>& a, const Vec3<T>& b) {
+Matrix3<T> dyad(const Vec3<T>& a, const Vec3<T>& b) {
   return {{a.x * b, a.y * b, a.z * b}};
 }
 

@@ -166,7 +166,7 @@ struct DerExactElimination {
       const DerEdgeForm<T> second(e.p, e.inverse_length,
                                   pos * (e.moment - moment_behind));
       Matrix h = ww + back * x_omega + wx * lever + full(second.omega) +
-                 outer(e.p, (T(w.acc) * m.inertia) * e.p);
+                 dyad(e.p, (T(w.acc) * m.inertia) * e.p);
       const T pull = pos * e.tension * e.length;
       h.row[1].y += pull;
       h.row[2].z += pull;
@@ -176,10 +176,10 @@ struct DerExactElimination {
       f.sigma_omega = x_omega.back(t) + second.sigma;
       f.by = T(1) / (dot(t, f.x_sigma) + pos * m.stretch);
       const Vec by_x = f.by * f.sigma_x, by_omega = f.by * f.sigma_omega;
-      xx = xx - outer(f.x_sigma, by_x);
-      x_omega = x_omega - outer(f.x_sigma, by_omega);
-      omega_x = omega_x - outer(f.omega_sigma, by_x);
-      h = h - outer(f.omega_sigma, by_omega);
+      xx = xx - dyad(f.x_sigma, by_x);
+      x_omega = x_omega - dyad(f.x_sigma, by_omega);
+      omega_x = omega_x - dyad(f.omega_sigma, by_x);
+      h = h - dyad(f.omega_sigma, by_omega);
       f.pivot = inverse(h + e.ww);
       f.of_x = f.pivot * omega_x;
       f.of_turn = T(-1) * (f.pivot * e.wo);

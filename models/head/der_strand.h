@@ -169,7 +169,7 @@ class DerStrand {
       const FrameOf<T> now =
           frame(edges[i], t, T(1) / (T(1) + dot(edges[i].tangent, t)), q[4 * i + 3]);
       const Matrix turn{{now.back(before.e0), now.back(before.e1), now.back(before.e2)}};
-      const Joint joint(turn);
+      const DerJoint<T> joint(turn);
       const Vec strain = joint.value - edges[i].rest;
       const T longer = dot(edge, t) - m.length, half(i == 0 ? 1 : 0.5);
       sum.elastic += T(0.5) * m.stretch * longer * longer +
@@ -274,8 +274,8 @@ class DerStrand {
         by_o = by_o + e.turn.back(of_before.omega * before.spin +
                                   before.lengthening * of_before.sigma);
       }
-      const Matrix w = outer(friction * slope, by_w),
-                   turned = outer(friction * slope, by_o);
+      const Matrix w = dyad(friction * slope, by_w),
+                   turned = dyad(friction * slope, by_o);
       e.ww = e.ww + w;
       e.wo = e.wo + turned;
       e.ow = e.ow - w;
@@ -306,10 +306,10 @@ class DerStrand {
       x = x + edge;
       const T all = x.x + x.y + x.z + theta;
       finite += all - all;
-      most = larger(larger(magnitude(x.x), magnitude(x.y)), larger(magnitude(x.z), most));
-      angle = larger(magnitude(theta), angle);
+      most = larger(larger(most, magnitude(x.z)), larger(magnitude(x.y), magnitude(x.x)));
+      angle = larger(angle, magnitude(theta));
     }
-    return larger(T(w.pos), T(w.vel) / m.rate) * larger(most / m.length, angle) + finite;
+    return larger(T(w.vel) / m.rate, T(w.pos)) * larger(angle, most / m.length) + finite;
   }
 
   /// Where `far` > 0.

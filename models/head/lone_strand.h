@@ -19,10 +19,11 @@ class LoneStrand {
   using T = typename Model::Real;
   using PoseAt = std::function<RootPose(double part)>;  // of the step, 0 to 1
 
-  LoneStrand(const Model& model, double tolerance, int iterations, LaneWork<Model>& work)
+  LoneStrand(const Model& model, double tolerance, int most_iterations,
+             LaneWork<Model>& work)
       : model_(model),
         tolerance_(tolerance),
-        iterations_(iterations),
+        iterations_(most_iterations),
         work_(work),
         n_(work.size()) {}
 

@@ -95,10 +95,10 @@ class DampedCourse {
   static constexpr auto width = static_cast<std::size_t>(T::lanes);
   using Verdicts = std::array<NewtonVerdict, width>;
 
-  DampedCourse(const Model& model, double tolerance, int iterations)
+  DampedCourse(const Model& model, double tolerance, int most_iterations)
       : model_(model),
         tolerance_(tolerance),
-        iterations_(iterations),
+        iterations_(most_iterations),
         from_(model.unknowns()),
         step_(from_) {}
 

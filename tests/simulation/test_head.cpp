@@ -505,7 +505,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {.more = "[effects.gravity]\n[effects.control_mesh]\n"},
                 "",
                 "does not know [effects.control_mesh]"},
-        Refused{"Exact",
+        Refused{"ExactFriction",
                 {.more = "[effects.body]\nshape = \"sphere\"\nradius_m = 0.05\n"
                          "friction_law = \"exact\"\n"},
                 "",

@@ -34,7 +34,7 @@ struct Case {
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
-inline constexpr double h = 1e-4;  // s
+inline constexpr double hair_step = 1e-4;  // s
 
 inline HeadOptions options(const Case& c) {
   HeadOptions o{.elements = c.elements,
@@ -82,7 +82,7 @@ inline std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t stra
   return all;
 }
 
-inline void advance(Head& all, int steps, double dt = h) {
+inline void advance(Head& all, int steps, double dt = hair_step) {
   const auto scratch = all.scratch();
   for (int s = 0; s < steps; ++s) {
     for (std::size_t b = 0; b < all.blocks(); ++b) all.step(b, s * dt, dt, *scratch);
@@ -111,15 +111,16 @@ inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
     q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + 1 / one.length());
   }
   Options step;
-  step.step = h;
+  step.step = hair_step;
   const auto method_of = make_integrator("semi_implicit_euler", *system, step);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);
-  EXPECT_EQ(method_of->advance(steps * h), Status::ok);
+  EXPECT_EQ(method_of->advance(steps * hair_step), Status::ok);
   Alone end;
   end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
   end.u.resize(end.x.size());
-  system->material_points()->positions(steps * h, method_of->q(), end.x);
-  system->material_points()->velocities(steps * h, method_of->q(), method_of->v(), end.u);
+  system->material_points()->positions(steps * hair_step, method_of->q(), end.x);
+  system->material_points()->velocities(steps * hair_step, method_of->q(), method_of->v(),
+                                        end.u);
   const auto put = [&](In from, std::vector<double>& to) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {
       if (c.twist) {

@@ -23,12 +23,13 @@ using testing_support::advance;
 using testing_support::Alone;
 using testing_support::alone;
 using testing_support::Case;
-using testing_support::h;
 using testing_support::head;
 using testing_support::options;
 using testing_support::packs;
 using testing_support::sphere_samples;
 using testing_support::strand;
+
+constexpr double h = testing_support::hair_step;
 
 // So soft that strands which overlap it at first move by centimetres in 10 ms and not by
 // metres; friction and damping of the order of the spring's force.

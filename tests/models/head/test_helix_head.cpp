@@ -13,11 +13,12 @@ using testing_support::advance;
 using testing_support::Alone;
 using testing_support::alone;
 using testing_support::Case;
-using testing_support::h;
 using testing_support::head;
 using testing_support::options;
 using testing_support::packs;
 using testing_support::strand;
+
+constexpr double h = testing_support::hair_step;
 
 class HelixHead : public testing::TestWithParam<Case> {};
 
