@@ -61,8 +61,8 @@ class ControlledEsdirk final : public ErrorControlled {
         stages_(dynamics(), with_control(options), table, whole_newton_part) {}
 
  private:
-  Status try_step(const State& from, double h, Stage::Effort effort, State& to,
-                  Out error_q, Out error_v) override {
+  Status try_step(const State& from, double h, Effort effort, State& to, Out error_q,
+                  Out error_v) override {
     const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda,
                                   unseen_part * seen_speed(), effort);
     if (s != Status::ok) return s;
@@ -136,7 +136,7 @@ bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
 }
 
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
-                          Stage::Effort effort) noexcept {
+                          Effort effort) noexcept {
   look_back(t);
   impact_ = stopped(t, q, v, gently);
   if (impact_) return impact(t, h, q, v);

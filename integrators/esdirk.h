@@ -52,7 +52,7 @@ class EsdirkStages {
   /// From (q, v) at t with its acceleration a and multipliers over h. Points that come
   /// upon a rigid surface at less than `gently` (m/s) make no jump.
   Status step(double t, double h, In q, In v, In a, In lambda, double gently,
-              Stage::Effort effort = Stage::Effort::whole) noexcept;
+              Effort effort = Effort::whole) noexcept;
 
   /// The next step does not guess from the last one.
   void forget() { h_ = 0; }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "integrators/control/effort.h"
 #include "integrators/formulation/dynamics.h"
 
 namespace tress::integrators {
@@ -40,10 +41,6 @@ class Stage {
   /// solved before, of the same step. Either is rebuilt where it converges slowly, and
   /// then serves the next stages no more: they have their own.
   enum class Matrix { own, shared };
-
-  /// How far a solution is sought: by Newton's iteration and on jumps alone (plain), or
-  /// also by all that costs a hundred times as much (whole).
-  enum class Effort { plain, whole };
 
   /// a, lambda: guess in, solution out. `retry` when the iteration does not converge.
   /// With exact contact (ContactForm): repeats solution and improvement of its

@@ -118,7 +118,7 @@ Status ErrorControlled::next_step(double t_end) {
       options_.max_step > 0 ? options_.max_step : std::numeric_limits<double>::infinity();
   Attempts attempts{.before = control_};
   // With contact Stage solves several times, and the effort is for all of them.
-  if (contacts != nullptr) attempts.effort = Stage::Effort::whole;
+  if (contacts != nullptr) attempts.effort = Effort::whole;
   for (;;) {
     const double breaks = dynamics_.system().next_breakpoint(begin_.t);
     double stop = breaks;
@@ -131,7 +131,7 @@ Status ErrorControlled::next_step(double t_end) {
     if (contacts != nullptr) contacts->set_multipliers(held);
     const Status s = try_step(begin_, now.h, attempts.effort, end_, error_q_, error_v_);
     if (s == Status::fatal) return fail(s, "no solution for the step");
-    if (s == Status::retry && attempts.effort == Stage::Effort::plain) {
+    if (s == Status::retry && attempts.effort == Effort::plain) {
       without_solution(now, attempts);
       continue;
     }
@@ -172,7 +172,7 @@ void ErrorControlled::without_solution(const StepControl::Trial& failed,
   ++dynamics_.stats.rejected;
   control_.unsolved(failed, "newton");
   if (++attempts.plain < plain_steps && !control_.too_short()) return;
-  attempts.effort = Stage::Effort::whole;
+  attempts.effort = Effort::whole;
   control_ = attempts.before;
 }
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "contract/integrator.h"
+#include "integrators/control/effort.h"
 #include "integrators/control/error_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/stage.h"
 
 namespace tress::integrators {
 
@@ -56,7 +56,7 @@ class ErrorControlled : public Integrator, public Rewindable {
 
   /// From `from` over h to `to`, with the estimated errors of its q and v. `retry`: no
   /// solution was found with this effort.
-  virtual Status try_step(const State& from, double h, Stage::Effort effort, State& to,
+  virtual Status try_step(const State& from, double h, Effort effort, State& to,
                           Out error_q, Out error_v) = 0;
   /// The next step does not go on from the last one: nothing may be guessed from it.
   virtual void forget_steps() = 0;
@@ -77,7 +77,7 @@ class ErrorControlled : public Integrator, public Rewindable {
   Status next_step(double t_end);
   /// Those of one step.
   struct Attempts {
-    Stage::Effort effort = Stage::Effort::plain;
+    Effort effort = Effort::plain;
     int plain = 0;       // without a solution
     StepControl before;  // as it was then at first
   };

@@ -7,9 +7,9 @@
 
 #include "contract/parameters.h"
 #include "models/contact/contact_law.h"
+#include "models/contact/guide_mesh.h"
 #include "models/contact/point_grid.h"
 #include "models/effects/effect.h"
-#include "models/effects/guide_mesh.h"
 
 namespace tress::models {
 

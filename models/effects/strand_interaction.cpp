@@ -7,8 +7,8 @@
 
 #include "contract/input_error.h"
 #include "math/lanes.h"
+#include "models/contact/crowding.h"
 #include "models/contact/point_groups.h"
-#include "models/effects/crowding.h"
 
 namespace tress::models {
 namespace {

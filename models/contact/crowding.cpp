@@ -1,4 +1,4 @@
-#include "models/effects/crowding.h"
+#include "models/contact/crowding.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "math/closest.h"
+#include "models/contact/guide_mesh.h"
 #include "models/contact/point_grid.h"
-#include "models/effects/guide_mesh.h"
 
 namespace tress::test_guide_mesh {
 

@@ -1,4 +1,4 @@
-#include "models/effects/guide_mesh.h"
+#include "models/contact/guide_mesh.h"
 
 #include <algorithm>
 #include <limits>
