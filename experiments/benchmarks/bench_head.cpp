@@ -184,13 +184,13 @@ bool bodies_met() {
       return fmt::format("{} of 64 bits, {}", lanes, what);
     };
     met = kept(name("drag and a head that hair lies on, over gravity and drag"),
-               ratio(repeated(on), repeated(without)), 1.3) &&
+               time_ratio(repeated(on), repeated(without)), 1.3) &&
           met;
     met = kept(name("a body 5 m away over none"),
-               ratio(repeated(beside), repeated(without)), 1.05) &&
+               time_ratio(repeated(beside), repeated(without)), 1.05) &&
           met;
     fmt::print("{}: {:.3g} times the reference\n", name("on a head"),
-               ratio(repeated(on), repeated(kernel)));
+               time_ratio(repeated(on), repeated(kernel)));
   }
   return met;
 }

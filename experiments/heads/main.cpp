@@ -108,7 +108,8 @@ bool wanted(const Kind& kind, int strands, HeadPack pack, int threads, Acting ac
   if (acting == Acting::drag) return true;
   if (&kind != kinds) return false;
   if (pack.number != HeadNumber::float64 || pack.lanes == 1) return false;
-  if (acting == Acting::interaction && strands > 20000) return false;
+  // Denser hair has hundreds of neighbours within reach.
+  if (acting == Acting::interaction && strands > 1000) return false;
   return threads < 3 && (acting != Acting::none || threads == 1);
 }
 
