@@ -109,7 +109,7 @@ class HelixHead final : public Head {
 
   std::unique_ptr<Scratch> scratch() const override {
     // Units are known from the first strand on.
-    return std::make_unique<Own>(kernel_, units_);
+    return std::make_unique<Own>(kernel_, units_, instructions_);
   }
 
   void step(std::size_t block, double t, double h, Scratch& given) override {
@@ -238,10 +238,10 @@ class HelixHead final : public Head {
   using Root = LaneRoot<T>;
 
   struct Own final : Scratch {
-    Own(const HelixStrand<T>& kernel, const HeadUnits& units)
+    Own(const HelixStrand<T>& kernel, const HeadUnits& units, Instructions instructions)
         : elements(static_cast<std::size_t>(kernel.elements())),
           before(elements.size()),
-          loads(kernel, units),
+          loads(kernel, units, instructions),
           others(width) {}
     std::vector<typename HelixStrand<T>::Scratch> elements;
     std::vector<Vec3<T>> before;  // q

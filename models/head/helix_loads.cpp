@@ -18,7 +18,7 @@ template <class T>
 const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v,
                                               const Element* elements) {
   block_ = block;
-  place(elements);
+  by(instructions_, [&] { place(elements); });
   near_.resize(block_.bodies.size() * n_);
   for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
     look_for(block_.bodies[b], std::span(near_).subspan(b * n_, n_));
@@ -26,9 +26,11 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
   if (others) take_others(v, elements);
-  for (std::size_t i = 0; i < n_; ++i) {
-    loads_[i] = element(i, v[i], elements[i], others) ? &sums_[i] : nullptr;
-  }
+  by(instructions_, [&] {
+    for (std::size_t i = 0; i < n_; ++i) {
+      loads_[i] = element(i, v[i], elements[i], others) ? &sums_[i] : nullptr;
+    }
+  });
   return loads_.data();
 }
 
@@ -71,7 +73,9 @@ bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
     const NearBody& body = block_.bodies[b];
     prepare();
     std::visit(
-        [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
+        [&](const auto& shape) {
+          by(instructions_, [&] { touch(body, shape, i, e, helix, functions, rate); });
+        },
         body.contact->body.shape());
   }
   return ready && add_up(i, helix, functions);
@@ -115,18 +119,20 @@ void HelixLoads<T>::look_for(const NearBody& body, std::span<char> near) const {
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
       [&](const auto& shape) {
-        for (std::size_t i = 0; i < n_; ++i) {
-          const Start& at = starts_[i];
-          const Vec3T chord = in_body(body.pose, at.chord);
-          const Vec3T middle =
-              in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
-          const T bulge = larger(T(0), square - dot(chord, chord));
-          const DistanceOf<T> to = below(shape, middle);
-          const T along = dot(to.gradient, chord);
-          const T half =
-              square_root(bulge * dot(to.gradient, to.gradient) + along * along);
-          near[i] = any_less(to.value - T(0.5) * half, offset) ? 1 : 0;
-        }
+        by(instructions_, [&] {
+          for (std::size_t i = 0; i < n_; ++i) {
+            const Start& at = starts_[i];
+            const Vec3T chord = in_body(body.pose, at.chord);
+            const Vec3T middle =
+                in_body(body.pose, at.x - Vec3T(body.pose.x)) + T(0.5) * chord;
+            const T bulge = larger(T(0), square - dot(chord, chord));
+            const DistanceOf<T> to = below(shape, middle);
+            const T along = dot(to.gradient, chord);
+            const T half =
+                square_root(bulge * dot(to.gradient, to.gradient) + along * along);
+            near[i] = any_less(to.value - T(0.5) * half, offset) ? 1 : 0;
+          }
+        });
       },
       body.contact->body.shape());
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "math/instructions.h"
 #include "models/effects/body.h"
 #include "models/head/head_units.h"
 #include "models/head/helix_strand.h"
@@ -28,8 +29,9 @@ class HelixLoads {
   using Kernel = HelixStrand<T>;
   using Element = typename Kernel::Scratch;
 
-  HelixLoads(const Kernel& kernel, const HeadUnits& units)
+  HelixLoads(const Kernel& kernel, const HeadUnits& units, Instructions instructions)
       : kernel_(kernel),
+        instructions_(instructions),
         units_(units),
         n_(static_cast<std::size_t>(kernel.elements())),
         points_(static_cast<std::size_t>(kernel.points())),
@@ -87,6 +89,7 @@ class HelixLoads {
   }
 
   const Kernel& kernel_;
+  Instructions instructions_;
   HeadUnits units_;
   std::size_t n_, points_;
   Block block_{};
