@@ -194,9 +194,12 @@ class HelixHead final : public Head {
     const RootPose pose = options_.motion.at(t);
     const Root& root = roots_[block];
     const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
-    const auto sums = energies_(materials_[block], root_of(root, pose), head * root.from,
-                                head * root.frame, &rest_[n_ * block], &q_[n_ * block],
-                                &v_[n_ * block], n_);
+    LaneEnergies<T> sums;
+    by(instructions_, [&] {
+      sums = energies_(materials_[block], root_of(root, pose), head * root.from,
+                       head * root.frame, &rest_[n_ * block], &q_[n_ * block],
+                       &v_[n_ * block], n_);
+    });
     for (std::size_t k = 0; k < strands_of(block); ++k) {
       const auto lane = static_cast<int>(k);
       const double mass = units_.mass() * static_cast<double>(n_) *
