@@ -54,7 +54,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
   app.add_option("--jobs", raw.jobs,
                  "rows run at the same time (default 1; as many as processors where "
                  "time is not what is measured)");
-  app.add_option("--shard", raw.shard, "run part i of n, as in 1/4");
+  app.add_option("--shard", raw.shard,
+                 "run part i of n, as in 1/4; its table is named so, as in x.1-of-4.csv");
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
@@ -194,10 +195,17 @@ std::string default_table(std::string_view name, const CommandLine& line,
                                          &std::pair<std::string, std::string>::first);
     table += '.' + std::filesystem::path(value->second).stem().string();
   }
-  if (line.shard_count > 1) {
-    table += fmt::format(".{}-of-{}", line.shard_index, line.shard_count);
-  }
   return table + ".csv";
+}
+
+/// The table of one part has a name of its own, so that parts may be given one --out.
+std::string table_of_part(const CommandLine& line) {
+  if (line.shard_count == 1 || line.out == "-") return line.out;
+  std::filesystem::path table(line.out);
+  const std::string ending = table.extension().string();
+  table.replace_extension(
+      fmt::format(".{}-of-{}{}", line.shard_index, line.shard_count, ending));
+  return table.string();
 }
 
 void check_combinations(const CommandLine& line) {
@@ -252,6 +260,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   if (!line.options_file.empty()) read_options_file(line.options_file, line);
   refuse_unused(name, line, unused);
   if (line.out.empty()) line.out = default_table(name, line, own);
+  line.out = table_of_part(line);
   check_combinations(line);
   return line;
 }

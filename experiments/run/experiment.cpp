@@ -237,7 +237,7 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
-  const Merged merged = merge(line.merge, experiment.columns);
+  const Merged merged = merge(line.merge, experiment.columns, settings_text(line));
   const Manifest manifest(experiment, line);
   const int code = finish(experiment, line, merged.rows, manifest, merged.rows.size());
   for (const std::string& conflict : merged.conflicts) {

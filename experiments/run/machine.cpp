@@ -4,12 +4,14 @@
 #include <gsl/gsl_version.h>
 #include <klu.h>
 #include <sundials/sundials_version.h>
+#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <toml++/toml.h>
 #include <unistd.h>
 
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -78,6 +80,21 @@ std::array<double, 3> load_average() {
   std::array<double, 3> loads{};
   if (::getloadavg(loads.data(), 3) != 3) loads = {};
   return loads;
+}
+
+Spent spent_so_far() {
+  Spent all;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    if (::getrusage(who, &used) != 0) continue;
+    for (const timeval& time : {used.ru_utime, used.ru_stime}) {
+      all.processor_s +=
+          static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    all.largest_mb =
+        std::max(all.largest_mb, static_cast<double>(used.ru_maxrss) * 1024e-6);
+  }
+  return all;
 }
 
 Versions library_versions() {

@@ -23,6 +23,13 @@ Machine machine();
 /// Load averages over 1, 5 and 15 minutes.
 std::array<double, 3> load_average();
 
+/// What this process and those that it has waited for took until now.
+struct Spent {
+  double processor_s = 0;
+  double largest_mb = 0;  // memory of the largest of them (MB)
+};
+Spent spent_so_far();
+
 using Versions = std::vector<std::pair<std::string, std::string>>;
 Versions library_versions();
 

@@ -88,6 +88,7 @@ void Manifest::add_input(std::string file, std::string text) {
 std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                                std::size_t kept_from_before) const {
   const Machine here = machine();
+  const Spent spent = spent_so_far();
   std::map<std::string, int> counts;
   for (const Row& row : rows) ++counts[std::string(row.status())];
   ordered_json columns, timings = ordered_json::array();
@@ -146,6 +147,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"sundials_speed_ratio", sundials_ratio_},
       {"rows",
        {{"total", rows.size()}, {"by_status", counts}, {"resumed", kept_from_before}}},
+      {"spent", {{"processor_s", spent.processor_s}, {"largest_mb", spent.largest_mb}}},
       {"columns", columns},
       {"timings", timings},
       {"glossary", glossary}};

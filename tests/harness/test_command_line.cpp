@@ -72,6 +72,8 @@ TEST(CommandLine, EveryOptionIsUnderstood) {
 }
 
 TEST(CommandLine, ShardsHaveTheirOwnDefaultTable) {
+  EXPECT_EQ(parse({"--shard", "1/4", "--out", "a.b/x.csv"}).out, "a.b/x.1-of-4.csv");
+  EXPECT_EQ(parse({"--shard", "1/4", "--out", "-"}).out, "-");
   EXPECT_EQ(parse({"--shard", "1/4"}).out, "results/toy.1-of-4.csv");
 }
 

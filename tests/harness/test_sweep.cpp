@@ -291,20 +291,61 @@ TEST(Sweep, AFullDiskDuringTheRunIsOneLineAndKeepsTheJournal) {
   EXPECT_EQ(table(toy, "toy.csv").rows.size(), 30u);
 }
 
+/// A table without its timings.
+std::vector<std::string> lasting(const CsvTable& of) {
+  std::vector<std::string> lines;
+  for (Row row : of.rows)
+    lines.push_back(csv_line(in_order(row.set("wall_s", ""), of.header)));
+  return lines;
+}
+
 TEST(Sweep, ShardsMergeIntoTheWholeTable) {
   Toy toy;
   const std::string same = " --set particles=7";
   EXPECT_EQ(toy.run("--out whole.csv" + same).code, 0);
   for (const std::string i : {"1", "2", "3"}) {
-    EXPECT_EQ(toy.run("--shard " + i + "/3 --out part" + i + ".csv" + same).code, 0);
+    EXPECT_EQ(toy.run("--shard " + i + "/3 --out part.csv" + same).code, 0);
   }
-  EXPECT_EQ(toy.run("--merge part1.csv part2.csv part3.csv --out merged.csv").code, 0);
-  auto whole = cells(table(toy, "whole.csv"), "run_id");
-  auto merged = cells(table(toy, "merged.csv"), "run_id");
-  std::sort(whole.begin(), whole.end());
-  std::sort(merged.begin(), merged.end());
-  EXPECT_EQ(merged, whole);
-  EXPECT_EQ(merged.size(), 7u);
+  EXPECT_EQ(toy.run("--merge part.3-of-3.csv part.1-of-3.csv part.2-of-3.csv --out "
+                    "merged.csv" +
+                    same)
+                .code,
+            0);
+  EXPECT_EQ(lasting(table(toy, "merged.csv")), lasting(table(toy, "whole.csv")));
+  EXPECT_EQ(table(toy, "merged.csv").rows.size(), 7u);
+  const auto meta = nlohmann::json::parse(toy.read("whole.meta.json"));
+  EXPECT_GT(meta.at("spent").at("processor_s").get<double>(), 0);
+  EXPECT_GT(meta.at("spent").at("largest_mb").get<double>(), 1);
+}
+
+TEST(Sweep, MergeRefusesPartsThatDoNotBelongTogether) {
+  Toy toy;
+  for (const std::string i : {"1", "2", "3"}) {
+    ASSERT_EQ(toy.run("--shard " + i + "/3 --out part.csv").code, 0);
+  }
+  ASSERT_EQ(toy.run("--shard 1/2 --out part.csv").code, 0);
+  ASSERT_EQ(toy.run("--out whole.csv").code, 0);
+  const std::string all = "part.1-of-3.csv part.2-of-3.csv part.3-of-3.csv";
+  const auto refused = [&](const std::string& tables, const std::string& why) {
+    const Toy::Result result = toy.run("--merge " + tables + " --out merged.csv");
+    EXPECT_EQ(result.code, 2) << why;
+    EXPECT_THAT(result.err, HasSubstr(why));
+    EXPECT_EQ(result.error_lines(), 1);
+    EXPECT_FALSE(toy.exists("merged.csv"));
+  };
+  refused("part.1-of-3.csv part.3-of-3.csv", "part 2/3 is missing");
+  refused("part.1-of-3.csv part.2-of-3.csv", "part 3/3 is missing");
+  refused(all + " part.2-of-3.csv", "part 2 is given twice");
+  refused(all + " whole.csv", "beside tables that are none");
+  refused("part.1-of-2.csv part.2-of-3.csv", "part 2/3 beside part 1/2");
+  refused(all + " --seed 4", "made with the options");
+  std::string meta = toy.read("part.2-of-3.meta.json");
+  const std::size_t commit = meta.find("\"commit\": \"");
+  ASSERT_NE(commit, std::string::npos);
+  toy.write("part.2-of-3.meta.json", meta.insert(commit + 11, "other"));
+  refused(all, "made by commit other");
+  toy.write("part.2-of-3.meta.json", "{}");
+  refused(all, "not a manifest");
 }
 
 TEST(Sweep, MergeDropsRepeatsAndReportsContradictions) {
