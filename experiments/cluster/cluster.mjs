@@ -1,0 +1,202 @@
+// cluster.mjs slurm|snakemake [--parts n] [--profile file] [--folder folder] [--cores n]
+//             [--sbatch] [--write-only] EXPERIMENT [its arguments]
+// cluster.mjs status|resume|merge FOLDER
+// See docs/cluster.md. Exit codes as of ./tress.
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmdirSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
+import { join, relative, resolve } from 'node:path';
+import { InputError } from '../report/src/input.mjs';
+import { read_profile } from './profile.mjs';
+import * as slurm from './slurm.mjs';
+import * as snakemake from './snakemake.mjs';
+import * as sweeps from './sweep.mjs';
+
+const repository = resolve(import.meta.dirname ?? '.', '../..');
+const programs = process.env.TRESS_PROGRAMS ?? join(repository, 'build/release/experiments');
+const say = (text) => console.error(`tress: ${text}`);
+const here = (path) => {
+  const short = relative(process.cwd(), path) || '.';
+  return short.startsWith('..') ? path : short;
+};
+
+const takes = {
+  '--parts': 'whole',
+  '--cores': 'whole',
+  '--profile': 'text',
+  '--folder': 'text',
+  '--sbatch': 'flag',
+  '--write-only': 'flag',
+};
+
+/// Options before the experiment's name; all that follows it is the experiment's.
+function read_words(words) {
+  const options = {};
+  while (words.length > 0 && words[0].startsWith('-')) {
+    const name = words.shift();
+    const kind = takes[name];
+    if (kind === undefined)
+      throw new InputError(`cluster: unknown option '${name}'; there are ${Object.keys(takes).join(', ')}`);
+    if (kind === 'flag') {
+      options[name] = true;
+      continue;
+    }
+    const value = words.shift();
+    if (value === undefined) throw new InputError(`cluster: ${name} without a value; give one`);
+    if (kind === 'whole' && !/^[1-9][0-9]{0,5}$/.test(value))
+      throw new InputError(`cluster: ${name} ${value} is not a whole number above 0; as in ${name} 4`);
+    options[name] = kind === 'whole' ? Number(value) : value;
+  }
+  const [experiment, ...args] = words;
+  return { options, experiment, args };
+}
+
+function known_experiment(name) {
+  const list = readFileSync(join(programs, 'list.txt'), 'utf8').trim().split('\n');
+  if (name === undefined || !list.includes(name))
+    throw new InputError(`cluster: ${name === undefined ? 'no experiment given' : `no experiment '${name}'`}; there are ${list.join(' ')}`);
+  return join(programs, name);
+}
+
+const version_of = (program) => spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout.trim();
+
+/// As it is in its folder, or a new one with the pilot's estimate.
+function prepared(scheduler, { options, experiment, args }) {
+  const program = known_experiment(experiment);
+  sweeps.refuse_ours(args);
+  const folder = resolve(options['--folder'] ?? join(repository, 'results/cluster', experiment));
+  const profile = read_profile(options['--profile']);
+  const fresh = { experiment, args, program, repository, folder, version: version_of(program) };
+  if (existsSync(join(folder, 'sweep.json'))) {
+    const sweep = sweeps.load(folder);
+    for (const key of ['experiment', 'args', 'version'])
+      if (JSON.stringify(sweep[key]) !== JSON.stringify(fresh[key]))
+        throw new InputError(`${here(folder)}: holds another sweep: '${sweep[key]}', not '${fresh[key]}'; give another --folder, or remove it`);
+    if (options['--parts'] && options['--parts'] !== sweep.parts)
+      throw new InputError(`${here(folder)}: the sweep has ${sweep.parts} parts; leave --parts out, or remove the folder`);
+    return { ...sweep, ...fresh, scheduler, profile, needs: sweeps.needs(sweep.pilot, sweep.parts, profile) };
+  }
+  const strange = sweeps.remains(folder);
+  if (strange.length > 0)
+    throw new InputError(`${here(folder)}: holds '${strange[0]}' and no sweep; give another --folder`);
+  const pilot = sweeps.pilot(fresh, say);
+  const parts = options['--parts'] ?? sweeps.usual_parts(pilot, profile);
+  if (parts > pilot.rows)
+    throw new InputError(`--parts: ${parts} parts of ${pilot.rows} rows; give fewer`);
+  return { ...fresh, scheduler, profile, pilot, parts, needs: sweeps.needs(pilot, parts, profile), submissions: [] };
+}
+
+function tell_estimate(sweep) {
+  const { pilot, parts, needs } = sweep;
+  const hours = (pilot.rows * pilot.row_s) / 3600;
+  say(`${pilot.rows} rows of about ${pilot.row_s.toPrecision(2)} s (${pilot.timed} were timed): ${hours.toPrecision(2)} core hours in ${parts} parts; each asks for ${needs.minutes} min and ${needs.memory_mb} MB`);
+}
+
+function refuse_while_running(sweep) {
+  for (const { array, merge } of sweep.submissions)
+    for (const job of [array, merge])
+      if (Object.keys(slurm.states(job)).length > 0)
+        throw new InputError(`${here(sweep.folder)}: job ${job} is still at work; wait for it, or: scancel ${array} ${merge}`);
+}
+
+function submit(sweep, options) {
+  refuse_while_running(sweep);
+  const lost = sweeps.lost_parts(sweep);
+  sweeps.write_scripts(sweep);
+  sweeps.save(sweep);
+  if (lost.length < sweep.parts) say(`${sweep.parts - lost.length} of ${sweep.parts} parts are there`);
+  if (lost.length === 0) return merged(sweep);
+  const again = `./tress cluster status ${here(sweep.folder)}`;
+  if (sweep.scheduler === 'slurm') {
+    const files = slurm.write(sweep, lost);
+    if (options['--write-only']) return say(`wrote ${here(files.array)} and ${here(files.merge)}`);
+    const jobs = slurm.submit(files);
+    sweep.submissions.push(jobs);
+    sweeps.save(sweep);
+    say(`submitted job ${jobs.array} (${lost.length} parts) and ${jobs.merge}, which joins them; ${again}`);
+    return 0;
+  }
+  const file = snakemake.write(sweep);
+  const cores = options['--cores'] ?? availableParallelism();
+  const words = snakemake.command(sweep, { cores, sbatch: options['--sbatch'] });
+  if (options['--write-only']) {
+    say(`wrote ${here(file)}; start it: ${words.map(sweeps.quoted).join(' ')}`);
+    return 0;
+  }
+  if (snakemake.run(words)) return told(sweep);
+  say(`parts are missing; ${again}`);
+  return 3;
+}
+
+function told(sweep) {
+  say(`the table: ${here(sweeps.table_of(sweep))}`);
+  return 0;
+}
+
+function merged(sweep) {
+  const lost = sweeps.lost_parts(sweep);
+  if (lost.length > 0)
+    throw new InputError(`${here(sweep.folder)}: parts ${lost.join(', ')} of ${sweep.parts} are missing; ./tress cluster resume ${here(sweep.folder)}`);
+  const done = spawnSync(join(sweep.folder, 'merge.sh'), { encoding: 'utf8' });
+  if (done.status !== 0)
+    throw new InputError(done.stderr.trim().split('\n').pop() || 'merge.sh failed');
+  return told(sweep);
+}
+
+function status(sweep) {
+  const lost = sweeps.lost_parts(sweep);
+  const rows = sweeps.numbers(sweep).reduce((sum, i) => sum + sweeps.rows_of_part(sweep, i), 0);
+  console.log(`${sweep.experiment} ${sweep.args.join(' ')}`.trim());
+  console.log(`parts: ${sweep.parts - lost.length} of ${sweep.parts} complete; rows: ${rows} finished`);
+  let active = false;
+  for (const { array, merge } of sweep.submissions)
+    for (const [what, job] of [['parts', array], ['join', merge]])
+      for (const [state, count] of Object.entries(slurm.states(job))) {
+        active = true;
+        console.log(`job ${job} (${what}): ${count} ${state.toLowerCase()}`);
+      }
+  for (const i of lost) {
+    const log = join(sweep.folder, 'logs', `${i}.log`);
+    const last = existsSync(log) ? readFileSync(log, 'utf8').trim().split('\n').pop() : '';
+    console.log(`part ${i}: ${sweeps.rows_of_part(sweep, i)} rows finished${last ? `; log: ${last}` : ''}`);
+  }
+  const table = sweeps.table_of(sweep);
+  if (existsSync(table)) console.log(`table: ${here(table)}`);
+  else if (lost.length === 0) console.log(`next: ./tress cluster merge ${here(sweep.folder)}`);
+  else if (!active) console.log(`next: ./tress cluster resume ${here(sweep.folder)}`);
+  return 0;
+}
+
+function answer([command, ...words]) {
+  if (command === 'slurm' || command === 'snakemake') {
+    const read = read_words(words);
+    const folder = resolve(read.options['--folder'] ?? join(repository, 'results/cluster', read.experiment ?? ''));
+    const was_there = existsSync(folder);
+    known_experiment(read.experiment);
+    mkdirSync(folder, { recursive: true });
+    try {
+      return sweeps.alone(folder, () => {
+        const sweep = prepared(command, read);
+        tell_estimate(sweep);
+        return submit(sweep, read.options) ?? 0;
+      });
+    } finally {
+      if (!was_there && sweeps.remains(folder).length === 0) rmdirSync(folder);
+    }
+  }
+  if (['status', 'resume', 'merge'].includes(command)) {
+    if (words.length !== 1) throw new InputError(`cluster ${command}: give the folder of a sweep`);
+    const sweep = sweeps.load(words[0]);
+    if (command === 'status') return status(sweep);
+    return sweeps.alone(sweep.folder, () => (command === 'merge' ? merged(sweep) : submit(sweep, {})));
+  }
+  throw new InputError(`cluster: ${command === undefined ? 'nothing to do' : `unknown command '${command}'`}; there are slurm, snakemake, status, resume, merge`);
+}
+
+try {
+  process.exitCode = answer(process.argv.slice(2));
+} catch (error) {
+  if (!(error instanceof InputError)) throw error;
+  say(error.message);
+  process.exitCode = 2;
+}
