@@ -3,7 +3,7 @@
 // cluster.mjs status|resume|merge FOLDER
 // See docs/cluster.md. Exit codes as of ./tress.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmdirSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { join, relative, resolve } from 'node:path';
 import { InputError } from '../report/src/input.mjs';
@@ -13,7 +13,8 @@ import * as snakemake from './snakemake.mjs';
 import * as sweeps from './sweep.mjs';
 
 const repository = resolve(import.meta.dirname ?? '.', '../..');
-const programs = process.env.TRESS_PROGRAMS ?? join(repository, 'build/release/experiments');
+const programs =
+  process.env.TRESS_PROGRAMS ?? join(repository, 'build/release/experiments');
 const say = (text) => console.error(`tress: ${text}`);
 const here = (path) => {
   const short = relative(process.cwd(), path) || '.';
@@ -36,15 +37,20 @@ function read_words(words) {
     const name = words.shift();
     const kind = takes[name];
     if (kind === undefined)
-      throw new InputError(`cluster: unknown option '${name}'; there are ${Object.keys(takes).join(', ')}`);
+      throw new InputError(
+        `cluster: unknown option '${name}'; there are ${Object.keys(takes).join(', ')}`,
+      );
     if (kind === 'flag') {
       options[name] = true;
       continue;
     }
     const value = words.shift();
-    if (value === undefined) throw new InputError(`cluster: ${name} without a value; give one`);
+    if (value === undefined)
+      throw new InputError(`cluster: ${name} without a value; give one`);
     if (kind === 'whole' && !/^[1-9][0-9]{0,5}$/.test(value))
-      throw new InputError(`cluster: ${name} ${value} is not a whole number above 0; as in ${name} 4`);
+      throw new InputError(
+        `cluster: ${name} ${value} is not a whole number above 0; as in ${name} 4`,
+      );
     options[name] = kind === 'whole' ? Number(value) : value;
   }
   const [experiment, ...args] = words;
@@ -54,66 +60,108 @@ function read_words(words) {
 function known_experiment(name) {
   const list = readFileSync(join(programs, 'list.txt'), 'utf8').trim().split('\n');
   if (name === undefined || !list.includes(name))
-    throw new InputError(`cluster: ${name === undefined ? 'no experiment given' : `no experiment '${name}'`}; there are ${list.join(' ')}`);
+    throw new InputError(
+      `cluster: no experiment '${name ?? ''}'; there are ${list.join(' ')}`,
+    );
   return join(programs, name);
 }
 
-const version_of = (program) => spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout.trim();
+const version_of = (program) =>
+  spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout.trim();
 
 /// As it is in its folder, or a new one with the pilot's estimate.
-function prepared(scheduler, { options, experiment, args }) {
-  const program = known_experiment(experiment);
-  sweeps.refuse_ours(args);
-  const folder = resolve(options['--folder'] ?? join(repository, 'results/cluster', experiment));
+function prepared(scheduler, { options, experiment, args }, program, folder) {
   const profile = read_profile(options['--profile']);
-  const fresh = { experiment, args, program, repository, folder, version: version_of(program) };
+  const fresh = {
+    experiment,
+    args,
+    program,
+    repository,
+    folder,
+    version: version_of(program),
+  };
   if (existsSync(join(folder, 'sweep.json'))) {
     const sweep = sweeps.load(folder);
     for (const key of ['experiment', 'args', 'version'])
       if (JSON.stringify(sweep[key]) !== JSON.stringify(fresh[key]))
-        throw new InputError(`${here(folder)}: holds another sweep: '${sweep[key]}', not '${fresh[key]}'; give another --folder, or remove it`);
+        throw new InputError(
+          `${here(folder)}: holds another sweep: '${sweep[key]}', not '${fresh[key]}'; ` +
+            'give another --folder, or remove it',
+        );
     if (options['--parts'] && options['--parts'] !== sweep.parts)
-      throw new InputError(`${here(folder)}: the sweep has ${sweep.parts} parts; leave --parts out, or remove the folder`);
-    return { ...sweep, ...fresh, scheduler, profile, needs: sweeps.needs(sweep.pilot, sweep.parts, profile) };
+      throw new InputError(
+        `${here(folder)}: the sweep has ${sweep.parts} parts; leave --parts out`,
+      );
+    return {
+      ...sweep,
+      ...fresh,
+      scheduler,
+      profile,
+      needs: sweeps.needs(sweep.pilot, sweep.parts, profile),
+    };
   }
   const strange = sweeps.remains(folder);
   if (strange.length > 0)
-    throw new InputError(`${here(folder)}: holds '${strange[0]}' and no sweep; give another --folder`);
+    throw new InputError(
+      `${here(folder)}: holds '${strange[0]}' and no sweep; give another --folder`,
+    );
   const pilot = sweeps.pilot(fresh, say);
   const parts = options['--parts'] ?? sweeps.usual_parts(pilot, profile);
   if (parts > pilot.rows)
     throw new InputError(`--parts: ${parts} parts of ${pilot.rows} rows; give fewer`);
-  return { ...fresh, scheduler, profile, pilot, parts, needs: sweeps.needs(pilot, parts, profile), submissions: [] };
+  return {
+    ...fresh,
+    scheduler,
+    profile,
+    pilot,
+    parts,
+    needs: sweeps.needs(pilot, parts, profile),
+    submissions: [],
+  };
 }
 
-function tell_estimate(sweep) {
-  const { pilot, parts, needs } = sweep;
+function tell_estimate({ pilot, parts, needs }) {
   const hours = (pilot.rows * pilot.row_s) / 3600;
-  say(`${pilot.rows} rows of about ${pilot.row_s.toPrecision(2)} s (${pilot.timed} were timed): ${hours.toPrecision(2)} core hours in ${parts} parts; each asks for ${needs.minutes} min and ${needs.memory_mb} MB`);
+  say(
+    `${pilot.rows} rows of about ${pilot.row_s.toPrecision(2)} s ` +
+      `(${pilot.timed} were timed): ${hours.toPrecision(2)} core hours in ${parts} parts; ` +
+      `each asks for ${needs.minutes} min and ${needs.memory_mb} MB`,
+  );
 }
 
 function refuse_while_running(sweep) {
   for (const { array, merge } of sweep.submissions)
     for (const job of [array, merge])
       if (Object.keys(slurm.states(job)).length > 0)
-        throw new InputError(`${here(sweep.folder)}: job ${job} is still at work; wait for it, or: scancel ${array} ${merge}`);
+        throw new InputError(
+          `${here(sweep.folder)}: job ${job} is still at work; wait for it, or: scancel ${array} ${merge}`,
+        );
 }
 
 function submit(sweep, options) {
   refuse_while_running(sweep);
+  if (sweep.version !== version_of(sweep.program))
+    throw new InputError(
+      `${here(sweep.folder)}: begun by '${sweep.version}', but the program is ` +
+        `'${version_of(sweep.program)}'; build that again, or remove the folder`,
+    );
   const lost = sweeps.lost_parts(sweep);
   sweeps.write_scripts(sweep);
   sweeps.save(sweep);
-  if (lost.length < sweep.parts) say(`${sweep.parts - lost.length} of ${sweep.parts} parts are there`);
+  if (lost.length < sweep.parts)
+    say(`${sweep.parts - lost.length} of ${sweep.parts} parts are there`);
   if (lost.length === 0) return merged(sweep);
   const again = `./tress cluster status ${here(sweep.folder)}`;
   if (sweep.scheduler === 'slurm') {
     const files = slurm.write(sweep, lost);
-    if (options['--write-only']) return say(`wrote ${here(files.array)} and ${here(files.merge)}`);
+    if (options['--write-only'])
+      return say(`wrote ${here(files.array)} and ${here(files.merge)}`);
     const jobs = slurm.submit(files);
     sweep.submissions.push(jobs);
     sweeps.save(sweep);
-    say(`submitted job ${jobs.array} (${lost.length} parts) and ${jobs.merge}, which joins them; ${again}`);
+    say(
+      `submitted job ${jobs.array} (${lost.length} parts) and ${jobs.merge}, which joins them; ${again}`,
+    );
     return 0;
   }
   const file = snakemake.write(sweep);
@@ -136,7 +184,9 @@ function told(sweep) {
 function merged(sweep) {
   const lost = sweeps.lost_parts(sweep);
   if (lost.length > 0)
-    throw new InputError(`${here(sweep.folder)}: parts ${lost.join(', ')} of ${sweep.parts} are missing; ./tress cluster resume ${here(sweep.folder)}`);
+    throw new InputError(
+      `${here(sweep.folder)}: parts ${lost.join(', ')} of ${sweep.parts} are missing; ./tress cluster resume ${here(sweep.folder)}`,
+    );
   const done = spawnSync(join(sweep.folder, 'merge.sh'), { encoding: 'utf8' });
   if (done.status !== 0)
     throw new InputError(done.stderr.trim().split('\n').pop() || 'merge.sh failed');
@@ -145,24 +195,36 @@ function merged(sweep) {
 
 function status(sweep) {
   const lost = sweeps.lost_parts(sweep);
-  const rows = sweeps.numbers(sweep).reduce((sum, i) => sum + sweeps.rows_of_part(sweep, i), 0);
+  const rows = sweeps
+    .numbers(sweep)
+    .reduce((sum, i) => sum + sweeps.rows_of_part(sweep, i), 0);
   console.log(`${sweep.experiment} ${sweep.args.join(' ')}`.trim());
-  console.log(`parts: ${sweep.parts - lost.length} of ${sweep.parts} complete; rows: ${rows} finished`);
+  console.log(
+    `parts: ${sweep.parts - lost.length} of ${sweep.parts} complete; rows: ${rows} finished`,
+  );
   let active = false;
   for (const { array, merge } of sweep.submissions)
-    for (const [what, job] of [['parts', array], ['join', merge]])
+    for (const [what, job] of [
+      ['parts', array],
+      ['join', merge],
+    ])
       for (const [state, count] of Object.entries(slurm.states(job))) {
         active = true;
         console.log(`job ${job} (${what}): ${count} ${state.toLowerCase()}`);
       }
   for (const i of lost) {
     const log = join(sweep.folder, 'logs', `${i}.log`);
-    const last = existsSync(log) ? readFileSync(log, 'utf8').trim().split('\n').pop() : '';
-    console.log(`part ${i}: ${sweeps.rows_of_part(sweep, i)} rows finished${last ? `; log: ${last}` : ''}`);
+    const last = existsSync(log)
+      ? readFileSync(log, 'utf8').trim().split('\n').pop()
+      : '';
+    console.log(
+      `part ${i}: ${sweeps.rows_of_part(sweep, i)} rows finished${last ? `; log: ${last}` : ''}`,
+    );
   }
   const table = sweeps.table_of(sweep);
   if (existsSync(table)) console.log(`table: ${here(table)}`);
-  else if (lost.length === 0) console.log(`next: ./tress cluster merge ${here(sweep.folder)}`);
+  else if (lost.length === 0)
+    console.log(`next: ./tress cluster merge ${here(sweep.folder)}`);
   else if (!active) console.log(`next: ./tress cluster resume ${here(sweep.folder)}`);
   return 0;
 }
@@ -170,27 +232,36 @@ function status(sweep) {
 function answer([command, ...words]) {
   if (command === 'slurm' || command === 'snakemake') {
     const read = read_words(words);
-    const folder = resolve(read.options['--folder'] ?? join(repository, 'results/cluster', read.experiment ?? ''));
+    const program = known_experiment(read.experiment);
+    sweeps.refuse_ours(read.args);
+    const folder = resolve(
+      read.options['--folder'] ?? join(repository, 'results/cluster', read.experiment),
+    );
     const was_there = existsSync(folder);
-    known_experiment(read.experiment);
     mkdirSync(folder, { recursive: true });
     try {
       return sweeps.alone(folder, () => {
-        const sweep = prepared(command, read);
+        const sweep = prepared(command, read, program, folder);
         tell_estimate(sweep);
         return submit(sweep, read.options) ?? 0;
       });
     } finally {
-      if (!was_there && sweeps.remains(folder).length === 0) rmdirSync(folder);
+      if (!was_there && sweeps.remains(folder).length === 0)
+        rmSync(folder, { recursive: true });
     }
   }
   if (['status', 'resume', 'merge'].includes(command)) {
-    if (words.length !== 1) throw new InputError(`cluster ${command}: give the folder of a sweep`);
+    if (words.length !== 1)
+      throw new InputError(`cluster ${command}: give the folder of a sweep`);
     const sweep = sweeps.load(words[0]);
     if (command === 'status') return status(sweep);
-    return sweeps.alone(sweep.folder, () => (command === 'merge' ? merged(sweep) : submit(sweep, {})));
+    return sweeps.alone(sweep.folder, () =>
+      command === 'merge' ? merged(sweep) : submit(sweep, {}),
+    );
   }
-  throw new InputError(`cluster: ${command === undefined ? 'nothing to do' : `unknown command '${command}'`}; there are slurm, snakemake, status, resume, merge`);
+  throw new InputError(
+    `cluster: no command '${command ?? ''}'; there are slurm, snakemake, status, resume, merge`,
+  );
 }
 
 try {

@@ -35,8 +35,11 @@ export function read_profile(file) {
       if (key === undefined)
         throw new InputError(`${place}: not 'key = value'; as in partition = "short"`);
       if (!(key in keys))
-        throw new InputError(`${place}: no key '${key}'; there are ${Object.keys(keys).join(', ')}`);
-      if (given.has(key)) throw new InputError(`${place}: '${key}' is set twice; set it once`);
+        throw new InputError(
+          `${place}: no key '${key}'; there are ${Object.keys(keys).join(', ')}`,
+        );
+      if (given.has(key))
+        throw new InputError(`${place}: '${key}' is set twice; set it once`);
       given.add(key);
       profile[key] = value_of(value, keys[key], place);
     });

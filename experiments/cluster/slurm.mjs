@@ -8,7 +8,9 @@ import { quoted } from './sweep.mjs';
 function slurm(command, args) {
   const done = spawnSync(command, args, { encoding: 'utf8' });
   if (done.error)
-    throw new InputError(`${command}: not found; install Slurm's commands, or: ./tress cluster snakemake`);
+    throw new InputError(
+      `${command}: not found; install Slurm's commands, or: ./tress cluster snakemake`,
+    );
   if (done.status !== 0)
     throw new InputError(`${command}: ${done.stderr.trim().split('\n').pop()}`);
   return done.stdout.trim();
@@ -79,15 +81,22 @@ export function write(sweep, parts) {
 /// Numbers of the array's job and of the one that joins.
 export function submit(files) {
   const array = slurm('sbatch', ['--parsable', files.array]).split(';')[0];
-  const merge = slurm('sbatch', ['--parsable', `--dependency=afterok:${array}`,
-    '--kill-on-invalid-dep=yes', files.merge]).split(';')[0];
+  const merge = slurm('sbatch', [
+    '--parsable',
+    `--dependency=afterok:${array}`,
+    '--kill-on-invalid-dep=yes',
+    files.merge,
+  ]).split(';')[0];
   return { array, merge };
 }
 
 /// What Slurm says of a job's tasks, as in { RUNNING: 2, PENDING: 1 }; empty: it has ended.
 export function states(job) {
-  const done = spawnSync('squeue', ['-h', '-r', '-o', '%T', '-j', job], { encoding: 'utf8' });
-  if (done.error) throw new InputError('squeue: not found; ask where the sweep was submitted');
+  const done = spawnSync('squeue', ['-h', '-r', '-o', '%T', '-j', job], {
+    encoding: 'utf8',
+  });
+  if (done.error)
+    throw new InputError('squeue: not found; ask where the sweep was submitted');
   const count = {};
   if (done.status !== 0) return count; // it is no longer known
   for (const state of done.stdout.split('\n').filter(Boolean))

@@ -30,13 +30,27 @@ rule part:
 
 export function command(sweep, { cores, sbatch }) {
   const all = [
-    'snakemake', '--snakefile', join(sweep.folder, 'Snakefile'), '--directory', sweep.folder,
-    '--keep-going', '--rerun-incomplete', '--rerun-triggers', 'mtime',
+    'snakemake',
+    '--snakefile',
+    join(sweep.folder, 'Snakefile'),
+    '--directory',
+    sweep.folder,
+    '--keep-going',
+    '--rerun-incomplete',
+    '--rerun-triggers',
+    'mtime',
   ];
   if (!sbatch) return [...all, '--cores', String(cores)];
-  const job = ['sbatch', '--parsable', '--ntasks=1', '--cpus-per-task=1',
+  const job = [
+    'sbatch',
+    '--parsable',
+    '--ntasks=1',
+    '--cpus-per-task=1',
     `--output=${join(sweep.folder, 'logs', 'sbatch-%j.log')}`,
-    '--time={resources.runtime}', '--mem={resources.mem_mb}M', ...flags(sweep)];
+    '--time={resources.runtime}',
+    '--mem={resources.mem_mb}M',
+    ...flags(sweep),
+  ];
   return [...all, '--jobs', String(sweep.parts), '--cluster', job.join(' ')];
 }
 
@@ -45,6 +59,8 @@ export function run(words) {
   const [program, ...args] = words;
   const done = spawnSync(program, args, { stdio: ['ignore', 'inherit', 'inherit'] });
   if (done.error)
-    throw new InputError('snakemake: not found; apt-get install snakemake, or: ./tress cluster slurm');
+    throw new InputError(
+      'snakemake: not found; apt-get install snakemake, or: ./tress cluster slurm',
+    );
   return done.status === 0;
 }

@@ -2,12 +2,29 @@
 // is known of it stands in sweep.json; a part is complete when its table is there, which a
 // program writes last, after the manifest.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  readFileSync,
+  readdirSync,
+  renameSync,
+  rmSync,
+  writeFileSync,
+} from 'node:fs';
 import { hostname } from 'node:os';
 import { join, resolve } from 'node:path';
 import { InputError, read_json } from '../report/src/input.mjs';
 
-const ours = ['--shard', '--out', '--merge', '--resume', '--jobs', '--dry-run', '--list', '--help'];
+const ours = [
+  '--shard',
+  '--out',
+  '--merge',
+  '--resume',
+  '--jobs',
+  '--dry-run',
+  '--list',
+  '--help',
+];
 
 export const quoted = (word) =>
   /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'\\''`)}'`;
@@ -49,7 +66,9 @@ export function save(sweep) {
 export function load(folder) {
   const file = join(folder, 'sweep.json');
   if (!existsSync(file))
-    throw new InputError(`${folder}: no sweep there; begin one: ./tress cluster slurm EXPERIMENT`);
+    throw new InputError(
+      `${folder}: no sweep there; begin one: ./tress cluster slurm EXPERIMENT`,
+    );
   const sweep = read_json(file, 2 ** 20);
   if (typeof sweep.experiment !== 'string' || !Number.isInteger(sweep.parts))
     throw new InputError(`${file}: not of a sweep; remove the folder and begin again`);
@@ -68,7 +87,9 @@ export function alone(folder, use) {
     }
     const [pid, host] = readFileSync(lock, 'utf8').split(' ');
     if (host !== hostname() || existsSync(`/proc/${pid}`))
-      throw new InputError(`${lock}: process ${pid} on ${host} works on this sweep; wait for it`);
+      throw new InputError(
+        `${lock}: process ${pid} on ${host} works on this sweep; wait for it`,
+      );
     rmSync(lock, { force: true });
   }
   try {
@@ -85,7 +106,8 @@ function program(sweep, args) {
     encoding: 'utf8',
     maxBuffer: 2 ** 28,
   });
-  if (done.status === 130 || done.signal) throw new InputError('interrupted; give the same command again');
+  if (done.status === 130 || done.signal)
+    throw new InputError('interrupted; give the same command again');
   if (done.status !== 0 && done.status !== 3) {
     const [last] = done.stderr.trim().split('\n').slice(-1);
     throw new InputError(last || `${sweep.program} ended with ${done.status}`);
@@ -96,11 +118,25 @@ function program(sweep, args) {
 /// Counts rows and runs some of them, spread over all, to tell what a part takes.
 export function pilot(sweep, say) {
   const rows = program(sweep, ['--dry-run']).stdout.split('\n').length - 1;
-  if (rows < 2) throw new InputError(`${sweep.experiment}: ${rows} row, nothing to share; ./tress run`);
+  if (rows < 2)
+    throw new InputError(
+      `${sweep.experiment}: ${rows} row, nothing to share; ./tress run`,
+    );
   const sample = Math.max(2, Math.ceil(rows / 6));
   say(`${rows} rows; some of them are timed first`);
+  for (const name of readdirSync(sweep.folder))
+    if (name.startsWith('pilot.')) rmSync(join(sweep.folder, name));
   const out = join(sweep.folder, 'pilot.csv');
-  program(sweep, ['--shard', `1/${sample}`, '--out', out, '--jobs', '1', '--progress', 'none']);
+  program(sweep, [
+    '--shard',
+    `1/${sample}`,
+    '--out',
+    out,
+    '--jobs',
+    '1',
+    '--progress',
+    'none',
+  ]);
   const table = out.replace(/csv$/, `1-of-${sample}.csv`);
   const manifest = read_json(manifest_beside(table));
   rmSync(table);
@@ -121,8 +157,10 @@ export function pilot(sweep, say) {
 export function needs(known, parts, profile) {
   const rows = Math.ceil(known.rows / parts);
   return {
-    minutes: profile.minutes ?? Math.ceil((2 * rows * known.row_s + known.timeout_s) / 60),
-    memory_mb: profile.memory_mb ?? Math.max(256, 64 * Math.ceil((3 * known.largest_mb) / 64)),
+    minutes:
+      profile.minutes ?? Math.ceil((2 * rows * known.row_s + known.timeout_s) / 60),
+    memory_mb:
+      profile.memory_mb ?? Math.max(256, 64 * Math.ceil((3 * known.largest_mb) / 64)),
   };
 }
 
@@ -163,6 +201,6 @@ cd ${quoted(sweep.repository)}
   );
 }
 
-/// Scripts, logs and tables of an earlier sweep in the folder.
+/// What else lies in the folder than what an interrupted pilot left.
 export const remains = (folder) =>
-  existsSync(folder) ? readdirSync(folder).filter((name) => name !== 'lock') : [];
+  readdirSync(folder).filter((name) => name !== 'lock' && !name.startsWith('pilot.'));

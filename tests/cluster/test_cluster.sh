@@ -90,6 +90,8 @@ until_true 180 idle
 same "$work/family.csv" "$work/f/family.csv"
 
 echo "== a task without disk, and one that runs out of its time"
+mkdir "$work/d"
+touch "$work/d/pilot.csv.journal" # as an interrupted pilot leaves it
 expect 0 'wrote' cluster slurm --folder "$work/d" --parts 2 --write-only "${limits[@]}"
 (ulimit -f 0; "$work/d/part.sh" 1) >"$work/out" 2>&1 && fail "a full disk went unnoticed"
 expect 0 'parts: 0 of 2 complete' cluster status "$work/d"
@@ -124,6 +126,10 @@ for folder in springs snake; do
   rm -r "results/cluster/$folder"
 done
 rmdir results/cluster 2>/dev/null || true
+
+echo "== code that has changed"
+sed -i 's/"version": "/&another /' "$work/l/sweep.json"
+expect 2 'begun by .another stability_limit' cluster resume "$work/l"
 
 echo "== the merge refuses what does not belong together"
 cp "$work"/l/stability_limit.1-of-4.* "$work/"
