@@ -54,6 +54,8 @@ class StrandSeries {
   Strand strand(std::size_t k) const;
   /// Index in StrandTables::sources of the table that strand k comes from.
   std::size_t source(std::size_t k) const;
+  /// First strand of each of these tables, and the end.
+  std::span<const std::size_t> first() const { return first_; }
   CutStrands all() const;
   /// The first strand of each table alone.
   CutStrands outline() const;
