@@ -19,7 +19,7 @@ constexpr Part variations[] = {
     {"alike", "length_variation = 0\ncurl_variation = 0\nphase = \"down\"\n"},
     {"varied", "length_variation = 0.3\ncurl_variation = 0.5\nphase = \"random\"\n"}};
 constexpr Part drives[] = {
-    {"released", "initial = \"straight\"\n[root]\nmotion = \"fixed\"\n"},
+    {"released", "[root]\nmotion = \"fixed\"\n"},
     {"shaken",
      "[root]\nmotion = \"head\"\ncentre_m = [-0.02, 0, -0.1]\ntorque_n_m = 0.6\n"
      "frequency_hz = 2\n"}};
@@ -52,7 +52,7 @@ std::string groom_text(std::string_view name, std::size_t hairs) {
             "[material]\nname = \"hair.caucasian\"\n[effects.gravity]\n"
             "[effects.linear_drag]\ndrag_kg_m_s = 5e-5\n"
             "[groom]\ncount = {3}\nelements = 10\nlength_m = 0.15\n"
-            "cap_angle_rad = 0.4\n{4}{5}{6}",
+            "cap_axis = [-1, 0, 0.3]\ncap_angle_rad = 0.4\n{4}{5}{6}",
             shape.name, variation.name, drive.name, hairs, shape.text, variation.text,
             drive.text);
       }

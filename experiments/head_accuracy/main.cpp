@@ -22,7 +22,8 @@ namespace {
 constexpr Parameter own_settings[] = {
     {.name = "scenes",
      .help = "scene files of grooms that run as heads, as in scenes/a.toml,scenes/b.toml",
-     .text = true},
+     .text = true,
+     .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
      .help =
          "of the study, as in curly_varied_shaken,straight_alike_released: straight, "
@@ -56,7 +57,7 @@ constexpr Parameter own_settings[] = {
     {.name = "hairs",
      .help =
          "hairs that are looked at, grooms of more are thinned; 0: 10000, of the study's "
-         "grooms 1000, with --quick 2000 and 128",
+         "grooms 1000, with --quick 300 and 128",
      .number = 0,
      .min = 0,
      .max = 10000,
@@ -110,7 +111,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
     throw InputError(fmt::format("a reference of {} {}", value, key),
                      fmt::format("--set reference_{}", key), "give 8 or more");
   }
-  plan.search.elements = {2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 22};
+  plan.search.elements = {2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 22, 26};
   plan.search.substeps = {1, 2, 3, 4, 6, 8, 12, 16};
   plan.search.sample = line.quick ? 32 : 64;
   if (line.quick) {
@@ -150,7 +151,7 @@ std::vector<Case> cases(const CommandLine& line) {
                      return study_head(given, plan, row, deadline);
                    }});
   };
-  plan.comparison.hairs = hairs > 0 ? hairs : line.quick ? 2000 : 10'000;
+  plan.comparison.hairs = hairs > 0 ? hairs : line.quick ? 300 : 10'000;
   for (const std::string& file : scenes_of(settings)) {
     const Scene given = read_head_scene(file);
     add(given.name, file, given);

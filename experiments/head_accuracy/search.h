@@ -19,8 +19,9 @@ double value(const Spread& spread, Over over);
 inline constexpr double neighbour_allowance = 1.5;
 
 /// Counted, so that the choice does not depend on the load of the machine: an element and
-/// step of 64 bits is 1, of 32 bits half, a point of a hair that follows `point_work`.
-inline constexpr double point_work = 0.5;
+/// step of 64 bits is 1, of 32 bits half, a point of a hair that follows `point_work`, as
+/// measured.
+inline constexpr double point_work = 0.35;
 double frame_work(const Choice& choice, std::size_t hairs);
 
 struct SearchPlan {

@@ -29,9 +29,10 @@ GuideHair hair_that_follows(std::span<const Strand> guides,
   for (const Strand& strand : guides) add(strand, roots, of_guides);
   for (const Strand& strand : followers) add(strand, hair_roots, of_hairs);
   const std::size_t points = of_guides.size() / guides.size();
-  // Sparse guides are farther apart than those between which hair has no shape of its
-  // own.
-  GuideHairOptions options{.clumpiness = 0, .seed = seed};
+  // Guides as far apart as usual share their hairs, also the third one of sparse guides
+  // and where tips spread; those on both sides of a parting are farther.
+  constexpr double parted = 6;
+  GuideHairOptions options{.clumpiness = 0, .seed = seed, .linear = true};
   const GuideHair near(roots, hair_roots, points, options);
   double sum = 0;
   for (std::size_t h = 0; h < near.hairs(); ++h) {
@@ -41,7 +42,7 @@ GuideHair hair_that_follows(std::span<const Strand> guides,
     sum += norm(tip(0) - tip(1));
   }
   options.tip_limit =
-      std::max(options.tip_limit, 2 * sum / static_cast<double>(near.hairs()));
+      std::max(options.tip_limit, parted * sum / static_cast<double>(near.hairs()));
   GuideHair hair(roots, hair_roots, points, options);
   hair.keep_shapes(of_guides, rotation_from_rest(head, 0), of_hairs);
   return hair;
