@@ -21,7 +21,9 @@ namespace {
 
 constexpr Parameter own_settings[] = {
     {.name = "scenes",
-     .help = "scene files of grooms that run as heads, as in scenes/a.toml,scenes/b.toml",
+     .help = "scene files of grooms that run as heads, as in "
+             "scenes/a.toml,scenes/b.toml; left "
+             "out where grooms are given",
      .text = true,
      .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
@@ -123,7 +125,8 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
 
 std::vector<std::string> scenes_of(const Settings& settings) {
   const std::string files(settings.experiment().word("scenes"));
-  if (files.empty()) return {};
+  const bool others = settings.chosen("grooms") && !settings.chosen("scenes");
+  if (files.empty() || others) return {};
   return split(files, ',', "scenes");
 }
 

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
+#include "math/helix.h"
+#include "models/reduced/reduced_strand.h"
 #include "simulation/export/full_hair.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/scene_head.h"
@@ -65,7 +67,12 @@ HeadMeasure::HeadMeasure(const Scene& given, const Comparison& comparison)
   frames_ = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::floor(horizon * comparison.rate + 1e-9)));
   stride_ = std::max<std::size_t>(1, frames_ / instants);
-  for (const Strand& strand : whole_.strands) lengths_.push_back(strand.length());
+  for (const Strand& strand : whole_.strands) {
+    lengths_.push_back(strand.length());
+    for (const Segment& segment : strand.segments) {
+      winding_ = std::max(winding_, lengths_.back() * norm(segment.natural));
+    }
+  }
   const int n = comparison.elements, s = comparison.substeps;
   const HairCurves other =
       extrapolated_in_step(curves(n / 2, s / 2), curves(n / 2, s / 4));
@@ -86,6 +93,12 @@ HeadMeasure::HeadMeasure(const Scene& given, const Comparison& comparison)
     each[k] = errors.of(k) / 4;
   }
   gap_ = spread(each, std::vector<double>(hairs(), 1));
+}
+
+double HeadMeasure::element_work(int elements) const {
+  const double angle = winding_ / elements;
+  const double points = (12 + models::quadrature_points(angle)) / 16.0;
+  return angle * angle > helix::short_end ? 3.5 * points : points;
 }
 
 /// What a run took.

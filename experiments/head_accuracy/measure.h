@@ -63,6 +63,9 @@ class HeadMeasure {
   std::size_t all_hairs() const { return all_; }         // of the scene
   double horizon() const { return static_cast<double>(frames_) / comparison_.rate; }
   const Comparison& comparison() const { return comparison_; }
+  /// Of a step of an element, over that of a straight one, as measured: elements that
+  /// wind farther take more quadrature points, and beyond 1.5 rad longer series.
+  double element_work(int elements) const;
   /// What the last of these changes: a bound of the reference's error as far as errors
   /// fall like that.
   const Spread& gap() const { return gap_; }
@@ -91,6 +94,7 @@ class HeadMeasure {
   std::size_t all_;
   std::size_t frames_, stride_;  // frames from one compared instant to the next
   std::vector<double> lengths_;  // m
+  double winding_ = 0;           // of a whole hair, at most (rad)
   HairCurves reference_;
   Spread gap_;
   mutable std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> guides_;

@@ -25,10 +25,11 @@ double value(const Spread& spread, Over over) {
                              : spread.largest;
 }
 
-double frame_work(const Choice& choice, std::size_t hairs) {
+double frame_work(const Choice& choice, const HeadMeasure& measure) {
   const auto simulated = static_cast<double>(choice.guides),
-             others = static_cast<double>(hairs - choice.guides);
-  return simulated * choice.elements * choice.substeps * (choice.bits == 32 ? 0.5 : 1) +
+             others = static_cast<double>(measure.hairs() - choice.guides);
+  const double step = measure.element_work(choice.elements) * choice.elements;
+  return simulated * step * choice.substeps * (choice.bits == 32 ? 0.5 : 1) +
          point_work * others * (choice.elements + 1);
 }
 
@@ -70,8 +71,7 @@ std::vector<HeadSearch::Candidate> HeadSearch::candidates() {
       }
       const auto add = [&, own = part->second](std::size_t g, double between) {
         const Choice choice{g, n, s, plan_.bits};
-        all.push_back(
-            {choice, frame_work(choice, measure_.hairs()), std::hypot(between, own)});
+        all.push_back({choice, frame_work(choice, measure_), std::hypot(between, own)});
       };
       for (const std::size_t g : guides_) add(g, value(interpolation(g), over_));
       add(measure_.hairs(), 0);
@@ -158,7 +158,7 @@ std::optional<Judged> HeadSearch::best_within(double frame_s) {
   double unit_s = never;
   for (const auto& [choice, trial] : runs_) {
     if (!trial) continue;
-    unit_s = std::min(unit_s, seconds(*trial) / frame_work(choice, measure_.hairs()));
+    unit_s = std::min(unit_s, seconds(*trial) / frame_work(choice, measure_));
   }
   std::optional<Judged> best;
   int tried = 0, within = 0;

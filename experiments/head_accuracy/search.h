@@ -18,11 +18,11 @@ double value(const Spread& spread, Over over);
 /// Factor by which the errors of a run's neighbours may exceed the target error.
 inline constexpr double neighbour_allowance = 1.5;
 
-/// Counted, so that the choice does not depend on the load of the machine: an element and
-/// step of 64 bits is 1, of 32 bits half, a point of a hair that follows `point_work`, as
-/// measured.
+/// Counted, so that the choice does not depend on the load of the machine: a step of an
+/// element of 64 bits is HeadMeasure::element_work, of 32 bits half of it, a point of a
+/// hair that follows `point_work`, as measured.
 inline constexpr double point_work = 0.35;
-double frame_work(const Choice& choice, std::size_t hairs);
+double frame_work(const Choice& choice, const HeadMeasure& measure);
 
 struct SearchPlan {
   std::vector<int> elements, substeps;  // ascending

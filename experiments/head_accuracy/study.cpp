@@ -51,7 +51,8 @@ constexpr Column columns[] = {
     {"best_guides", "number of guides, up to half of the hairs, that others follow best"},
     {"best_interpolation_rel", "error of hairs that follow them"},
     {"work",
-     "of a frame: elements x steps, half of 32 bits, and 0.35 of a point that follows"},
+     "of a frame: steps of elements, half of 32 bits, more where they wind far, and 0.35 "
+     "of a point that follows"},
     {"step_ms_per_frame", "wall time of the steps of a frame, median", true},
     {"follow_ms_per_frame", "the same of reading points and of hairs that follow", true},
     {"ms_per_frame", "both", true},
@@ -110,7 +111,7 @@ class Study {
     set(trial.all, "error", row);
     set(trial.interpolation, "interpolation", row);
     set(trial.simulated, "simulated", row);
-    row.set("work", frame_work(choice, measure_.hairs()));
+    row.set("work", frame_work(choice, measure_));
     row.set("step_ms_per_frame", 1e3 * trial.step_s);
     row.set("follow_ms_per_frame", 1e3 * trial.follow_s);
     row.set("ms_per_frame", 1e3 * (trial.step_s + trial.follow_s));
