@@ -33,7 +33,8 @@ Scene with_elements(Scene scene, int elements);
 /// As above, every strand with twice its elements.
 Scene with_twice_the_elements(Scene scene);
 
-/// Every strand of its grooms simulated, none a follower; grooms of fewer strands if
+/// Every strand of its grooms simulated, none a follower, all of one table in as many
+/// elements; grooms of fewer strands if
 /// there are more than `most` altogether. The scene may be that of an outline.
 Scene every_strand(Scene scene, std::size_t most);
 /// So many guides, at most as many as strands, which the grooms share by their numbers of
