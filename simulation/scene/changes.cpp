@@ -119,15 +119,14 @@ Scene with_twice_the_elements(Scene scene) {
 }
 
 Scene every_strand(Scene scene, std::size_t most) {
-  return with_grooms(
-      std::move(scene), [most](Table& groom, std::size_t strands, std::size_t all) {
-        for (const char* key : {"guides", "tolerance_m", "tolerance_px", "pixels_1_m"}) {
-          set_whole(groom, key, 0);
-        }
-        if (all <= most) return;
-        set_whole(groom, "density_1_m2", 0);
-        set_whole(groom, "count", share_of(most, all, strands));
-      });
+  return with_grooms(std::move(scene),
+                     [most](Table& groom, std::size_t strands, std::size_t all) {
+                       set_whole(groom, "guides", 0);
+                       clear_detail(groom);
+                       if (all <= most) return;
+                       set_whole(groom, "density_1_m2", 0);
+                       set_whole(groom, "count", share_of(most, all, strands));
+                     });
 }
 
 Scene with_guides(Scene scene, std::size_t guides) {

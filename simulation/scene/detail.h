@@ -37,16 +37,17 @@ struct UncutStrand {
 ///     natural   of the natural shape
 ///     sag       a clamped strand under its weight w bends most at the root: at most w
 ///               L^2/(2 EI) if it is stiff and 2 sqrt(w L/EI) sin(a/2) if its tension
-///               pulls it down, a the angle there of it, or of the axis
-///               of its coil, from the vertical; in
-///               axes that wind with the shape by its mean |k| the bend, by w L^3/(6 EI)
-///               or a in all, turns round and varies by as much times |k|
+///               pulls it down, a the angle there of it, or of the axis of its coil,
+///               from the vertical; in axes that wind with the shape, by its mean |k|,
+///               the bend, by w L^3/(6 EI) or a in all, turns round and varies by as much
+///               times |k|
 ///     coil      the weight of what hangs from a turn of a coil of radius r bends it
 ///               w L r/(2 EI) more on one side than on the other, on average, and not
 ///               more than straight: four times that for each turn
-/// Elements also wind by 1.5 rad at most. An upper bound of the error in space for shapes
-/// in which neither sag nor coil is large in an element; of motion see the page of
-/// scenes.
+/// Elements also wind by 1.5 rad at most. This estimates the error of space at rest, from
+/// above for nearly all strands (tests/simulation/test_detail.cpp). A load that sets in
+/// at once in a frame with acceleration a bends 2 (1 + a/g) times as far, and the error
+/// grows by as much.
 int elements_for(const UncutStrand& strand, double tolerance, int most);
 
 }  // namespace tress::simulation

@@ -141,8 +141,6 @@ TEST_P(DetailOfShapes, StrandsHangWithinTheTolerance) {
                               tolerance, 1, 1.0 / 120, 480, 1);
     RecordProperty("within", std::to_string(found.within));
     RecordProperty("median", std::to_string(found.median));
-    std::printf("  rest %g: %.3f within, median %.3f, %.1f elements\n", tolerance,
-                found.within, found.median, found.elements);
     EXPECT_GE(found.within, 0.9) << tolerance;
     EXPECT_LT(found.elements, 40);
   }
@@ -169,8 +167,6 @@ TEST_P(DetailOfShapes, StrandsMoveWithinTheToleranceOfTheirLoad) {
   EXPECT_GT(most, 1);
   const double allowed = 2 * (1 + most / 9.81);
   const Share found = share(GetParam(), drive, 0.003, allowed, 1.0 / 1200, 60, 10);
-  std::printf("  motion: %.3f within %.2f times, median %.3f\n", found.within, allowed,
-              found.median);
   EXPECT_GE(found.within, 0.9);
 }
 
@@ -204,6 +200,16 @@ TEST(Detail, WhatMakesNoSenseIsRefused) {
         "tolerance_m = 0.001\ngrading = 2\n", "tolerance_m = -1\n"}) {
     EXPECT_THROW(parse_scene(groom("", bad), "t.toml"), InputError) << bad;
   }
+}
+
+TEST(Detail, OtherElementsReplaceIt) {
+  for (const Strand& strand : with_elements(classes(), 7).strands) {
+    EXPECT_EQ(strand.segments.size(), 7U);
+  }
+  for (const Strand& strand : every_strand(classes(), 100).strands) {
+    EXPECT_EQ(strand.segments.size(), 20U);
+  }
+  EXPECT_THROW(with_twice_the_elements(classes()), InputError);
 }
 
 TEST(Detail, StrandsOfAllClassesRunInOneWorld) {
