@@ -43,6 +43,10 @@ std::string why_every(const Row& row) {
 }
 
 std::string sentence(const Row& row) {
+  if (!row.has("kind")) {
+    return fmt::format("{}: {} ({})", row.text("scene"), row.status(),
+                       row.text("reason"));
+  }
   const std::string asked =
       row.text("kind") == "budget"
           ? fmt::format("{:.3g} ms a frame", row.number("budget_ms"))
@@ -70,9 +74,13 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
 
 std::string advised_text(const Scene& given, const Row& row) {
   const auto guides = static_cast<std::size_t>(row.number("guides"));
-  if (row.number("strands") > static_cast<double>(held_at_once.strands)) return {};
-  Scene scene = with_elements(every_strand(given, held_at_once.strands),
-                              static_cast<int>(row.number("elements")));
+  const double strands = row.number("strands"), elements = row.number("elements");
+  if (strands > static_cast<double>(held_at_once.strands) ||
+      strands * elements > static_cast<double>(held_at_once.elements)) {
+    return {};
+  }
+  Scene scene = every_strand(with_elements(given, static_cast<int>(elements)),
+                             held_at_once.strands);
   scene = with_guides(std::move(scene), guides);
   scene.options.step = row.number("dt_s");
   return fmt::format("# {} as advised: {}.\n\n{}", given.name, run(row),

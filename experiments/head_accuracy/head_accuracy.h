@@ -43,7 +43,7 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
 /// The scene with the guides, elements and step of a row, for `simulate`; empty if it has
-/// too many strands to be written with guides.
+/// too many strands to be held at once.
 std::string advised_text(const Scene& given, const Row& row);
 
 }  // namespace tress::experiments::head_accuracy

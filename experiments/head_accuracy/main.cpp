@@ -15,6 +15,7 @@
 #include "experiments/run/settings.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
+#include "simulation/scene/strand_tables.h"
 
 namespace tress::experiments::head_accuracy {
 namespace {
@@ -58,7 +59,7 @@ constexpr Parameter own_settings[] = {
      .max = 1e3},
     {.name = "hairs",
      .help =
-         "hairs that are looked at, grooms of more are thinned; 0: 10000, of the study's "
+         "hairs that are looked at, grooms of more are thinned; 0: 5000, of the study's "
          "grooms 1000, with --quick 300 and 128",
      .number = 0,
      .min = 0,
@@ -154,7 +155,16 @@ std::vector<Case> cases(const CommandLine& line) {
                      return study_head(given, plan, row, deadline);
                    }});
   };
-  plan.comparison.hairs = hairs > 0 ? hairs : line.quick ? 300 : 10'000;
+  plan.comparison.hairs = hairs > 0 ? hairs : line.quick ? 300 : 5000;
+  const std::size_t looked_at = plan.comparison.hairs,
+                    fine = static_cast<std::size_t>(plan.comparison.elements);
+  if (looked_at * fine > held_at_once.elements) {
+    throw InputError(fmt::format("{} hairs of {} elements", looked_at, fine),
+                     "--set hairs",
+                     fmt::format("give at most {} elements in all, as reference_elements "
+                                 "says how many a hair has",
+                                 held_at_once.elements));
+  }
   for (const std::string& file : scenes_of(settings)) {
     const Scene given = read_head_scene(file);
     add(given.name, file, given);

@@ -52,8 +52,9 @@ Scene read_head_scene(const std::string& file) {
       throw InputError("a [strand] beside hairs that may follow guides",
                        source.table.place(), "give [groom]s only");
     }
+    constexpr std::size_t enough = 100;
     // Whether it has guides is what is asked; they do not run as a head.
-    outline.scene = every_strand(std::move(outline.scene), held_at_once.strands);
+    outline.scene = every_strand(std::move(outline.scene), enough);
   }
   if (const auto no = no_head(outline)) throw InputError(no->reason, file, no->remedy);
   return read_outline(file).scene;

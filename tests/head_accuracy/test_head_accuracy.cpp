@@ -314,6 +314,7 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
         Bad{"--scene none.toml", "none.toml", "existing"},
         Bad{"--set grooms=curly", "unknown groom 'curly'", "curly_varied_shaken"},
         Bad{"--set reference_elements=4", "a reference of 4 elements", "8 or more"},
+        Bad{"--set hairs=9000", "9000 hairs of 32 elements", "at most 200000"},
         Bad{"--set over=median", "median", "p95"},
         Bad{"--elements 5", "--elements", "leave it out"}}) {
     Toy toy;
