@@ -16,6 +16,7 @@
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
+#include "simulation/run/head_classes.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
@@ -132,6 +133,7 @@ struct Job {
   std::string file;
   SceneOutline outline;
   bool head = false;
+  int elements = 0;  // of a head that is one of several of the scene
 };
 
 models::HeadPack pack_of(const Arguments& a) {
@@ -152,7 +154,25 @@ std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
     return NoHead{std::string(option) + " is not for a head of hair",
                   "leave it out, or give --as strands with fewer strands"};
   }
+  if (has_classes(outline)) {
+    if (auto no = no_classes(outline)) return no;
+  }
   return simulation::no_head(outline);
+}
+
+/// One head for each number of elements, said on standard error.
+std::vector<Job> heads_of(const Job& job, const Arguments& a) {
+  if (!job.head || !has_classes(job.outline)) return {job};
+  std::vector<Job> jobs;
+  std::string list;
+  for (HeadClass& one : head_classes(job.outline, a.threads)) {
+    list += fmt::format("{}{} of {} elements", list.empty() ? "" : ", ",
+                        one.outline.series->size(), one.elements);
+    jobs.push_back({job.file, std::move(one.outline), true, one.elements});
+  }
+  tell("simulate: {}: heads of equal elements: strands {}\n", job.outline.scene.name,
+       list);
+  return jobs;
 }
 
 /// Throws InputError if the scene cannot run as asked for.
@@ -201,6 +221,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   }
   RunKey key;
   key.add("scene", contents_checksum({file}));
+  if (job.elements > 0) key.add("elements", std::to_string(job.elements));
   if (job.head) check_room(job.outline, options);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
@@ -247,8 +268,10 @@ int run(const Arguments& a, CommandLine line) {
   ready_folder(a.out);
   Interruption interruption("simulate");
   bool complete = true;
-  for (const Job& job : jobs) {
-    complete = run_job(job, a, line, interruption) && complete;
+  for (const Job& whole : jobs) {
+    for (const Job& job : heads_of(whole, a)) {
+      complete = run_job(job, a, line, interruption) && complete;
+    }
   }
   return complete ? done : rows_failed;
 }

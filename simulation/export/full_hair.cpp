@@ -10,14 +10,43 @@ namespace {
 
 constexpr std::size_t most_frames = 60;
 
-/// Rotation of the head from its rest orientation.
-Frame turned(const RootMotion& head, double t) {
+}  // namespace
+
+Frame rotation_from_rest(const RootMotion& head, double t) {
   const Frame now = head.at(t).frame;
   const auto column = [&](const Vec& axis) { return now * head.frame.back(axis); };
   return {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})};
 }
 
-}  // namespace
+GuideHair hair_that_follows(std::span<const Strand> guides,
+                            std::span<const Strand> followers, const RootMotion& head,
+                            std::uint64_t seed) {
+  std::vector<Vec> roots, hair_roots, of_guides, of_hairs;
+  const auto add = [](const Strand& strand, std::vector<Vec>& root, std::vector<Vec>& x) {
+    root.push_back(strand.root.position);
+    for (const Vec& point : initial_points(strand)) x.push_back(point);
+  };
+  for (const Strand& strand : guides) add(strand, roots, of_guides);
+  for (const Strand& strand : followers) add(strand, hair_roots, of_hairs);
+  const std::size_t points = of_guides.size() / guides.size();
+  // Guides as far apart as usual share their hairs, also the third one of sparse guides
+  // and where tips spread; those on both sides of a parting are farther.
+  constexpr double parted = 6;
+  GuideHairOptions options{.clumpiness = 0, .seed = seed, .linear = true};
+  const GuideHair near(roots, hair_roots, points, options);
+  double sum = 0;
+  for (std::size_t h = 0; h < near.hairs(); ++h) {
+    const auto tip = [&](std::size_t k) {
+      return of_guides[(near.neighbours(h).guide[k] + 1) * points - 1];
+    };
+    sum += norm(tip(0) - tip(1));
+  }
+  options.tip_limit =
+      std::max(options.tip_limit, parted * sum / static_cast<double>(near.hairs()));
+  GuideHair hair(roots, hair_roots, points, options);
+  hair.keep_shapes(of_guides, rotation_from_rest(head, 0), of_hairs);
+  return hair;
+}
 
 FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs)
     : head_(scene.head) {
@@ -31,7 +60,8 @@ FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t 
   const auto as_guides = [&](const Strand& strand) {
     return static_cast<int>(strand.segments.size()) + 1 == guides[0];
   };
-  if (scene.strands.size() < 3 || guides.size() != scene.strands.size() || !alike ||
+  const std::size_t least = follows ? 1 : 3;
+  if (scene.strands.size() < least || guides.size() != scene.strands.size() || !alike ||
       !std::ranges::all_of(scene.followers, as_guides)) {
     throw InputError(
         "hairs between strands need three strands or more, all of as many "
@@ -42,38 +72,11 @@ FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t 
   for (const Strand& strand : scene.strands) roots.push_back(strand.root.position);
   points_ = static_cast<std::size_t>(guides[0]);
   if (follows) {
-    follow(scene, roots);
+    hair_ = hair_that_follows(scene.strands, scene.followers, head_, scene.seed);
     return;
   }
   hair_.emplace(roots, scatter_roots(roots, hairs, scene.seed), points_,
                 GuideHairOptions{.seed = scene.seed});
-}
-
-void FullHair::follow(const Scene& scene, const std::vector<Vec>& roots) {
-  std::vector<Vec> hair_roots, guides, hairs;
-  for (const Strand& strand : scene.strands) {
-    const std::vector<Vec> x = initial_points(strand);
-    guides.insert(guides.end(), x.begin(), x.end());
-  }
-  for (const Strand& strand : scene.followers) {
-    hair_roots.push_back(strand.root.position);
-    const std::vector<Vec> x = initial_points(strand);
-    hairs.insert(hairs.end(), x.begin(), x.end());
-  }
-  // Sparse guides are farther apart than those between which hair has no shape of its
-  // own.
-  GuideHairOptions options{.clumpiness = 0, .seed = scene.seed};
-  const GuideHair near(roots, hair_roots, points_, options);
-  double sum = 0;
-  for (std::size_t h = 0; h < near.hairs(); ++h) {
-    const auto& guide = near.neighbours(h).guide;
-    sum +=
-        norm(guides[(guide[0] + 1) * points_ - 1] - guides[(guide[1] + 1) * points_ - 1]);
-  }
-  options.tip_limit =
-      std::max(options.tip_limit, 2 * sum / static_cast<double>(near.hairs()));
-  hair_.emplace(roots, hair_roots, points_, options);
-  hair_->keep_shapes(guides, turned(head_, 0), hairs);
 }
 
 std::vector<int> FullHair::lines(std::span<const int> guides) const {
@@ -107,7 +110,7 @@ Frame3d FullHair::grown(const Frame3d& guides) const {
   for (std::size_t i = 0; i < simulated; ++i) {
     of_guides[i] = load3(&guides.positions[3 * i]);
   }
-  hair_->grow(of_guides, turned(head_, guides.series[0]), places);
+  hair_->grow(of_guides, rotation_from_rest(head_, guides.series[0]), places);
   for (const Vec& x : places) {
     for (const double c : {x.x, x.y, x.z}) {
       full.positions.push_back(static_cast<float>(c));

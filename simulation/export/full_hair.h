@@ -9,13 +9,23 @@
 
 namespace tress::simulation {
 
+/// Rotation of a head from where it is at rest.
+Frame rotation_from_rest(const RootMotion& head, double t);
+
+/// The hair of a groom that follows its guides, each with its own shape: all as they are
+/// at t = 0, all cut into equally many elements. Seed: the scene's.
+GuideHair hair_that_follows(std::span<const Strand> guides,
+                            std::span<const Strand> followers, const RootMotion& head,
+                            std::uint64_t seed);
+
 /// Hairs drawn between simulated strands (GuideHair), after them in every frame; in about
 /// 60 evenly chosen frames of a recording. A hair takes the channel values of its own
 /// guide. Where grooms have guides, the strands that follow these, with their own shapes.
 class FullHair {
  public:
   /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
-  /// lines are not strands of equally many points, three at least, and beside followers.
+  /// lines are not strands of equally many points, three at least, and beside followers,
+  /// which one guide is enough for.
   /// hairs = 0: draws the followers only.
   FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
 
@@ -26,8 +36,6 @@ class FullHair {
 
  private:
   Frame3d grown(const Frame3d& guides) const;
-
-  void follow(const Scene& scene, const std::vector<Vec>& roots);
 
   const RootMotion& head_;
   std::size_t points_ = 0;  // of each line

@@ -67,12 +67,32 @@ struct Nearest {
   }
 };
 
-GuideHair::Neighbours neighbours_of(std::span<const Vec> guide_roots, const Vec& root) {
+/// Moves weights as GuideHairOptions::linear says.
+void make_linear(GuideHair::Neighbours& near, std::span<const Vec> guide_roots,
+                 const Vec& root) {
+  constexpr double stay = 1e-3;
+  const auto& [guide, weight] = near;
+  const Vec a = guide_roots[guide[1]] - guide_roots[guide[0]],
+            b = guide_roots[guide[2]] - guide_roots[guide[0]],
+            away = guide_roots[guide[0]] - root + weight[1] * a + weight[2] * b;
+  // Changes x of the second and y of the third weight, -(x + y) of the first.
+  const double least = stay * std::max(dot(a, a), dot(b, b));
+  const double aa = dot(a, a) + 2 * least, bb = dot(b, b) + 2 * least,
+               ab = dot(a, b) + least, determinant = aa * bb - ab * ab;
+  if (!(determinant > 0)) return;
+  const double x = (ab * dot(b, away) - bb * dot(a, away)) / determinant,
+               y = (ab * dot(a, away) - aa * dot(b, away)) / determinant;
+  near.weight = {weight[0] - x - y, weight[1] + x, weight[2] + y};
+}
+
+GuideHair::Neighbours neighbours_of(std::span<const Vec> guide_roots, const Vec& root,
+                                    bool linear) {
   const Nearest<4> near(guide_roots, root);
   GuideHair::Neighbours neighbours{
       .guide = {near.guide[0], near.guide[1], near.guide[2]}};
   set_weights(neighbours, {near.distance[0], near.distance[1], near.distance[2]},
               near.distance[3]);
+  if (linear) make_linear(neighbours, guide_roots, root);
   return neighbours;
 }
 
@@ -176,7 +196,7 @@ GuideHair::GuideHair(std::vector<Vec> guide_roots, std::vector<Vec> hair_roots,
   Random random(options.seed, 0);
   const double c = options.clumpiness;
   for (const Vec& root : hair_roots_) {
-    neighbours_.push_back(neighbours_of(guide_roots_, root));
+    neighbours_.push_back(neighbours_of(guide_roots_, root, options.linear));
     clumpiness_.push_back(c + 0.4 * c * (1 - c) * (2 * random.uniform() - 1));
   }
 }
@@ -208,6 +228,10 @@ void GuideHair::grow(std::span<const Vec> guides, const Frame& head,
       const double apart = norm(guides[near.guide[k] * n + n - 1] - guides[own + n - 1]);
       sum += weight[k] =
           near.weight[k] * (1 - smooth(2 * apart / options_.tip_limit - 1));
+    }
+    if (options_.linear) {
+      weight[0] = 1 - weight[1] - weight[2];
+      sum = 1;
     }
     for (std::size_t i = 0; i < n; ++i) {
       const double s = static_cast<double>(i) / static_cast<double>(n - 1);

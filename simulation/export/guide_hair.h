@@ -26,6 +26,9 @@ struct GuideHairOptions {
   /// Width of a lock at its tip over that at its root, at clumpiness 1; in [0, 1].
   double tip_width = 0.1;
   std::uint64_t seed = 1;  // for the point where each hair leaves its neighbours
+  /// Weights by which what varies linearly over the roots is interpolated exactly, or
+  /// nearly: see below. They may be negative.
+  bool linear = false;
 };
 
 /// The hair between simulated guides, for pictures and export: the semi-interpolating
@@ -50,6 +53,13 @@ struct GuideHairOptions {
 /// scalp. A guide across a parting has no weight: each weight is multiplied by 1 - S(2
 /// D_k/tip_limit - 1) with D_k the present distance of its tip from the own guide's, so
 /// that hair leaves a guide gradually, and all are divided by their sum.
+///
+/// `linear` moves these weights as little as is needed for sum_k w_k r_k = x_h: they
+/// minimise |sum_k w_k r_k - x_h|^2 + e l^2 |w - w(above)|^2 under sum_k w_k = 1, l the
+/// distance of the farthest of the three and e = 1e-3, so that where the three lie on a
+/// line only what is along it is exact; what a guide loses at a parting goes to the own
+/// one. A hair that keeps its shape (keep_shapes) then errs in second order of the
+/// guides' distance where motions vary smoothly, and in first order without.
 ///
 /// A hair rooted at a guide's root is that guide. Where the guides' directions differ
 /// their mean, and so the hair, is shorter than they are.

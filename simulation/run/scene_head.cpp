@@ -123,9 +123,9 @@ HeadOptions options_of(const Scene& scene) {
 
 /// Calls use(k, strand, part) for k in [begin, end), in parts that work at the same time;
 /// rethrows the error of the first strand that has one.
-template <class Use>
-void each_strand(const StrandSeries& series, Crew& crew, std::size_t begin,
-                 std::size_t end, std::size_t parts, const Use& use) {
+template <class Strands, class Use>
+void each_strand(const Strands& series, Crew& crew, std::size_t begin, std::size_t end,
+                 std::size_t parts, const Use& use) {
   std::vector<std::exception_ptr> errors(parts);
   crew.run(parts, [&](std::size_t part) {
     const std::size_t count = end - begin;
@@ -141,6 +141,14 @@ void each_strand(const StrandSeries& series, Crew& crew, std::size_t begin,
     if (error) std::rethrow_exception(error);
   }
 }
+
+/// Strands of a scene as a series.
+struct Held {
+  const std::vector<Strand>& strands;
+
+  std::size_t size() const { return strands.size(); }
+  const Strand& strand(std::size_t k) const { return strands[k]; }
+};
 
 /// Longest strand, farthest end from the motion's place, largest angle that an element
 /// winds by, largest drag over mass.
@@ -166,24 +174,12 @@ struct Extent {
   }
 };
 
-}  // namespace
-
-std::optional<NoHead> no_head(const SceneOutline& outline) {
-  const Scene& scene = outline.scene;
-  if (scene.strands.empty()) {
-    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
-                  "use [model] id = \"super_helix\""};
-  }
-  if (auto no = no_model(scene)) return no;
-  if (auto no = no_method(scene)) return no;
-  if (auto no = no_strands(scene)) return no;
-  return no_effects(scene);
-}
-
-SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
-  const StrandSeries& series = *outline.series;
+/// make_head() for a StrandSeries, or for Held strands.
+template <class Strands>
+SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pack,
+                  int threads) {
   Crew crew(threads);
-  HeadOptions options = options_of(outline.scene);
+  HeadOptions options = options_of(scene);
   constexpr std::size_t parts = 64;
   std::vector<Extent> extents(parts);
   each_strand(series, crew, 0, series.size(), parts,
@@ -195,7 +191,7 @@ SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threa
   options.longest = all.length;
   if (options.points == 0) options.points = models::quadrature_points(all.winding);
   SceneHead made_head;
-  if (const Parameters* between = outline.scene.interaction()) {
+  if (const Parameters* between = scene.interaction()) {
     made_head.interaction = std::make_unique<models::StrandInteraction>(
         *between, std::vector<int>(series.size(), options.elements + 1));
   }
@@ -216,11 +212,33 @@ SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threa
       head->add(made[k - begin], std::move(own));
     }
   }
-  if (at_rest_in_head(outline.scene)) {
+  if (at_rest_in_head(scene)) {
     made_head.reach = {options.motion, options.gravity, all.radius,
                        options.drag * all.lightest + options.mass_damping};
   }
   return made_head;
+}
+
+}  // namespace
+
+std::optional<NoHead> no_head(const SceneOutline& outline) {
+  const Scene& scene = outline.scene;
+  if (scene.strands.empty()) {
+    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
+                  "use [model] id = \"super_helix\""};
+  }
+  if (auto no = no_model(scene)) return no;
+  if (auto no = no_method(scene)) return no;
+  if (auto no = no_strands(scene)) return no;
+  return no_effects(scene);
+}
+
+SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
+  return head_of(outline.scene, *outline.series, pack, threads);
+}
+
+SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads) {
+  return head_of(scene, Held{scene.strands}, pack, threads);
 }
 
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {

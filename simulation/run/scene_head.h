@@ -37,6 +37,9 @@ struct SceneHead {
   std::optional<HeadReach> reach;  // none: more acts than the bound knows
 };
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
+/// The same of the strands that a scene holds: the guides of a groom, or those left by
+/// only(). no_head() is asked of the scene that they come from.
+SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads);
 
 /// Bytes that a head of the scene takes, known before it is made.
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack);

@@ -1,8 +1,12 @@
 #include "simulation/scene/changes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "simulation/scene/guide_choice.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/typical_strands.h"
@@ -52,6 +56,31 @@ Scene cut_anew(Scene scene, const Change& changed) {
   return scene;
 }
 
+/// change(table, strands of the table, strands of all) for every groom.
+template <class Change>
+Scene with_grooms(Scene scene, const Change& change) {
+  const StrandSeries series(scene.tables, scene.head, scene.seed, made_singly);
+  return cut_anew(std::move(scene), [&](StrandTables tables) {
+    for (std::size_t i = 0; i < tables.sources.size(); ++i) {
+      const std::size_t strands = series.first()[i + 1] - series.first()[i];
+      if (tables.sources[i].groom)
+        change(tables.sources[i].table, strands, series.size());
+    }
+    return tables;
+  });
+}
+
+void set_whole(Table& table, const std::string& key, std::size_t value) {
+  table.set(key, std::to_string(value), table.place(key));
+}
+
+/// `part` of `whole`, for `count` of them; one at least.
+std::size_t share_of(std::size_t part, std::size_t whole, std::size_t count) {
+  const double exact =
+      static_cast<double>(part) * static_cast<double>(count) / static_cast<double>(whole);
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::round(exact)), 1, count);
+}
+
 }  // namespace
 
 std::string_view Method::word(std::string_view choice) const {
@@ -87,6 +116,40 @@ Scene with_twice_the_elements(Scene scene) {
   return cut_anew(std::move(scene), [](const StrandTables& tables) {
     return with_twice_the_elements(tables);
   });
+}
+
+Scene every_strand(Scene scene, std::size_t most) {
+  return with_grooms(std::move(scene),
+                     [most](Table& groom, std::size_t strands, std::size_t all) {
+                       set_whole(groom, "guides", 0);
+                       clear_detail(groom);
+                       if (all <= most) return;
+                       set_whole(groom, "density_1_m2", 0);
+                       set_whole(groom, "count", share_of(most, all, strands));
+                     });
+}
+
+Scene with_guides(Scene scene, std::size_t guides) {
+  return with_grooms(std::move(scene),
+                     [guides](Table& groom, std::size_t strands, std::size_t all) {
+                       const std::size_t own = share_of(guides, all, strands);
+                       set_whole(groom, "guides", own == strands ? 0 : own);
+                     });
+}
+
+std::vector<std::size_t> guides_of(const Scene& scene, std::size_t guides) {
+  const StrandSeries series(scene.tables, scene.head, scene.seed, held_at_once);
+  const std::span<const Strand> all = scene.strands;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i + 1 < series.first().size(); ++i) {
+    const std::size_t first = series.first()[i], count = series.first()[i + 1] - first;
+    for (const std::size_t k :
+         choose_guides(all.subspan(first, count), share_of(guides, all.size(), count),
+                       scene.seed)) {
+      chosen.push_back(first + k);
+    }
+  }
+  return chosen;
 }
 
 Scene with_strands(Scene scene, std::vector<Strand> strands) {

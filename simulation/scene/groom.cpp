@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "contract/input_error.h"
 #include "simulation/scene/cap.h"
+#include "simulation/scene/detail.h"
 #include "simulation/scene/directions.h"
 #include "simulation/scene/random.h"
 #include "simulation/scene/shapes.h"
@@ -128,6 +130,27 @@ Frame root_frame(const Parameters& p, const Cap::Place& place, double phase) {
   return frame_of(tangent, rotation(tangent, phase) * e1);
 }
 
+/// The tolerance, of a groom that can have one.
+double detail(const Table& table) {
+  double tolerance = 0;
+  try {
+    tolerance = detail_tolerance(table.values());
+  } catch (const std::invalid_argument& wrong) {
+    throw InputError(wrong.what(), table.place("tolerance_px"),
+                     "give tolerance_m, or tolerance_px and pixels_1_m");
+  }
+  if (tolerance == 0) return 0;
+  if (table.values().whole("guides") > 0) {
+    throw InputError("guides of several numbers of elements", table.place("guides"),
+                     "leave out guides, or the tolerance");
+  }
+  if (table.values().number("grading") != 1) {
+    throw InputError("grading beside a tolerance", table.place("grading"),
+                     "leave out one of them");
+  }
+  return tolerance;
+}
+
 double varied(Random& random, double variation) {
   return 1 + variation * (2 * random.uniform() - 1);
 }
@@ -137,6 +160,7 @@ double varied(Random& random, double variation) {
 std::span<const Parameter> groom_table_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list(std::begin(own_parameters), std::end(own_parameters));
+    for (const Parameter& p : detail_parameters()) list.push_back(p);
     for (const Parameter& p : cut_parameters()) list.push_back(p);
     return list;
   }();
@@ -151,7 +175,19 @@ Groom::Groom(const Table& table, const Table* own_material, const Common& common
                  strand_material(common.material, own_material))),
       cap_(table.values().vec("centre_m"), table.values().vec("half_axes_m"),
            direction(table, "cap_axis"), table.values().number("cap_angle_rad")),
-      count_(simulation::count(table, cap_, most)) {}
+      count_(simulation::count(table, cap_, most)),
+      tolerance_(detail(table)) {}
+
+int Groom::elements(double length, const Shape& natural, const Frame& root) const {
+  const int most = table_.values().whole("elements");
+  if (tolerance_ == 0) return most;
+  constexpr double gravity = 9.81;  // m/s^2
+  const Vec stiff = models::stiffness(material_.material, material_.section);
+  return elements_for(
+      {length, gravity * material_.material.density * material_.section.area(),
+       std::min(stiff.y, stiff.z), root.e0, natural},
+      tolerance_, most);
+}
 
 Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
   const Parameters& p = table_.values();
@@ -161,13 +197,15 @@ Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
   const double curl = varied(random, p.number("curl_variation"));
   const double phase = p.word("phase") == "random" ? 2 * pi * random.uniform() : 0;
   const Shape mean = natural_shape(table_, material_, common_.seed, 2 * stream);
-  Strand strand =
-      cut_strand(table_, material_, length, [&](double s) { return curl * mean(s); });
   const double share = static_cast<double>(i);
   const double turns = share * (std::numbers::phi - 1);
   const Cap::Place place =
       cap_.place((share + 0.5) / static_cast<double>(count_), turns - std::floor(turns));
-  set_root(strand, common_.head, common_.free_root, place.x, root_frame(p, place, phase));
+  const Frame root = root_frame(p, place, phase);
+  const Shape natural = [&](double s) { return curl * mean(s); };
+  Strand strand =
+      cut_strand(table_, material_, length, natural, {}, elements(length, natural, root));
+  set_root(strand, common_.head, common_.free_root, place.x, root);
   return strand;
 }
 

@@ -28,11 +28,14 @@ class Groom {
   Strand strand(std::size_t i, std::uint64_t stream) const;
 
  private:
+  int elements(double length, const Shape& natural, const Frame& root) const;
+
   const Table& table_;
   const Common& common_;
   StrandMaterial material_;
   Cap cap_;
   std::size_t count_;
+  double tolerance_;  // m, 0: none
 };
 
 }  // namespace tress::simulation

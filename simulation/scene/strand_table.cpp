@@ -89,9 +89,10 @@ std::span<const Parameter> strand_table_parameters() {
 std::span<const Use> strand_uses() { return shape_uses(); }
 
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
-                  const Shape& natural, const Shape& initial) {
+                  const Shape& natural, const Shape& initial, int elements) {
   const Parameters& p = table.values();
-  const Discretisation cut{p.whole("elements"), length, p.number("grading")};
+  const Discretisation cut{elements > 0 ? elements : p.whole("elements"), length,
+                           p.number("grading")};
   const bool straight = p.word("initial") == "straight";
   Strand strand = make_strand(material.material, material.section, cut, natural,
                               straight ? uniform_shape({}) : initial);

@@ -32,8 +32,8 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
                     std::uint64_t stream);
 
 /// A strand from cut_parameters(), this natural shape and, unless they say otherwise,
-/// that initial one; empty: the natural one.
+/// that initial one; empty: the natural one. `elements`: other than the table's.
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
-                  const Shape& natural, const Shape& initial = {});
+                  const Shape& natural, const Shape& initial = {}, int elements = 0);
 
 }  // namespace tress::simulation

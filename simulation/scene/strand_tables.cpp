@@ -6,6 +6,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "simulation/scene/detail.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/guide_choice.h"
 #include "simulation/scene/root_table.h"
@@ -74,17 +75,23 @@ StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
   }
 }
 
+StrandSeries::StrandSeries(const StrandSeries& all, std::vector<std::size_t> some)
+    : StrandSeries(all.tables_, all.head_, all.common_.seed, made_singly) {
+  some_ = std::move(some);
+}
+
 std::size_t StrandSeries::source(std::size_t k) const {
-  return static_cast<std::size_t>(std::ranges::upper_bound(first_, k) - first_.begin()) -
+  return static_cast<std::size_t>(std::ranges::upper_bound(first_, number(k)) -
+                                  first_.begin()) -
          1;
 }
 
 Strand StrandSeries::strand(std::size_t k) const {
-  const std::size_t i = source(k);
+  const std::size_t i = source(k), n = number(k);
   // Strands of one scene differ by their streams.
-  if (grooms_[i]) return grooms_[i]->strand(k - first_[i], k);
+  if (grooms_[i]) return grooms_[i]->strand(n - first_[i], n);
   const StrandSource& source = tables_->sources[i];
-  return scene_strand(source.table, own_material(source), common_, k);
+  return scene_strand(source.table, own_material(source), common_, n);
 }
 
 CutStrands StrandSeries::all() const {
@@ -110,13 +117,27 @@ CutStrands StrandSeries::outline() const {
   return all;
 }
 
+void clear_detail(Table& groom) {
+  for (const Parameter& p : detail_parameters()) {
+    const std::string key(p.name);
+    groom.set(key, "0", groom.place(key));
+  }
+}
+
 StrandTables with_elements(StrandTables tables, int elements) {
-  for (StrandSource& source : tables.sources) set_elements(source, elements);
+  for (StrandSource& source : tables.sources) {
+    set_elements(source, elements);
+    if (source.groom) clear_detail(source.table);
+  }
   return tables;
 }
 
 StrandTables with_twice_the_elements(StrandTables tables) {
   for (StrandSource& source : tables.sources) {
+    if (source.groom && detail_tolerance(source.table.values()) > 0) {
+      throw InputError("elements that follow from a tolerance cannot be doubled",
+                       source.table.place(), "leave out the tolerance");
+    }
     set_elements(source, 2 * source.table.values().whole("elements"));
   }
   return tables;

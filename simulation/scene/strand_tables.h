@@ -45,20 +45,27 @@ class StrandSeries {
   /// elements than `most`. `head` is head_motion(tables.root).
   StrandSeries(std::shared_ptr<const StrandTables> tables, const RootMotion& head,
                std::uint64_t seed, StrandLimits most);
+  /// Some strands of a series, ascending.
+  StrandSeries(const StrandSeries& all, std::vector<std::size_t> some);
   StrandSeries(const StrandSeries&) = delete;
   StrandSeries& operator=(const StrandSeries&) = delete;
 
-  std::size_t size() const { return first_.back(); }
+  std::size_t size() const { return some_.empty() ? first_.back() : some_.size(); }
   std::size_t elements() const { return elements_; }
   /// Throws InputError with the location of an invalid key.
   Strand strand(std::size_t k) const;
   /// Index in StrandTables::sources of the table that strand k comes from.
   std::size_t source(std::size_t k) const;
+  /// First strand of each of these tables, and the end; for a series of all.
+  std::span<const std::size_t> first() const { return first_; }
   CutStrands all() const;
   /// The first strand of each table alone.
   CutStrands outline() const;
 
  private:
+  /// Among all that the tables describe.
+  std::size_t number(std::size_t k) const { return some_.empty() ? k : some_[k]; }
+
   std::shared_ptr<const StrandTables> tables_;
   RootMotion head_;
   std::optional<FreeRoot> free_root_;
@@ -66,11 +73,16 @@ class StrandSeries {
   std::vector<std::optional<Groom>> grooms_;  // of each source
   std::vector<std::size_t> first_{0};         // strand of each source, and the end
   std::size_t elements_ = 0;
+  std::vector<std::size_t> some_;  // empty: all
 };
+
+/// Takes the tolerance from a groom by which its strands get their elements.
+void clear_detail(Table& groom);
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
-/// The same tables, every strand with twice its elements.
+/// The same tables, every strand with twice its elements. Throws InputError where these
+/// follow from a tolerance.
 StrandTables with_twice_the_elements(StrandTables tables);
 
 }  // namespace tress::simulation

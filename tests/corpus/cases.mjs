@@ -14,6 +14,7 @@ const readersOfScenes = {
   work_precision: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   scaling: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   effect_audit: (file) => ['--scene', file, '--out', 't.csv'],
+  head_accuracy: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
   calibrate: (file) => ['--scene', file, '--quick', '--out', 't.csv'],
 };
 const advise = (file) => ['--advise', file, '--out', 't.csv'];

@@ -113,6 +113,13 @@ TEST(GroomWithGuides, AllStrandsAreThereAndStartAsThemselves) {
   EXPECT_GT(moved, 1e-3);
 }
 
+TEST(GroomWithGuides, OneGuideIsEnough) {
+  const Scene scene = head(10, 1);
+  World world(scene);
+  const Readout readout(scene, world);
+  EXPECT_EQ(FullHair(scene, readout.lines(), 0).hairs(), 9U);
+}
+
 TEST(GroomWithGuides, IsRefusedWhereItMakesNoSense) {
   EXPECT_THROW(head(10, 11), InputError);
   EXPECT_EQ(head(10, 10).followers.size(), 0U);

@@ -125,6 +125,54 @@ TEST(GuideHair, EquallyFarGuidesShareAlike) {
   EXPECT_THAT(hair.neighbours(0).weight, testing::Each(testing::DoubleEq(1.0 / 3)));
 }
 
+// What varies linearly over the roots. On a square lattice of spacing a the three nearest
+// roots make a right angle: the smaller eigenvalue of the edges' products is 0.38 a^2 at
+// least, l^2 = 2 a^2 at most, so that 3 e l^2 of a distance below a/sqrt(2) is left of
+// 0.38 a^2: 1.2 % of a. Weights that fall with distance alone leave far more.
+TEST(GuideHair, LinearWeightsReproduceLinearFields) {
+  constexpr double a = 0.01;
+  std::vector<Vec> roots, hairs;
+  std::mt19937 random(5);
+  const auto share = [&random] { return static_cast<double>(random()) * 0x1p-32 - 0.5; };
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      roots.push_back({a * i, a * j, 0});
+      // Within the square of every root that has neighbours on all sides.
+      if (i % 7 == 0 || j % 7 == 0) continue;
+      hairs.push_back({a * (i + 0.9 * share()), a * (j + 0.9 * share()), 0});
+    }
+  }
+  const auto largest = [&](bool linear) {
+    const GuideHair hair(roots, hairs, 2, {.clumpiness = 0, .linear = linear});
+    double most = 0;
+    for (std::size_t h = 0; h < hairs.size(); ++h) {
+      const auto& [guide, weight] = hair.neighbours(h);
+      EXPECT_NEAR(std::accumulate(weight.begin(), weight.end(), 0.0), 1, 10 * eps);
+      Vec mean;
+      for (std::size_t k = 0; k < 3; ++k) mean = mean + weight[k] * roots[guide[k]];
+      most = std::max(most, apart(mean, hairs[h]));
+    }
+    return most;
+  };
+  EXPECT_LT(largest(true), 0.012 * a);
+  EXPECT_GT(largest(false), 0.2 * a);
+}
+
+// Guides on a line say nothing across it: weights stay what they were there. So do those
+// of one guide, and of guides in one place.
+TEST(GuideHair, LinearWeightsBearDegenerateGuides) {
+  const std::vector<Vec> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, one{{0, 0, 0}},
+      same{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  for (const auto& roots : {line, one, same}) {
+    const GuideHair hair(roots, {{0.3, 0.5, 0}}, 2, {.clumpiness = 0, .linear = true});
+    const auto& weight = hair.neighbours(0).weight;
+    EXPECT_NEAR(weight[0] + weight[1] + weight[2], 1, 10 * eps);
+    if (roots.size() < 3 || apart(roots[1], roots[0]) == 0) continue;
+    // e l^2 = 4e-3 against edges' products of 1 and more.
+    EXPECT_NEAR(weight[1] + 2 * weight[2], 0.3, 0.02);
+  }
+}
+
 // A root that walks over the scalp: without clumps its hair moves by no jump, also where
 // one of the three guides is exchanged. 2e5 steps of 5e-7 m; were a weight to jump by
 // 1e-3 between guides whose ends are 1 cm apart, the tip would jump by 1e-5 m, against

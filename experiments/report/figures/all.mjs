@@ -11,6 +11,7 @@ import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
 import { family } from './family.mjs';
 import { force_transport } from './force_transport.mjs';
+import { head_accuracy } from './head_accuracy.mjs';
 import { model_steps } from './model_steps.mjs';
 import { nodal_steps } from './nodal_steps.mjs';
 import { scaling } from './scaling.mjs';
@@ -38,6 +39,7 @@ export const figures = [
   model_steps,
   nodal_steps,
   scaling,
+  head_accuracy,
   swing,
   force_transport,
 ];

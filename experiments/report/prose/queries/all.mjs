@@ -11,6 +11,7 @@ import * as findings from './findings.mjs';
 import * as flight from './flight.mjs';
 import * as friction from './friction.mjs';
 import * as hard from './hard.mjs';
+import * as head_accuracy from './head_accuracy.mjs';
 import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as references from './references.mjs';
@@ -31,6 +32,7 @@ export const queries = {
   flight,
   friction,
   hard,
+  head_accuracy,
   heads,
   machine,
   references,

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace tress::experiments::head_accuracy {
+
+/// Hairs at some instants, each as points at equal shares of its length, the root first.
+struct HairCurves {
+  std::size_t hairs = 0;
+  int elements = 0;                    // of each, between its points
+  std::vector<std::vector<double>> x;  // of each instant: hair after hair, m
+
+  /// The point of a hair at this share of its length: a cubic through the four nearest
+  /// points. Of a curl of curvature c between points d apart it is off by less than
+  /// 0.04 c^3 d^4. Needs three elements.
+  Vec at(std::size_t instant, std::size_t hair, double share) const;
+};
+
+/// As much again as `coarse` has changed to become `fine`: without the error that falls
+/// with the step, if fine has half the steps of coarse.
+HairCurves extrapolated_in_step(HairCurves fine, const HairCurves& coarse);
+/// A third as much again as elements of half the length have changed: without the error
+/// that falls with their square [Richardson].
+HairCurves extrapolated_in_elements(HairCurves fine, const HairCurves& coarse);
+
+/// Distances of hairs from those of a reference, root mean square over instants and over
+/// the length (trapezoidal rule), by the length of each hair.
+class HairErrors {
+ public:
+  HairErrors(const HairCurves& reference, std::span<const double> lengths)
+      : reference_(reference), lengths_(lengths), sums_(reference.hairs) {}
+
+  /// Points of one hair at an instant, the root first.
+  void add(std::size_t instant, std::size_t hair, std::span<const Vec> points);
+  /// Of one hair after all its instants.
+  double of(std::size_t hair) const;
+
+ private:
+  struct Sum {
+    double squares = 0;
+    int instants = 0;
+  };
+  const HairCurves& reference_;
+  std::span<const double> lengths_;
+  std::vector<Sum> sums_;
+};
+
+/// Errors over hairs: their mean, what 95 of 100 do not exceed, and the largest.
+struct Spread {
+  double mean = 0, p95 = 0, largest = 0;
+};
+/// Each stands for as many hairs as its weight says.
+Spread spread(std::span<const double> errors, std::span<const double> weights);
+
+}  // namespace tress::experiments::head_accuracy

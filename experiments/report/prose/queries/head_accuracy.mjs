@@ -1,0 +1,84 @@
+// Which share of a head must be simulated.
+import { distinct, succeeded } from '../../src/tables.mjs';
+import { spaced } from '../../src/strand.mjs';
+import { must, number, percent, range, rows_of, table } from '../markdown.mjs';
+
+const all = (tables) => rows_of(tables, 'head_accuracy');
+const answers = (tables) => all(tables).filter((row) => row.kind === 'cheapest');
+const met = (tables) => answers(tables).filter(succeeded);
+const every = (row) => row.guides === row.strands;
+const share = (row) => row.guides / row.strands;
+const head = 'full_head';
+
+const words = (row) =>
+  `${every(row) ? `each of ${row.strands} hairs` : `${row.guides} guides for ${row.strands} hairs`}, ` +
+  `${row.elements} elements, steps of ${number(1e3 * row.dt_s)} ms, ${row.bits} bits`;
+
+/// Of the shipped head, for the smallest error that was asked for.
+export const answer = (tables) => {
+  const row = met(tables)
+    .filter(({ scene }) => scene === head)
+    .sort((a, b) => a.target_error_rel - b.target_error_rel)[0];
+  must(row !== undefined, 'the shipped head has an answer');
+  return (
+    `> ${spaced(row.scene)}, ${percent(row.target_error_rel)}: take ${words(row)}: 95 of 100 hairs within ` +
+    `${percent(row.error_p95_rel)} of their length (mean ${percent(row.error_mean_rel)}, largest ` +
+    `${percent(row.error_max_rel)}) in ${number(row.ms_per_frame)} ms a frame` +
+    (every(row) && row.best_guides
+      ? `; hairs that follow ${row.best_guides} guides are off by ${percent(row.best_interpolation_rel)}.`
+      : '.')
+  );
+};
+
+export const over = (tables) =>
+  ({
+    p95: 'Wanted is the error that 95 of 100 hairs do not exceed.',
+    mean: 'Wanted is the mean over hairs.',
+    largest: 'Wanted is the largest of all hairs.',
+  })[answers(tables)[0].over];
+
+export const answers_table = (tables) =>
+  table(
+    [
+      'hair',
+      'wanted',
+      'simulated',
+      'elements, step, bits',
+      'error: mean, 95 of 100, largest',
+      'of interpolation',
+      'of elements and step',
+      'ms a frame: simulated, following',
+    ],
+    answers(tables).map((row) =>
+      succeeded(row)
+        ? [
+            spaced(row.scene),
+            percent(row.target_error_rel),
+            every(row) ? `all ${row.strands}` : `${row.guides} of ${row.strands}`,
+            `${row.elements}, ${number(1e3 * row.dt_s)} ms, ${row.bits}`,
+            ['mean', 'p95', 'max'].map((of) => percent(row[`error_${of}_rel`])).join(', '),
+            every(row)
+              ? `none; following ${row.best_guides}: ${percent(row.best_interpolation_rel)}`
+              : percent(row.interpolation_p95_rel),
+            percent(row.simulated_p95_rel),
+            `${number(row.step_ms_per_frame)}, ${number(row.follow_ms_per_frame)}`,
+          ]
+        : [spaced(row.scene), percent(row.target_error_rel), row.reason, '', '', '', '', ''],
+    ),
+  );
+
+/// What variation between hairs decides.
+export const findings = (tables) => {
+  const of = (kind) => met(tables).filter((row) => row.scene.includes(kind));
+  const alike = of('alike').filter((row) => !every(row));
+  const varied = of('varied');
+  must(alike.length > 0 && alike.length > of('alike').length / 2, 'alike hairs follow');
+  must(varied.length > 0 && varied.every(every), 'varied hairs do not follow');
+  return (
+    `Of hairs that are alike some stand for all: ${range(alike.map(share), percent)} of the hairs are enough in ` +
+    `${alike.length} of ${of('alike').length} answers. Of hairs that differ in length, curl and phase each must be simulated ` +
+    `(${varied.length} of ${varied.length} answers): those that follow the best guides are off by ` +
+    `${range(varied.map((row) => row.best_interpolation_rel), percent)}. Grooms: ` +
+    `${distinct(answers(tables).map((row) => spaced(row.scene))).join(', ')}.`
+  );
+};

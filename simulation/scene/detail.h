@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+
+#include "contract/parameters.h"
+#include "models/strand/strand.h"
+
+namespace tress::simulation {
+
+/// Keys of [groom] by which each strand gets as many elements as it needs.
+std::span<const Parameter> detail_parameters();
+
+/// Largest distance by which a strand's shape may be off, m; 0: the scene does not say.
+/// Throws std::invalid_argument with the reason where the keys contradict each other.
+double detail_tolerance(const Parameters& groom);
+
+/// A strand that no elements are known of yet.
+struct UncutStrand {
+  double length;     // m
+  double weight;     // N/m
+  double stiffness;  // N m^2, of bending, the smaller one
+  Vec tangent;       // at the root; gravity is along -z
+  const Shape& natural;
+};
+
+/// Elements of constant curvature by which the shape of a strand that hangs at rest is
+/// within `tolerance` (m): the least of 2, 3, 4, 6, 8, 12, 16 ... up to `most`.
+///
+/// Where curvature k(s) is replaced by its mean over elements of length h, the tangent is
+/// off by k' ((s - s_c)^2 - h^2/4)/2 within an element and right at its ends, so that all
+/// beyond an element is moved by k' h^3/12. Summed over the strand,
+///
+///     e = h^2/12 |int k' n ds| <= h^2/12 K,    n = L sqrt(K/(12 e)),
+///
+/// with K the least of the variation int |k'| ds and, by parts, 2 max |k| + int k^2 ds.
+/// Three parts are added:
+///     natural   of the natural shape
+///     sag       a clamped strand under its weight w bends most at the root: at most w
+///               L^2/(2 EI) if it is stiff and 2 sqrt(w L/EI) sin(a/2) if its tension
+///               pulls it down, a the angle there of it, or of the axis of its coil,
+///               from the vertical; in axes that wind with the shape, by its mean |k|,
+///               the bend, by w L^3/(6 EI) or a in all, turns round and varies by as much
+///               times |k|
+///     coil      the weight of what hangs from a turn of a coil of radius r bends it
+///               w L r/(2 EI) more on one side than on the other, on average, and not
+///               more than straight: four times that for each turn
+/// Elements also wind by 1.5 rad at most. This estimates the error of space at rest, from
+/// above for nearly all strands (tests/simulation/test_detail.cpp). A load that sets in
+/// at once in a frame with acceleration a bends 2 (1 + a/g) times as far, and the error
+/// grows by as much.
+int elements_for(const UncutStrand& strand, double tolerance, int most);
+
+}  // namespace tress::simulation
