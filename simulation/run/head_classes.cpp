@@ -6,7 +6,6 @@
 #include <string>
 
 #include "simulation/run/crew.h"
-#include "simulation/scene/detail.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
+#include "models/strand/needed_elements.h"
 #include "simulation/scene/cap.h"
-#include "simulation/scene/detail.h"
 #include "simulation/scene/directions.h"
 #include "simulation/scene/random.h"
 #include "simulation/scene/shapes.h"
@@ -92,6 +92,26 @@ constexpr Parameter own_parameters[] = {
      .choices = "random|down"},
 };
 
+constexpr Parameter detail_keys[] = {
+    {.name = "tolerance_m",
+     .help = "level of detail: each strand gets as few elements as its shape at rest "
+             "needs to be within this distance, up to `elements`, by its length, curl "
+             "and weight (m); 0: all get `elements`",
+     .number = 0,
+     .min = 0,
+     .max = 1e3},
+    {.name = "tolerance_px",
+     .help = "the same in pixels of the screen where the hair is nearest to it",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "pixels_1_m",
+     .help = "there: pixels by metre, the focal length in pixels over the distance in m",
+     .number = 0,
+     .min = 0,
+     .max = 1e9},
+};
+
 std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
   const Parameters& p = table.values();
   double wanted = p.number("count");
@@ -167,6 +187,21 @@ std::span<const Parameter> groom_table_parameters() {
   return all;
 }
 
+std::span<const Parameter> detail_parameters() { return detail_keys; }
+
+double detail_tolerance(const Parameters& groom) {
+  const double metres = groom.number("tolerance_m"),
+               pixels = groom.number("tolerance_px"), size = groom.number("pixels_1_m");
+  if (metres > 0 && pixels > 0) {
+    throw std::invalid_argument("tolerance_px beside tolerance_m");
+  }
+  if ((pixels > 0) != (size > 0)) {
+    throw std::invalid_argument(pixels > 0 ? "tolerance_px without pixels_1_m"
+                                           : "pixels_1_m without tolerance_px");
+  }
+  return pixels > 0 ? pixels / size : metres;
+}
+
 Groom::Groom(const Table& table, const Table* own_material, const Common& common,
              std::size_t most)
     : table_(table),
@@ -183,7 +218,7 @@ int Groom::elements(double length, const Shape& natural, const Frame& root) cons
   if (tolerance_ == 0) return most;
   constexpr double gravity = 9.81;  // m/s^2
   const Vec stiff = models::stiffness(material_.material, material_.section);
-  return elements_for(
+  return models::elements_for(
       {length, gravity * material_.material.density * material_.section.area(),
        std::min(stiff.y, stiff.z), root.e0, natural},
       tolerance_, most);

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "simulation/scene/detail.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/guide_choice.h"
 #include "simulation/scene/root_table.h"

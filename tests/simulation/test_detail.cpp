@@ -10,17 +10,19 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/strand/needed_elements.h"
 #include "simulation/run/head_classes.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
-#include "simulation/scene/detail.h"
 #include "simulation/scene/strand_tables.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_detail {
 
 using namespace simulation;
+using models::elements_for;
+using models::UncutStrand;
 
 constexpr double pi = std::numbers::pi;
 

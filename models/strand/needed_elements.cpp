@@ -1,32 +1,11 @@
-#include "simulation/scene/detail.h"
+#include "models/strand/needed_elements.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
-namespace tress::simulation {
+namespace tress::models {
 namespace {
-
-constexpr Parameter detail_keys[] = {
-    {.name = "tolerance_m",
-     .help = "level of detail: each strand gets as few elements as its shape at rest "
-             "needs to be within this distance, up to `elements`, by its length, curl "
-             "and weight (m); 0: all get `elements`",
-     .number = 0,
-     .min = 0,
-     .max = 1e3},
-    {.name = "tolerance_px",
-     .help = "the same in pixels of the screen where the hair is nearest to it",
-     .number = 0,
-     .min = 0,
-     .max = 1e6},
-    {.name = "pixels_1_m",
-     .help = "there: pixels by metre, the focal length in pixels over the distance in m",
-     .number = 0,
-     .min = 0,
-     .max = 1e9},
-};
 
 constexpr double most_winding = 1.5;  // rad, of an element
 constexpr int samples = 64;           // of a natural shape
@@ -79,21 +58,6 @@ double coil(const UncutStrand& strand, const Vec& mean) {
 
 }  // namespace
 
-std::span<const Parameter> detail_parameters() { return detail_keys; }
-
-double detail_tolerance(const Parameters& groom) {
-  const double metres = groom.number("tolerance_m"),
-               pixels = groom.number("tolerance_px"), size = groom.number("pixels_1_m");
-  if (metres > 0 && pixels > 0) {
-    throw std::invalid_argument("tolerance_px beside tolerance_m");
-  }
-  if ((pixels > 0) != (size > 0)) {
-    throw std::invalid_argument(pixels > 0 ? "tolerance_px without pixels_1_m"
-                                           : "pixels_1_m without tolerance_px");
-  }
-  return pixels > 0 ? pixels / size : metres;
-}
-
 int elements_for(const UncutStrand& strand, double tolerance, int most) {
   const Course course(strand);
   const double natural = std::min(course.variation, 2 * course.largest + course.square),
@@ -110,4 +74,4 @@ int elements_for(const UncutStrand& strand, double tolerance, int most) {
   return most;
 }
 
-}  // namespace tress::simulation
+}  // namespace tress::models

@@ -1,18 +1,8 @@
 #pragma once
 
-#include <span>
-
-#include "contract/parameters.h"
 #include "models/strand/strand.h"
 
-namespace tress::simulation {
-
-/// Keys of [groom] by which each strand gets as many elements as it needs.
-std::span<const Parameter> detail_parameters();
-
-/// Largest distance by which a strand's shape may be off, m; 0: the scene does not say.
-/// Throws std::invalid_argument with the reason where the keys contradict each other.
-double detail_tolerance(const Parameters& groom);
+namespace tress::models {
 
 /// A strand that no elements are known of yet.
 struct UncutStrand {
@@ -50,4 +40,4 @@ struct UncutStrand {
 /// grows by as much.
 int elements_for(const UncutStrand& strand, double tolerance, int most);
 
-}  // namespace tress::simulation
+}  // namespace tress::models
