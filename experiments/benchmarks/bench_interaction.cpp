@@ -80,8 +80,7 @@ class Hanging {
           v[at] = (1 - s) * v_[3 * node + c] + s * v_[3 * node + 3 + c];
         }
       }
-      effects_[k]->add_load(t_, p, f);
-      effects_[k]->add_derivatives(t_, p, 1, 1, blocks);
+      effects_[k]->add_both(t_, p, 1, 1, f, blocks);
       sum += f[0] + blocks[0];
     }
     return sum;
@@ -139,7 +138,7 @@ struct Line {
 
 struct Cost {
   double update, loads;  // s an element and step
-  double epochs;         // of lists, a step
+  double epochs;         // in which segments are sorted, a step
 };
 Cost cost(const Line& line) {
   Hanging hair(line.strands, line.near, line.swing, line.shuffled);
@@ -184,7 +183,7 @@ bool costs_met() {
     fmt::print(
         "{}{} strands{}, {:g} near, swinging at {:g} m/s: {:.2f} x the reference "
         "(at most {:.2f}), {:.3f} us: update {:.3f}, loads and derivatives {:.3f}; "
-        "lists hold {:.1f} steps\n",
+        "segments sorted every {:.1f} steps\n",
         judges ? good ? "requirement: met: " : "requirement: NOT met: " : "",
         line.strands, line.shuffled ? " in no order" : "", line.near, line.swing, all,
         most, (c.update + c.loads) * 1e6, c.update * 1e6, c.loads * 1e6, 1 / c.epochs);

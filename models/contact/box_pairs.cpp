@@ -37,11 +37,6 @@ float above(double x) { return -below(-x); }
 
 }  // namespace
 
-void Box::include(const Vec& x) {
-  least = {std::min(least.x, x.x), std::min(least.y, x.y), std::min(least.z, x.z)};
-  most = {std::max(most.x, x.x), std::max(most.y, x.y), std::max(most.z, x.z)};
-}
-
 void Box::grow(double by) {
   least = least - Vec{by, by, by};
   most = most + Vec{by, by, by};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <utility>
@@ -17,7 +18,10 @@ using Loop =
 struct Box {
   Vec least, most;
 
-  void include(const Vec& x);
+  void include(const Vec& x) {
+    least = {std::min(least.x, x.x), std::min(least.y, x.y), std::min(least.z, x.z)};
+    most = {std::max(most.x, x.x), std::max(most.y, x.y), std::max(most.z, x.z)};
+  }
   void grow(double by);
 };
 inline bool apart(const Box& a, const Box& b) {

@@ -1,4 +1,4 @@
-// Compiled without errno, so that the roots of four lanes are one instruction.
+// Compiled without errno, so that the roots of all lanes are one instruction.
 #include "models/contact/point_groups.h"
 
 #include <algorithm>
@@ -16,90 +16,121 @@ constexpr double nowhere = std::numeric_limits<double>::quiet_NaN(),
 // Of lengths that are compared to decide what to look at.
 constexpr double rounding = 1 + 1e-9;
 
-/// A segment and how fast it moves: ends at s = 0 and 1.
-struct Segment {
-  Vec x, edge;
-  double inverse;  // 1/length^2
-  Vec v, faster;
-};
+/// Segments at the last update, and how fast they move: ends at s = 0 and 1.
 struct Held {
-  const StrandPartners::Node* nodes;
-  Segment operator()(int i) const {
-    const StrandPartners::Node &a = nodes[i], &b = nodes[i + 1];
-    return {a.x, b.x - a.x, a.inverse, a.v, b.v - a.v};
-  }
+  const StrandPartners& partners;
+  const StraightPiece& piece(int i) const { return partners.piece(i); }
+  Vec velocity(int i) const { return partners.velocity(i); }
 };
+/// A time after it.
 struct Moving {
   const PointMotion& motion;
   double elapsed;
-  Segment operator()(int i) const {
+  StraightPiece piece(int i) const {
     const auto at = static_cast<std::size_t>(i);
-    const StraightPiece piece(motion.place(at, elapsed), motion.place(at + 1, elapsed));
-    const Vec v = motion.velocity(at, elapsed);
-    return {piece.start, piece.edge, piece.inverse, v,
-            motion.velocity(at + 1, elapsed) - v};
+    return {motion.place(at, elapsed), motion.place(at + 1, elapsed)};
+  }
+  Vec velocity(int i) const {
+    return motion.velocity(static_cast<std::size_t>(i), elapsed);
   }
 };
 
-/// Calls act with one of the two.
-template <class F>
-auto with_segments(const StrandPartners& partners, double elapsed, const F& act) {
-  return elapsed == 0 ? act(Held{partners.nodes()})
-                      : act(Moving{partners.motion(), elapsed});
-}
+/// Of a number that is in memory: one instruction.
+Pack all(double x) { return {x, x, x, x}; }
+Vec3<Pack> all(const Vec& x) { return {all(x.x), all(x.y), all(x.z)}; }
 
 struct Nearest {
   Pack s;
   Vec3<Pack> gap;
 };
-Nearest nearest(const Vec3<Pack>& x, const Segment& to) {
-  const Vec3<Pack> d = x - Vec3<Pack>(to.x), edge(to.edge);
-  const Pack s = larger(smaller(Pack(to.inverse) * dot(d, edge), Pack(1)), Pack(0));
-  return {s, x - (Vec3<Pack>(to.x) + s * edge)};
+[[gnu::always_inline]] inline Nearest nearest(const Vec3<Pack>& x,
+                                              const StraightPiece& to) {
+  const Vec3<Pack> d = x - all(to.start), edge = all(to.edge);
+  const Pack s = larger(smaller(all(to.inverse) * dot(d, edge), Pack(1)), Pack(0));
+  return {s, d - s * edge};
 }
 
-void choose(const Pack& square, const Pack& least, const Vec3<Pack>& from,
-            Vec3<Pack>& to) {
-  to = {where_less(square, least, from.x, to.x), where_less(square, least, from.y, to.y),
-        where_less(square, least, from.z, to.z)};
+[[gnu::always_inline]] inline Vec3<Pack> choose(const Pack& x, const Pack& y,
+                                                const Vec3<Pack>& yes,
+                                                const Vec3<Pack>& no) {
+  return {where_less(x, y, yes.x, no.x), where_less(x, y, yes.y, no.y),
+          where_less(x, y, yes.z, no.z)};
 }
 
+bool there(const Vec3<Pack>& x, int lane) { return is_finite(lane_of(x, lane)); }
+
+/// Of lanes with a number; infinity if there is none.
+double smallest(const Pack& of) {
+  const Pack x = where_less(of, Pack(infinity), of, Pack(infinity));
+  return std::min(std::min(x[0], x[1]), std::min(x[2], x[3]));
+}
+
+}  // namespace
+
+/// `still`: partners stay until the next update, and their drift is known.
 template <class Segments>
-FourLoads sum_loads(const ContactLaw& law, double reach, std::span<const int> list,
-                    const Segments& segments, const PointLanes& p) {
+[[gnu::always_inline]] inline void PointGroups::sum_loads(Group& group,
+                                                          const ContactLaw& law,
+                                                          const Segments& segments,
+                                                          const Vec3<Pack>& of_v,
+                                                          bool still, FourLoads& to) {
   FourLoads sum{};
-  const Pack far(reach * reach);
-  for (std::size_t k = 0; k < list.size();) {
-    // The nearest point of one strand; lanes out of its reach keep a gap without force.
-    Pack least = far, s{}, inverse{};
-    Vec3<Pack> gap(Vec{2 * reach, 0, 0}), v{}, edge{}, faster{};
-    bool more = true;
-    while (more) {
-      const Segment segment = segments(list[k] >> 1);
-      more = (list[k++] & 1) == 0;
-      const Nearest at = nearest(p.x, segment);
+  const Vec3<Pack> x = group.x;
+  const double reach = partners_->reach();
+  const Pack far(reach * reach), zero(0), one(1);
+  const auto used = static_cast<float>(group.used);
+  found_.resize(group.list.size());
+  for (auto candidate = group.list.begin(); candidate != group.list.end();) {
+    // The nearest point of one strand: on which of its segments within reach, and where.
+    Pack least(infinity), s(0), which(0);
+    int count = 0;
+    for (bool more = true; more; ++candidate) {
+      more = (candidate->segment & 1) == 0;
+      if (used < candidate->wake) continue;
+      const int segment = candidate->segment >> 1;
+      const Nearest at = nearest(x, segments.piece(segment));
       const Pack square = dot(at.gap, at.gap);
-      if (!any_less(square, least)) continue;
-      const Vec3<Pack> change(segment.faster);
+      if (!any_less(square, far)) {
+        if (still) candidate->wake = wakes_at(group, smallest(square));
+        continue;
+      }
       s = where_less(square, least, at.s, s);
-      inverse = where_less(square, least, Pack(segment.inverse), inverse);
-      choose(square, least, at.gap, gap);
-      choose(square, least, Vec3<Pack>(segment.v) + at.s * change, v);
-      choose(square, least, Vec3<Pack>(segment.edge), edge);
-      choose(square, least, change, faster);
+      which = where_less(square, least, Pack(static_cast<double>(count)), which);
       least = where_less(square, least, square, least);
+      found_[static_cast<std::size_t>(count++)] = segment;
     }
-    if (!any_less(least, far)) continue;
-    const Vec3<Pack> apart = p.v - v;
-    const Vec3<Pack> u{where_less(least, far, apart.x, Pack(0)),
-                       where_less(least, far, apart.y, Pack(0)),
-                       where_less(least, far, apart.z, Pack(0))};
+    if (count == 0) continue;
+    Vec3<Pack> start, edge, v, faster;
+    Pack inverse;
+    for (int k = 0; k < count; ++k) {
+      const int i = found_[static_cast<std::size_t>(k)];
+      const StraightPiece& piece = segments.piece(i);
+      const Vec here = segments.velocity(i), change = segments.velocity(i + 1) - here;
+      if (k == 0) {
+        start = all(piece.start);
+        edge = all(piece.edge);
+        inverse = all(piece.inverse);
+        v = all(here);
+        faster = all(change);
+        continue;
+      }
+      const Pack before(k - 0.5);
+      start = choose(before, which, all(piece.start), start);
+      edge = choose(before, which, all(piece.edge), edge);
+      inverse = where_less(before, which, all(piece.inverse), inverse);
+      v = choose(before, which, all(here), v);
+      faster = choose(before, which, all(change), faster);
+    }
+    // Lanes out of reach get a gap without force.
+    const Vec3<Pack> gap =
+        choose(least, far, x - start - s * edge, Vec3<Pack>(Vec{2 * reach, 0, 0}));
+    const Vec3<Pack> u = choose(least, far, of_v - v - s * faster, Vec3<Pack>(Vec{}));
     const ContactLaw::Factors<Pack> at = law.factors(gap);
     sum.force = sum.force + at.push * gap - at.drag * u;
     sum.by_velocity -= at.drag;
     // Between the ends of a segment its nearest point follows x: ds/dx = `along`.
-    const Pack follows =
-        where_less(Pack(0), s, where_less(s, Pack(1), inverse, Pack(0)), Pack(0));
+    const Pack follows = where_less(
+        least, far, where_less(zero, s, where_less(s, one, inverse, zero), zero), zero);
     const Vec3<Pack> along = follows * edge;
     const Vec3<Pack> column = at.push_slope * gap - at.drag_slope * u;
     // Rows of push I + column d^T, less their product with ds/dx.
@@ -112,110 +143,143 @@ FourLoads sum_loads(const ContactLaw& law, double reach, std::span<const int> li
     sum.by_place[1].y += at.push;
     sum.by_place[2].z += at.push;
   }
-  return sum;
+  to = sum;
 }
 
-/// Whether a segment comes as near as that to some lane.
-bool within(const Vec3<Pack>& x, const Segment& segment, double square) {
-  const Vec3<Pack> gap = nearest(x, segment).gap;
-  return any_less(dot(gap, gap), Pack(square));
+/// The value of `used` up to which what is at a distance d (its square is given) stays
+/// out of reach r. A list knows no farther than it sees, r + room: up to there d - r is
+/// at least (d^2 - r^2)/(2 r + room). Less by what a float is rounded by.
+float PointGroups::wakes_at(const Group& group, double square) const {
+  constexpr double less = 1 - 1e-6;
+  const double reach = partners_->reach(),
+               away = (square - reach * reach) / (2 * reach + group.room);
+  return static_cast<float>(less *
+                            (group.used + std::min(away, group.room - group.used)));
 }
 
-}  // namespace
+PointGroups::PointGroups(const StrandPartners& partners, int strand)
+    : partners_(&partners), strand_(strand) {}
 
-PointGroups::PointGroups(const StrandPartners& partners, int strand, double beyond)
-    : partners_(&partners), strand_(strand), reach_(partners.reach() + beyond) {}
-
-void PointGroups::ready(In x, In length, double elapsed) {
+void PointGroups::ready(In x, In length) {
   groups_.resize((length.size() + four - 1) / four);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];
+    Vec3<Pack> now;
     for (std::size_t lane = 0; lane < four; ++lane) {
       const std::size_t i = four * g + lane;
       const bool there = i < length.size() && length[i] != 0;
       const Vec at = there ? load3(&x[3 * i]) : Vec{nowhere, nowhere, nowhere};
-      set_lane(group.x, static_cast<int>(lane), at);
+      set_lane(now, static_cast<int>(lane), at);
     }
-    if (!stands(group)) list(group, elapsed);
+    const bool held = holds(group, now);
+    group.x = now;
+    group.update = partners_->updates();
+    if (!held) list(group);
   }
 }
 
-/// Whether all that is near now is listed: own points and partners have not come nearer
-/// to each other than by the margin.
-bool PointGroups::stands(const Group& group) const {
-  if (group.epoch != partners_->epochs()) return false;
-  const double room = partners_->margin() - partners_->moved() - group.moved;
-  const Vec3<Pack> moved = partners_->at_epoch(group.x) - group.listed;
-  // Lanes without a point have not moved.
-  const Pack square =
-      where_less(dot(group.x, group.x), Pack(infinity), dot(moved, moved), Pack(0));
-  return room >= 0 && all_up_to(square, room * room);
+/// Whether all that is near now is listed. Since points were last looked at, they and
+/// what is near them have moved, but not nearer to each other than by as much as is left.
+bool PointGroups::holds(Group& group, const Vec3<Pack>& x) const {
+  const long updates = partners_->updates() - group.update;
+  if (group.lists != partners_->lists() || updates > 1) return false;
+  Box drift{{0, 0, 0}, {0, 0, 0}};
+  if (updates == 1) {
+    drift = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    const Vec3<Pack> at_epoch = partners_->at_epoch(x);
+    const Box* last = nullptr;
+    for (int lane = 0; lane < Pack::lanes; ++lane) {
+      if (!there(at_epoch, lane)) continue;
+      const Box& one = partners_->drift(lane_of(at_epoch, lane));
+      if (&one == last || !(one.least.x <= one.most.x)) continue;
+      drift.include(one.least);
+      drift.include(one.most);
+      last = &one;
+    }
+    if (!(drift.least.x <= drift.most.x)) return true;  // nothing is near
+  }
+  const Vec3<Pack> before = updates == 1 ? partners_->before(x) : x;
+  const Vec3<Pack> moved =
+      before - group.x - Vec3<Pack>(0.5 * (drift.least + drift.most));
+  // Pack without a point have not moved.
+  const Pack square = where_less(dot(x, x), Pack(infinity), dot(moved, moved), Pack(0));
+  group.used += 0.5 * norm(drift.most - drift.least);
+  const double left = group.room - partners_->range() - group.used;
+  if (!(left >= 0) || !all_up_to(square, left * left)) return false;
+  group.used += std::sqrt(largest(square));
+  return true;
 }
 
-void PointGroups::list(Group& group, double elapsed) {
-  group.listed = partners_->at_epoch(group.x);
-  group.epoch = partners_->epochs();
-  group.moved = partners_->moved();
+void PointGroups::list(Group& group) {
+  ++made_;
+  group.lists = partners_->lists();
+  group.used = 0;
+  group.room = partners_->margin() + partners_->range();
   group.list.clear();
-  // The points lie about the piece from the first to the last one.
-  Vec ends[2];
-  int count = 0;
+  const double wide = (partners_->reach() + group.room) * rounding;
+  const Vec3<Pack> at_epoch = partners_->at_epoch(group.x);
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
   for (int lane = 0; lane < Pack::lanes; ++lane) {
-    const Vec at = lane_of(group.listed, lane);
-    if (!is_finite(at)) continue;
-    ends[count == 0 ? 0 : 1] = at;
-    if (count++ == 0) ends[1] = at;
+    if (there(at_epoch, lane)) box.include(lane_of(at_epoch, lane));
   }
-  if (count == 0) return;
-  const StraightPiece axis(ends[0], ends[1]);
-  double beside = 0;
-  for (int lane = 0; lane < Pack::lanes; ++lane) {
-    const Vec at = lane_of(group.listed, lane);
-    if (is_finite(at)) beside = std::max(beside, norm(at - axis.at(axis.nearest(at))));
-  }
-  const double wide = (reach_ + partners_->margin()) * rounding;
-  partners_->near(axis, wide + beside, strand_, found_);
-  const SegmentCells& all = partners_->segments();
-  group.list.reserve(found_.size());
-  with_segments(*partners_, elapsed, [&](const auto& segments) {
+  if (!(box.least.x <= box.most.x)) return;
+  box.grow(wide + partners_->moved());
+  const SegmentCells& segments = partners_->segments();
+  segments.reaching_into(box, found_);
+  const int own = segments.first(static_cast<std::size_t>(strand_)),
+            other = segments.first(static_cast<std::size_t>(strand_) + 1);
+  const auto is_own = [=](int i) { return i >= own && i < other; };
+  std::size_t near = 0;
+  by(instructions_, [&] {
+    const Pack square(wide * wide);
     for (const int i : found_) {
-      if (within(group.x, segments(i), wide * wide)) group.list.push_back(2 * i);
+      const Vec3<Pack> gap = nearest(group.x, partners_->piece(i)).gap;
+      // Without a branch, which nobody could foresee.
+      found_[near] = i;
+      near += any_less(dot(gap, gap), square) && !is_own(i) ? 1 : 0;
     }
   });
-  for (std::size_t k = 0; k < group.list.size(); ++k) {
-    const bool last =
-        k + 1 == group.list.size() ||
-        all.polyline(group.list[k] / 2) != all.polyline(group.list[k + 1] / 2);
-    if (last) ++group.list[k];
+  found_.resize(near);
+  for (const int i : segments.long_segments()) {
+    if (!is_own(i)) found_.push_back(i);
+  }
+  std::ranges::sort(found_);
+  const auto rest = std::ranges::unique(found_);
+  found_.erase(rest.begin(), rest.end());
+  group.list.reserve(found_.size());
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const bool last = k + 1 == found_.size() ||
+                      segments.polyline(found_[k]) != segments.polyline(found_[k + 1]);
+    group.list.push_back({2 * found_[k] + (last ? 1 : 0), 0});
   }
 }
 
-FourLoads PointGroups::loads(std::size_t group, const ContactLaw& law, In v,
-                             double elapsed) const {
-  const Group& g = groups_[group];
-  if (g.list.empty()) return FourLoads{};
-  PointLanes p{g.x, {}};
+void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double elapsed,
+                        FourLoads& to) {
+  Group& g = groups_[group];
+  to = {};
+  if (g.list.empty()) return;
+  Vec3<Pack> of_v{};
   for (std::size_t lane = 0; lane < four; ++lane) {
     const std::size_t i = four * group + lane;
-    if (3 * i < v.size()) set_lane(p.v, static_cast<int>(lane), load3(&v[3 * i]));
+    if (3 * i < v.size()) set_lane(of_v, static_cast<int>(lane), load3(&v[3 * i]));
   }
-  return with_segments(*partners_, elapsed, [&](const auto& segments) {
-    return sum_loads(law, reach_, g.list, segments, p);
-  });
-}
-
-bool PointGroups::touched(std::size_t group, double radius, double elapsed) const {
-  const Group& g = groups_[group];
-  return with_segments(*partners_, elapsed, [&](const auto& segments) {
-    return std::ranges::any_of(g.list, [&](int entry) {
-      return within(g.x, segments(entry >> 1), radius * radius);
-    });
+  by(instructions_, [&] {
+    if (elapsed == 0) {
+      const bool still =
+          partners_->range() == 0 && partners_->segments().long_segments().empty();
+      sum_loads(g, law, Held{*partners_}, of_v, still, to);
+    } else {
+      sum_loads(g, law, Moving{partners_->motion(), elapsed}, of_v, false, to);
+    }
   });
 }
 
 std::size_t PointGroups::bytes() const {
   std::size_t sum = groups_.capacity() * sizeof(Group) + found_.capacity() * sizeof(int);
-  for (const Group& group : groups_) sum += group.list.capacity() * sizeof(int);
+  for (const Group& group : groups_) {
+    sum += group.list.capacity() * sizeof(Candidate);
+  }
   return sum;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace tress::models {
@@ -17,9 +18,16 @@ constexpr double cells_over_parts = 2;  // at most
 constexpr double outside = 0.05;
 constexpr std::size_t sampled = 4096;
 constexpr std::size_t slabs = 8;  // ranges of cells, each a piece of work
-constexpr int width = 16;         // parts that a search tests together
+constexpr std::size_t width = 8;  // parts that a search tests together
 // Of floats that stand for places, over their size: more than 2^-24 of two of them.
 constexpr double float_error = 1e-6;
+
+using Floats __attribute__((vector_size(width * sizeof(float)))) = float;
+Floats load(const float* p) {
+  Floats x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
+}
 
 /// A value with the share `below` of the others below it, of those that are finite.
 double quantile(std::vector<double>& values, double below) {
@@ -51,7 +59,7 @@ void SegmentCells::fill(In x, double reach, const Loop& loop) {
   part_.resize(points() + 1);
   in_parts(points(), loop, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      part_[i + 1] = parts_of(static_cast<int>(i), x);
+      part_[i + 1] = number_of_parts(static_cast<int>(i), x);
     }
   });
   part_[0] = 0;
@@ -82,7 +90,7 @@ void SegmentCells::choose_parts(In x, double reach) {
 }
 
 /// -1: it is long. A segment that is not finite is near to nothing.
-int SegmentCells::parts_of(int segment, In x) const noexcept {
+int SegmentCells::number_of_parts(int segment, In x) const noexcept {
   if (last(segment)) return 0;
   const StraightPiece all = piece_at(x, segment);
   const double length = std::sqrt(dot(all.edge, all.edge));
@@ -138,17 +146,9 @@ void SegmentCells::sort(In x, const Loop& loop) {
     least_[axis].resize(parts + width);
     most_[axis].resize(parts + width);
   }
-  const auto each_part = [&](std::size_t segment, const auto& act) {
-    const int from = part_[segment], to = part_[segment + 1];
-    if (from == to) return;
-    const StraightPiece all = piece_at(x, static_cast<int>(segment));
-    for (int p = from; p < to; ++p) {
-      act(static_cast<std::size_t>(p), all.at((p - from + 0.5) / (to - from)));
-    }
-  };
   in_parts(points(), loop, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      each_part(i, [&](std::size_t p, const Vec& middle) {
+      each_part(i, x, [&](std::size_t p, const Vec& middle) {
         cell_of_[p] = static_cast<int>(
                           row(cells(1, middle.y, 0).from, cells(2, middle.z, 0).from)) +
                       cells(0, middle.x, 0).from;
@@ -203,57 +203,57 @@ void SegmentCells::sort(In x, const Loop& loop) {
   start_[all] = static_cast<int>(parts);
 }
 
-void SegmentCells::near(const StraightPiece& axis, double radius, int but,
-                        std::vector<int>& found) const {
-  found.clear();
-  const int own = first(static_cast<std::size_t>(but)),
-            other = first(static_cast<std::size_t>(but) + 1);
-  const Vec a = axis.start, b = axis.at(1);
+Box SegmentCells::extent() const {
+  const Vec size{cell_ * count_[0], cell_ * count_[1], cell_ * count_[2]};
+  return {corner_, corner_ + size};
+}
+
+void SegmentCells::reaching_into(const Box& box, std::vector<int>& found) const {
+  const Vec &a = box.least, &b = box.most;
   const double size = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z),
                                 std::abs(b.x), std::abs(b.y), std::abs(b.z)});
-  const double wide = radius + float_error * (size + longest_);
-  // A part that comes within the radius has its middle no farther than this.
+  const double wide = float_error * (size + longest_);
+  // A part that reaches into it has its middle no farther from it than this.
   const double far = wide + 0.5 * longest_;
-  const auto span = [&](int along, double from, double to) {
-    return cells(along, std::min(from, to) - far, std::max(from, to) + far);
-  };
-  const Range xs = span(0, a.x, b.x), ys = span(1, a.y, b.y), zs = span(2, a.z, b.z);
-  struct Sides {
-    float least, most;
-  };
-  const auto sides = [&](double from, double to) {
-    return Sides{static_cast<float>(std::min(from, to) - wide),
-                 static_cast<float>(std::max(from, to) + wide)};
-  };
-  const Sides sx = sides(a.x, b.x), sy = sides(a.y, b.y), sz = sides(a.z, b.z);
+  const Range xs = cells(0, a.x - far, b.x + far), ys = cells(1, a.y - far, b.y + far),
+              zs = cells(2, a.z - far, b.z + far);
+  const auto least = [wide](double at) { return Floats{} + float(at - wide); };
+  const auto most = [wide](double at) { return Floats{} + float(at + wide); };
+  const Floats x0 = least(a.x), x1 = most(b.x), y0 = least(a.y), y1 = most(b.y),
+               z0 = least(a.z), z1 = most(b.z);
+  std::size_t count = 0;
   for (int z = zs.from; z <= zs.to; ++z) {
     for (int y = ys.from; y <= ys.to; ++y) {
       const std::size_t cells_of = row(y, z);
-      const int end = start_[cells_of + static_cast<std::size_t>(xs.to) + 1];
-      for (int i = start_[cells_of + static_cast<std::size_t>(xs.from)]; i < end;
-           i += width) {
-        const auto at = static_cast<std::size_t>(i);
-        const float *x0 = &least_[0][at], *x1 = &most_[0][at], *y0 = &least_[1][at],
-                    *y1 = &most_[1][at], *z0 = &least_[2][at], *z1 = &most_[2][at];
-        // Without branches: one instruction for many.
-        int close[width];
-        for (int k = 0; k < width; ++k) {
-          close[k] = (x0[k] <= sx.most) & (x1[k] >= sx.least) & (y0[k] <= sy.most) &
-                     (y1[k] >= sy.least) & (z0[k] <= sz.most) & (z1[k] >= sz.least);
-        }
-        const int count = std::min(width, end - i);
-        for (int k = 0; k < count; ++k) {
-          const int segment = segment_[at + static_cast<std::size_t>(k)];
-          if (close[k] != 0 && (segment < own || segment >= other)) {
-            found.push_back(segment);
-          }
+      const auto begin = static_cast<std::size_t>(
+                     start_[cells_of + static_cast<std::size_t>(xs.from)]),
+                 end = static_cast<std::size_t>(
+                     start_[cells_of + static_cast<std::size_t>(xs.to) + 1]);
+      for (std::size_t i = begin; i < end; i += width) {
+        if (found.size() < count + width) found.resize(2 * found.size() + width);
+        const auto close = (load(&least_[0][i]) <= x1) & (load(&most_[0][i]) >= x0) &
+                           (load(&least_[1][i]) <= y1) & (load(&most_[1][i]) >= y0) &
+                           (load(&least_[2][i]) <= z1) & (load(&most_[2][i]) >= z0);
+        // Without branches, which nobody could foresee.
+        const std::size_t here = std::min<std::size_t>(width, end - i);
+        for (std::size_t k = 0; k < here; ++k) {
+          found[count] = segment_[i + k];
+          count -= static_cast<std::size_t>(close[k] >> 31);
         }
       }
     }
   }
-  for (const int segment : long_) {
-    if (segment < own || segment >= other) found.push_back(segment);
-  }
+  found.resize(count);
+}
+
+void SegmentCells::near(const StraightPiece& axis, double radius, int but,
+                        std::vector<int>& found) const {
+  Box box{axis.start, axis.start};
+  box.include(axis.at(1));
+  box.grow(radius);
+  reaching_into(box, found);
+  found.insert(found.end(), long_.begin(), long_.end());
+  std::erase_if(found, [&](int segment) { return polyline(segment) == but; });
   std::ranges::sort(found);
   const auto rest = std::ranges::unique(found);
   found.erase(rest.begin(), rest.end());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contract/system.h"
@@ -54,6 +55,33 @@ class SegmentCells {
   /// `radius` of the piece, and some others; ascending, each once.
   void near(const StraightPiece& piece, double radius, int but,
             std::vector<int>& found) const;
+  /// Sets `found` to every segment that reaches into the box, and some others, own ones
+  /// too, in some order, some more than once; but no long ones.
+  void reaching_into(const Box& box, std::vector<int>& found) const;
+  /// Ascending.
+  std::span<const int> long_segments() const { return long_; }
+
+  /// How a segment is divided: its parts' numbers are [first, second), none if it is long
+  /// or not finite.
+  std::pair<std::size_t, std::size_t> parts_of(std::size_t segment) const {
+    return {static_cast<std::size_t>(part_[segment]),
+            static_cast<std::size_t>(part_[segment + 1])};
+  }
+  std::size_t parts() const { return static_cast<std::size_t>(part_.back()); }
+  double longest_part() const { return longest_; }  // m
+  /// Calls act(part, middle) at x, the places of fill().
+  template <class F>
+  void each_part(std::size_t segment, In x, F act) const {
+    const auto [from, to] = parts_of(segment);
+    if (from == to) return;
+    const StraightPiece all(load3(&x[3 * segment]), load3(&x[3 * segment + 3]));
+    const double share = 1 / static_cast<double>(to - from);
+    for (std::size_t p = from; p < to; ++p) {
+      act(p, all.at((static_cast<double>(p - from) + 0.5) * share));
+    }
+  }
+  /// What the grid spans.
+  Box extent() const;
 
   std::size_t bytes() const;
 
@@ -69,7 +97,7 @@ class SegmentCells {
   }
   void choose_parts(In x, double reach);
   void choose_cells(In x, std::size_t parts);
-  int parts_of(int segment, In x) const noexcept;
+  int number_of_parts(int segment, In x) const noexcept;
   void sort(In x, const Loop& loop);
 
   std::vector<int> polyline_;  // of each point

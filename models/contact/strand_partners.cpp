@@ -9,8 +9,10 @@ namespace {
 
 constexpr double first_margin = 0.5;                     // over the reach
 constexpr double least_margin = 0.1, most_margin = 1.0;  // the same
-// What a list costs to make over what it costs to go through; see next_margin().
-constexpr double making_over_using = 4;
+// What a list costs to make over what it costs to go through; see best_margin().
+constexpr double making_over_using = 24;
+// Displacement over the reach that ends an epoch: larger searches against more sorting.
+constexpr double most_moved = 0.4;
 
 }  // namespace
 
@@ -35,44 +37,69 @@ void StrandPartners::interpolate(double t, double end, In x, In v, In y, In w,
 
 /// `range`: how far a point goes until the next update.
 void StrandPartners::move(double range, In x, In v, const Loop& loop) {
-  const std::size_t count = cells_.points();
-  nodes_.resize(count);
-  in_parts(count, loop, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      Node& node = nodes_[i];
-      node = {load3(&x[3 * i]), load3(&v[3 * i]), 0};
-      if (cells_.last(static_cast<int>(i))) continue;
-      node.inverse = StraightPiece(node.x, load3(&x[3 * i + 3])).inverse;
-    }
-  });
-  ++updates_;
-  if (before_.size() == count) {
+  const bool first = pieces_.empty();
+  range_ = range;
+  step_ = {};
+  if (!first) {
     roots_.clear();
     roots_before_.clear();
     for (std::size_t k = 0; k < cells_.polylines(); ++k) {
       const auto root = static_cast<std::size_t>(cells_.first(k));
-      if (!is_finite(nodes_[root].x) || !is_finite(before_[root])) continue;
-      roots_.push_back(nodes_[root].x);
+      const Vec now = load3(&x[3 * root]);
+      if (!is_finite(now) || !is_finite(pieces_[root].at.start)) continue;
+      roots_.push_back(now);
+      roots_before_.push_back(pieces_[root].at.start);
+    }
+    step_ = rigid_motion(roots_before_, roots_);
+    roots_before_.clear();
+    roots_.clear();
+    for (std::size_t k = 0; k < cells_.polylines(); ++k) {
+      const auto root = static_cast<std::size_t>(cells_.first(k));
+      const Vec now = load3(&x[3 * root]);
+      if (!is_finite(now) || !is_finite(before_[root])) continue;
+      roots_.push_back(now);
       roots_before_.push_back(before_[root]);
     }
-    const RigidMotion turned = rigid_motion(roots_before_, roots_);
-    const double still = displacement({}, loop), with = displacement(turned, loop);
-    head_ = with < still ? turned : RigidMotion{};
-    strayed_ = std::min(with, still);
-    moved_ = strayed_ + range;
-    if (moved_ <= margin_ / 2) return;
+    head_ = rigid_motion(roots_before_, roots_);
   }
-  margin_ = next_margin() + 2 * range;
-  epoch_ = updates_;
-  ++epochs_;
-  before_.resize(count);
+  const bool came = place(x, v, loop);
+  ++updates_;
+  if (came) ++lists_;
+  if (!first) {
+    const double still = displacement({}, loop);
+    moved_ = displacement(head_, loop);
+    if (!(moved_ < still)) head_ = {};
+    moved_ = std::min(moved_, still);
+  }
+  if (first || came || !(moved_ <= most_moved * reach_) || range > covered_) {
+    begin_epoch(x, loop);
+  }
+  drift_.move(cells_, moves_, loop);
+  margin_ = first ? first_margin * reach_ : best_margin();
+}
+
+/// Takes the places of the points and their displacements; whether some had none before.
+bool StrandPartners::place(In x, In v, const Loop& loop) {
+  const std::size_t count = cells_.points();
+  const bool first = pieces_.empty();
+  pieces_.resize(count);
+  v_.resize(count);
+  moves_.resize(count);
+  came_.assign(1 + count / loop_part, 0);
   in_parts(count, loop, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) before_[i] = nodes_[i].x;
+    bool came = false;
+    for (std::size_t i = from; i < to; ++i) {
+      StraightPiece& piece = pieces_[i].at;
+      const Vec now = load3(&x[3 * i]), old = first ? now : piece.start;
+      moves_[i] = step_.back(now) - old;
+      came = came || (is_finite(now) && !is_finite(old));
+      const bool last = cells_.last(static_cast<int>(i));
+      piece = StraightPiece(now, last ? now : load3(&x[3 * i + 3]));
+      v_[i] = load3(&v[3 * i]);
+    }
+    came_[from / loop_part] = came ? 1 : 0;
   });
-  head_ = {};
-  strayed_ = 0;
-  moved_ = range;
-  cells_.fill(x, reach_ + margin_, loop);
+  return std::ranges::count(came_, 1) > 0;
 }
 
 /// The largest of all points' since the epoch, without that of the head.
@@ -81,34 +108,52 @@ double StrandPartners::displacement(const RigidMotion& head, const Loop& loop) {
   in_parts(before_.size(), loop, [&](std::size_t from, std::size_t to) {
     double most = 0;
     for (std::size_t i = from; i < to; ++i) {
-      // What is no place is near to nothing, but it may have become one.
-      if (!is_finite(nodes_[i].x)) continue;
-      const Vec moved = head.back(nodes_[i].x) - before_[i];
+      const Vec moved = head.back(pieces_[i].at.start) - before_[i];
       const double square = dot(moved, moved);
-      most = std::max(
-          most, is_finite(before_[i]) ? square : std::numeric_limits<double>::max());
+      // What is no place is near to nothing.
+      if (square > most) most = square;
     }
     farthest_[from / loop_part] = most;
   });
   return std::sqrt(*std::ranges::max_element(farthest_));
 }
 
-/// The one of least cost at the speed of the last epoch, d per update. Lists that reach
-/// r + m have (1 + m/r)^2 times the candidates of ones that reach r, and cost their
-/// making every m/(2 d) updates: using (1 + m/r)^2 + making 2 d/m is least where
-/// (m/r)^2 (1 + m/r) = d/r making/using.
-double StrandPartners::next_margin() const {
-  const double updates = static_cast<double>(updates_ - epoch_);
-  if (epochs_ == 0 || !(updates > 0)) return first_margin * reach_;
-  const double target = making_over_using * strayed_ / updates / reach_;
+/// A list sees (1 + most_margin) reach() and twice the range, of which the second was
+/// over before; parts are as long as the cells say, and have moved since.
+void StrandPartners::begin_epoch(In x, const Loop& loop) {
+  ++epochs_;
+  before_.resize(pieces_.size());
+  in_parts(pieces_.size(), loop, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) before_[i] = pieces_[i].at.start;
+  });
+  head_ = {};
+  moved_ = 0;
+  covered_ = 2 * range_;
+  const std::vector<int> long_before(cells_.long_segments().begin(),
+                                     cells_.long_segments().end());
+  cells_.fill(x, (1 + first_margin) * reach_, loop);
+  // Long ones are in every list, and drift_ does not know of them.
+  if (!std::ranges::equal(long_before, cells_.long_segments())) ++lists_;
+  const double sight = (1 + most_margin + most_moved) * reach_ + 2 * covered_ +
+                       0.5 * cells_.longest_part();
+  drift_.fill(cells_, x, (1 + 1e-9) * sight, loop);
+}
+
+/// The one of least cost for lists whose surroundings move by d a step, relative to them.
+/// Lists that reach r + m have (1 + m/r)^2 times the candidates of ones that reach r, and
+/// cost their making every m/d steps: using (1 + m/r)^2 + making d/m is least where
+/// (m/r)^2 (1 + m/r) = d/r making/(2 using).
+double StrandPartners::best_margin() const {
+  const double target = making_over_using * drift_.mean() / reach_;
   double share = std::sqrt(target);
   for (int k = 0; k < 4; ++k) share = std::sqrt(target / (1 + share));
   return (share < most_margin ? std::max(share, least_margin) : most_margin) * reach_;
 }
 
 std::size_t StrandPartners::bytes() const {
-  return cells_.bytes() + nodes_.capacity() * sizeof(Node) +
-         (before_.capacity() + roots_.capacity() + roots_before_.capacity()) *
+  return cells_.bytes() + pieces_.capacity() * sizeof(Line) +
+         (v_.capacity() + before_.capacity() + moves_.capacity() + roots_.capacity() +
+          roots_before_.capacity()) *
              sizeof(Vec);
 }
 

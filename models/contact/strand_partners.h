@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "models/contact/local_drift.h"
 #include "models/contact/point_motion.h"
 #include "models/contact/rigid_motion.h"
 #include "models/contact/segment_cells.h"
@@ -11,19 +12,13 @@ namespace tress::models {
 
 /// The polylines of many strands as others see them until the next update, and what is
 /// needed to keep lists of those nearby, since they hardly change from step to step
-/// [Bertails et al. 2006, section 4.1]: all that comes within `reach` + margin() of a
-/// place is a candidate there while nothing has moved too far since the epoch. Distances
-/// moved are relative to the head, whose rigid motion is that of the strands' first
-/// points, or to the ground, whichever is less. An epoch ends, and segments are sorted
-/// into cells anew, when some point has moved half the margin.
+/// [Bertails et al. 2006, section 4.1]. How far things have moved is meant relative to
+/// the head, whose rigid motion is that of the strands' first points. A list holds until
+/// what is near it has moved too far relative to it, by drift(); where hair is slow it
+/// holds longer than where it is fast. An epoch ends, and segments are sorted into cells
+/// anew, when some point has moved far from where it was then.
 class StrandPartners {
  public:
-  /// A point and the segment that begins there, one line of the cache.
-  struct alignas(64) Node {
-    Vec x, v;        // m, m/s
-    double inverse;  // 1/length^2 of the segment, 0: none or of no length, 1/m^2
-  };
-
   /// points[k] >= 2: of strand k; reach > 0, m.
   StrandPartners(std::span<const int> points, double reach);
 
@@ -32,29 +27,44 @@ class StrandPartners {
   void extrapolate(double t, double end, In x, In v, const Loop& loop);
   void interpolate(double t, double end, In x, In v, In y, In w, const Loop& loop);
 
-  bool updated() const { return !nodes_.empty(); }
+  bool updated() const { return !pieces_.empty(); }
   long updates() const { return updates_; }
   long epochs() const { return epochs_; }
   double reach() const { return reach_; }
+
+  // For lists of what is within reach() + margin() of a place at an update.
+  /// The distance that costs least, m.
   double margin() const { return margin_; }
-  /// How far points may be, or be going to be until the next update, from where they were
-  /// at the epoch; without the head's motion.
-  double moved() const { return moved_; }
+  /// How far a point goes at most until the next update, m.
+  double range() const { return range_; }
+  /// Lists made before it changed hold no longer, whatever has moved.
+  long lists() const { return lists_; }
+  /// Where what has moved with the head to x was at the last update but one.
+  template <class T>
+  Vec3<T> before(const Vec3<T>& x) const {
+    return step_.back(x);
+  }
+  /// Holds the last displacements x - before of all that may have come within a list's
+  /// distance of a place, but for long segments; least > most if nothing has. `at_epoch`:
+  /// of the place at the last update.
+  const Box& drift(const Vec& at_epoch) const { return drift_.near(at_epoch); }
+
   /// The epoch's place of what would have moved with the head to x.
   template <class T>
   Vec3<T> at_epoch(const Vec3<T>& x) const {
     return head_.back(x);
   }
+  /// How far points are from where they were at the epoch.
+  double moved() const { return moved_; }
 
   const SegmentCells& segments() const { return cells_; }
-  /// Places and velocities at the last update.
-  const Node* nodes() const { return nodes_.data(); }
   /// At any time in its interval.
   const PointMotion& motion() const { return motion_; }
-  StraightPiece piece(int segment) const {
-    const Node* from = &nodes_[static_cast<std::size_t>(segment)];
-    return {from[0].x, from[1].x};
+  /// At the last update; the last point of a strand begins one of no length.
+  const StraightPiece& piece(int segment) const {
+    return pieces_[static_cast<std::size_t>(segment)].at;
   }
+  const Vec& velocity(int point) const { return v_[static_cast<std::size_t>(point)]; }
 
   /// Sets `found` to the segments of strands other than `but` that may come within
   /// `radius` of a piece at its epoch's place, and some others, ascending.
@@ -67,20 +77,28 @@ class StrandPartners {
 
  private:
   void move(double range, In x, In v, const Loop& loop);
+  bool place(In x, In v, const Loop& loop);
   double displacement(const RigidMotion& head, const Loop& loop);
-  double next_margin() const;
+  void begin_epoch(In x, const Loop& loop);
+  double best_margin() const;
 
   double reach_, margin_;
   SegmentCells cells_;
-  std::vector<Node> nodes_;
+  struct alignas(64) Line {  // of the cache
+    StraightPiece at;
+  };
+  std::vector<Line> pieces_;
+  std::vector<Vec> v_;
   std::vector<Vec> before_;  // places at the epoch
+  std::vector<Vec> moves_;   // displacements in the last step
   PointMotion motion_;
-  RigidMotion head_;
-  double moved_ = 0;
-  long updates_ = 0, epochs_ = 0, epoch_ = 0;  // epoch_: the update that began it
-  double strayed_ = 0;                         // displacement at the last update
+  RigidMotion head_, step_;  // since the epoch and the last update but one
+  LocalDrift drift_;
+  double moved_ = 0, range_ = 0, covered_ = 0;  // covered_: range that drift_ allows for
+  long updates_ = 0, epochs_ = 0, lists_ = 0;
   std::vector<Vec> roots_, roots_before_;
   std::vector<double> farthest_;  // of each part of the points
+  std::vector<char> came_;        // of the same: whether a point has got a place
 };
 
 }  // namespace tress::models

@@ -102,6 +102,13 @@ class Effect {
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
                                InOut blocks) const noexcept = 0;
+  /// add_load and add_derivatives at once: for effects that find both by one search and
+  /// would otherwise have to remember what they found.
+  virtual void add_both(double t, const Points& p, double pos, double vel, InOut f,
+                        InOut blocks) const noexcept {
+    add_load(t, p, f);
+    add_derivatives(t, p, pos, vel, blocks);
+  }
   /// blocks += factor df/dt with respect to the unit tangent t at fixed x and v, (9
   /// count) as above; they are applied to changes of t, which are orthogonal to t. The
   /// model knows how t depends on its coordinates.

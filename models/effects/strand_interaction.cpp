@@ -78,7 +78,7 @@ class StrandInteraction::OnStrand final : public Effect {
   void add_load(double t, const Points& p, InOut f) const noexcept override {
     look(t, p);
     each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
-      store3(load3(&f[3 * i]) + p.length[i] * lane_of(loads.force, lane), &f[3 * i]);
+      add_force(p.length[i], loads, lane, &f[3 * i]);
     });
   }
 
@@ -86,13 +86,24 @@ class StrandInteraction::OnStrand final : public Effect {
                        InOut blocks) const noexcept override {
     look(t, p);
     each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
-      for (std::size_t row = 0; row < 3; ++row) {
-        double* block = &blocks[9 * i + 3 * row];
-        store3(load3(block) + (pos * p.length[i]) * lane_of(loads.by_place[row], lane),
-               block);
-        block[row] += vel * p.length[i] * loads.by_velocity[lane];
-      }
+      add_block(p.length[i], loads, lane, pos, vel, &blocks[9 * i]);
     });
+  }
+
+  void add_both(double t, const Points& p, double pos, double vel, InOut f,
+                InOut blocks) const noexcept override {
+    if (!all_.partners_.updated()) return;
+    groups_.ready(p.x, p.length);
+    const double elapsed = all_.partners_.motion().elapsed(t);
+    FourLoads loads;
+    for (std::size_t g = 0; g < groups_.groups(); ++g) {
+      if (!groups_.feels(g)) continue;
+      groups_.loads(g, all_.law_, p.v, elapsed, loads);
+      each_point_of(g, p, [&](std::size_t i, int lane) {
+        add_force(p.length[i], loads, lane, &f[3 * i]);
+        add_block(p.length[i], loads, lane, pos, vel, &blocks[9 * i]);
+      });
+    }
   }
 
   double potential(double, const Points&) const noexcept override { return 0; }
@@ -110,8 +121,8 @@ class StrandInteraction::OnStrand final : public Effect {
   }
 
  private:
-  /// Sets loads_ for the current points. A step needs load and derivatives at the same
-  /// state, and has them of one search.
+  /// Sets loads_ for the current points, for who asks for load and derivatives at the
+  /// same state one after the other.
   void look(double t, const Points& p) const {
     const StrandPartners& partners = all_.partners_;
     if (!partners.updated()) return;
@@ -120,10 +131,10 @@ class StrandInteraction::OnStrand final : public Effect {
         std::ranges::equal(p.x, x_) && std::ranges::equal(p.v, v_)) {
       return;
     }
-    groups_.ready(p.x, p.length, elapsed);
+    groups_.ready(p.x, p.length);
     loads_.resize(groups_.groups());
     for (std::size_t g = 0; g < loads_.size(); ++g) {
-      loads_[g] = groups_.loads(g, all_.law_, p.v, elapsed);
+      groups_.loads(g, all_.law_, p.v, elapsed, loads_[g]);
     }
     x_.assign(p.x.begin(), p.x.end());
     v_.assign(p.v.begin(), p.v.end());
@@ -136,10 +147,24 @@ class StrandInteraction::OnStrand final : public Effect {
   void each_point(const Points& p, F act) const {
     for (std::size_t g = 0; g < loads_.size(); ++g) {
       if (!groups_.feels(g)) continue;
-      for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
-        const std::size_t i = Pack::lanes * g + lane;
-        if (i < p.length.size()) act(i, loads_[g], static_cast<int>(lane));
-      }
+      each_point_of(g, p, [&](std::size_t i, int lane) { act(i, loads_[g], lane); });
+    }
+  }
+  template <class F>
+  static void each_point_of(std::size_t group, const Points& p, F act) {
+    for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+      const std::size_t i = Pack::lanes * group + lane;
+      if (i < p.length.size()) act(i, static_cast<int>(lane));
+    }
+  }
+  static void add_force(double length, const FourLoads& loads, int lane, double* f) {
+    store3(load3(f) + length * lane_of(loads.force, lane), f);
+  }
+  static void add_block(double length, const FourLoads& loads, int lane, double pos,
+                        double vel, double* block) {
+    for (std::size_t row = 0; row < 3; ++row, block += 3) {
+      store3(load3(block) + (pos * length) * lane_of(loads.by_place[row], lane), block);
+      block[row] += vel * length * loads.by_velocity[lane];
     }
   }
 

@@ -243,9 +243,10 @@ void HelixLoads<T>::take_others(int lane) {
                  .length = length_};
   const double h = block_.h;
   for (const Effect* effect : block_.others[static_cast<std::size_t>(lane)]) {
-    effect->add_load(block_.t, p, load_);
     if (effect->needs().derivatives) {
-      effect->add_derivatives(block_.t, p, -h * h, -h, blocks_);
+      effect->add_both(block_.t, p, -h * h, -h, load_, blocks_);
+    } else {
+      effect->add_load(block_.t, p, load_);
     }
   }
   for (std::size_t i = 0; i < all; ++i) put(i, lane);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "models/contact/local_drift.h"
 #include "models/contact/rigid_motion.h"
 #include "models/contact/segment_cells.h"
 #include "tests/models/effects/polylines.h"
@@ -115,6 +116,47 @@ TEST(SegmentCells, SurvivePlacesThatAreNone) {
     cells.near({{far, far, far}, {far, far, 0}}, 6e-3, 1, found);
     EXPECT_LE(found.size(), 2U);
   }
+}
+
+TEST(LocalDrift, HoldsWhatMovesNearAPlaceAndLessThanAll) {
+  const Polylines strands(200, 8, 0.3, 0.01, 1, 3);
+  SegmentCells cells(strands.points);
+  cells.fill(strands.x, 9e-3, in_turn);
+  constexpr double sight = 0.02;
+  LocalDrift drift;
+  drift.fill(cells, strands.x, sight, in_turn);
+  std::vector<Vec> by(cells.points());
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    const Vec x = load3(&strands.x[3 * i]);
+    by[i] = 1e-3 * Vec{std::sin(40 * x.x), std::cos(30 * x.y), x.z};
+  }
+  by[5].x = std::nan("");
+  drift.move(cells, by, in_turn);
+  const auto inside = [](const Box& box, const Vec& x) {
+    return !(x.x < box.least.x || x.y < box.least.y || x.z < box.least.z ||
+             x.x > box.most.x || x.y > box.most.y || x.z > box.most.z);
+  };
+  long near = 0, out = 0;
+  for (std::size_t at = 0; at < by.size(); at += 40) {
+    const Vec place = load3(&strands.x[3 * at]);
+    const Box& box = drift.near(place);
+    for (std::size_t i = 0; i < by.size(); ++i) {
+      if (cells.last(static_cast<int>(i)) || !is_finite(by[i]) || !is_finite(by[i + 1])) {
+        continue;
+      }
+      cells.each_part(i, strands.x, [&](std::size_t, const Vec& middle) {
+        const Vec d = middle - place;
+        const bool within =
+            std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) < sight;
+        near += within ? 1 : 0;
+        EXPECT_TRUE(!within || (inside(box, by[i]) && inside(box, by[i + 1])));
+        out += inside(box, by[i]) ? 0 : 1;
+      });
+    }
+  }
+  EXPECT_GT(near, 200);
+  EXPECT_GT(out, 500);
+  EXPECT_GT(drift.mean(), 0);
 }
 
 TEST(RigidMotion, IsFoundFromPointsThatMovedWithIt) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/contact/point_groups.h"
 #include "models/effects/strand_interaction.h"
 #include "tests/models/effects/polylines.h"
 #include "tests/support/catalogue_cases.h"
@@ -155,6 +156,12 @@ std::vector<double> everything(const StrandInteraction& interaction,
   for (std::size_t k = 0; k < own.size(); ++k) {
     std::vector<double> f = load(*effects[k], own[k]), blocks(3 * f.size());
     effects[k]->add_derivatives(0, own[k].points(), 2, 3, blocks);
+    std::vector<double> both(f.size()), both_blocks(blocks.size());
+    effects[k]->add_both(0, own[k].points(), 2, 3, both, both_blocks);
+    // Products are fused with sums in one and not in the other: some eps of 0.1.
+    const auto same = [](double a, double b) { return std::abs(a - b) < 1e-16; };
+    EXPECT_TRUE(std::ranges::equal(both, f, same));
+    EXPECT_TRUE(std::ranges::equal(both_blocks, blocks, same));
     all.insert(all.end(), f.begin(), f.end());
     all.insert(all.end(), blocks.begin(), blocks.end());
   }
@@ -197,6 +204,33 @@ TEST(StrandInteraction, KeptListsMissNothingWhateverMoves) {
       EXPECT_GT(felt, 100);
     }
   }
+}
+
+/// Lists are made anew where hair moves, not where it rests.
+TEST(PointGroups, ListsHoldWhereHairIsSlow) {
+  constexpr int each = 20;
+  Polylines still(each, 8, 0.03, 0.01, 1, 2), moves(each, 8, 0.03, 0.01, 1, 7);
+  std::vector<int> points = still.points;
+  points.insert(points.end(), moves.points.begin(), moves.points.end());
+  StrandPartners partners(points, 6e-3);
+  PointGroups slow(partners, 0), fast(partners, each);
+  const std::vector<double> length(8, 0.01), zero(still.v.size());
+  const auto x_of = [](const Polylines& all) { return In(all.x).first(3 * 8); };
+  const std::vector<double> start = moves.x;
+  std::vector<double> far(start.size());
+  for (int step = 0; step < 40; ++step) {
+    // A metre away; first points stay, as the head does.
+    for (std::size_t i = 0; i < far.size(); ++i) {
+      const std::vector<double>& from = i % 27 < 3 ? start : moves.x;
+      far[i] = from[i] + (i % 3 == 0 ? 1 : 0);
+    }
+    partners.hold(joined(still.x, far), joined(zero, moves.v), models::in_turn);
+    slow.ready(x_of(still), length);
+    fast.ready(In(far).first(3 * 8), length);
+    moves.move(step / 8 % 2 == 0 ? 1e-3 : -1e-3);
+  }
+  EXPECT_EQ(slow.made(), 2);  // of two groups, one each
+  EXPECT_GT(fast.made(), 10);
 }
 
 TEST(StrandInteraction, ListsStandWhileAllMoveWithTheHead) {

@@ -1,4 +1,7 @@
 // What a head of hair costs.
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { parse_csv } from '../../src/csv.mjs';
 import { succeeded } from '../../src/tables.mjs';
 import { number, rows_of, table } from '../markdown.mjs';
 
@@ -139,3 +142,46 @@ export const rods_table = (tables) =>
         ];
       }),
   );
+
+/// What others have published, and ours by the fastest run of each size and effect. A
+/// frame of ours is 1/60 s.
+export const published_table = (tables, root) => {
+  const path = 'experiments/heads/published.csv';
+  const published = parse_csv(readFileSync(join(root, path), 'utf8'), path, {
+    required: ['source', 'computed', 'machine', 'strands', 'cost_per_frame_s'],
+    numeric: ['strands', 'cost_per_frame_s'],
+  }).rows;
+  const effects = {
+    drag: 'gravity and drag',
+    body: 'gravity, drag, contact with a head',
+    interaction: 'gravity, drag, repulsion and drag between hairs',
+  };
+  const rows = all_heads(tables).filter((row) => Number(row.bits) === 64);
+  const ours = [...new Set(rows.map((row) => row.strands))].flatMap((strands) =>
+    Object.entries(effects).flatMap(([kind, computed]) => {
+      const of_kind = rows.filter((row) => row.strands === strands && row.effects === kind);
+      if (of_kind.length === 0) return [];
+      const row = least(of_kind, 'cost_per_frame_s');
+      return [
+        [
+          'here',
+          `super-helices of ${row.elements} elements, steps of ${number(1e3 * row.dt_s)} ms; ${computed}`,
+          `${row.threads} threads`,
+          strands,
+          row.cost_per_frame_s,
+        ],
+      ];
+    }),
+  );
+  return table(
+    ['source', 'what is computed', 'on', 'hairs', 'a frame, s', 'of a hair, µs'],
+    [...published, ...ours].map(([source, computed, machine, strands, cost]) => [
+      source,
+      computed,
+      machine,
+      strands,
+      number(cost),
+      number((1e6 * cost) / strands),
+    ]),
+  );
+};

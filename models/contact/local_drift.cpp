@@ -1,0 +1,113 @@
+#include "models/contact/local_drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tress::models {
+namespace {
+
+constexpr double end = std::numeric_limits<double>::infinity();
+constexpr Box none{{end, end, end}, {-end, -end, -end}};
+constexpr std::size_t pieces = 8;            // of work
+constexpr std::size_t segments_of_cell = 2;  // at least, on average
+
+void include(Box& all, const Box& more) {
+  all.least = {std::min(all.least.x, more.least.x), std::min(all.least.y, more.least.y),
+               std::min(all.least.z, more.least.z)};
+  all.most = {std::max(all.most.x, more.most.x), std::max(all.most.y, more.most.y),
+              std::max(all.most.z, more.most.z)};
+}
+
+}  // namespace
+
+std::size_t LocalDrift::cell(const Vec& at) const noexcept {
+  const auto index = [this](double place, double corner, int count) {
+    const double i = inverse_side_ * (place - corner), last = count - 1;
+    return static_cast<std::size_t>(i > 0 ? i < last ? i : last : 0);
+  };
+  const auto number = [this](int axis) { return static_cast<std::size_t>(count_[axis]); };
+  return (index(at.z, corner_.z, count_[2]) * number(1) +
+          index(at.y, corner_.y, count_[1])) *
+             number(0) +
+         index(at.x, corner_.x, count_[0]);
+}
+
+void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
+                      const Loop& loop) {
+  const Box all = segments.extent();
+  corner_ = all.least;
+  const Vec width = all.most - all.least;
+  const double limit = 1 + static_cast<double>(segments.points() / segments_of_cell);
+  const auto number = [&](double along) {
+    return std::max(1.0, std::ceil(inverse_side_ * along));
+  };
+  for (double side = sight;; side *= 1.1) {
+    inverse_side_ = 1 / side;
+    if (number(width.x) * number(width.y) * number(width.z) <= limit) break;
+  }
+  const double along[] = {width.x, width.y, width.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    count_[axis] = static_cast<int>(number(along[axis]));
+  }
+  const auto cells = static_cast<std::size_t>(count_[0]) *
+                     static_cast<std::size_t>(count_[1]) *
+                     static_cast<std::size_t>(count_[2]);
+  cell_of_.resize(segments.parts());
+  in_parts(segments.points(), loop, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      segments.each_part(i, x, [&](std::size_t part, const Vec& middle) {
+        cell_of_[part] = static_cast<int>(cell(middle));
+      });
+    }
+  });
+  parts_.assign(cells, 0);
+  for (const int c : cell_of_) ++parts_[static_cast<std::size_t>(c)];
+  near_.resize(cells);
+  at_.resize(cells);
+}
+
+void LocalDrift::move(const SegmentCells& segments, std::span<const Vec> by,
+                      const Loop& loop) {
+  const std::size_t cells = near_.size(), points = segments.points();
+  own_.assign(pieces * cells, none);
+  loop(pieces, [&](std::size_t piece) {
+    Box* const own = &own_[piece * cells];
+    for (std::size_t i = points * piece / pieces; i < points * (piece + 1) / pieces;
+         ++i) {
+      const auto [from, to] = segments.parts_of(i);
+      if (from == to || !is_finite(by[i]) || !is_finite(by[i + 1])) continue;
+      for (std::size_t part = from; part < to; ++part) {
+        Box& box = own[cell_of_[part]];
+        box.include(by[i]);
+        box.include(by[i + 1]);
+      }
+    }
+  });
+  near_.assign(cells, none);
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    for (std::size_t c = 0; c < cells; ++c) include(near_[c], own_[piece * cells + c]);
+  }
+  // With those beside it along one axis after the other.
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto count = static_cast<std::size_t>(count_[axis]);
+    at_ = near_;
+    for (std::size_t c = 0; c < cells; ++c) {
+      const std::size_t place = c / stride % count;
+      if (place > 0) include(near_[c], at_[c - stride]);
+      if (place + 1 < count) include(near_[c], at_[c + stride]);
+    }
+    stride *= count;
+  }
+  double sum = 0, all = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (parts_[c] == 0 || !(near_[c].least.x <= near_[c].most.x)) continue;
+    const double half = 0.5 * norm(near_[c].most - near_[c].least);
+    sum += parts_[c] * half;
+    all += parts_[c];
+  }
+  mean_ = all > 0 ? sum / all : 0;
+}
+
+}  // namespace tress::models
