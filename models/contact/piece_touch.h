@@ -34,6 +34,14 @@ struct PieceTouch {
   std::array<double, 4> weights() const { return {1 - s, s, t - 1, -t}; }
 };
 
+/// Between pieces with these ends, m.
+double distance(const std::array<Vec, 4>& ends);
+
+/// Where the pieces are first nearer to each other than `reach` in the step, or at its
+/// end; by steps in which they cannot come so near [Mirtich 1996, conservative
+/// advancement].
+PieceTouch first_touch(const MovingPieces& pieces, double reach);
+
 /// If one piece passes through the other during the step, the place and the side where it
 /// came from: axes of no thickness that cross at a time are coplanar then, which is a
 /// root of a cubic polynomial [Provot 1997]. Otherwise the nearest points at the end of
