@@ -123,6 +123,7 @@ PieceMotion::PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1,
     : middle(0.25 * (from0 + to0 + from1 + to1)),
       half(0.25 * (from1 + to1 - from0 - to0)),
       moved(0.5 * (to0 - from0 + to1 - from1)),
+      length(norm(half)),
       turned(0.5 * norm(to1 - from1 - (to0 - from0))) {}
 
 bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
@@ -134,9 +135,9 @@ bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
   const double square = dot(normal, normal), along = dot(between, normal);
   if (along * along > far * far * square) return false;
   const double sine = std::sqrt(square);
-  for (const Vec& half : {p.half, q.half}) {
-    const Vec beside = cross(between, half);
-    const double most = sine + far * std::sqrt(dot(half, half));
+  for (const PieceMotion* piece : {&p, &q}) {
+    const Vec beside = cross(between, piece->half);
+    const double most = sine + far * piece->length;
     if (dot(beside, beside) > most * most) return false;
   }
   const StraightPiece first(p.middle - p.half, p.middle + p.half),

@@ -17,8 +17,8 @@ struct MovingPieces {
 struct PieceMotion {
   PieceMotion() = default;
   PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1, const Vec& to1);
-  Vec middle, half, moved;  // m
-  double turned = 0;        // m
+  Vec middle, half, moved;        // m
+  double length = 0, turned = 0;  // of half, m
 };
 
 /// False: they are never nearer to each other than `reach` (m). A bound, by where they
