@@ -168,6 +168,19 @@ class MaterialPoints {
   /// du/dv, (3 count x n) by rows. False: not known in closed form; it can be had from
   /// mean() or velocities().
   virtual bool jacobian(double /*t*/, In /*q*/, Out /*j*/) { return false; }
+  /// b += J^T f, J = du/dv, of forces f (3 numbers each, N) on ascending points. False:
+  /// as jacobian().
+  virtual bool pull_back(double /*t*/, In /*q*/, std::span<const int> /*points*/,
+                         In /*f*/, InOut /*b*/) {
+    return false;
+  }
+  /// J S^-1 J^T of ascending points, with S as the last linearize() left it, at this t
+  /// and q: 3x3 blocks by rows, those of the force on the first point, of the second ...
+  /// False: to be had from jacobian() or mean() and System::solve().
+  virtual bool responses(double /*t*/, In /*q*/, std::span<const int> /*points*/,
+                         Out /*blocks*/) {
+    return false;
+  }
   /// Largest |length/rest - 1| over the segments of the body. Empty: not available.
   virtual std::optional<double> stretch(double /*t*/, In /*q*/) { return {}; }
 

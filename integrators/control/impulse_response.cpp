@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "contract/input_error.h"
 
@@ -46,12 +47,13 @@ Status ImpulseResponse::prepare(double h, In v_before) noexcept {
   std::ranges::copy(method_.q(), q_.begin());
   std::ranges::copy(method_.v(), v_.begin());
   for (std::size_t i = 0; i < a_.size(); ++i) a_[i] = (v_[i] - v_before[i]) / h;
-  if (!linear_) differentiate();
+  differentiated_ = false;
   return dynamics_.linearize(method_.time(), q_, v_, a_, lambda_, {1, h, h * h});
 }
 
 /// u = J v + what the root prescribes.
 void ImpulseResponse::differentiate() noexcept {
+  if (linear_ || std::exchange(differentiated_, true)) return;
   MaterialPoints& points = *system_.material_points();
   const std::size_t n = a_.size();
   if (points.jacobian(method_.time(), q_, jacobian_)) return;
@@ -104,6 +106,12 @@ void ImpulseResponse::velocity(int point, In v, double* u) const noexcept {
 Status ImpulseResponse::compliance(std::span<const int> points,
                                    std::vector<double>& blocks) {
   blocks.resize(9 * points.size() * points.size());
+  if (dynamics_.m() == 0 &&
+      system_.material_points()->responses(method_.time(), method_.q(), points, blocks)) {
+    for (double& entry : blocks) entry *= h_;
+    return Status::ok;
+  }
+  differentiate();
   for (std::size_t of = 0; of < points.size(); ++of) {
     for (std::size_t d = 0; d < 3; ++d) {
       std::ranges::fill(r_, 0.0);
@@ -127,8 +135,12 @@ Status ImpulseResponse::compliance(std::span<const int> points,
 Status ImpulseResponse::respond(std::span<const int> points, In forces) noexcept {
   std::ranges::fill(r_, 0.0);
   std::ranges::fill(c_, 0.0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    pull_back(points[i], &forces[3 * i], r_);
+  if (!system_.material_points()->pull_back(method_.time(), method_.q(), points, forces,
+                                            r_)) {
+    differentiate();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      pull_back(points[i], &forces[3 * i], r_);
+    }
   }
   const Status s = dynamics_.solve(r_, c_);
   if (s != Status::ok) return s;

@@ -16,7 +16,8 @@ namespace tress::integrators {
 ///
 /// S at the state (q*, v*) at the end of the step without them, with the acceleration
 /// that led there; constraints of the strand are held. J comes from
-/// MaterialPoints::mean() or jacobian(), or column by column from velocities().
+/// MaterialPoints::mean() or jacobian(), or column by column from velocities(), unless
+/// the model knows what is needed of it (pull_back(), responses()).
 class ImpulseResponse {
  public:
   /// Throws InputError if the method cannot go on after impulses.
@@ -47,6 +48,7 @@ class ImpulseResponse {
   std::vector<std::optional<MaterialPoints::Mean>> means_;
   bool linear_;                   // every point is a mean of coordinates
   std::vector<double> jacobian_;  // (3 points x coordinates), otherwise
+  bool differentiated_ = false;   // it is that of this step
   std::vector<double> a_, lambda_, r_, c_, q_, v_, u_, u_rest_;
 };
 

@@ -23,9 +23,14 @@ Direction direction(double c, double s) {
   const double inverse = 1 / std::sqrt(c * c + s * s);
   return {inverse * c, inverse * s};
 }
+// Up to this a^2 the length sqrt(1 + a^2) is 1 + a^2/2 to rounding.
+constexpr double small_square = 1e-8;
 /// Turned by an angle, to first order in it.
 Direction turned(const Direction& e, double angle) {
-  return direction(e.c - angle * e.s, e.s + angle * e.c);
+  const double c = e.c - angle * e.s, s = e.s + angle * e.c, square = angle * angle;
+  if (square > small_square) return direction(c, s);
+  const double inverse = 1 - 0.5 * square;
+  return {inverse * c, inverse * s};
 }
 
 /// Sliding with u_t along a direction e.
@@ -51,14 +56,17 @@ class Slide {
     return {share, share * b_f - b_.x * (tn_f - mu_ * fe),
             -mu_ * nt_f * b_f - share * b_e + b_.x * (tn_e + mu_ * by_angle)};
   }
+  double share(const Direction& e) const {
+    return w_.r0.x - mu_ * (w_.r0.y * e.c + w_.r0.z * e.s);
+  }
   /// The force there; empty if it pushes along the motion.
   std::optional<Vec> force(const Direction& e) const {
-    const double share = at(e).share;
+    const double share = this->share(e);
     if (!(share > 0)) return {};
     const double normal = -b_.x / share;
     const Vec r{normal, -mu_ * normal * e.c, -mu_ * normal * e.s};
-    const Vec u = w_ * r + b_;
-    if (!(u.y * e.c + u.z * e.s >= 0)) return {};
+    const double u_y = dot(w_.r1, r) + b_.y, u_z = dot(w_.r2, r) + b_.z;
+    if (!(u_y * e.c + u_z * e.s >= 0)) return {};
     return r;
   }
 
@@ -72,8 +80,8 @@ class Slide {
 constexpr double least_share = 0.1;
 
 constexpr int newton_iterations = 12, searched = 48, halvings = 50;
-// Newton's steps are squared each time: the one after this is rounding.
-constexpr double last_step = 1e-8;
+// Newton's steps are squared each time: the one after this is 1e-12.
+constexpr double last_step = 1e-6;
 
 std::optional<Vec> by_newton(const Slide& slide, Direction e) {
   for (int i = 0; i < newton_iterations; ++i) {
@@ -129,11 +137,12 @@ Vec contact_force(const Mat3& w, const Vec& b, double mu, const Vec& guess) {
   const Direction start = direction(-sticks.y, -sticks.z);
   if (const auto r = by_newton(slide, start)) return *r;
   if (const auto r = by_search(slide)) return *r;
-  const double normal = -b.x / std::max(slide.at(start).share, least_share * w.r0.x);
+  const double normal = -b.x / std::max(slide.share(start), least_share * w.r0.x);
   return {normal, -mu * normal * start.c, -mu * normal * start.s};
 }
 
 double contact_violation(const Mat3& w, const Vec& u, const Vec& r, double mu) {
+  if (u.x >= 0 && r.x == 0 && r.y == 0 && r.z == 0) return 0;
   const double m = trace(w) / 3;
   if (mu == 0) {
     const double normal = std::abs(m * r.x + u.x - std::hypot(m * r.x, u.x));

@@ -19,11 +19,12 @@ namespace tress::models {
 /// therefore keeps near its last force by `proximal` times its own compliance [Acary &
 /// Brogliato 2008, section 13.4], which leaves the solution as it is.
 ///
-/// Many contacts are divided into up to four parts of neighbours, on any threads, and the
-/// contacts between the parts, which are visited after those within them: by the contacts
-/// alone, so that the result does not depend on the threads.
+/// Many contacts are divided into up to four parts of neighbours, on any threads. Those
+/// between two parts are visited after those within parts, two pairs of parts at a time:
+/// by the contacts alone, so that the result does not depend on the threads.
 ///
-/// A visit of a contact costs O(points of its bodies), about 0.2 us at 10 points each.
+/// A visit of a contact costs O(points of its bodies), about 0.1 us at 10 points each. A
+/// contact that has settled is left alone until the velocities of its bodies change.
 class ContactProblem {
  public:
   /// A point of a body, and its weight in the contact's velocity.
@@ -39,16 +40,34 @@ class ContactProblem {
     Vec force;   // a guess, then the solution, in these axes, N
     Mat3 local;  // set by solve()
   };
+  /// How a body responds: velocities (m/s) of its points per force (N) on each point.
+  class Compliance {
+   public:
+    Compliance() = default;
+    /// 3x3 blocks, point by point of the forces.
+    explicit Compliance(std::span<const Mat3> blocks) { set(blocks); }
+    void set(std::span<const Mat3> blocks);
+
+   private:
+    friend class ContactProblem;
+    std::size_t points_ = 0;
+    // By point and component of the force: all points. The fourth lane is not used.
+    std::vector<Pack> columns_;
+  };
   struct Outcome {
     int sweeps = 0;
     double violation = 0;  // the largest of all contacts, m/s
   };
 
   void clear();
-  /// Returns its number. compliance: velocities (m/s) of its points per force (N) on each
-  /// point, 3x3 blocks, point by point of the forces.
-  int add_body(std::span<const Mat3> compliance, int points);
+  /// Returns its number. The compliance must outlive the use of the problem.
+  int add_body(const Compliance& compliance);
   void add(const Contact& contact) { contacts_.push_back(contact); }
+  /// So many contacts, to be set before solve(); valid until others are added.
+  std::span<Contact> add(std::size_t count) {
+    contacts_.resize(contacts_.size() + count);
+    return std::span(contacts_).last(count);
+  }
 
   /// Contacts of points that nothing moves hold no forces. Until no other contact
   /// violates the laws by more than `tolerance` (m/s), or so many sweeps.
@@ -66,18 +85,28 @@ class ContactProblem {
 
  private:
   struct Body {
-    // The fourth lane is not used.
-    std::vector<Pack> compliance;  // by point and component of the force: all points
-    std::vector<Pack> change;      // of its points, m/s
-    std::vector<Vec> forces;       // N
+    const Compliance* compliance;
+    std::vector<Pack> change;  // of its points, m/s
+    std::vector<Vec> forces;   // N
+    long pushes = 0;           // so often its velocities have changed
   };
-  /// Contacts that share no body with those of other parts, but for the last one.
+  /// What solve() knows of a contact.
+  struct Solved {
+    struct Pushed {
+      Body* body = nullptr;
+      const Pack* columns = nullptr;  // changes of all points by unit forces along axes
+      long pushes = -1;               // of the body when the contact had settled
+    };
+    std::array<Pushed, 2> bodies;  // the second is null if both are one
+    Contact* contact;
+    Mat3 near;  // its compliance with the proximal term
+  };
+  /// Contacts that share no body with those of parts that are visited at once.
   struct Part {
-    std::vector<Contact*> contacts, busy;
+    std::vector<Solved> contacts;
+    std::vector<Solved*> busy;
+    std::vector<Pack> columns;
     double violation = 0;  // at the visits of the last sweep
-  };
-  struct Limits {
-    double proximal, quiet;
   };
 
   static void one_by_one(std::size_t count,
@@ -86,16 +115,19 @@ class ContactProblem {
   }
   void divide();
   void each_part(const Loop& loop, const std::function<void(Part&)>& act);
-  void begin(Contact& contact);
-  void push(const Contact& contact, const Vec& force);
-  double violation(const Contact& contact) const;
-  double visit(Contact& contact, const Limits& limits);
-  void sweep(Part& part, const Limits& limits);
+  void combine(Part& part, double proximal);
+  static void push(const Solved& solved, const Vec& force);
+  Vec change(const Contact& contact) const;
+  double visit(Solved& solved, double quiet);
+  void sweep(Part& part, double quiet);
+  double largest_seen() const;
   double worst(const Loop& loop);
 
   std::vector<Body> bodies_;
   std::vector<Contact> contacts_;
+  // Those within parts, then those between two parts: pairs that share none in turn.
   std::vector<Part> parts_;
+  std::vector<std::size_t> rounds_;  // parts that are visited at once, in turn
 };
 
 }  // namespace tress::models

@@ -19,6 +19,10 @@ constexpr double stays = 0.5;
 /// The bend of a strand that touches itself is a half turn at least.
 constexpr double half_turn = 0.5 * std::numbers::pi;
 
+// Of the thickness: pieces that were so much farther apart at the start of a step than
+// they were along the normal at its end have come from another side.
+constexpr double other_side = 0.1;
+
 // Of the thickness: strands that forces move by less need not be looked at again.
 constexpr double still = 1e-3;
 
@@ -101,10 +105,7 @@ double PieceSearch::gap(const Found& pair, In x) const {
 
 double PieceSearch::depth(const Found& pair) const {
   const MovingPieces pieces = moving(pair.first, pair.second);
-  const StraightPiece first(pieces.to[0], pieces.to[1]),
-      second(pieces.to[2], pieces.to[3]);
-  const NearestPoints near = nearest(first, second);
-  const double distance = norm(first.at(near.of_first) - second.at(near.of_second));
+  const double distance = models::distance(pieces.to);
   const bool passed = gap_now(pair) < 0 && touch(pieces, 0).has_value();
   return thickness(pair.first, pair.second) + (passed ? distance : -distance);
 }
@@ -201,9 +202,15 @@ bool PieceSearch::look(int first, int second, const std::function<bool(int, int)
     reach = thick;
     if (!within(reach)) return false;
   }
-  const std::optional<PieceTouch> at = touch(moving(first, second), reach);
+  const MovingPieces pieces = moving(first, second);
+  const std::optional<PieceTouch> at = touch(pieces, reach);
   if (!at) return false;
   found = {first, second, *at};
+  // An end may slip around another piece within a step: it is held where it came from.
+  const double before = std::min(thick, distance(pieces.from));
+  if (gap_before(found) + thick < before - other_side * thick) {
+    found.at = first_touch(pieces, thick);
+  }
   // Along a bend a strand is near itself by its thickness.
   return strand_of(first) != strand_of(second) ||
          arc(second, at->t) - arc(first, at->s) >= half_turn * thick;

@@ -83,13 +83,47 @@ std::optional<PieceTouch> crossing(const MovingPieces& p, double part) {
   return PieceTouch{near.of_first, near.of_second, normal};
 }
 
+// Of the reach: where pieces are as near as it, and the steps at most until then.
+constexpr double as_near = 1e-3;
+constexpr int most_advances = 60;
+
 }  // namespace
+
+double distance(const std::array<Vec, 4>& ends) {
+  const StraightPiece first(ends[0], ends[1]), second(ends[2], ends[3]);
+  const NearestPoints near = nearest(first, second);
+  return norm(first.at(near.of_first) - second.at(near.of_second));
+}
+
+PieceTouch first_touch(const MovingPieces& p, double reach) {
+  // No two points approach each other by more: their motion is bilinear in places.
+  double most = 0;
+  for (const std::size_t i : {0u, 1u}) {
+    for (const std::size_t j : {2u, 3u}) {
+      most = std::fmax(most, norm(p.to[i] - p.from[i] - (p.to[j] - p.from[j])));
+    }
+  }
+  PieceTouch found{};
+  double part = 0;
+  for (int k = 0; k < most_advances; ++k) {
+    const Pieces there = at(p, part);
+    const NearestPoints near = nearest(there.first, there.second);
+    const Vec gap = there.first.at(near.of_first) - there.second.at(near.of_second);
+    const double distance = norm(gap);
+    if (distance == 0) break;
+    found = {near.of_first, near.of_second, (1 / distance) * gap};
+    if (part == 1 || distance <= (1 + as_near) * reach) break;
+    part = std::fmin(1, part + (distance - reach) / most);
+  }
+  return found;
+}
 
 PieceMotion::PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1,
                          const Vec& to1)
     : middle(0.25 * (from0 + to0 + from1 + to1)),
       half(0.25 * (from1 + to1 - from0 - to0)),
       moved(0.5 * (to0 - from0 + to1 - from1)),
+      length(norm(half)),
       turned(0.5 * norm(to1 - from1 - (to0 - from0))) {}
 
 bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
@@ -101,9 +135,9 @@ bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
   const double square = dot(normal, normal), along = dot(between, normal);
   if (along * along > far * far * square) return false;
   const double sine = std::sqrt(square);
-  for (const Vec& half : {p.half, q.half}) {
-    const Vec beside = cross(between, half);
-    const double most = sine + far * std::sqrt(dot(half, half));
+  for (const PieceMotion* piece : {&p, &q}) {
+    const Vec beside = cross(between, piece->half);
+    const double most = sine + far * piece->length;
     if (dot(beside, beside) > most * most) return false;
   }
   const StraightPiece first(p.middle - p.half, p.middle + p.half),

@@ -17,8 +17,8 @@ struct MovingPieces {
 struct PieceMotion {
   PieceMotion() = default;
   PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1, const Vec& to1);
-  Vec middle, half, moved;  // m
-  double turned = 0;        // m
+  Vec middle, half, moved;        // m
+  double length = 0, turned = 0;  // of half, m
 };
 
 /// False: they are never nearer to each other than `reach` (m). A bound, by where they
@@ -33,6 +33,14 @@ struct PieceTouch {
   /// Weights of the four ends in the vector from the second to the first point.
   std::array<double, 4> weights() const { return {1 - s, s, t - 1, -t}; }
 };
+
+/// Between pieces with these ends, m.
+double distance(const std::array<Vec, 4>& ends);
+
+/// Where the pieces are first nearer to each other than `reach` in the step, or at its
+/// end; by steps in which they cannot come so near [Mirtich 1996, conservative
+/// advancement].
+PieceTouch first_touch(const MovingPieces& pieces, double reach);
 
 /// If one piece passes through the other during the step, the place and the side where it
 /// came from: axes of no thickness that cross at a time are coplanar then, which is a

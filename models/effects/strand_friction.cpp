@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace tress::models {
@@ -54,6 +55,8 @@ constexpr double second_place = 0.1;
 // step has its contact still, since forces of others may close it again.
 constexpr double stays = 0.5;
 
+constexpr std::size_t contact_group = 256;  // of contacts that one thread sets at a time
+
 // Of the thickness: contacts nearer than this along both strands are one.
 constexpr double joint = 0.25;
 
@@ -80,6 +83,12 @@ constexpr auto by_pair = [](const auto& a, const auto& b) {
 
 }  // namespace
 
+/// With the force (N, world) that it had in the last step.
+void StrandFriction::Known::start_from(const Vec& last, const Vec& normal) {
+  force = axes_of(normal) * last;
+  world = last;
+}
+
 std::span<const Parameter> strand_friction_parameters() { return parameters_of_friction; }
 
 StrandFriction::StrandFriction(const Parameters& parameters,
@@ -95,7 +104,7 @@ StrandFriction::StrandFriction(const Parameters& parameters,
         {.touched = {},
          .place = std::vector<int>(static_cast<std::size_t>(strand.points), -1),
          .compliance = {},
-         .body = -1});
+         .forces = {}});
   }
   for (const auto& obstacle : obstacles_) {
     const double parts = std::ceil(longest / obstacle->spacing());
@@ -114,10 +123,12 @@ void StrandFriction::begin(double t, double h, In from, In to, In u) {
       strand.place[static_cast<std::size_t>(point)] = -1;
     }
     strand.touched.clear();
+    strand.forces.clear();
     strand.body = -1;
   }
   touching_.clear();
   stale_.clear();
+  moved_.clear();
   rounds_ = 0;
   outcome_ = {};
 }
@@ -138,7 +149,7 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
         strand_of(i) != strand_of(found.first)) {
       continue;
     }
-    const Known from{{i, found.second - 1, {}}, {}, {}};
+    const Known from{{i, found.second - 1, {}}, {}, {}, {}};
     auto at = std::lower_bound(all.begin(), all.end(), from, by_pair);
     for (; at != all.end() && at->first == i && at->second <= found.second + 1; ++at) {
       if (strand_of(at->second) == strand_of(found.second) && one_place(*at, found)) {
@@ -151,14 +162,14 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
 
 /// The contact of that pair in the last step; null: none.
 const StrandFriction::Known* StrandFriction::last_of(int first, int second) const {
-  const Known pair{{first, second, {}}, {}, {}};
+  const Known pair{{first, second, {}}, {}, {}, {}};
   const auto last = std::lower_bound(before_.begin(), before_.end(), pair, by_pair);
   return last != before_.end() && !by_pair(pair, *last) ? &*last : nullptr;
 }
 
 /// Adds to found_ what is no contact yet.
 void StrandFriction::admit(const PieceSearch::Found& at) {
-  Known found{at, {}, {}};
+  Known found{at, {}, {}, {}};
   if (seen(found, known_) != known_.end()) return;
   // Of two pieces at a joint the nearer one has the normal; the other is met at its end.
   if (const auto same_place = seen(found, found_); same_place != found_.end()) {
@@ -171,7 +182,7 @@ void StrandFriction::admit(const PieceSearch::Found& at) {
     return;
   }
   const Known* const last = last_of(found.first, found.second);
-  if (!again && last != nullptr) found.force = last->force;
+  if (!again && last != nullptr) found.start_from(last->world, found.at.normal);
   found_.push_back(found);
 }
 
@@ -188,17 +199,17 @@ void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
     };
     // A piece begins where the one before ends.
     for (int part = piece == first ? 0 : 1; part <= parts; ++part) {
-      Known at{{piece, code(obstacle, part), {}}, {}, {}};
+      Known at{{piece, code(obstacle, part), {}}, {}, {}, {}};
       if (std::binary_search(known_.begin(), known_.end(), at, by_pair)) continue;
       const Known* const last = last_of(at.first, at.second);
-      const bool pushed = last != nullptr && dot(last->force, last->force) > 0;
+      const bool pushed = last != nullptr && dot(last->world, last->world) > 0;
       at.at.s = static_cast<double>(part) / parts;
       const auto plane =
           step.touch(place(search_.from(), at.at.s), place(search_.now(), at.at.s),
                      pushed ? stays * search_.thickness(piece, piece) : 0);
       if (!plane) continue;
       at.plane = *plane;
-      if (pushed) at.force = last->force;
+      if (pushed) at.start_from(last->world, at.plane.normal);
       found.push_back(at);
     }
   }
@@ -232,7 +243,7 @@ bool StrandFriction::find(const Loop& loop) {
   // A pair that pushed in the last step counts a little farther apart.
   const auto pushed = [this](int first, int second) {
     const Known* const last = last_of(first, second);
-    return last != nullptr && dot(last->force, last->force) > 0;
+    return last != nullptr && dot(last->world, last->world) > 0;
   };
   for (const PieceSearch::Found& at : search_.find(loop, pushed)) admit(at);
   for (const std::vector<Known>& found : on_obstacles_) {
@@ -321,52 +332,69 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
   }
   contact.free = contact.axes * u;
   contact.free.x = (gap - std::min(0.0, kept * before)) / h_;
-  contact.force = contact.axes * known.force;
+  contact.force = known.force;
   return contact;
 }
 
 void StrandFriction::respond(std::size_t strand, In compliance) {
-  std::vector<Mat3>& blocks = strands_[strand].compliance;
-  blocks.clear();
+  std::vector<Mat3> blocks;
+  blocks.reserve(compliance.size() / 9);
   for (std::size_t i = 0; i < compliance.size(); i += 9) {
     const double* row = &compliance[i];
     blocks.push_back({load3(row), load3(row + 3), load3(row + 6)});
   }
+  strands_[strand].compliance.set(blocks);
 }
 
 void StrandFriction::solve(const Loop& loop) {
   problem_.clear();
   for (const std::size_t k : touching_) {
-    Touched& strand = strands_[k];
-    strand.body =
-        problem_.add_body(strand.compliance, static_cast<int>(strand.touched.size()));
+    strands_[k].body = problem_.add_body(strands_[k].compliance);
   }
-  for (const Known& known : known_) problem_.add(contact(known));
+  const std::span<ContactProblem::Contact> contacts = problem_.add(known_.size());
+  loop((known_.size() + contact_group - 1) / contact_group, [&](std::size_t g) {
+    for (std::size_t i = g * contact_group;
+         i < std::min(known_.size(), (g + 1) * contact_group); ++i) {
+      contacts[i] = contact(known_[i]);
+    }
+  });
   const ContactProblem::Outcome outcome =
       problem_.solve(proximal, law_.tolerance, law_.sweeps, loop);
   outcome_ = {outcome_.sweeps + outcome.sweeps, outcome.violation};
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    const ContactProblem::Contact& solved = problem_.contacts()[i];
-    known_[i].force = solved.force * solved.axes;
+    known_[i].force = contacts[i].force;
+    known_[i].world = contacts[i].force * contacts[i].axes;
+  }
+  loop(touching_.size(), [&](std::size_t i) { take_forces(strands_[touching_[i]]); });
+  moved_.clear();
+  std::ranges::copy_if(touching_, std::back_inserter(moved_),
+                       [this](std::size_t k) { return strands_[k].moved; });
+}
+
+/// The forces on its points, and whether they are other ones than before.
+void StrandFriction::take_forces(Touched& strand) {
+  const std::span<const Vec> found =
+      problem_.forces(static_cast<std::size_t>(strand.body));
+  strand.moved = false;
+  if (strand.forces.size() != 3 * found.size()) {  // those so far are on other points
+    strand.moved = std::ranges::any_of(strand.forces, [](double f) { return f != 0; });
+    strand.forces.assign(3 * found.size(), 0.0);
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    double* const known = &strand.forces[3 * i];
+    const Vec& f = found[i];
+    strand.moved |= known[0] != f.x || known[1] != f.y || known[2] != f.z;
+    store3(f, known);
   }
 }
 
 void StrandFriction::place(std::size_t strand, In x) { search_.place(strand, x); }
 
-std::vector<double> StrandFriction::forces(std::size_t strand) const {
-  std::vector<double> all;
-  for (const Vec& f : problem_.forces(static_cast<std::size_t>(strands_[strand].body))) {
-    all.insert(all.end(), {f.x, f.y, f.z});
-  }
-  return all;
-}
-
 void StrandFriction::add_loads(std::size_t strand, InOut f) const {
-  if (strands_[strand].body < 0) return;
-  const std::vector<double> all = forces(strand);
-  for (std::size_t i = 0; i < strands_[strand].touched.size(); ++i) {
-    double* to = &f[3 * static_cast<std::size_t>(strands_[strand].touched[i])];
-    store3(load3(to) + load3(&all[3 * i]), to);
+  const Touched& own = strands_[strand];
+  for (std::size_t i = 0; i < own.touched.size(); ++i) {
+    double* to = &f[3 * static_cast<std::size_t>(own.touched[i])];
+    store3(load3(to) + load3(&own.forces[3 * i]), to);
   }
 }
 
@@ -394,7 +422,7 @@ std::vector<StrandFriction::Touch> StrandFriction::touches() const {
     if (known.second < 0) continue;
     all.push_back({strand_of(known.first), strand_of(known.second),
                    search_.arc(known.first, known.at.s),
-                   search_.arc(known.second, known.at.t), known.force});
+                   search_.arc(known.second, known.at.t), known.world});
   }
   return all;
 }
@@ -402,7 +430,7 @@ std::vector<StrandFriction::Touch> StrandFriction::touches() const {
 std::vector<double> StrandFriction::memory() const {
   std::vector<double> all{deepest_};
   for (const Known& known : known_) {
-    const Vec& f = known.force;
+    const Vec& f = known.world;
     for (const double x : {static_cast<double>(known.first),
                            static_cast<double>(known.second), f.x, f.y, f.z}) {
       all.push_back(x);
@@ -416,6 +444,7 @@ void StrandFriction::recall(In memory) {
   deepest_ = memory.empty() ? 0 : memory[0];
   for (std::size_t i = 1; i < memory.size(); i += 5) {
     known_.push_back({{static_cast<int>(memory[i]), static_cast<int>(memory[i + 1]), {}},
+                      {},
                       load3(&memory[i + 2]),
                       {}});
   }

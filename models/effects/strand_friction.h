@@ -33,8 +33,8 @@ std::span<const Parameter> strand_friction_parameters();
 /// one.
 ///
 /// Use: begin(), then while find(): respond() for stale() strands, solve(), and place()
-/// for touching() ones. forces() are then to be applied. O(segments) for the search,
-/// O(touching) for the rest.
+/// for moved() ones. forces() are then to be applied to touching() ones. O(segments) for
+/// the search, O(touching) for the rest.
 class StrandFriction {
  public:
   struct Law {
@@ -64,12 +64,14 @@ class StrandFriction {
   /// of the force on the first point, of the second ...
   void respond(std::size_t strand, In compliance);
   void solve(const Loop& loop);
+  /// Strands on which solve() has found other forces than before, ascending.
+  std::span<const std::size_t> moved() const { return moved_; }
   /// Where all points of a strand are with the forces found, 3 numbers each.
   void place(std::size_t strand, In x);
 
   /// Of the step: strands with contacts, ascending, and the forces (N) on points_of().
   std::span<const std::size_t> touching() const { return touching_; }
-  std::vector<double> forces(std::size_t strand) const;
+  In forces(std::size_t strand) const { return strands_[strand].forces; }
   /// f += the forces on all points of a strand, 3 numbers each, N.
   void add_loads(std::size_t strand, InOut f) const;
 
@@ -104,8 +106,11 @@ class StrandFriction {
   /// A pair of pieces, or a place on a piece (at.s) and an obstacle, of which `second`
   /// then is the code().
   struct Known : PieceSearch::Found {
-    Vec force;              // world, N
+    Vec force;              // in the contact's axes, N
+    Vec world;              // the same there
     Obstacle::Plane plane;  // of an obstacle
+
+    void start_from(const Vec& last, const Vec& normal);
   };
   /// A piece is looked at in so many parts at most, at the end of each.
   static constexpr int most_parts = 15;
@@ -123,8 +128,10 @@ class StrandFriction {
   struct Touched {
     std::vector<int> touched;  // its points
     std::vector<int> place;    // of each of its points among them, -1: none
-    std::vector<Mat3> compliance;
-    int body = -1;  // of the problem
+    ContactProblem::Compliance compliance;
+    std::vector<double> forces;  // on them, N
+    int body = -1;               // of the problem
+    bool moved = false;          // by other forces than before
   };
 
   std::size_t strand_of(int piece) const { return search_.strand_of(piece); }
@@ -139,6 +146,7 @@ class StrandFriction {
   void touch_points();
   void measure_depth();
   ContactProblem::Contact contact(const Known& known) const;
+  void take_forces(Touched& strand);
 
   Law law_;
   PieceSearch search_;
@@ -152,7 +160,7 @@ class StrandFriction {
   std::vector<std::shared_ptr<const Obstacle>> obstacles_;
   std::vector<int> parts_;                        // of a piece, by obstacle
   std::vector<std::vector<Known>> on_obstacles_;  // of each strand, found last
-  std::vector<std::size_t> stale_, touching_;
+  std::vector<std::size_t> stale_, touching_, moved_;
   ContactProblem problem_;
   ContactProblem::Outcome outcome_;
   double deepest_ = 0;

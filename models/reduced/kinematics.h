@@ -150,8 +150,10 @@ class Kinematics {
     Frame frame;
     Vec x, v, omega;
   };
-  /// The root and the tips of all segments, without what only move() needs. A function of
-  /// its arguments alone, whatever was computed before.
+  /// The root and the tips of all segments, without what only move() needs; at rest:
+  /// without v and omega. A function of its arguments alone, whatever was computed
+  /// before.
+  template <bool at_rest = false>
   const std::vector<Tip>& tips(double t, In q, In v) {
     static_assert(may_be_free);
     if (free_root_) free_root_->place(q.last(6));
@@ -160,22 +162,42 @@ class Kinematics {
     tips_[0] = {root.frame, root.x, root.v, root.omega};
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       const Segment& segment = segments_[i];
-      Tip from = tips_[static_cast<std::size_t>(segment.parent + 1)];
-      if (segment.mounted) {
-        from.frame = from.frame * segment.mount;
-        from.v = segment.mount.back(from.v);
-        from.omega = segment.mount.back(from.omega);
-      }
+      const Tip& parent = tips_[static_cast<std::size_t>(segment.parent + 1)];
+      const Frame start = segment.mounted ? parent.frame * segment.mount : parent.frame;
       const Kernel kernel(segment.held + components(q, i), segment.length);
       const auto tip = kernel.tip();
-      const Vec position = kernel.position().at(tip), rate = components(v, i);
+      const Vec position = kernel.position().at(tip);
       const Frame rotation = kernel.rotation(tip);
-      tips_[i + 1] = {from.frame * rotation, from.x + from.frame * position,
-                      rotation.back(from.v + cross(from.omega, position) +
-                                    kernel.first(rate).at(tip)),
-                      rotation.back(from.omega + kernel.W(rate).at(tip))};
+      Tip& to = tips_[i + 1];
+      to.frame = start * rotation;
+      to.x = parent.x + start * position;
+      if constexpr (at_rest) continue;
+      Vec from_v = parent.v, from_omega = parent.omega;
+      if (segment.mounted) {
+        from_v = segment.mount.back(from_v);
+        from_omega = segment.mount.back(from_omega);
+      }
+      const Vec rate = components(v, i);
+      to.v = rotation.back(from_v + cross(from_omega, position) +
+                           kernel.first(rate).at(tip));
+      to.omega = rotation.back(from_omega + kernel.W(rate).at(tip));
     }
     return tips_;
+  }
+
+  /// Frames of the root and of the tips of all segments; calls shape().
+  const std::vector<Frame>& frames(double t, In q) {
+    static_assert(may_be_free);
+    shape(q);
+    frames_.resize(segments_.size() + 1);
+    frames_[0] = free_root_ ? free_root_->frame() : root_motion(t, q, q, q).frame;
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const Segment& segment = segments_[i];
+      const Frame& parent = frames_[static_cast<std::size_t>(segment.parent + 1)];
+      frames_[i + 1] =
+          (segment.mounted ? parent * segment.mount : parent) * geometry_[i].rotation;
+    }
+    return frames_;
   }
 
   /// Measures accelerations relative to a frame that falls with this one (m/s^2) from now
@@ -308,6 +330,7 @@ class Kinematics {
   double posed_at_ = std::numeric_limits<double>::quiet_NaN();
   FrameMotion posed_;  // of a prescribed root, then
   std::vector<Tip> tips_;
+  std::vector<Frame> frames_;
   Vec falling_;
   std::vector<Real> shaped_;  // q of geometry_
 };

@@ -31,7 +31,8 @@ namespace tress::models {
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
-  using typename TreeSolver<Shape>::In, typename TreeSolver<Shape>::Out;
+  using typename TreeSolver<Shape>::In, typename TreeSolver<Shape>::Out,
+      typename TreeSolver<Shape>::Load;
 
   explicit RecursiveSolver(const TreeTangent<Shape>& structure)
       : eliminated_(structure.parent.size()), hanging_(structure.parent.size()) {
@@ -76,6 +77,13 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
     sweep(b, x);
     return Status::ok;
+  }
+
+  bool respond(std::span<const Load> loads, Out blocks) noexcept override {
+    if constexpr (Shape::symmetric && method == TreeMethod::recursive && may_be_free) {
+      return respond_of_chain(loads, blocks);
+    }
+    return false;
   }
 
  private:
@@ -149,6 +157,60 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       for (int k = 0; k < n; ++k) x[at(i, k)] = moved[states + k];
       multiply<1, false>(tangent.segments[i].transfer, moved, hanging_[i].state);
     }
+  }
+
+  /// O(segments + loads^2): beyond the tip i of a load, whose own unknowns x do not feel
+  /// it, states are passed on as s_tip = T s, T = transfer [I; -Z]; a wrench reaches the
+  /// start of a segment as T^T w. So Omega, the response of a tip's state to a wrench on
+  /// it, follows from the root: Omega_tip = T Omega T^T + transfer_x H^-1 transfer_x^T
+  /// [Wensing et al. 2012].
+  bool respond_of_chain(std::span<const Load> loads, Out blocks) noexcept {
+    using Response = Eigen::Matrix<Real, states, wrench>;
+    const TreeTangent<Shape>& tangent = *tangent_;
+    Response omega = Response::Zero();
+    if (tangent.free_root) {
+      const Eigen::Matrix<Real, 6, wrench> y = root_.solve(tangent.root.lift);
+      omega = product(tangent.root.transfer, y);
+    }
+    reached_.resize(loads.size());
+    std::size_t met = 0;
+    const auto meet = [&](int segment) {
+      if (met == loads.size() || loads[met].segment != segment) return;
+      const auto& columns = loads[met].columns;
+      multiply<1, false>(omega, columns, reached_[met]);
+      Eigen::Matrix<Real, 3, wrench> onto;
+      copy(part(columns).transpose(), onto);
+      for (std::size_t of = 0; of <= met; ++of) {
+        const Eigen::Matrix<Real, 3, 3> block = product(onto, reached_[of]);
+        for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            const Real value = block(static_cast<int>(r), static_cast<int>(c));
+            blocks[9 * (of * loads.size() + met) + 3 * r + c] = value;
+            blocks[9 * (met * loads.size() + of) + 3 * c + r] = value;
+          }
+        }
+      }
+      ++met;
+    };
+    meet(-1);
+    for (std::size_t i = 0; i < eliminated_.size() && met < loads.size(); ++i) {
+      const Eliminated& e = eliminated_[i];
+      const auto of_x = part<states, n>(tangent.segments[i].transfer, 0, states);
+      Response passed, pulled;
+      copy(part<states, states>(tangent.segments[i].transfer, 0, 0), passed);
+      subtract_product(of_x, e.z, passed);
+      multiply<1, false>(passed, omega, pulled);
+      multiply<1, false>(pulled, part(passed).transpose(), omega);
+      Eigen::Matrix<Real, states, n> freed;
+      multiply<1, false>(of_x, e.inverse, freed);
+      add_product(freed, of_x.transpose(), omega);
+      for (std::size_t of = 0; of < met; ++of) {
+        const Eigen::Matrix<Real, states, 3> before = reached_[of];
+        multiply<1, false>(passed, before, reached_[of]);
+      }
+      meet(static_cast<int>(i));
+    }
+    return true;
   }
 
   /// Solves S x = b with one or two steps of iterative refinement.
@@ -292,6 +354,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Eliminated> eliminated_;
   std::vector<Hanging> hanging_;
   Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> root_;
+  std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
   double growth_ = 1;  // largest product of a pivot's inverse and the terms it sums
   std::vector<double> b_, left_, correction_;  // scratch of refine()
 };

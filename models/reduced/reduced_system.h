@@ -9,6 +9,7 @@
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
+#include "models/reduced/tip_forces.h"
 #include "models/reduced/tree_solver.h"
 #include "models/strand/not_finite.h"
 
@@ -53,6 +54,9 @@ class ReducedSystem : public System,
     const auto n = static_cast<std::size_t>(kinematics_.unknowns());
     zero_.assign(n, 0.0);
     scratch_.assign(n, 0.0);
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      if (kinematics_.segments()[i].parent != static_cast<int>(i) - 1) chain_ = false;
+    }
     if (!exact_) return;
     if (dynamics_.effect_needs().derivatives) {
       for (auto* x : {&by_position_, &by_velocity_}) {
@@ -301,7 +305,7 @@ class ReducedSystem : public System,
                   : kinematics_.segments()[static_cast<std::size_t>(i) - 1].parent + 1;
   }
   void positions(double t, In q, Out x) override {
-    for (const auto& tip : kinematics_.tips(t, q, zero_)) {
+    for (const auto& tip : kinematics_.template tips<true>(t, q, zero_)) {
       store3(tip.x, x.data());
       x = x.subspan(3);
     }
@@ -338,6 +342,18 @@ class ReducedSystem : public System,
     }
     if (kinematics_.free()) add_free_root(n - 6, set);
     return true;
+  }
+  bool pull_back(double t, In q, std::span<const int> points, In f, InOut b) override {
+    if (!chain_) return false;
+    TipForces<Kernel, dofs>(kinematics_, t, q).pull_back(points, f, b);
+    return true;
+  }
+  bool responses(double t, In q, std::span<const int> points, Out blocks) override {
+    if (!chain_ || full_in_use_ || factored_ != Status::ok) return false;
+    const TipForces<Kernel, dofs> forces(kinematics_, t, q);
+    loads_.clear();
+    for (const int point : points) loads_.push_back({point - 1, forces.units(point)});
+    return mass_solver_->respond(loads_, blocks);
   }
   /// Columns of the root's position and rotation.
   template <class Set>
@@ -379,6 +395,8 @@ class ReducedSystem : public System,
   Status factored_ = Status::retry;
   std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_;
   std::vector<Coupling> contacts_;
+  bool chain_ = true;
+  std::vector<typename TreeSolver<Mass>::Load> loads_;  // scratch of responses()
 };
 
 /// `PlanarKernel` is the kernel for one unknown per segment.

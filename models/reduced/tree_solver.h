@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <span>
 
 #include "contract/system.h"
 #include "models/reduced/tree_tangent.h"
@@ -29,6 +31,16 @@ class TreeSolver {
   /// `retry` if a pivot is not usable. The tangent must outlive the solves.
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // b and x may be the same
+
+  /// How tips of a chain respond to loads on them. With P_i the load's columns, wrenches
+  /// on the tip of segment i (-1: on the root), and s_ji P_i the state of tip j that they
+  /// cause: blocks P_j^T s_ji P_i by rows, for the first i all j, for the second ... Of
+  /// ascending segments. False: to be had from solve().
+  struct Load {
+    int segment;
+    Eigen::Matrix<typename Shape::Real, Shape::wrench, 3> columns;
+  };
+  virtual bool respond(std::span<const Load>, Out /*blocks*/) noexcept { return false; }
 };
 
 /// The last two methods exist for symmetric shapes; exact tangents get `recursive`.

@@ -99,7 +99,7 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
     if (known != Status::ok) return known;
     friction_.solve(loop);
     const Status moved =
-        each(friction_.touching(), t, loop, [&](Rubbed& strand, std::size_t k) {
+        each(friction_.moved(), t, loop, [&](Rubbed& strand, std::size_t k) {
           const Status done =
               strand.response->respond(friction_.points_of(k), friction_.forces(k));
           std::vector<double> placed(3 * strand.points);

@@ -199,6 +199,62 @@ TEST_P(SystemContract, JacobianIsThatOfTheVelocities) {
   }
 }
 
+/// What a model says of loads on its points, by its Jacobian and its matrix.
+TEST_P(SystemContract, ResponsesAreThoseOfJacobianAndMatrix) {
+  MaterialPoints* points = system_->material_points();
+  States s(*system_);
+  s.shake(0.1);
+  const auto count = points == nullptr ? 0 : static_cast<std::size_t>(points->count());
+  std::vector<int> some;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 3 != 1) some.push_back(static_cast<int>(i));
+  }
+  std::vector<double> pulled(s.n), jacobian(3 * count * s.n),
+      blocks(9 * some.size() * some.size(), std::nan(""));
+  const std::vector<double> f = s.random(std::vector<double>(3 * some.size(), 1.0));
+  if (points == nullptr || !points->pull_back(t0, s.q, some, f, pulled)) {
+    GTEST_SKIP() << "no loads in closed form";
+  }
+  ASSERT_TRUE(points->jacobian(t0, s.q, jacobian));
+  const auto row = [&](int point, std::size_t d) {
+    return &jacobian[(3 * static_cast<std::size_t>(point) + d) * s.n];
+  };
+  // Sums of 3 points products, in frames that the points before them mix.
+  const double rounding =
+      100 * static_cast<double>(s.n) * std::numeric_limits<double>::epsilon();
+  for (std::size_t k = 0; k < s.n; ++k) {
+    double sum = 0, terms = 0;
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const double term = row(some[i / 3], i % 3)[k] * f[i];
+      sum += term;
+      terms += std::abs(term);
+    }
+    EXPECT_NEAR(pulled[k], sum, rounding * (terms + largest(pulled))) << k;
+  }
+  if (!system_->traits().regular_mass) return;
+  bool known = false;
+  for (const Weights w : {Weights{1, 0.1, 0.01}, Weights{1, 0, 0}}) {
+    ASSERT_EQ(system_->linearize(t0, s.q, s.v, s.a, w), Status::ok);
+    if (!points->responses(t0, s.q, some, blocks)) continue;
+    known = true;
+    const double size = largest(blocks);
+    std::vector<double> x(s.n);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const double* const from = row(some[i / 3], i % 3);
+      ASSERT_EQ(system_->solve(std::vector<double>(from, from + s.n), x), Status::ok);
+      for (std::size_t j = 0; j < f.size(); ++j) {
+        double u = 0;
+        for (std::size_t k = 0; k < s.n; ++k) u += row(some[j / 3], j % 3)[k] * x[k];
+        // Rounding of two eliminations of condition 1e6.
+        EXPECT_NEAR(blocks[9 * (i / 3 * some.size() + j / 3) + 3 * (j % 3) + i % 3], u,
+                    1e-9 * size)
+            << i << " " << j;
+      }
+    }
+  }
+  EXPECT_TRUE(known || GetParam().name() != "super_helix");
+}
+
 TEST_P(SystemContract, SparseFormHoldsTheTangent) {
   SparseForm* form = system_->sparse_form();
   if (form == nullptr) GTEST_SKIP() << "no sparse form";

@@ -33,14 +33,15 @@ inline Mat3 random_axes(std::mt19937& random) {
 struct RandomContacts {
   struct Body {
     std::vector<Mat3> compliance;
-    int points;
+    ContactProblem::Compliance response = ContactProblem::Compliance(compliance);
   };
   std::vector<Body> bodies;
   std::vector<ContactProblem::Contact> contacts;
 
+  /// Valid while this lives.
   ContactProblem problem(double friction = 0.3) const {
     ContactProblem all;
-    for (const Body& body : bodies) all.add_body(body.compliance, body.points);
+    for (const Body& body : bodies) all.add_body(body.response);
     for (auto contact : contacts) {
       contact.friction = friction;
       all.add(contact);
@@ -56,20 +57,19 @@ inline RandomContacts random_contacts(int bodies, int points, int rank, int cont
   RandomContacts all;
   for (int k = 0; k < bodies; ++k) {
     // W = sum over `rank` random modes of (u u^T), u a vector per point.
-    RandomContacts::Body body{
-        std::vector<Mat3>(static_cast<std::size_t>(points * points)), points};
+    std::vector<Mat3> compliance(static_cast<std::size_t>(points * points));
     for (int mode = 0; mode < rank; ++mode) {
       std::vector<Vec> u(static_cast<std::size_t>(points));
       for (Vec& of_point : u) of_point = random_vec(random);
       for (int of = 0; of < points; ++of) {
         for (int on = 0; on < points; ++on) {
-          Mat3& block = body.compliance[static_cast<std::size_t>(of * points + on)];
+          Mat3& block = compliance[static_cast<std::size_t>(of * points + on)];
           block = block +
                   outer(u[static_cast<std::size_t>(on)], u[static_cast<std::size_t>(of)]);
         }
       }
     }
-    all.bodies.push_back(body);
+    all.bodies.push_back({compliance});
   }
   std::uniform_int_distribution<int> any_body(0, bodies - 1), any_point(0, points - 2);
   std::uniform_real_distribution<double> part(0, 1);

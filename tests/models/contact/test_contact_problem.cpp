@@ -134,7 +134,7 @@ TEST(ContactProblem, GoesOnFromForcesThatAreRight) {
   ContactProblem problem = all.problem();
   problem.solve(1e-2, 1e-10, 2000);
   ContactProblem again;
-  for (const auto& body : all.bodies) again.add_body(body.compliance, body.points);
+  for (const auto& body : all.bodies) again.add_body(body.response);
   for (const auto& contact : problem.contacts()) again.add(contact);
   EXPECT_EQ(again.solve(1e-2, 1e-9, 2000).sweeps, 0);
 }

@@ -159,4 +159,33 @@ TEST(PieceSearch, FindsWhatTouchesAlsoWhereForcesMovedIt) {
   EXPECT_GT(more, 100u);
 }
 
+/// A contact whose pieces seem to overlap before the step more than they do would be left
+/// as deep as that.
+TEST(PieceSearch, FindsContactsOnTheSideThatPiecesComeFrom) {
+  std::mt19937 random(3);
+  std::size_t seen = 0, slipped = 0;
+  for (int run = 0; run < 80; ++run) {
+    Tangle t = tangle(random, 0.1);
+    PieceSearch search(t.strands, 0, false);
+    search.begin(t.from, t.to);
+    for (const auto& found : search.find(in_order, [](int, int) { return false; })) {
+      MovingPieces pieces;
+      const auto ends = search.ends(found.first, found.second);
+      for (std::size_t e = 0; e < 4; ++e) {
+        pieces.from[e] = load3(&t.from[3 * ends[e]]);
+        pieces.to[e] = load3(&t.to[3 * ends[e]]);
+      }
+      const double thick = search.thickness(found.first, found.second);
+      const double before = std::min(0.0, distance(pieces.from) - thick);
+      EXPECT_GE(search.gap_before(found), before - 0.1001 * thick);
+      const auto at_end = touch(pieces, thick);
+      const PieceSearch::Found by_end{found.first, found.second, at_end.value()};
+      if (search.gap_before(by_end) < before - 0.5 * thick) ++slipped;
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 500u);
+  EXPECT_GT(slipped, 20u);
+}
+
 }  // namespace tress::test_piece_search

@@ -98,4 +98,35 @@ TEST(PieceTouch, OfPiecesThatPassEachOthersEndsIsNone) {
   EXPECT_FALSE(touch(p, 0.05).has_value());
 }
 
+/// Pieces that come nearer than a reach are apart by it along the normal at the start:
+/// until then no two of their points are nearer, so that those that meet approach.
+TEST(FirstTouch, IsOnTheSideThatPiecesComeFrom) {
+  std::mt19937 random(9);
+  int slipped = 0, seen = 0;
+  for (int i = 0; i < 20000; ++i) {
+    MovingPieces p;
+    for (std::size_t end = 0; end < 4; ++end) {
+      p.from[end] = 0.5 * random_vec(random);
+      p.to[end] = p.from[end] + 0.3 * random_vec(random);
+    }
+    const double reach = 0.15;
+    if (distance(p.from) < reach || distance(p.to) > reach) continue;
+    ++seen;
+    const auto along = [&](const PieceTouch& at) {
+      Vec gap;
+      for (std::size_t end = 0; end < 4; ++end) {
+        gap = gap + at.weights()[end] * p.from[end];
+      }
+      return dot(gap, at.normal);
+    };
+    const auto at_end = touch(p, reach);
+    ASSERT_TRUE(at_end);
+    if (along(*at_end) < 0.5 * reach) ++slipped;
+    // It stops as near as a thousandth.
+    EXPECT_GE(along(first_touch(p, reach)), 0.98 * reach) << i;
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_GT(slipped, 50);
+}
+
 }  // namespace tress::test_piece_touch
