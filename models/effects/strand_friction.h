@@ -25,8 +25,9 @@ std::span<const Parameter> strand_friction_parameters();
 ///
 /// S is the matrix of the strand's own step, so forces act as if they had been among its
 /// loads. Each pair of segments has its contact where its axes would cross, or at the
-/// nearest points of their ends of steps (PieceTouch), and its forces on the four points
-/// about it sum to zero. Places along strands touch obstacles too, at the planes that
+/// nearest points of their ends of steps (PieceTouch), or where they first touched if an
+/// end has slipped around the other since, and its forces on the four points about it sum
+/// to zero. Places along strands touch obstacles too, at the planes that
 /// are tangent to these (Obstacle::Plane). Where forces drive other pairs into each
 /// other, as seen where points are then (place()), these are added and all are solved
 /// again. What points move off their straight lines within a step is left to the next

@@ -9,7 +9,6 @@
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
-#include "models/reduced/tip_forces.h"
 #include "models/reduced/tree_solver.h"
 #include "models/strand/not_finite.h"
 
