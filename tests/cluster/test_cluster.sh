@@ -6,7 +6,7 @@ repository=$1
 # shellcheck source=tests/cluster/slurm.sh
 . "$repository/tests/cluster/slurm.sh"
 work=$(mktemp -d /tmp/tress-cluster-XXXXXX)
-trap 'stop_slurm; rm -rf "$work"' EXIT
+trap 'stop_slurm; [[ ${KEEP:-} ]] || rm -rf "$work"' EXIT
 cd "$repository"
 
 cluster() { node experiments/cluster/cluster.mjs "$@"; }
@@ -33,8 +33,6 @@ until_true() {
 }
 # shellcheck disable=SC2317  # called by until_true
 idle() { [[ -z $(squeue -h 2>/dev/null) ]]; }
-# shellcheck disable=SC2317
-works_on() { pgrep -f -- "--shard $1 --out $2" >/dev/null; }
 
 alone() {
   local out=$1 rc=0
@@ -76,10 +74,19 @@ expect 0 'parts: 4 of 4 complete' cluster status "$work/l"
 same "$work/limits.csv" "$work/l/stability_limit.csv"
 
 echo "== one task killed, and resumed"
-expect 0 'submitted job' cluster slurm --folder "$work/f" --parts 4 "${family[@]}"
+cat >"$work/killer" <<END
+if [[ \${1:-} == 2 && ! -e $work/killed ]]; then
+  touch $work/killed
+  (
+    until [[ -s $work/f/family.2-of-4.csv.journal ]]; do sleep 0.02; done
+    pkill -9 -f -- "--shard 2/4 --out $work/f/family.csv"
+  ) &
+fi
+END
+echo "setup = \". $work/killer\"" >"$work/profile"
+expect 0 'submitted job' \
+  cluster slurm --folder "$work/f" --parts 4 --profile "$work/profile" "${family[@]}"
 expect 2 'is still at work' cluster resume "$work/f"
-until_true 60 works_on 2/4 "$work/f/family.csv"
-pkill -9 -f -- "--shard 2/4 --out $work/f/family.csv"
 until_true 180 idle
 expect 0 'parts: 3 of 4 complete' cluster status "$work/f"
 expect 0 'next: ./tress cluster resume' cluster status "$work/f"

@@ -147,6 +147,8 @@ function* commands(programs) {
 /// Tables, their manifests and journals. `headers`: of the table of each program.
 function* tables(headers) {
   const nowhere = ['--quick', '--shard', '9999/9999', '--out', 't.csv', '--resume'];
+  // A part's table has a name of its own.
+  const part = 't.9999-of-9999';
   const meta = '{"settings": "seed=1 quick"}';
   const wrongManifests = ['null', '[]', '""', '3', '{}', '{"settings": 5}',
     '{"settings": null}', '{"settings": ["seed=1 quick"]}', '{"settings": "seed=2"}',
@@ -159,14 +161,16 @@ function* tables(headers) {
     for (const [name, what] of texts) {
       // What is not there is not resumed; nor is a table without a line, which has no rows.
       if (what !== null) {
-        yield { program, kind: 'table to resume', name, files: { 't.csv': what }, args: nowhere };
+        yield { program, kind: 'table to resume', name, files: { [`${part}.csv`]: what },
+          args: nowhere };
       }
       yield { program, kind: 'table to merge', name, files: { 'a.csv': what, 'b.csv': csv },
         args: ['--merge', 'b.csv', 'a.csv', '--out', 't.csv'] };
     }
     for (const [name, what] of [...garbage, ...wrongManifests, ...special]) {
       if (what === null || what.link === 'itself') continue;  // no manifest, as it were
-      yield { program, kind: 'manifest', name, files: { 't.csv': csv, 't.meta.json': what },
+      yield { program, kind: 'manifest', name,
+        files: { [`${part}.csv`]: csv, [`${part}.meta.json`]: what },
         args: nowhere };
     }
     for (const [name, what] of [...garbage, ...special]) {
@@ -174,7 +178,8 @@ function* tables(headers) {
       const text = typeof what === 'string' || Buffer.isBuffer(what);
       if (what === null || (text && !what.includes('\n'))) continue;
       yield { program, kind: 'journal', name, args: nowhere,
-        files: { 't.csv': csv, 't.meta.json': meta, 't.csv.journal': what } };
+        files: { [`${part}.csv`]: csv, [`${part}.meta.json`]: meta,
+          [`${part}.csv.journal`]: what } };
     }
   }
 }

@@ -32,6 +32,7 @@ inline Mat3 random_axes(std::mt19937& random) {
 /// contacts between random points of two of them.
 struct RandomContacts {
   struct Body {
+    int points;
     std::vector<Mat3> compliance;
     ContactProblem::Compliance response = ContactProblem::Compliance(compliance);
   };
@@ -69,7 +70,7 @@ inline RandomContacts random_contacts(int bodies, int points, int rank, int cont
         }
       }
     }
-    all.bodies.push_back({compliance});
+    all.bodies.push_back({points, compliance});
   }
   std::uniform_int_distribution<int> any_body(0, bodies - 1), any_point(0, points - 2);
   std::uniform_real_distribution<double> part(0, 1);
