@@ -82,7 +82,7 @@ function prepared(scheduler, { options, experiment, args }, program, folder) {
   };
   if (existsSync(join(folder, 'sweep.json'))) {
     const sweep = sweeps.load(folder);
-    for (const key of ['experiment', 'args', 'version'])
+    for (const key of ['experiment', 'args'])
       if (JSON.stringify(sweep[key]) !== JSON.stringify(fresh[key]))
         throw new InputError(
           `${here(folder)}: holds another sweep: '${sweep[key]}', not '${fresh[key]}'; ` +
@@ -95,6 +95,7 @@ function prepared(scheduler, { options, experiment, args }, program, folder) {
     return {
       ...sweep,
       ...fresh,
+      version: sweep.version,
       scheduler,
       profile,
       needs: sweeps.needs(sweep.pilot, sweep.parts, profile),
@@ -140,10 +141,11 @@ function refuse_while_running(sweep) {
 
 function submit(sweep, options) {
   refuse_while_running(sweep);
-  if (sweep.version !== version_of(sweep.program))
+  const version = version_of(sweep.program);
+  if (sweep.version !== version)
     throw new InputError(
       `${here(sweep.folder)}: begun by '${sweep.version}', but the program is ` +
-        `'${version_of(sweep.program)}'; build that again, or remove the folder`,
+        `'${version}'; build that again, or remove the folder`,
     );
   const lost = sweeps.lost_parts(sweep);
   sweeps.write_scripts(sweep);
@@ -154,8 +156,10 @@ function submit(sweep, options) {
   const again = `./tress cluster status ${here(sweep.folder)}`;
   if (sweep.scheduler === 'slurm') {
     const files = slurm.write(sweep, lost);
-    if (options['--write-only'])
-      return say(`wrote ${here(files.array)} and ${here(files.merge)}`);
+    if (options['--write-only']) {
+      say(`wrote ${here(files.array)} and ${here(files.merge)}`);
+      return 0;
+    }
     const jobs = slurm.submit(files);
     sweep.submissions.push(jobs);
     sweeps.save(sweep);
@@ -185,7 +189,8 @@ function merged(sweep) {
   const lost = sweeps.lost_parts(sweep);
   if (lost.length > 0)
     throw new InputError(
-      `${here(sweep.folder)}: parts ${lost.join(', ')} of ${sweep.parts} are missing; ./tress cluster resume ${here(sweep.folder)}`,
+      `${here(sweep.folder)}: parts ${lost.join(', ')} of ${sweep.parts} are missing; ` +
+        `./tress cluster resume ${here(sweep.folder)}`,
     );
   const done = spawnSync(join(sweep.folder, 'merge.sh'), { encoding: 'utf8' });
   if (done.status !== 0)
@@ -243,7 +248,7 @@ function answer([command, ...words]) {
       return sweeps.alone(folder, () => {
         const sweep = prepared(command, read, program, folder);
         tell_estimate(sweep);
-        return submit(sweep, read.options) ?? 0;
+        return submit(sweep, read.options);
       });
     } finally {
       if (!was_there && sweeps.remains(folder).length === 0)

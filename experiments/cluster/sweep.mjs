@@ -148,7 +148,6 @@ export function pilot(sweep, say) {
     row_s: manifest.spent.processor_s / timed,
     largest_mb: manifest.spent.largest_mb,
     timeout_s: manifest.timeout_s,
-    commit: manifest.git.commit,
   };
 }
 
@@ -178,6 +177,7 @@ export function write_scripts(sweep) {
 # Made by ./tress cluster.
 set -euo pipefail
 cd ${quoted(sweep.repository)}
+${sweep.profile.setup ? `${sweep.profile.setup}\n` : ''}${command} \\
 `;
   const end = ` || {
   code=$?
@@ -190,13 +190,12 @@ cd ${quoted(sweep.repository)}
     writeFileSync(join(sweep.folder, name), text, { mode: 0o755 });
   write(
     'part.sh',
-    `${head}${sweep.profile.setup ? `${sweep.profile.setup}\n` : ''}${command} \\
-  --shard "$1/${sweep.parts}" --out ${quoted(table_of(sweep))} --jobs 1 --resume --progress none${end}`,
+    `${head}  --shard "$1/${sweep.parts}" --out ${quoted(table_of(sweep))} ` +
+      `--jobs 1 --resume --progress none${end}`,
   );
   write(
     'merge.sh',
-    `${head}${sweep.profile.setup ? `${sweep.profile.setup}\n` : ''}${command} \\
-  --out ${quoted(table_of(sweep))} --merge \\
+    `${head}  --out ${quoted(table_of(sweep))} --merge \\
   ${tables.join(' \\\n  ')}${end}`,
   );
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <set>
 #include <string>
@@ -11,10 +10,9 @@
 
 #include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
-#include "experiments/run/message.h"
 #include "experiments/run/settings.h"
-#include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -208,16 +206,12 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   const Parameters& own = settings.experiment();
   const std::string file(own.word("advise"));
   if (file.empty()) return;
-  std::string lines;
-  for (const std::string& one : advice(rows)) lines += one + '\n';
-  write_all(1, lines, "standard output");
+  print_advice(advice(rows));
   const Row* best = advised(rows);
   if (best == nullptr || line.out == "-") return;
   const Scene given = read_open_scene(file);
-  const auto folder = std::filesystem::path(line.out).parent_path();
-  const std::string to = (folder / (given.name + ".advised.toml")).string();
-  replace_file(to, advised_text(given, *best, own.number("fps")));
-  tell("cost_of_accuracy: wrote {}\n", to);
+  write_advised("cost_of_accuracy", line, given.name,
+                advised_text(given, *best, own.number("fps")));
 }
 
 constexpr Unused unused[] = {not_random};

@@ -62,9 +62,21 @@ void HairErrors::add(std::size_t instant, std::size_t hair, std::span<const Vec>
   ++sums_[hair].instants;
 }
 
+void HairErrors::add(std::size_t instant, std::span<const std::size_t> hairs,
+                     std::span<const Vec> points) {
+  const std::size_t each = hairs.empty() ? 0 : points.size() / hairs.size();
+  for (std::size_t i = 0; i < hairs.size(); ++i) {
+    add(instant, hairs[i], points.subspan(i * each, each));
+  }
+}
+
 double HairErrors::of(std::size_t hair) const {
   const Sum& sum = sums_[hair];
   return std::sqrt(sum.squares / sum.instants) / lengths_[hair];
+}
+
+Spread spread(std::span<const double> errors) {
+  return spread(errors, std::vector<double>(errors.size(), 1));
 }
 
 Spread spread(std::span<const double> errors, std::span<const double> weights) {

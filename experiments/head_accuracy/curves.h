@@ -36,6 +36,9 @@ class HairErrors {
 
   /// Points of one hair at an instant, the root first.
   void add(std::size_t instant, std::size_t hair, std::span<const Vec> points);
+  /// Of several, one after the other.
+  void add(std::size_t instant, std::span<const std::size_t> hairs,
+           std::span<const Vec> points);
   /// Of one hair after all its instants.
   double of(std::size_t hair) const;
 
@@ -55,5 +58,7 @@ struct Spread {
 };
 /// Each stands for as many hairs as its weight says.
 Spread spread(std::span<const double> errors, std::span<const double> weights);
+/// Each stands for one.
+Spread spread(std::span<const double> errors);
 
 }  // namespace tress::experiments::head_accuracy

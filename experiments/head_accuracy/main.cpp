@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,9 +10,8 @@
 #include "contract/input_error.h"
 #include "experiments/head_accuracy/grooms.h"
 #include "experiments/head_accuracy/head_accuracy.h"
-#include "experiments/run/message.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/settings.h"
-#include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -181,10 +179,7 @@ void conclude(const CommandLine& line, const std::vector<Row>& rows) {
   if (line.out == "-") return;
   const Settings settings(line, own_settings);
   if (!settings.chosen("scenes")) return;
-  std::string lines;
-  for (const std::string& one : advice(rows)) lines += one + '\n';
-  write_all(1, lines, "standard output");
-  const auto folder = std::filesystem::path(line.out).parent_path();
+  print_advice(advice(rows));
   for (const std::string& file : scenes_of(settings)) {
     const Scene given = read_head_scene(file);
     const auto best = std::ranges::find_if(rows, [&](const Row& row) {
@@ -194,10 +189,7 @@ void conclude(const CommandLine& line, const std::vector<Row>& rows) {
     });
     if (best == rows.end()) continue;
     const std::string text = advised_text(given, *best);
-    if (text.empty()) continue;
-    const std::string to = (folder / (given.name + ".advised.toml")).string();
-    replace_file(to, text);
-    tell("head_accuracy: wrote {}\n", to);
+    if (!text.empty()) write_advised("head_accuracy", line, given.name, text);
   }
 }
 

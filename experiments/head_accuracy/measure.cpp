@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 #include "contract/input_error.h"
@@ -42,10 +43,16 @@ std::vector<bool> marked(const std::vector<std::size_t>& some, std::size_t size)
   return mark;
 }
 
+void set_points(std::span<const double> x, std::vector<Vec>& points) {
+  points.resize(x.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = load3(&x[3 * i]);
+}
+
 }  // namespace
 
 Scene read_head_scene(const std::string& file) {
   SceneOutline outline = read_outline(file);
+  Scene given = outline.scene;
   if (outline.series != nullptr) {
     for (const StrandSource& source : outline.scene.tables->sources) {
       if (source.groom) continue;
@@ -57,7 +64,7 @@ Scene read_head_scene(const std::string& file) {
     outline.scene = every_strand(std::move(outline.scene), enough);
   }
   if (const auto no = no_head(outline)) throw InputError(no->reason, file, no->remedy);
-  return read_outline(file).scene;
+  return given;
 }
 
 HeadMeasure::HeadMeasure(const Scene& given, const Comparison& comparison)
@@ -80,20 +87,17 @@ HeadMeasure::HeadMeasure(const Scene& given, const Comparison& comparison)
   reference_ = extrapolated_in_elements(
       extrapolated_in_step(curves(n, s), curves(n, s / 2)), other);
   HairErrors errors(reference_, lengths_);
-  std::vector<double> each(hairs());
-  const auto points = static_cast<std::size_t>(other.elements) + 1;
-  std::vector<Vec> x(points);
-  for (std::size_t k = 0; k < hairs(); ++k) {
-    for (std::size_t at = 0; at < other.x.size(); ++at) {
-      for (std::size_t i = 0; i < points; ++i) {
-        x[i] = load3(&other.x[at][3 * (k * points + i)]);
-      }
-      errors.add(at, k, x);
-    }
-    // Three quarters of the way are what the finer run gains, the rest is extrapolated.
-    each[k] = errors.of(k) / 4;
+  std::vector<std::size_t> every(hairs());
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  std::vector<Vec> points;
+  for (std::size_t at = 0; at < other.x.size(); ++at) {
+    set_points(other.x[at], points);
+    errors.add(at, every, points);
   }
-  gap_ = spread(each, std::vector<double>(hairs(), 1));
+  // Three quarters of the way are what the finer run gains, the rest is extrapolated.
+  std::vector<double> each;
+  for (const std::size_t k : every) each.push_back(errors.of(k) / 4);
+  gap_ = spread(each);
 }
 
 double HeadMeasure::element_work(int elements) const {
@@ -190,14 +194,8 @@ class HeadMeasure::Followers {
   /// Adds guides and hairs to the errors.
   void compare(std::size_t instant, std::span<const Vec> guides,
                HairErrors& errors) const {
-    const auto add = [&](const std::vector<std::size_t>& which, std::span<const Vec> x) {
-      const std::size_t points = which.empty() ? 0 : x.size() / which.size();
-      for (std::size_t i = 0; i < which.size(); ++i) {
-        errors.add(instant, which[i], x.subspan(i * points, points));
-      }
-    };
-    add(guides_, guides);
-    add(hairs_, places_);
+    errors.add(instant, guides_, guides);
+    errors.add(instant, hairs_, places_);
   }
   /// Of shapes, neighbours and weights.
   double bytes() const {
@@ -224,11 +222,8 @@ std::optional<HeadTrial> HeadMeasure::trial(const Choice& choice) const {
   std::vector<Vec> points;
   const Run run = moved(only(scene, chosen), choice.substeps, choice.bits,
                         [&](std::size_t instant, double t, const std::vector<double>& x) {
-                          points.resize(x.size() / 3);
                           follow_s.push_back(seconds_of([&] {
-                            for (std::size_t i = 0; i < points.size(); ++i) {
-                              points[i] = load3(&x[3 * i]);
-                            }
+                            set_points(x, points);
                             followers.grow(t, points);
                           }));
                           followers.compare(instant, points, errors);
@@ -239,7 +234,7 @@ std::optional<HeadTrial> HeadMeasure::trial(const Choice& choice) const {
   made.all = of_all(errors, chosen);
   std::vector<double> own;
   for (const std::size_t k : chosen) own.push_back(errors.of(k));
-  made.simulated = spread(own, std::vector<double>(own.size(), 1));
+  made.simulated = spread(own);
   made.interpolation = interpolation(choice.guides, choice.elements);
   // Of a thinned groom all that follow, or all, are so many times as many.
   const auto times = [this](std::size_t looked_at, std::size_t besides) {
@@ -282,21 +277,16 @@ Spread HeadMeasure::simulated(std::size_t number, int elements, int substeps,
   const Scene scene = cut(elements);
   const std::vector<std::size_t>& chosen = guides(scene, number);
   HairErrors errors(reference_, lengths_);
-  const auto points = static_cast<std::size_t>(elements) + 1;
-  std::vector<Vec> hair(points);
+  std::vector<Vec> points;
   const Run run = moved(only(scene, chosen), substeps, bits,
                         [&](std::size_t instant, double, const std::vector<double>& x) {
-                          for (std::size_t k = 0; k < chosen.size(); ++k) {
-                            for (std::size_t i = 0; i < points; ++i) {
-                              hair[i] = load3(&x[3 * (k * points + i)]);
-                            }
-                            errors.add(instant, chosen[k], hair);
-                          }
+                          set_points(x, points);
+                          errors.add(instant, chosen, points);
                         });
   std::vector<double> own;
   constexpr double never = std::numeric_limits<double>::infinity();
   for (const std::size_t k : chosen) own.push_back(run.lost > 0 ? never : errors.of(k));
-  return spread(own, std::vector<double>(own.size(), 1));
+  return spread(own);
 }
 
 }  // namespace tress::experiments::head_accuracy

@@ -156,15 +156,16 @@ class Study {
     }
     rows_.push_back(row);
     if (!found) return;
-    Choice choice = found->trial.choice;
-    if (choice.bits != 64) {
-      choice.bits = 64;
-      add_run("bits", choice, target);
-      choice.bits = found->trial.choice.bits;
+    const Choice taken = found->trial.choice;
+    if (taken.bits != 64) {
+      Choice longer = taken;
+      longer.bits = 64;
+      add_run("bits", longer, target);
     }
-    if (choice.guides == measure_.hairs()) return;
-    choice.guides = measure_.hairs();
-    add_run("every", choice, target);
+    if (taken.guides == measure_.hairs()) return;
+    Choice every = taken;
+    every.guides = measure_.hairs();
+    add_run("every", every, target);
   }
 
   void add_budget() {

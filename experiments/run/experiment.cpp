@@ -144,16 +144,15 @@ void keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
   if (!std::filesystem::exists(line.out, ignored)) return;
   const CsvTable table = read_csv(line.out);
   check_header(table, experiment.columns, line.out);
-  const std::string meta = beside(line.out, ".meta.json");
-  if (std::filesystem::exists(meta, ignored)) {
-    const auto manifest =
-        nlohmann::json::parse(read_file(meta, most_table_bytes), nullptr, false);
-    const bool same = manifest.is_object() && manifest.contains("settings") &&
-                      manifest["settings"] == settings_text(line);
-    if (!same) {
-      throw InputError("the table to resume was made with other settings", meta,
-                       "repeat them, choose another --out, or leave out --resume");
-    }
+  const auto manifest = manifest_of(line.out);
+  const auto same = [&] {
+    return manifest->is_object() && manifest->contains("settings") &&
+           manifest->at("settings") == settings_text(line);
+  };
+  if (manifest && !same()) {
+    throw InputError("the table to resume was made with other settings",
+                     beside(line.out, ".meta.json"),
+                     "repeat them, choose another --out, or leave out --resume");
   }
   for (const Row& row : table.rows) rows.keep(row);
 }

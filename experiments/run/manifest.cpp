@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "contract/read_file.h"
 #include "experiments/run/message.h"
 #include "experiments/run/sundials_speed.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/files.h"
 
 namespace tress::experiments {
 namespace {
@@ -153,6 +156,13 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"glossary", glossary}};
   if (outcome_) manifest["outcome"] = outcome_of(*outcome_);
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+std::optional<nlohmann::json> manifest_of(const std::string& table) {
+  const std::string file = beside(table, ".meta.json");
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return {};
+  return nlohmann::json::parse(read_file(file, most_table_bytes), nullptr, false);
 }
 
 }  // namespace tress::experiments

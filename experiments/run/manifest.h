@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,6 +39,9 @@ class Manifest {
   std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
   std::optional<Row> outcome_;
 };
+
+/// Beside a table, if it is there; `discarded` if it is no JSON.
+std::optional<nlohmann::json> manifest_of(const std::string& table);
 
 /// "--set", seed, quick and the like in canonical order: a resumed run must repeat them.
 std::string settings_text(const CommandLine& line);

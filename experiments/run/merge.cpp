@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "contract/input_error.h"
-#include "contract/read_file.h"
+#include "experiments/run/manifest.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 
@@ -25,17 +23,15 @@ struct Part {
 
 /// Nothing for a whole table, or one without a manifest.
 std::optional<Part> part_of(const std::string& file) {
+  const auto manifest = manifest_of(file);
+  if (!manifest) return {};
   const std::string meta = beside(file, ".meta.json");
-  std::error_code ignored;
-  if (!std::filesystem::exists(meta, ignored)) return {};
-  const auto manifest =
-      nlohmann::json::parse(read_file(meta, most_table_bytes), nullptr, false);
   try {
     const auto [index, count] =
-        parse_shard(manifest.at("shard").get<std::string>(), meta);
+        parse_shard(manifest->at("shard").get<std::string>(), meta);
     if (count == 1) return {};
-    return Part{file, index, count, manifest.at("git").at("commit").get<std::string>(),
-                manifest.at("settings").get<std::string>()};
+    return Part{file, index, count, manifest->at("git").at("commit").get<std::string>(),
+                manifest->at("settings").get<std::string>()};
   } catch (const nlohmann::json::exception&) {
     throw InputError("not a manifest of tress", meta,
                      "write the part again, or move the file away");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,9 +19,19 @@ using Loop =
 struct Box {
   Vec least, most;
 
-  void include(const Vec& x) {
-    least = {std::min(least.x, x.x), std::min(least.y, x.y), std::min(least.z, x.z)};
-    most = {std::max(most.x, x.x), std::max(most.y, x.y), std::max(most.z, x.z)};
+  /// Holds no place; what it includes decides.
+  static constexpr Box none() {
+    constexpr double end = std::numeric_limits<double>::infinity();
+    return {{end, end, end}, {-end, -end, -end}};
+  }
+  /// Of none(), or of a box that is not finite.
+  bool empty() const { return !(least.x <= most.x); }
+
+  void include(const Vec& x) { include(Box{x, x}); }
+  void include(const Box& other) {
+    const Vec &a = other.least, &b = other.most;
+    least = {std::min(least.x, a.x), std::min(least.y, a.y), std::min(least.z, a.z)};
+    most = {std::max(most.x, b.x), std::max(most.y, b.y), std::max(most.z, b.z)};
   }
   void grow(double by);
 };

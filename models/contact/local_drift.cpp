@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tress::models {
 namespace {
 
-constexpr double end = std::numeric_limits<double>::infinity();
-constexpr Box none{{end, end, end}, {-end, -end, -end}};
 constexpr std::size_t pieces = 8;            // of work
 constexpr std::size_t segments_of_cell = 2;  // at least, on average
-
-void include(Box& all, const Box& more) {
-  all.least = {std::min(all.least.x, more.least.x), std::min(all.least.y, more.least.y),
-               std::min(all.least.z, more.least.z)};
-  all.most = {std::max(all.most.x, more.most.x), std::max(all.most.y, more.most.y),
-              std::max(all.most.z, more.most.z)};
-}
 
 }  // namespace
 
@@ -70,7 +60,7 @@ void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
 void LocalDrift::move(const SegmentCells& segments, std::span<const Vec> by,
                       const Loop& loop) {
   const std::size_t cells = near_.size(), points = segments.points();
-  own_.assign(pieces * cells, none);
+  own_.assign(pieces * cells, Box::none());
   loop(pieces, [&](std::size_t piece) {
     Box* const own = &own_[piece * cells];
     for (std::size_t i = points * piece / pieces; i < points * (piece + 1) / pieces;
@@ -84,9 +74,9 @@ void LocalDrift::move(const SegmentCells& segments, std::span<const Vec> by,
       }
     }
   });
-  near_.assign(cells, none);
+  near_.assign(cells, Box::none());
   for (std::size_t piece = 0; piece < pieces; ++piece) {
-    for (std::size_t c = 0; c < cells; ++c) include(near_[c], own_[piece * cells + c]);
+    for (std::size_t c = 0; c < cells; ++c) near_[c].include(own_[piece * cells + c]);
   }
   // With those beside it along one axis after the other.
   std::size_t stride = 1;
@@ -95,14 +85,14 @@ void LocalDrift::move(const SegmentCells& segments, std::span<const Vec> by,
     at_ = near_;
     for (std::size_t c = 0; c < cells; ++c) {
       const std::size_t place = c / stride % count;
-      if (place > 0) include(near_[c], at_[c - stride]);
-      if (place + 1 < count) include(near_[c], at_[c + stride]);
+      if (place > 0) near_[c].include(at_[c - stride]);
+      if (place + 1 < count) near_[c].include(at_[c + stride]);
     }
     stride *= count;
   }
   double sum = 0, all = 0;
   for (std::size_t c = 0; c < cells; ++c) {
-    if (parts_[c] == 0 || !(near_[c].least.x <= near_[c].most.x)) continue;
+    if (parts_[c] == 0 || near_[c].empty()) continue;
     const double half = 0.5 * norm(near_[c].most - near_[c].least);
     sum += parts_[c] * half;
     all += parts_[c];

@@ -185,23 +185,22 @@ bool PointGroups::holds(Group& group, const Vec3<Pack>& x) const {
   if (group.lists != partners_->lists() || updates > 1) return false;
   Box drift{{0, 0, 0}, {0, 0, 0}};
   if (updates == 1) {
-    drift = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    drift = Box::none();
     const Vec3<Pack> at_epoch = partners_->at_epoch(x);
     const Box* last = nullptr;
     for (int lane = 0; lane < Pack::lanes; ++lane) {
       if (!there(at_epoch, lane)) continue;
       const Box& one = partners_->drift(lane_of(at_epoch, lane));
-      if (&one == last || !(one.least.x <= one.most.x)) continue;
-      drift.include(one.least);
-      drift.include(one.most);
+      if (&one == last || one.empty()) continue;
+      drift.include(one);
       last = &one;
     }
-    if (!(drift.least.x <= drift.most.x)) return true;  // nothing is near
+    if (drift.empty()) return true;  // nothing is near
   }
   const Vec3<Pack> before = updates == 1 ? partners_->before(x) : x;
   const Vec3<Pack> moved =
       before - group.x - Vec3<Pack>(0.5 * (drift.least + drift.most));
-  // Pack without a point have not moved.
+  // Lanes without a point have not moved.
   const Pack square = where_less(dot(x, x), Pack(infinity), dot(moved, moved), Pack(0));
   group.used += 0.5 * norm(drift.most - drift.least);
   const double left = group.room - partners_->range() - group.used;
@@ -218,11 +217,11 @@ void PointGroups::list(Group& group) {
   group.list.clear();
   const double wide = (partners_->reach() + group.room) * rounding;
   const Vec3<Pack> at_epoch = partners_->at_epoch(group.x);
-  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  Box box = Box::none();
   for (int lane = 0; lane < Pack::lanes; ++lane) {
     if (there(at_epoch, lane)) box.include(lane_of(at_epoch, lane));
   }
-  if (!(box.least.x <= box.most.x)) return;
+  if (box.empty()) return;
   box.grow(wide + partners_->moved());
   const SegmentCells& segments = partners_->segments();
   segments.reaching_into(box, found_);

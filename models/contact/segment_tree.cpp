@@ -40,9 +40,7 @@ SegmentTree::SegmentTree(const StrandPartners& strands) : strands_(strands) {
 
 void SegmentTree::divide(int begin, int end) {
   const std::size_t node = nodes_.size();
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  Box middles = box;
+  Box box = Box::none(), middles = box;
   for (int i = begin; i < end; ++i) {
     const int segment = segments_[static_cast<std::size_t>(i)];
     const StraightPiece piece = strands_.piece(segment);

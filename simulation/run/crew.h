@@ -32,4 +32,9 @@ class Crew {
   std::vector<std::jthread> threads_;  // all workers except the caller
 };
 
+/// Calls use(k, part) for k in [begin, end), in so many parts that work at the same time.
+/// A part ends at its first error; rethrows that of the first k that has one.
+void in_parts(Crew& crew, std::size_t begin, std::size_t end, std::size_t parts,
+              const std::function<void(std::size_t k, std::size_t part)>& use);
+
 }  // namespace tress::simulation

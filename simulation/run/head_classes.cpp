@@ -1,7 +1,6 @@
 #include "simulation/run/head_classes.h"
 
 #include <algorithm>
-#include <exception>
 #include <map>
 #include <string>
 
@@ -12,9 +11,7 @@ namespace tress::simulation {
 
 bool has_classes(const SceneOutline& outline) {
   return outline.series != nullptr &&
-         std::ranges::any_of(outline.scene.tables->sources, [](const auto& source) {
-           return source.groom && detail_tolerance(source.table.values()) > 0;
-         });
+         std::ranges::any_of(outline.scene.tables->sources, has_tolerance);
 }
 
 std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads) {
@@ -22,20 +19,9 @@ std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads) {
   std::vector<int> elements(all.size());
   Crew crew(threads);
   const std::size_t parts = 16 * static_cast<std::size_t>(threads);
-  std::vector<std::exception_ptr> errors(parts);
-  crew.run(parts, [&](std::size_t part) {
-    const std::size_t end = all.size() * (part + 1) / parts;
-    try {
-      for (std::size_t k = all.size() * part / parts; k < end; ++k) {
-        elements[k] = static_cast<int>(all.strand(k).segments.size());
-      }
-    } catch (...) {
-      errors[part] = std::current_exception();
-    }
+  in_parts(crew, 0, all.size(), parts, [&](std::size_t k, std::size_t) {
+    elements[k] = static_cast<int>(all.strand(k).segments.size());
   });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
   std::map<int, std::vector<std::size_t>> classes;
   for (std::size_t k = 0; k < all.size(); ++k) classes[elements[k]].push_back(k);
   std::vector<HeadClass> made;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <vector>
 
 #include "models/reduced/reduced_strand.h"
@@ -121,27 +120,6 @@ HeadOptions options_of(const Scene& scene) {
   return with_uniform_effects(std::move(options));
 }
 
-/// Calls use(k, strand, part) for k in [begin, end), in parts that work at the same time;
-/// rethrows the error of the first strand that has one.
-template <class Strands, class Use>
-void each_strand(const Strands& series, Crew& crew, std::size_t begin, std::size_t end,
-                 std::size_t parts, const Use& use) {
-  std::vector<std::exception_ptr> errors(parts);
-  crew.run(parts, [&](std::size_t part) {
-    const std::size_t count = end - begin;
-    try {
-      for (std::size_t i = count * part / parts; i < count * (part + 1) / parts; ++i) {
-        use(begin + i, series.strand(begin + i), part);
-      }
-    } catch (...) {
-      errors[part] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-}
-
 /// Strands of a scene as a series.
 struct Held {
   const std::vector<Strand>& strands;
@@ -182,10 +160,9 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   HeadOptions options = options_of(scene);
   constexpr std::size_t parts = 64;
   std::vector<Extent> extents(parts);
-  each_strand(series, crew, 0, series.size(), parts,
-              [&](std::size_t, const Strand& strand, std::size_t part) {
-                extents[part].include(strand, options);
-              });
+  in_parts(crew, 0, series.size(), parts, [&](std::size_t k, std::size_t part) {
+    extents[part].include(series.strand(k), options);
+  });
   Extent all;
   for (const Extent& extent : extents) all.include(extent);
   options.longest = all.length;
@@ -202,10 +179,8 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   std::vector<Strand> made(std::min(at_once, series.size()));
   for (std::size_t begin = 0; begin < series.size(); begin += at_once) {
     const std::size_t end = std::min(begin + at_once, series.size());
-    each_strand(series, crew, begin, end, parts,
-                [&](std::size_t k, Strand strand, std::size_t) {
-                  made[k - begin] = std::move(strand);
-                });
+    in_parts(crew, begin, end, parts,
+             [&](std::size_t k, std::size_t) { made[k - begin] = series.strand(k); });
     for (std::size_t k = begin; k < end; ++k) {
       models::Effects own;
       if (made_head.interaction) own.push_back(made_head.interaction->effect(k));

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
+#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "models/strand/needed_elements.h"
 #include "simulation/scene/cap.h"
@@ -152,13 +152,7 @@ Frame root_frame(const Parameters& p, const Cap::Place& place, double phase) {
 
 /// The tolerance, of a groom that can have one.
 double detail(const Table& table) {
-  double tolerance = 0;
-  try {
-    tolerance = detail_tolerance(table.values());
-  } catch (const std::invalid_argument& wrong) {
-    throw InputError(wrong.what(), table.place("tolerance_px"),
-                     "give tolerance_m, or tolerance_px and pixels_1_m");
-  }
+  const double tolerance = detail_tolerance(table);
   if (tolerance == 0) return 0;
   if (table.values().whole("guides") > 0) {
     throw InputError("guides of several numbers of elements", table.place("guides"),
@@ -189,16 +183,18 @@ std::span<const Parameter> groom_table_parameters() {
 
 std::span<const Parameter> detail_parameters() { return detail_keys; }
 
-double detail_tolerance(const Parameters& groom) {
-  const double metres = groom.number("tolerance_m"),
-               pixels = groom.number("tolerance_px"), size = groom.number("pixels_1_m");
-  if (metres > 0 && pixels > 0) {
-    throw std::invalid_argument("tolerance_px beside tolerance_m");
-  }
-  if ((pixels > 0) != (size > 0)) {
-    throw std::invalid_argument(pixels > 0 ? "tolerance_px without pixels_1_m"
-                                           : "pixels_1_m without tolerance_px");
-  }
+double detail_tolerance(const Table& groom) {
+  const Parameters& p = groom.values();
+  const double metres = p.number("tolerance_m"), pixels = p.number("tolerance_px"),
+               size = p.number("pixels_1_m");
+  const auto refuse_if = [&groom](bool bad, const char* problem) {
+    if (!bad) return;
+    throw InputError(problem, groom.place("tolerance_px"),
+                     "give tolerance_m, or tolerance_px and pixels_1_m");
+  };
+  refuse_if(metres > 0 && pixels > 0, "tolerance_px beside tolerance_m");
+  refuse_if(pixels > 0 && size == 0, "tolerance_px without pixels_1_m");
+  refuse_if(pixels == 0 && size > 0, "pixels_1_m without tolerance_px");
   return pixels > 0 ? pixels / size : metres;
 }
 
@@ -216,10 +212,9 @@ Groom::Groom(const Table& table, const Table* own_material, const Common& common
 int Groom::elements(double length, const Shape& natural, const Frame& root) const {
   const int most = table_.values().whole("elements");
   if (tolerance_ == 0) return most;
-  constexpr double gravity = 9.81;  // m/s^2
   const Vec stiff = models::stiffness(material_.material, material_.section);
   return models::elements_for(
-      {length, gravity * material_.material.density * material_.section.area(),
+      {length, earth_gravity * material_.material.density * material_.section.area(),
        std::min(stiff.y, stiff.z), root.e0, natural},
       tolerance_, most);
 }

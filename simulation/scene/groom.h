@@ -13,8 +13,8 @@ std::span<const Parameter> groom_table_parameters();
 /// Those by which each strand gets as many elements as it needs (needed_elements.h).
 std::span<const Parameter> detail_parameters();
 /// Largest distance by which a strand's shape may be off, m; 0: the groom does not say.
-/// Throws std::invalid_argument with the reason where the keys contradict each other.
-double detail_tolerance(const Parameters& groom);
+/// Throws InputError where the keys contradict each other.
+double detail_tolerance(const Table& groom);
 
 /// Roots at equal shares of the area of the cap: Fibonacci's lattice (i + 1/2)/n, frac(i
 /// golden) mapped to the ellipsoid by its area, tabulated in 256 x 256 cells. A root's

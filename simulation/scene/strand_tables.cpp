@@ -116,6 +116,10 @@ CutStrands StrandSeries::outline() const {
   return all;
 }
 
+bool has_tolerance(const StrandSource& source) {
+  return source.groom && detail_tolerance(source.table) > 0;
+}
+
 void clear_detail(Table& groom) {
   for (const Parameter& p : detail_parameters()) {
     const std::string key(p.name);
@@ -133,7 +137,7 @@ StrandTables with_elements(StrandTables tables, int elements) {
 
 StrandTables with_twice_the_elements(StrandTables tables) {
   for (StrandSource& source : tables.sources) {
-    if (source.groom && detail_tolerance(source.table.values()) > 0) {
+    if (has_tolerance(source)) {
       throw InputError("elements that follow from a tolerance cannot be doubled",
                        source.table.place(), "leave out the tolerance");
     }

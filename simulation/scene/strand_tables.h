@@ -76,6 +76,8 @@ class StrandSeries {
   std::vector<std::size_t> some_;  // empty: all
 };
 
+/// Whether its strands get as many elements as they need.
+bool has_tolerance(const StrandSource& source);
 /// Takes the tolerance from a groom by which its strands get their elements.
 void clear_detail(Table& groom);
 

@@ -22,7 +22,6 @@ SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
 AuthInfo=socket=$folder/munge/socket
-CryptoType=crypto/munge
 CredType=cred/munge
 SlurmctldPort=$port
 SlurmdPort=$((port + 1))
@@ -46,7 +45,6 @@ MinJobAge=300
 NodeName=$name NodeAddr=127.0.0.1 CPUs=$cpus RealMemory=$memory State=UNKNOWN
 PartitionName=short Nodes=$name Default=YES MaxTime=60 State=UP
 END
-  sed -i '/^CryptoType/d' "$folder/slurm.conf"
   export SLURM_CONF="$folder/slurm.conf"
   munged --foreground --force --socket="$folder/munge/socket" --key-file="$folder/munge/key" \
     --pid-file="$folder/munge/pid" --log-file="$folder/munge/log" \

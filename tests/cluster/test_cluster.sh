@@ -5,6 +5,8 @@ set -euo pipefail
 repository=$1
 # shellcheck source=tests/cluster/slurm.sh
 . "$repository/tests/cluster/slurm.sh"
+# shellcheck source=tests/support/expect.sh
+. "$repository/tests/support/expect.sh"
 work=$(mktemp -d /tmp/tress-cluster-XXXXXX)
 trap 'stop_slurm; [[ ${KEEP:-} ]] || rm -rf "$work"' EXIT
 cd "$repository"
@@ -12,16 +14,6 @@ cd "$repository"
 cluster() { node experiments/cluster/cluster.mjs "$@"; }
 fail() { echo "FAILED: $*"; exit 1; }
 
-# expect CODE PATTERN COMMAND...: exit code and, in one line of its output, the pattern.
-expect() {
-  local code=$1 pattern=$2 rc=0
-  shift 2
-  "$@" >"$work/out" 2>&1 </dev/null || rc=$?
-  if ((rc != code)) || ! grep -qE -- "$pattern" "$work/out"; then
-    cat "$work/out"
-    fail "$* gave $rc, expected $code and '$pattern'"
-  fi
-}
 # until_true SECONDS COMMAND...
 until_true() {
   local end=$((SECONDS + $1))

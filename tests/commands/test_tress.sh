@@ -18,17 +18,9 @@ stand_in sudo <<<'exit 1'
 everything_installed() { stand_in dpkg-query <<<'printf "installed %s\n" "${@:3}"'; }
 nothing_installed() { stand_in dpkg-query <<<'exit 1'; }
 
-# expect CODE PATTERN COMMAND...: exit code and, somewhere in all output, the pattern.
-expect() {
-  local code=$1 pattern=$2 rc=0
-  shift 2
-  (cd "$work/a b" && PATH="$work/bin:$PATH" "$@") >"$work/out" 2>&1 </dev/null || rc=$?
-  if ((rc != code)) || ! grep -qE -- "$pattern" "$work/out"; then
-    echo "FAILED: $* gave $rc, expected $code and '$pattern'; output:"
-    cat "$work/out"
-    exit 1
-  fi
-}
+# shellcheck source=tests/support/expect.sh
+. "$repository/tests/support/expect.sh"
+expect_in=(env -C "$work/a b" "PATH=$work/bin:$PATH")
 expect_one_line() {
   [[ $(wc -l <"$work/out") == 1 ]] || { echo "not one line:"; cat "$work/out"; exit 1; }
 }

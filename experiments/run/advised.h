@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/run/command_line.h"
+
+namespace tress::experiments {
+
+/// What to take, a line each, on standard output.
+void print_advice(const std::vector<std::string>& lines);
+
+/// Writes the scene that is advised as <scene>.advised.toml beside the table, and says
+/// so.
+void write_advised(std::string_view experiment, const CommandLine& line,
+                   const std::string& scene, const std::string& text);
+
+}  // namespace tress::experiments
