@@ -7,14 +7,7 @@ namespace tress::experiments {
 namespace {
 
 void require(Status s) {
-  if (s != Status::ok) throw std::runtime_error("no residual at a state of rest");
-}
-
-Eigen::VectorXd residual(System& system, double t, In q, In a) {
-  const std::vector<double> zero(q.size());
-  Eigen::VectorXd r(static_cast<Eigen::Index>(q.size()));
-  require(system.residual(t, q, zero, a, {r.data(), q.size()}));
-  return r;
+  if (s != Status::ok) throw std::runtime_error("the residual cannot be evaluated");
 }
 
 Eigen::MatrixXd dense(const Pattern& p, In values) {
@@ -37,42 +30,56 @@ Eigen::MatrixXd dense_values(System& system, double t, In q, Weights w) {
   return dense(form.pattern(), values);
 }
 
+Instant at_rest(double t, In q) {
+  const std::vector<double> zero(q.size());
+  return {t, {q.begin(), q.end()}, zero, zero};
+}
+
 }  // namespace
+
+Eigen::MatrixXd tangent_of_residual(System& system, const Instant& at, Weights w) {
+  const std::size_t n = at.q.size();
+  const auto size = static_cast<Eigen::Index>(n);
+  Instant moved = at;
+  Eigen::VectorXd ahead(size), behind(size);
+  const auto evaluate = [&](Eigen::VectorXd& r) {
+    require(system.residual(at.t, moved.q, moved.v, moved.a, {r.data(), n}));
+  };
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
+  const auto add = [&](double weight, std::vector<double>& x, In step) {
+    if (weight == 0) return;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double value = x[j];
+      x[j] = value + step[j];
+      evaluate(ahead);
+      x[j] = value - step[j];
+      evaluate(behind);
+      x[j] = value;
+      all.col(static_cast<Eigen::Index>(j)) += weight / (2 * step[j]) * (ahead - behind);
+    }
+  };
+  std::vector<double> q_step(n), v_step(n), a_step(n);
+  system.scale(q_step, v_step);
+  constexpr double relative = 6e-6;  // differences of order 2: eps^(1/3)
+  for (std::size_t j = 0; j < n; ++j) {
+    a_step[j] = v_step[j] * v_step[j] / q_step[j];
+    q_step[j] *= relative;
+    v_step[j] *= relative;
+  }
+  add(w.acc, moved.a, a_step);
+  add(w.vel, moved.v, v_step);
+  add(w.pos, moved.q, q_step);
+  return all;
+}
 
 Eigen::MatrixXd dense_mass(System& system, double t, In q) {
   if (system.sparse_form() != nullptr) return dense_values(system, t, q, {1, 0, 0});
-  std::vector<double> a(q.size());
-  const Eigen::VectorXd forces = residual(system, t, q, a);
-  Eigen::MatrixXd mass(forces.size(), forces.size());
-  for (Eigen::Index j = 0; j < mass.cols(); ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    a[at] = 1;
-    mass.col(j) = residual(system, t, q, a) - forces;
-    a[at] = 0;
-  }
-  return mass;
+  return tangent_of_residual(system, at_rest(t, q), {1, 0, 0});
 }
 
 Eigen::MatrixXd dense_stiffness(System& system, double t, In q) {
   if (system.sparse_form() != nullptr) return dense_values(system, t, q, {0, 0, 1});
-  const std::size_t n = q.size();
-  std::vector<double> q_typ(n), v_typ(n), moved(q.begin(), q.end());
-  const std::vector<double> zero(n);
-  system.scale(q_typ, v_typ);
-  const auto size = static_cast<Eigen::Index>(n);
-  Eigen::MatrixXd stiffness(size, size);
-  constexpr double step = 6e-6;  // differences of order 2: eps^(1/3)
-  for (std::size_t j = 0; j < n; ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    const double e = step * q_typ[j];
-    moved[j] = q[j] + e;
-    stiffness.col(column) = residual(system, t, moved, zero);
-    moved[j] = q[j] - e;
-    stiffness.col(column) -= residual(system, t, moved, zero);
-    stiffness.col(column) /= 2 * e;
-    moved[j] = q[j];
-  }
-  return stiffness;
+  return tangent_of_residual(system, at_rest(t, q), {0, 0, 1});
 }
 
 Eigen::MatrixXd dense_gradient(System& system, double t, In q) {

@@ -98,15 +98,6 @@ std::vector<std::string> all_scenes() {
   return files;
 }
 
-void ready_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder, error)) {
-    throw InputError("the output is not a folder", "--out " + folder,
-                     "give a folder that exists or can be made");
-  }
-}
-
 const Experiment experiment{.name = "simulate",
                             .question = "What does a scene do?",
                             .example = "scenes/hair_under_wind.toml --vtk",
@@ -265,7 +256,7 @@ int run(const Arguments& a, CommandLine line) {
     throw InputError("two scenes of one name", file,
                      "rename one of them, or run it with another --out");
   }
-  ready_folder(a.out);
+  ready_folder(a.out, "--out " + a.out);
   Interruption interruption("simulate");
   bool complete = true;
   for (const Job& whole : jobs) {

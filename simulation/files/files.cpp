@@ -97,6 +97,15 @@ void check_output(const std::string& file) {
   if (::access(parent.c_str(), W_OK) != 0) cannot_write(file, errno);
 }
 
+void ready_folder(const std::string& folder, const std::string& place) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError("the output is not a folder", place,
+                     "give a folder that exists or can be made");
+  }
+}
+
 std::string beside(const std::string& file, std::string_view ending) {
   const std::string_view csv = ".csv";
   const bool has_ending = file.size() > csv.size() && file.ends_with(csv);

@@ -54,6 +54,10 @@ void replace_file(const std::string& file, std::string_view text);
 /// a device, a missing or unwritable parent.
 void check_output(const std::string& file);
 
+/// Makes the folder, with those above it, if it is not there. Throws InputError naming
+/// `place`, where it was asked for, when that is not possible.
+void ready_folder(const std::string& folder, const std::string& place);
+
 /// `file` without a final ".csv", followed by `ending`.
 std::string beside(const std::string& file, std::string_view ending);
 

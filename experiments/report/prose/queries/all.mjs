@@ -14,6 +14,7 @@ import * as hard from './hard.mjs';
 import * as head_accuracy from './head_accuracy.mjs';
 import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
+import * as matrices from './matrices.mjs';
 import * as references from './references.mjs';
 import * as scaling from './scaling.mjs';
 import * as stability from './stability.mjs';
@@ -35,6 +36,7 @@ export const queries = {
   head_accuracy,
   heads,
   machine,
+  matrices,
   references,
   scaling,
   stability,

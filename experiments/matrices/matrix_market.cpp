@@ -1,0 +1,79 @@
+#include "experiments/matrices/matrix_market.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+namespace tress::experiments::matrices {
+
+Eigen::MatrixXd Matrix::dense() const {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows, cols);
+  for (const Entry& e : entries) all(e.row, e.col) = e.value;
+  return all;
+}
+
+Matrix on_pattern(const Pattern& pattern, In values) {
+  Matrix matrix{pattern.rows, pattern.cols, {}};
+  for (int col = 0; col < pattern.cols; ++col) {
+    const auto column = static_cast<std::size_t>(col);
+    for (int k = pattern.start[column]; k < pattern.start[column + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      matrix.entries.push_back({pattern.row[at], col, values[at]});
+    }
+  }
+  return matrix;
+}
+
+Matrix entries_of(const Eigen::MatrixXd& dense) {
+  Matrix matrix{static_cast<int>(dense.rows()), static_cast<int>(dense.cols()), {}};
+  for (int col = 0; col < matrix.cols; ++col) {
+    for (int row = 0; row < matrix.rows; ++row) {
+      if (dense(row, col) != 0) matrix.entries.push_back({row, col, dense(row, col)});
+    }
+  }
+  return matrix;
+}
+
+Matrix transposed(const Matrix& matrix) {
+  Matrix other{matrix.cols, matrix.rows, matrix.entries};
+  for (Matrix::Entry& e : other.entries) std::swap(e.row, e.col);
+  std::ranges::stable_sort(
+      other.entries, {}, [](const Matrix::Entry& e) { return std::tuple(e.col, e.row); });
+  return other;
+}
+
+Matrix sum(const std::vector<std::pair<double, const Matrix*>>& terms) {
+  const auto place = [](const Matrix::Entry& e) { return std::tuple(e.col, e.row); };
+  Matrix all{terms.front().second->rows, terms.front().second->cols, {}};
+  std::vector<Matrix::Entry> entries;
+  for (const auto& [factor, matrix] : terms) {
+    for (Matrix::Entry e : matrix->entries) {
+      e.value *= factor;
+      entries.push_back(e);
+    }
+  }
+  std::ranges::stable_sort(entries, {}, place);
+  for (const Matrix::Entry& e : entries) {
+    if (!all.entries.empty() && place(all.entries.back()) == place(e)) {
+      all.entries.back().value += e.value;
+    } else {
+      all.entries.push_back(e);
+    }
+  }
+  return all;
+}
+
+std::string matrix_market(const Matrix& matrix, const std::string& comment) {
+  std::string text = "%%MatrixMarket matrix coordinate real general\n";
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "% {}\n{} {} {}\n", comment, matrix.rows, matrix.cols,
+                 matrix.entries.size());
+  for (const Matrix::Entry& e : matrix.entries) {
+    fmt::format_to(out, "{} {} {}\n", e.row + 1, e.col + 1, e.value);
+  }
+  return text;
+}
+
+}  // namespace tress::experiments::matrices
