@@ -1,7 +1,8 @@
 // The matrices of systems at an instant.
 import { number, rows_of, table } from '../markdown.mjs';
 
-const of_strands = (tables) => rows_of(tables, 'matrices').filter((row) => row.elements > 0);
+const of_strands = (tables) =>
+  rows_of(tables, 'matrices').filter((row) => row.elements > 0);
 
 const square = (row) => row.rows === row.cols;
 
@@ -15,7 +16,15 @@ const line = (row) => [
   square(row) ? number(row.condition, 2) : '',
 ];
 
-const columns = ['model', 'matrix', 'rows', 'entries', 'derivatives', 'asymmetry', 'condition'];
+const columns = [
+  'model',
+  'matrix',
+  'rows',
+  'entries',
+  'derivatives',
+  'asymmetry',
+  'condition',
+];
 
 export const strands_table = (tables) => table(columns, of_strands(tables).map(line));
 

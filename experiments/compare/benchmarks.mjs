@@ -1,0 +1,117 @@
+// Benchmarks of two builds, timed in turns, so that both see the same machine.
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { InputError } from '../report/src/input.mjs';
+import { fewest, spread, verdict } from './statistics.mjs';
+
+const confidence = 0.99;
+export const fewest_rounds = fewest(confidence);
+
+const programs_in = (folder) =>
+  readdirSync(folder)
+    .filter((name) => /^bench_\w+$/.test(name))
+    .sort();
+
+/// Processor time of each benchmark, by name, of one run of a program: the shortest of
+/// three, for what else a machine does only adds time, and not often.
+function run(program, { filter, min_time }) {
+  const folder = mkdtempSync(join(tmpdir(), 'tress-compare-'));
+  const out = join(folder, 'out.json');
+  try {
+    const { error, signal } = spawnSync(
+      program,
+      [
+        `--benchmark_filter=${filter}`,
+        `--benchmark_min_time=${min_time}`,
+        '--benchmark_repetitions=3',
+        `--benchmark_out=${out}`,
+        '--benchmark_out_format=json',
+      ],
+      { stdio: 'ignore' },
+    );
+    if (signal === 'SIGINT') throw new InputError('interrupted');
+    if (error || !existsSync(out))
+      throw new InputError(
+        `${program}: wrote no timings (${error?.code ?? signal ?? 'no file'}); run it by hand`,
+      );
+    const text = readFileSync(out, 'utf8');
+    // Of a filter that nothing matches the file is empty.
+    const { benchmarks } = text === '' ? { benchmarks: [] } : JSON.parse(text);
+    const times = new Map();
+    for (const one of benchmarks) {
+      if (one.run_type !== 'iteration' || one.error_occurred) continue;
+      times.set(one.name, Math.min(one.cpu_time, times.get(one.name) ?? Infinity));
+    }
+    return times;
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+}
+
+/// Ratios b/a by benchmark. The two take turns, and who begins alternates.
+function ratios(a, b, options, say) {
+  const found = new Map();
+  const only = { a: new Set(), b: new Set() };
+  for (let round = 0; round < options.rounds; ++round) {
+    say(round);
+    const b_first = round % 2 === 1;
+    const first = run(b_first ? b : a, options);
+    const second = run(b_first ? a : b, options);
+    const [of_a, of_b] = b_first ? [second, first] : [first, second];
+    for (const [name, time] of of_b) {
+      if (!of_a.has(name)) only.b.add(name);
+      else found.set(name, [...(found.get(name) ?? []), time / of_a.get(name)]);
+    }
+    for (const name of of_a.keys()) if (!of_b.has(name)) only.a.add(name);
+  }
+  return { found, only };
+}
+
+const exactly = (names) =>
+  `^(${names.map((name) => name.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')).join('|')})$`;
+
+/// Rows of all benchmarks of the two folders. What looks slower or faster is measured once
+/// more, alone, and the second measurement is what counts: with hundreds of rows some
+/// look so by chance.
+export function compare_benchmarks(a, b, options, say) {
+  const rows = [];
+  for (const name of programs_in(a)) {
+    if (!programs_in(b).includes(name)) {
+      rows.push({ table: name, row: '', verdict: 'only before' });
+      continue;
+    }
+    const measure = (what, filter) =>
+      ratios(join(a, name), join(b, name), { ...options, filter }, (round) =>
+        say(`${name}, ${what}: round ${round + 1} of ${options.rounds}`),
+      );
+    const { found, only } = measure('timings', options.filter);
+    const judged = new Map(
+      [...found].map(([row, values]) => {
+        const interval = spread(values, confidence);
+        return [row, { interval, verdict: verdict(interval, options.threshold) }];
+      }),
+    );
+    const suspected = [...judged].filter(([, { verdict }]) => verdict !== 'same');
+    if (suspected.length > 0) {
+      const again = measure(
+        `${suspected.length} again`,
+        exactly(suspected.map(([row]) => row)),
+      );
+      for (const [row, { verdict: before }] of suspected) {
+        const interval = spread(again.found.get(row), confidence);
+        const after = verdict(interval, options.threshold);
+        judged.set(row, { interval, verdict: after === before ? after : 'same' });
+      }
+    }
+    for (const [row, { interval, verdict }] of judged)
+      rows.push({ table: name, row, column: 'cpu_time', ...interval, verdict });
+    for (const row of only.a) rows.push({ table: name, row, verdict: 'only before' });
+    for (const row of only.b) rows.push({ table: name, row, verdict: 'only after' });
+  }
+  for (const name of programs_in(b))
+    if (!programs_in(a).includes(name))
+      rows.push({ table: name, row: '', verdict: 'only after' });
+  return rows;
+}
