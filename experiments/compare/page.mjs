@@ -66,9 +66,11 @@ export function page_of(a, b, rows, how) {
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 80rem; margin: 2rem auto; padding: 0 1rem; }
 table { border-collapse: collapse; width: 100%; }
 th, td { text-align: left; padding: .2rem .8rem .2rem 0; border-bottom: 1px solid #8886;
-         vertical-align: top; overflow-wrap: anywhere; }
+         vertical-align: top; }
+td:nth-child(n + 3) { overflow-wrap: anywhere; }
+td:first-child { white-space: nowrap; }
 .number { text-align: right; white-space: nowrap; }
-.slower, .changed-value, .only-before { font-weight: 600; }
+:is(.slower, .changed-value, .only-before) td:first-child { font-weight: 600; }
 svg line { stroke: currentColor; stroke-opacity: .4; }
 svg .interval { stroke-opacity: 1; stroke-width: 2; }
 svg circle { fill: currentColor; }
