@@ -24,6 +24,7 @@
   METHOD(newmark)                    \
   METHOD(generalized_alpha)          \
   METHOD(xpbd)                       \
+  METHOD(xpbd_bdf2)                  \
   METHOD(gsl_rkf45)                  \
   METHOD(gsl_rk8pd)                  \
   METHOD(gsl_msadams)                \

@@ -50,7 +50,7 @@ struct IntegratorEntry {
   Contact contact = Contact::regular;
   std::vector<Treatment> formulations;
   std::vector<Gap> gaps = {};
-  /// Options that only this method reads, by own_options().
+  /// Options of its own, read by own_options(); methods of a family share their list.
   std::span<const Parameter> parameters = {};
   /// Empty when the method can drive `system` under `formulation`, otherwise the reason
   /// (beyond the general rules that `refusal` checks).

@@ -184,25 +184,30 @@ std::span<const Parameter> integrator_options() {
   static const std::vector<Parameter> parameters = [] {
     std::vector<Parameter> list(common_options().begin(), common_options().end());
     for (const IntegratorEntry& entry : integrator_catalogue()) {
-      list.insert(list.end(), entry.parameters.begin(), entry.parameters.end());
+      const auto& own = entry.parameters;
+      if (own.empty() || readers_of_option(own.front().name).front() != &entry) continue;
+      list.insert(list.end(), own.begin(), own.end());
     }
     return list;
   }();
   return parameters;
 }
 
-const IntegratorEntry* owner_of_option(std::string_view key) {
+std::vector<const IntegratorEntry*> readers_of_option(std::string_view key) {
+  std::vector<const IntegratorEntry*> readers;
   for (const IntegratorEntry& entry : integrator_catalogue()) {
-    if (std::ranges::count(entry.parameters, key, &Parameter::name) > 0) return &entry;
+    if (std::ranges::count(entry.parameters, key, &Parameter::name) > 0) {
+      readers.push_back(&entry);
+    }
   }
-  return nullptr;
+  return readers;
 }
 
 void apply(Options& options, std::string_view key, std::string_view value,
            const std::string& where) {
   Parameters parameters(integrator_options(), where);
   parameters.set(key, value);
-  if (owner_of_option(key) != nullptr) {
+  if (!readers_of_option(key).empty()) {
     options.own.insert_or_assign(std::string(key), value);
     return;
   }

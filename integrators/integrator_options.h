@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "contract/parameters.h"
 #include "integrators/catalogue.h"
@@ -15,8 +16,8 @@ std::span<const Parameter> common_options();
 /// common_options(), followed by the method-specific options.
 std::span<const Parameter> integrator_options();
 
-/// The only method that reads this option; null for those of common_options().
-const IntegratorEntry* owner_of_option(std::string_view key);
+/// The methods that read this option of their own; none for those of common_options().
+std::vector<const IntegratorEntry*> readers_of_option(std::string_view key);
 
 /// Sets one option from text; throws InputError naming `where` on an unknown key, a
 /// malformed or non-finite number, or a value out of range.

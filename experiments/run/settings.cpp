@@ -92,10 +92,14 @@ bool Settings::chosen(std::string_view key) const {
 }
 
 void Settings::refuse_foreign(std::string_view key, const std::string& where) const {
-  const IntegratorEntry* reader = owner_of_option(key);
-  if (reader == nullptr || wanted(line_.integrators, reader->id)) return;
-  throw InputError(fmt::format("{} belongs to {}", key, reader->id), where,
-                   fmt::format("leave it out, or add {} to --integrators", reader->id));
+  const auto readers = readers_of_option(key);
+  const auto is_wanted = [&](const IntegratorEntry* reader) {
+    return wanted(line_.integrators, reader->id);
+  };
+  if (readers.empty() || std::ranges::any_of(readers, is_wanted)) return;
+  const std::string_view id = readers.front()->id;
+  throw InputError(fmt::format("{} belongs to {}", key, id), where,
+                   fmt::format("leave it out, or add {} to --integrators", id));
 }
 
 bool Settings::some_model_knows(std::string_view key) const {

@@ -239,6 +239,57 @@ TEST(Xpbd, ConvergedSweepsDifferFromBackwardEulerByOrder2) {
   }
 }
 
+// The rows of BDF2's equations, and of backward Euler's in the first step.
+TEST(XpbdBdf2, ConvergedSweepsAreBdf2OfALinearSystem) {
+  for (const int masses : {2, 3, 8, 9}) {
+    MassLine line(masses, spring, friction);
+    const auto exact = at_end("bdf2", line, sweeps(1), 5 * step);
+    for (const auto order : {"root_to_tip", "bilateral"}) {
+      EXPECT_LE(apart(at_end("xpbd_bdf2", line, sweeps(200, order), 5 * step), exact),
+                1e-12);
+    }
+    // The coefficients know a last step that is shorter.
+    EXPECT_LE(apart(at_end("xpbd_bdf2", line, sweeps(200), 5.4 * step),
+                    at_end("bdf2", line, sweeps(1), 5.4 * step)),
+              1e-12);
+  }
+}
+
+// As above for the change of G and for what is extrapolated: order 2 of the difference
+// from bdf2, whose own is 2.
+TEST(XpbdBdf2, ConvergedSweepsHaveOrder2OnStrands) {
+  for (const std::string_view model : {"xpbd_cosserat", "corde", "mass_spring"}) {
+    const auto system = soft_strand(model);
+    Options fine = sweeps(1);
+    fine.step = 1e-5;
+    const auto exact = at_end("bdf2", *system, fine, 0.02);
+    std::vector<double> steps, errors;
+    for (const double h : {2e-4, 1e-4, 5e-5}) {
+      Options options = sweeps(100);
+      options.step = h;
+      steps.push_back(h);
+      errors.push_back(apart(at_end("xpbd_bdf2", *system, options, 0.02), exact));
+      std::printf("%s, step %g s: %.2e\n", std::string(model).c_str(), h, errors.back());
+    }
+    EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.2) << model;
+    Options first_order = sweeps(100);
+    first_order.step = 5e-5;
+    EXPECT_LT(5 * errors.back(),
+              apart(at_end("xpbd", *system, first_order, 0.02), exact));
+  }
+}
+
+// One sweep over a stiff line is far from settled: every step is xpbd's own, to the bit.
+TEST(XpbdBdf2, StepsThatHaveNotSettledAreXpbds) {
+  MassLine line(20, 3e6, 0);
+  EXPECT_EQ(at_end("xpbd_bdf2", line, sweeps(1), 5 * step),
+            at_end("xpbd", line, sweeps(1), 5 * step));
+  MassLine soft(20, 0.3, 0);
+  EXPECT_GT(apart(at_end("xpbd_bdf2", soft, sweeps(8), 5 * step),
+                  at_end("xpbd", soft, sweeps(8), 5 * step)),
+            1e-3);
+}
+
 TEST(Xpbd, IsRefusedWhereThereAreNoCompliances) {
   const IntegratorEntry& xpbd = find_integrator("xpbd");
   for (const char* model : {"super_helix", "der", "dynamic_spline", "bead_on_wire"}) {

@@ -91,7 +91,7 @@ export const families = [
   {
     name: 'position-based',
     colours: ['#4C5BD4', '#8FA6D8'],
-    members: ['predictor_corrector', 'xpbd'],
+    members: ['predictor_corrector', 'xpbd', 'xpbd_bdf2'],
   },
   { name: 'other', colours: ['#8E6CC9', '#B9A3E0'], members: [] },
 ];

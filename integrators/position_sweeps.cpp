@@ -1,0 +1,154 @@
+#include "integrators/position_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tress::integrators {
+namespace {
+
+constexpr Parameter own[] = {
+    {.name = "sweeps",
+     .help = "Gauss-Seidel sweeps per step",
+     .number = 10,
+     .min = 1,
+     .max = 1e6,
+     .whole = true},
+    {.name = "sweep_order",
+     .help = "order of the blocks in a sweep",
+     .choices = "root_to_tip|bilateral"},
+};
+/// Indices of `count` blocks in the order of a sweep: from the root to the tip, or from
+/// both ends alternately, even indices upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t count) {
+  std::vector<std::size_t> all;
+  if (sweep_order == "root_to_tip") {
+    for (std::size_t k = 0; k < count; ++k) all.push_back(k);
+    return all;
+  }
+  std::size_t odd = count - count % 2;  // one past the last odd index
+  for (std::size_t even = 0; even < count; even += 2) {
+    all.push_back(even);
+    if (odd > 0) all.push_back(odd - 1);
+    odd = odd > 2 ? odd - 2 : 0;
+  }
+  return all;
+}
+
+constexpr std::string_view no_multipliers =
+    "takes energies, not constraints with multipliers";
+
+}  // namespace
+
+std::span<const Parameter> sweep_options() { return own; }
+
+PositionSweeps::PositionSweeps(System& system, const Options& options)
+    : PositionSweeps(system, own_options(options, own)) {}
+
+PositionSweeps::PositionSweeps(System& system, const Parameters& chosen)
+    : sweeps_(chosen.whole("sweeps")),
+      form_(*system.compliance_form()),
+      blocks_(form_.blocks()),
+      order_(order_of(chosen.word("sweep_order"), blocks_.size())),
+      lambda_of_(blocks_.size()),
+      w_(static_cast<std::size_t>(system.layout().coordinates)),
+      last_(w_.size()) {
+  form_.inverse_mass(w_);
+}
+
+void PositionSweeps::run(double t, double h, In origin, InOut x, Stats& stats) {
+  for (Rows& lambda : lambda_of_) lambda.fill(0);
+  for (int sweep = 0; sweep < sweeps_; ++sweep) {
+    if (sweep + 1 == sweeps_) std::ranges::copy(x, last_.begin());
+    for (const std::size_t k : order_) correct(t, h, k, origin, x);
+    ++stats.sweeps;
+  }
+  const double moved = weighed(origin, x);
+  unsettled_ = moved > 0 ? weighed(last_, x) / moved : 0;
+}
+
+double PositionSweeps::weighed(In from, In to) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double d = to[i] - from[i];
+    sum += d * d / w_[i];
+  }
+  return std::sqrt(sum);
+}
+
+/// Solves the equation of the header with rows divided by 1 + gamma: symmetric positive
+/// definite.
+void PositionSweeps::correct(double t, double h, std::size_t k, In origin, InOut y) {
+  const Block& block = blocks_[k];
+  const std::size_t size = block.coordinates.size();
+  const auto rows = static_cast<std::size_t>(block.rows);
+  double x[columns], moved[columns], w[columns];
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto from = static_cast<std::size_t>(block.coordinates[i]);
+    x[i] = y[from];
+    moved[i] = y[from] - origin[from];
+    w[i] = w_[from];
+  }
+  form_.evaluate(t, k, {x, size}, value_);
+  Rows& lambda = lambda_of_[k];
+  Square matrix;
+  Rows change;
+  for (std::size_t r = 0; r < rows; ++r) {
+    const double* slope = value_.gradient[r];
+    for (std::size_t c = 0; c <= r; ++c) {
+      double sum = 0;
+      for (std::size_t i = 0; i < size; ++i)
+        sum += slope[i] * w[i] * value_.gradient[c][i];
+      matrix[r][c] = sum;
+    }
+    double along = 0;
+    for (std::size_t i = 0; i < size; ++i) along += slope[i] * moved[i];
+    const double alpha = block.alpha[r] / (h * h);
+    const double gamma = block.alpha[r] * block.friction[r] / h;
+    matrix[r][r] += alpha / (1 + gamma);
+    change[r] =
+        -(value_.c[r] + alpha * lambda[r] + gamma * (along + h * value_.drift[r])) /
+        (1 + gamma);
+  }
+  solve(matrix, change, rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    lambda[r] += change[r];
+    for (std::size_t i = 0; i < size; ++i) {
+      y[static_cast<std::size_t>(block.coordinates[i])] +=
+          w[i] * value_.gradient[r][i] * change[r];
+    }
+  }
+}
+
+/// Cholesky's method on the lower triangle of a, in place; b becomes the solution.
+void PositionSweeps::solve(Square& a, Rows& b, std::size_t rows) {
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c <= r; ++c) {
+      for (std::size_t i = 0; i < c; ++i) a[r][c] -= a[r][i] * a[c][i];
+      a[r][c] = c < r ? a[r][c] / a[c][c] : std::sqrt(a[r][r]);
+    }
+    for (std::size_t i = 0; i < r; ++i) b[r] -= a[r][i] * b[i];
+    b[r] /= a[r][r];
+  }
+  for (std::size_t r = rows; r-- > 0;) {
+    for (std::size_t i = r + 1; i < rows; ++i) b[r] -= a[i][r] * b[i];
+    b[r] /= a[r][r];
+  }
+}
+
+std::string compliances(System& system, Formulation /*formulation*/) {
+  if (system.compliance_form() != nullptr) return {};
+  return "needs the model's energy as compliant constraints";
+}
+
+std::vector<Gap> gaps_of_sweeps() {
+  return {{Formulation::acceleration, no_multipliers},
+          {Formulation::baumgarte, no_multipliers},
+          {Formulation::projection, no_multipliers},
+          {Formulation::index2_ggl, no_multipliers},
+          {Formulation::index3, no_multipliers},
+          {Formulation::rattle, no_multipliers},
+          {Formulation::correction, no_multipliers}};
+}
+
+}  // namespace tress::integrators

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "integrators/entry.h"
+
+namespace tress::integrators {
+
+/// Options of all methods that sweep.
+std::span<const Parameter> sweep_options();
+
+/// Gauss-Seidel sweeps over the blocks of a model's ComplianceForm: from a guess x and
+/// lambda = 0 every block is corrected in turn by x += W G^T dlambda with
+///
+///     ((1 + gamma) G W G^T + alpha/h^2) dlambda
+///         = -C - alpha lambda/h^2 - gamma (G (x - origin) + h C_t),   gamma = alpha c/h,
+///
+/// so that converged sweeps solve x = guess + h^2 W G^T s, s of the energy and of its
+/// friction at the rates (x - origin)/h, except for the change of G on the way. [Macklin,
+/// Mueller & Chentanez 2016, eqs. 18, 26]
+class PositionSweeps {
+ public:
+  /// Reads sweep_options(). Throws InputError where an option is out of range.
+  PositionSweeps(System& system, const Options& options);
+
+  /// Of equations at time t; x is the guess, then the solution. Counts into `stats`.
+  void run(double t, double h, In origin, InOut x, Stats& stats);
+  /// By how much the last of them moved x, over how far x is from its origin (root of the
+  /// sums of squares by the diagonal of the mass).
+  double unsettled() const { return unsettled_; }
+
+ private:
+  using Block = ComplianceForm::Block;
+  static constexpr int columns = ComplianceForm::most_coordinates;
+  using Rows = std::array<double, ComplianceForm::most_rows>;
+  using Square = std::array<Rows, ComplianceForm::most_rows>;
+
+  PositionSweeps(System& system, const Parameters& chosen);
+  void correct(double t, double h, std::size_t k, In origin, InOut x);
+  static void solve(Square& a, Rows& b, std::size_t rows);
+  double weighed(In from, In to) const;
+
+  int sweeps_;
+  ComplianceForm& form_;
+  const std::vector<Block>& blocks_;
+  std::vector<std::size_t> order_;
+  std::vector<Rows> lambda_of_;  // of the blocks, in this step
+  std::vector<double> w_, last_;
+  double unsettled_ = 0;
+  ComplianceForm::Value value_{};
+};
+
+/// Why a system cannot be swept: it has no ComplianceForm.
+std::string compliances(System& system, Formulation formulation);
+
+/// The formulations that sweeps lack: all with multipliers.
+std::vector<Gap> gaps_of_sweeps();
+
+}  // namespace tress::integrators
