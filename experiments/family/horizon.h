@@ -32,4 +32,17 @@ struct Horizon {
 Horizon horizon(const Side& one, const Side& other, double t_end, int samples,
                 double length, double apart);
 
+/// How much a deviation of the strand's first velocities grows: the root mean square
+/// distance of the tip from `tip` over `length`, at as many samples as that has, over the
+/// deviation, of size `apart` (integrators' PointNorm: the largest |dx|/L or |du|
+/// sqrt(L/g)/L of a point). `side` computes as `tip` was computed; where it ends before,
+/// to there. One deviation is tried, of all velocities at random: a lower bound of the
+/// most that any grows by.
+double growth(const Side& side, In tip, double t_end, int samples, double length,
+              double apart);
+
+/// Growth of the deviation of a body that nothing holds back or drives apart: positions
+/// move on with the speed, whose unit is `length` in the time of a fall over it.
+double free_growth(double t_end, double length);
+
 }  // namespace tress::experiments::family
