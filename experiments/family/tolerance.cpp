@@ -249,30 +249,28 @@ std::vector<Row> unconfirmed(const Row& row, const std::vector<Outcome>& outcome
   return rows;
 }
 
-/// Of a hair whose error is beyond the tolerance, by what its deviation grows.
-double growth_of(const Subject& subject, In reference) {
+/// Of a hair whose error is beyond the tolerance, up to that many samples.
+double growth_of(const Subject& subject, int until) {
   const auto system = subject.system();
   Options options =
       options_of(*system, reference_calls * subject.most_calls * work_of_call(*system));
   options.tolerance = subject.tolerance / finer;
-  return growth({*system, reference_method, options}, reference, t_end, samples,
-                subject.hair.length, subject.tolerance / trusted);
+  return growth({*system, reference_method, options}, t_end, samples, until,
+                subject.tolerance / trusted);
 }
 
-/// Rows about the error of each outcome over the times of the reference, `errors` in the
-/// order of the outcomes.
+/// Makes rows about errors up to that many samples.
 class Judge {
  public:
-  Judge(const Subject& subject, In reference) : subject_(subject), tip_(reference) {}
+  Judge(const Subject& subject, int until) : subject_(subject), until_(until) {}
 
   Row operator()(Row row, double error) {
     const double asked = subject_.tolerance;
     if (error <= asked) return answer(row, claims[0], error, true);
     if (error >= no_solution) return answer(row, claims[0], no_solution, false);
-    if (!growth_) growth_ = growth_of(subject_, tip_);
+    if (!growth_) growth_ = growth_of(subject_, until_);
     row.set("growth", *growth_);
-    const double last =
-        TipSamples::time(t_end, static_cast<int>(tip_.size() / 3), samples);
+    const double last = TipSamples::time(t_end, until_, samples);
     const bool sensitive =
         *growth_ > free_growth(last, subject_.hair.length) && error <= *growth_ * asked;
     if (!sensitive) return answer(row, claims[0], error, false);
@@ -283,7 +281,7 @@ class Judge {
 
  private:
   const Subject& subject_;
-  In tip_;
+  int until_;
   std::optional<double> growth_;
 };
 
@@ -302,7 +300,7 @@ std::vector<Row> judged_until(const Subject& subject, const Horizon& known, Row 
   const double length = subject.hair.length;
   row.set("horizon_s", TipSamples::time(t_end, known.samples(), samples));
   row.set("gap", tip_error(known.other, known.tip, length));
-  Judge judge(subject, known.tip);
+  Judge judge(subject, known.samples());
   std::vector<Row> rows;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Row one = described(row, by_tolerance[i], outcomes[i]);
@@ -320,8 +318,8 @@ std::vector<Row> judged_until(const Subject& subject, const Horizon& known, Row 
 
 std::vector<Row> judged(const Subject& subject, const Row& row,
                         const std::vector<Outcome>& outcomes,
-                        const std::vector<Rung>& rungs, In reference) {
-  Judge judge(subject, reference);
+                        const std::vector<Rung>& rungs) {
+  Judge judge(subject, samples);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Outcome& outcome = outcomes[i];
@@ -348,7 +346,7 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
     if (gap > subject.tolerance) gap = gap_of_second(subject, *reference);
     with.set("gap", gap);
     if (gap <= subject.tolerance) {
-      return judged(subject, with, outcomes, rungs, *reference);
+      return judged(subject, with, outcomes, rungs);
     }
   }
   const Horizon known = horizon_of(subject);
