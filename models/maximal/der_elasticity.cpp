@@ -331,7 +331,8 @@ double DerElasticity::power(const Placement& p) noexcept {
 }
 
 bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
-  place({root, z, rate});
+  // The forces of the step have placed its joints near enough to count turns.
+  if (!placed_) place({root, z, rate});
   for (std::size_t j = 0; j < joints_.size(); ++j) twist_[j] = joints_[j].strain.value.x;
   bool moved = false;
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
