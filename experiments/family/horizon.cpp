@@ -101,7 +101,7 @@ std::vector<Points> path(const Side& side, const State& start, double t_end, int
 }  // namespace
 
 double growth(const Side& side, double t_end, int samples, int until, double apart) {
-  constexpr std::uint64_t tries = 3;
+  constexpr std::uint64_t tries = 8;
   const auto plain = path(side, initial_state(side.system), t_end, samples, until);
   const auto count = static_cast<std::size_t>(until);
   if (until == 0 || plain.size() < count) return 0;
