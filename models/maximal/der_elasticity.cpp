@@ -52,7 +52,14 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
       edges_(edge_data_.size()),
       joints_(joint_data_.size()),
       placed_z_(4 * edge_data_.size() + 3),
-      placed_rate_(placed_z_.size()) {}
+      placed_rate_(placed_z_.size()) {
+  forget_turns();
+}
+
+void DerElasticity::forget_turns() {
+  twist_.clear();
+  for (const RodJoint& joint : joint_data_) twist_.push_back(joint.rest.x);
+}
 
 std::vector<std::vector<int>> DerElasticity::groups() const {
   std::vector<std::vector<int>> all;
@@ -89,6 +96,7 @@ bool DerElasticity::placed_at(const Placement& p) noexcept {
 
 void DerElasticity::reset() {
   edge_data_ = edges_at_start_;
+  forget_turns();
   placed_ = false;
 }
 
@@ -108,6 +116,7 @@ void DerElasticity::place(const Placement& p) noexcept {
     Joint& joint = joints_[j];
     Edge& behind = edges_[after(j)];
     joint.strain = JointStrain(frame_before(p, j), behind.frame);
+    joint.strain.value.x = wound(joint.strain.value.x, twist_[j]);
     const Vec relative = behind.spin - (clamp(j) ? p.root.omega : edges_[before(j)].spin);
     const JointStrain& s = joint.strain;
     joint.rate = {dot(s.twist, relative), dot(s.curvature1, relative),
@@ -321,7 +330,10 @@ double DerElasticity::power(const Placement& p) noexcept {
   return sum;
 }
 
-bool DerElasticity::rebase(InOut z, InOut rate) {
+bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
+  // The forces of the step have placed its joints near enough to count turns.
+  if (!placed_) place({root, z, rate});
+  for (std::size_t j = 0; j < joints_.size(); ++j) twist_[j] = joints_[j].strain.value.x;
   bool moved = false;
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     const Vec e = load3(&z[3 * i + 3]) - load3(&z[3 * i]);
@@ -334,11 +346,12 @@ bool DerElasticity::rebase(InOut z, InOut rate) {
 }
 
 std::vector<double> DerElasticity::memory() const {
-  std::vector<double> references(9 * edge_data_.size());
+  std::vector<double> all(9 * edge_data_.size());
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
-    store9(edge_data_[i].reference, &references[9 * i]);
+    store9(edge_data_[i].reference, &all[9 * i]);
   }
-  return references;
+  all.insert(all.end(), twist_.begin(), twist_.end());
+  return all;
 }
 
 void DerElasticity::recall(In memory) {
@@ -346,6 +359,7 @@ void DerElasticity::recall(In memory) {
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     edge_data_[i].reference = load9(&memory[9 * i]);
   }
+  std::ranges::copy(memory.subspan(9 * edge_data_.size()), twist_.begin());
 }
 
 }  // namespace tress::models

@@ -29,7 +29,7 @@ class DerElasticity final : public Elasticity {
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
-  bool rebase(InOut z, InOut rate) override;
+  bool rebase(const RootPose& root, InOut z, InOut rate) override;
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
@@ -60,6 +60,7 @@ class DerElasticity final : public Elasticity {
   /// needs forces and tangent of the same one.
   void place(const Placement& p) noexcept;
   bool placed_at(const Placement& p) noexcept;  // and remembers p
+  void forget_turns();
   const Frame& frame_before(const Placement& p, std::size_t joint) const {
     return clamp(joint) ? p.root.frame : edges_[before(joint)].frame;
   }
@@ -71,6 +72,7 @@ class DerElasticity final : public Elasticity {
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<RodJoint> joint_data_;
+  std::vector<double> twist_;  // per joint, after the last accepted step: see wound()
   bool walled_;
   Tangent tangent_;
   bool friction_;

@@ -51,7 +51,9 @@ class Elasticity {
   virtual std::optional<Frame> end_frame(const Placement&) noexcept { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True if the equations changed.
-  virtual bool rebase(InOut /*z*/, InOut /*rate*/) { return false; }
+  virtual bool rebase(const RootPose& /*root*/, InOut /*z*/, InOut /*rate*/) {
+    return false;
+  }
   virtual void reset() {}                                    // undoes every rebase()
   virtual std::vector<double> memory() const { return {}; }  // as History::memory()
   virtual void recall(In /*memory*/) {}

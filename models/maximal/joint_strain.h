@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "contract/layers.h"
 #include "math/frame.h"
@@ -27,6 +28,15 @@ Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
                 dot(minus.e1, plus.e1) + dot(minus.e2, plus.e2)),
           (dot(minus.e0, plus.e2) - dot(plus.e0, minus.e2)) / c,
           (dot(plus.e0, minus.e1) - dot(minus.e0, plus.e1)) / c};
+}
+
+/// The frames of a joint tell its twist up to whole turns: the one of these angles that
+/// is nearest to `near`, the twist a short time before. A joint that turns on past half a
+/// turn is twisted by more, as in [Bergou 2008], where the angles of the edges count the
+/// turns; between -pi and pi its force would jump to the other side there.
+inline double wound(double twist, double near) {
+  constexpr double turn = 2 * std::numbers::pi;
+  return twist + turn * std::round((near - twist) / turn);
 }
 
 /// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), stored as

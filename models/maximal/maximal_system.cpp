@@ -264,7 +264,7 @@ Status MaximalSystem::solve(In b, Out x) noexcept {
 
 bool MaximalSystem::accept(double t, InOut q, InOut v) {
   place(t, q, v);
-  if (!strand_.elasticity->rebase(z_, rate_)) return false;
+  if (!strand_.elasticity->rebase(pose_, z_, rate_)) return false;
   std::ranges::copy(In(z_).subspan(held()), q.begin());
   std::ranges::copy(In(rate_).subspan(held()), v.begin());
   return true;

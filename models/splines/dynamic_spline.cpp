@@ -23,7 +23,7 @@ namespace {
 ///
 /// where kappa = t x t' = r' x r''/|r'|^2, the geometrically exact curvature per length
 /// at rest, is taken along the axes of the section (SplineBend), and phi is the twist of
-/// a span of length h between the frames at its ends (SplineTwist, between -pi and pi).
+/// a span of length h between the frames at its ends (SplineTwist, whole turns counted).
 /// Rest strains are those of the spline through the natural shape.
 ///
 /// Mass rho A int N_k N_l ds is consistent (four Gauss points per span, exact). Bending

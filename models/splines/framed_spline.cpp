@@ -220,7 +220,20 @@ std::optional<Frame> FramedSpline::end_frame(const Placement& p) noexcept {
   return edge_frame(references_[knot], direction(p.z, knot), p.z[angle(knot)]);
 }
 
-bool FramedSpline::rebase(InOut z, InOut rate) {
+void FramedSpline::reset() {
+  references_ = references_at_start_;
+  for (Span& span : spans_) span.twist.near = 0;
+}
+
+bool FramedSpline::rebase(const RootPose& root, InOut z, InOut rate) {
+  if (clamped_) references_[0] = root.frame;
+  for (std::size_t i = 0; i < spans_.size(); ++i) {
+    Local local;
+    at_knots({root, z, rate}, i, local);
+    double twist = 0;
+    spans_[i].twist.strain(local.x, &twist);
+    spans_[i].twist.near = twist;
+  }
   bool moved = false;
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
     moved |= renew_reference(references_[knot], direction(z, knot), direction(rate, knot),
@@ -230,12 +243,13 @@ bool FramedSpline::rebase(InOut z, InOut rate) {
 }
 
 std::vector<double> FramedSpline::memory() const {
-  std::vector<double> references(9 * (references_.size() - first_angle()));
-  double* to = references.data();
+  std::vector<double> all(9 * (references_.size() - first_angle()));
+  double* to = all.data();
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot, to += 9) {
     store9(references_[knot], to);
   }
-  return references;
+  for (const Span& span : spans_) all.push_back(span.twist.near);
+  return all;
 }
 
 void FramedSpline::recall(In memory) {
@@ -243,6 +257,7 @@ void FramedSpline::recall(In memory) {
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot, from += 9) {
     references_[knot] = load9(from);
   }
+  for (Span& span : spans_) span.twist.near = *from++;
 }
 
 }  // namespace tress::models

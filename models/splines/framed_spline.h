@@ -40,8 +40,8 @@ class FramedSpline final : public Elasticity {
   double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
-  bool rebase(InOut z, InOut rate) override;
-  void reset() override { references_ = references_at_start_; }
+  bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
 

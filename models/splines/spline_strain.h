@@ -1,5 +1,6 @@
 #pragma once
 
+#include "math/dual.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
 
@@ -8,12 +9,20 @@
 /// edge_frame (rod_edge.h) of r' and the angle theta at the knot.
 namespace tress::models {
 
-/// Twist over the span (rad): that of joint_strain.h between the frames of its knots.
-/// x = (r'-, theta-, r'+, theta+).
+inline double value_of(double x) { return x; }
+template <int n, class T>
+double value_of(const Dual<n, T>& x) {
+  return value_of(x.value);
+}
+
+/// Twist over the span (rad): that of joint_strain.h between the frames of its knots,
+/// less `rest`, with the whole turns that bring it nearest to `near`. x = (r'-, theta-,
+/// r'+, theta+).
 struct SplineTwist {
   static constexpr int strains = 1, coordinates = 8;
   const Frame* reference = nullptr;  // of the knots, two
   double stiffness[1] = {}, friction[1] = {}, rest[1] = {};
+  double near = 0;  // after the last accepted step
 
   template <class T>
   void strain(const T* x, T* s) const {
@@ -21,6 +30,8 @@ struct SplineTwist {
                         edge_frame(reference[1], load3(x + 4), x[7]))
                .x -
            T(rest[0]);
+    const double now = value_of(s[0]);
+    s[0] += T(wound(now, near) - now);
   }
   void gradient(const double* x, double (&g)[1][8]) const;
   void add_second(const double* x, const double* stress, double (&h)[8][8]) const;

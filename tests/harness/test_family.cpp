@@ -214,6 +214,29 @@ TEST(Family, Horizon_EndsBeforeTheFirstSampleAtWhichTwoRunsAreApart) {
   EXPECT_LT(ended.samples(), samples);
 }
 
+// A strand that stands on its root falls away from there as exp(t sqrt(g/L)) and faster
+// (a rod on a hinge: sqrt(3 g/(2 L))); one that hangs swings, and what is off stays so.
+TEST(Family, Growth_TellsAnUnstableMotionFromAStableOne) {
+  constexpr double length = 0.1, t_end = 0.4;
+  constexpr int samples = 8;
+  const auto of = [](std::string_view root_tangent, double apart) {
+    const auto system =
+        make_model("super_helix", {{"elements", "4"},
+                                   {"length_m", "0.1"},
+                                   {"youngs_modulus_pa", "1e5"},
+                                   {"root_tangent", std::string(root_tangent)}});
+    Options options;
+    options.tolerance = 1e-5;
+    return growth({*system, "esdirk43", options}, t_end, samples, samples, apart);
+  };
+  const double standing = of("up", 1e-4), hanging = of("down", 1e-4);
+  EXPECT_GT(standing, free_growth(t_end, length));
+  EXPECT_LT(hanging, free_growth(t_end, length));
+  // It is that of an infinitesimal deviation: the same of one ten times as large.
+  EXPECT_NEAR(of("down", 1e-3) / hanging, 1, 0.02);
+  EXPECT_GT(hanging, 0);
+}
+
 // With all its means at once the method took 4e5 calls for two thirds of the way.
 TEST(Family, ErrorControl_TriesShorterStepsBeforeItMakesAnEffort) {
   const Hair hair = latin_hypercube(48, 1)[17];

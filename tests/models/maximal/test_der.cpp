@@ -116,6 +116,45 @@ INSTANTIATE_TEST_SUITE_P(Maximal, ReferenceFrames,
                                          std::pair("dynamic_spline", 9)),
                          [](const auto& test) { return std::string(test.param.first); });
 
+class WholeTurns : public testing::TestWithParam<std::string_view> {};
+
+/// The last section of a straight strand is turned about its axis, step by step, by five
+/// quarters of a turn and more: energy is as the square of the angle, the moment as the
+/// angle, and both are the same from what the strand remembers.
+TEST_P(WholeTurns, GoOnTwistingAJoint) {
+  const ModelSettings settings = {{"elements", "4"}, {"gravity_m_s2", "0"}};
+  const auto system = make_model(GetParam(), settings);
+  State state = initial_state(*system);
+  const std::vector<double> zero = zeros(*system);
+  const auto energy = [&](System& of, double angle) {
+    state.q.back() = angle;
+    return of.energetics()->energy(0, state.q, state.v).potential;
+  };
+  const auto moment = [&](double angle) {
+    state.q.back() = angle;
+    return residual(*system, state.q, zero, zero).back();
+  };
+  const double one = energy(*system, 1), moment_of_one = moment(1);
+  ASSERT_GT(one, 0);
+  double angle = 0;
+  while (angle < 8) {
+    angle += 0.5;
+    EXPECT_NEAR(energy(*system, angle) / (angle * angle * one), 1, 1e-10) << angle;
+    EXPECT_NEAR(moment(angle) / (angle * moment_of_one), 1, 1e-10) << angle;
+    system->accept(0, state.q, state.v);
+  }
+  const auto other = make_model(GetParam(), settings);
+  other->recall(system->memory());
+  EXPECT_EQ(energy(*other, angle), energy(*system, angle));
+  // Back where it began: all turns are forgotten, and what is left is the nearest.
+  system->reset();
+  const double left = angle - 2 * std::numbers::pi;
+  EXPECT_NEAR(energy(*system, angle) / (left * left * one), 1, 1e-10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Maximal, WholeTurns, testing::Values("der", "dynamic_spline"),
+                         [](const auto& test) { return std::string(test.param); });
+
 /// Turning an edge around a cone and back leaves no trace while its reference stays;
 /// with a new one on the way the frame comes back turned about the edge by the area that
 /// the tangent went around on the sphere, 2 pi (1 - cos 35 deg).

@@ -164,7 +164,8 @@ const solved = (tables, row) => {
     all: chosen.length,
     within: chosen.filter((hair) => hair.holds === 'true').length,
     unsolved: chosen.filter((hair) => hair.holds === 'false' && hair.failure).length,
-    silent: chosen.filter((hair) => hair.status !== 'ok').length,
+    sensitive: chosen.filter((hair) => hair.status === 'sensitive').length,
+    silent: chosen.filter((hair) => !['ok', 'sensitive'].includes(hair.status)).length,
   });
   return {
     ...count(rows),
@@ -200,7 +201,9 @@ export const tolerance_table = (tables) => {
       const count = solved(tables, row);
       return [
         `${row.model}, ${row.integrator}`,
-        `${count.within} of ${count.all}${count.silent > 0 ? `, ${count.silent} unknown` : ''}`,
+        `${count.within} of ${count.all}` +
+          `${count.sensitive > 0 ? `, ${count.sensitive} sensitive` : ''}` +
+          `${count.silent > 0 ? `, ${count.silent} unknown` : ''}`,
         part(count.damped),
         part(count.undamped),
         [row.decile_1, row.median, row.decile_9].map((x) => number(x)).join(', '),
@@ -210,6 +213,16 @@ export const tolerance_table = (tables) => {
       ];
     }),
   );
+};
+
+// "Sensitive are hair 28 by super_helix (growth 11) ..."
+export const sensitive = (tables) => {
+  const rows = rows_of(tables, 'family', { claim: 'tolerance_met', status: 'sensitive' });
+  if (rows.length === 0) return 'None is among the stored hairs.';
+  const named = (row) =>
+    `hair ${row.hair} by \`${row.model}\`, \`${row.integrator}\` (growth ${number(row.growth)}, ` +
+    `error ${number(row.value / row.tolerance)} of the tolerance)`;
+  return `Sensitive: ${rows.map(named).join('; ')}.`;
 };
 
 // "within that for 31 of 48 hairs by super_helix (9 of 12 without internal friction ..."
