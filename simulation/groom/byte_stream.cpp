@@ -24,7 +24,7 @@ const std::string& regular(const std::string& file) {
   throw InputError("there is no such file", file, "name a file with strands");
 }
 
-bool blank(int c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+bool blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 }  // namespace
 
@@ -82,27 +82,38 @@ void ByteStream::require(std::uint64_t count, std::uint64_t each,
 }
 
 void ByteStream::skip_blanks() {
-  while (blank(peek())) get();
+  while (true) {
+    for (; next_ < end_; ++next_) {
+      if (!blank(buffer_[next_])) return;
+      if (buffer_[next_] == '\n') ++line_;
+    }
+    if (!fill()) return;
+  }
 }
 
-std::string ByteStream::digits() {
+std::string_view ByteStream::digits() {
   skip_blanks();
-  std::string text;
+  const auto part = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           c == '.' || c == '-' || c == '+';
+  };
   constexpr std::size_t longest = 60;
-  while (text.size() < longest) {
-    const int c = peek();
-    const bool part = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
-                      (c >= 'A' && c <= 'Z') || c == '.' || c == '-' || c == '+';
-    if (!part) break;
-    text += static_cast<char>(get());
+  if (end_ - next_ < longest && at() + (end_ - next_) < size_) {
+    const std::uint64_t here = at();
+    base_ = here;  // reads on with what is needed at the front
+    next_ = end_ = 0;
+    fill();
   }
-  return text;
+  const std::size_t last = std::min(end_, next_ + longest);
+  const std::size_t from = next_;
+  while (next_ < last && part(buffer_[next_])) ++next_;
+  return {buffer_.data() + from, next_ - from};
 }
 
 double ByteStream::decimal() {
-  const std::string text = digits();
+  const std::string_view text = digits();
   const char* first = text.data();
-  const char* last = first + text.size();
+  const char* const last = first + text.size();
   if (first != last && *first == '+') ++first;
   double x = 0;
   const auto [end, error] = std::from_chars(first, last, x);
@@ -117,7 +128,7 @@ double ByteStream::decimal() {
 }
 
 std::uint64_t ByteStream::whole() {
-  const std::string text = digits();
+  const std::string_view text = digits();
   std::uint64_t x = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
   if (!text.empty() && end == text.data() + text.size() && error == std::errc{}) return x;

@@ -62,7 +62,8 @@ class ByteStream {
 
  private:
   bool fill();
-  std::string digits();
+  /// What may be a number, 60 bytes at most; until the next call.
+  std::string_view digits();
 
   std::string file_;
   File input_;

@@ -265,7 +265,8 @@ HelixChain along(const SpaceCurve& curve, std::span<const double> joints) {
     const double middle = 0.5 * (s[i - 1] + s[i]);
     while (element + 2 < joints.size() && joints[element + 1] < middle) ++element;
     const double l = joints[element + 1] - joints[element];
-    chain.darboux[element] = chain.darboux[element] + 1 / l * rotation_between(frame, next);
+    chain.darboux[element] =
+        chain.darboux[element] + 1 / l * rotation_between(frame, next);
     frame = next;
     x = y;
   }
@@ -326,6 +327,10 @@ HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints) 
   for (int k = 0; k < most_fit_steps && fitting.step(chain, now, damping); ++k) {
   }
   return chain;
+}
+
+double misfit(const SpaceCurve& curve, const HelixChain& chain) {
+  return HelixFitting(curve, chain.joint).squares(chain);
 }
 
 std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs) {

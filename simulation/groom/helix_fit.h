@@ -38,12 +38,15 @@ struct HelixChain {
 ///
 /// over all Darboux vectors and the frame at the root, l the mean
 /// of two lengths, tau the twist, the integral by 3 Gauss points an element [Levenberg
-/// 1944, Marquardt 1963]. It starts from the curvature of the twistless frame, averaged
+/// 1944; Marquardt 1963]. It starts from the curvature of the twistless frame, averaged
 /// over each element: that alone is ten times as far away, since errors of angle add up
 /// along the strand. The two small weights hold what the curve leaves open: the twist of
 /// a straight part, and strains that oscillate from element to element. O(n^3) for each
 /// of a dozen steps at most.
 HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints);
+
+/// That sum, of a chain.
+double misfit(const SpaceCurve& curve, const HelixChain& chain);
 
 /// Places on a chain at ascending arc lengths from 0 to its length.
 std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs);

@@ -25,7 +25,7 @@ class Noise {
   double at(double s) const {
     double sum = 0;
     for (const auto& [rate, phase] : waves_) sum += std::sin(rate * s + phase);
-    return sum * std::sqrt(2.0 / std::size(waves_));
+    return sum * std::numbers::sqrt2 / 2;
   }
 
  private:
@@ -92,7 +92,8 @@ MadeGroom curls() {
 MadeGroom ponytail() {
   MadeGroom groom;
   groom.locks = 10;
-  groom.hairs = 15;
+  groom.hairs = 12;
+  groom.points = 64;
   groom.length = 0.3;
   groom.curl_radius = 3e-3;
   groom.curl_pitch = 0.07;
