@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "contract/input_error.h"
+#include "simulation/files/parse.h"
 
 namespace tress::simulation {
 namespace {
@@ -153,10 +154,12 @@ std::string ByteStream::byte_place() const {
   return fmt::format("{}: byte {}", file_, at());
 }
 void ByteStream::refuse_text(const std::string& problem, const std::string& remedy) {
-  throw InputError(problem, text_place(), remedy.empty() ? std::string(damaged) : remedy);
+  throw InputError(one_line(problem), text_place(),
+                   remedy.empty() ? std::string(damaged) : remedy);
 }
 void ByteStream::refuse(const std::string& problem, const std::string& remedy) const {
-  throw InputError(problem, byte_place(), remedy.empty() ? std::string(damaged) : remedy);
+  throw InputError(one_line(problem), byte_place(),
+                   remedy.empty() ? std::string(damaged) : remedy);
 }
 
 }  // namespace tress::simulation

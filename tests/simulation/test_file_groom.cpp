@@ -50,7 +50,7 @@ HelixChain random_chain(int elements, double angle, std::uint64_t seed) {
 
 /// A curve that is a chain of helices is found to be it: the sum that the fit makes small
 /// is, for the true chain, that of the two weights, which bounds the distance of the
-/// fitted one.
+/// fitted one. Its steps end where one gains less than a thousandth.
 TEST(FitHelices, FindsAChainOfHelices) {
   for (const double angle : {0.0, 0.2, 0.7}) {
     const HelixChain chain = random_chain(6, angle, 5);
@@ -59,7 +59,7 @@ TEST(FitHelices, FindsAChainOfHelices) {
     const SpaceCurve curve = curve_of(places_on(chain, arcs));
     const HelixChain found = fit_helices(curve, chain.joint);
     const double bound = misfit(curve, chain);
-    EXPECT_LE(misfit(curve, found), bound * (1 + 1e-9) + 1e-20) << angle;
+    EXPECT_LE(misfit(curve, found), bound * 1.002 + 1e-20) << angle;
     EXPECT_LE(distance(curve, found, Between::helices).rms,
               0.18 * std::sqrt(bound) + 1e-9)
         << angle;
@@ -202,7 +202,7 @@ class FileGroomScene : public testing::Test {
   Polylines lines_;
 };
 
-constexpr const char* as_it_is = "unit = \"m\"\nup = \"z\"";
+const std::string as_it_is = "unit = \"m\"\nup = \"z\"";
 
 TEST_F(FileGroomScene, StartsWhereItsFileIs) {
   const Scene read = scene(as_it_is);
@@ -232,6 +232,7 @@ TEST_F(FileGroomScene, StartsWhereItsFileIs) {
 /// starts with its points on the file; or says what it cannot do.
 TEST_F(FileGroomScene, IsForEveryModel) {
   int taken = 0;
+  const std::string few_of_them = fmt::format("{}\nevery = 4", as_it_is);
   for (const ModelEntry& model : model_catalogue()) {
     if (model.on_strand == nullptr) continue;
     for (const char* motion : {"shake", "free", "head"}) {
@@ -241,13 +242,13 @@ TEST_F(FileGroomScene, IsForEveryModel) {
             "[model]\nid = \"{}\"\n[integrator]\nid = \"backward_euler\"\n[root]\n"
             "motion = \"{}\"\n{}",
             model.id, motion, effects);
-        const std::string said = refusal(std::string(as_it_is) + "\nevery = 4", more);
+        const std::string said = refusal(few_of_them, more);
         if (said != "nothing refused") {
           EXPECT_THAT(said, HasSubstr("scene.toml:"));
           continue;
         }
         ++taken;
-        const World world(scene(std::string(as_it_is) + "\nevery = 4", more));
+        World world(scene(few_of_them, more));
         std::size_t first = 0;
         for (std::size_t k = 0; k < world.points().size(); ++k) {
           std::vector<Vec> points;
@@ -264,7 +265,7 @@ TEST_F(FileGroomScene, IsForEveryModel) {
 }
 
 TEST_F(FileGroomScene, IsThinnedCutAndGuided) {
-  const std::string keys = as_it_is;
+  const std::string& keys = as_it_is;
   EXPECT_EQ(scene(keys + "\nevery = 2").strands.size(), 5u);
   EXPECT_EQ(scene(keys + "\ncount = 4").strands.size(), 4u);
   const Scene guided = scene(keys + "\nguides = 3");
@@ -285,7 +286,9 @@ TEST_F(FileGroomScene, IsThinnedCutAndGuided) {
 TEST_F(FileGroomScene, RunsAsAHeadWithEqualElements) {
   const auto outline = [&](const std::string& keys) {
     const std::string file = folder_ + "head.toml";
-    replace_file(file, text(std::string(as_it_is) + keys));
+    replace_file(file, text(as_it_is + keys,
+                            "[model]\ntangent = \"stiff\"\n[integrator]\nid = "
+                            "\"semi_implicit_euler\"\n"));
     return read_outline(file);
   };
   const auto no = no_head(outline(""));
@@ -301,7 +304,6 @@ TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
   EXPECT_THAT(refusal("unit = \"m\"\nunit_m = 2"), HasSubstr("unit_m beside unit"));
   EXPECT_THAT(refusal("count = 10"), HasSubstr("10 of the 9 strands"));
   EXPECT_THAT(refusal("guides = 2\nfit_tolerance = 0.1"), HasSubstr("guides of several"));
-  EXPECT_THAT(refusal("", "[[groom]]\n"), HasSubstr("groom"));
   for (const char* key :
        {"unit = \"m\"", "every = 2", "cuts = \"equal\"", "fit_tolerance = 1"}) {
     try {

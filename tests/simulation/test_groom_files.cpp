@@ -265,6 +265,23 @@ TEST(CurveBasis, EvaluatesTheCurve) {
   EXPECT_TRUE(points_on(line, CurveBasis::bezier, false).empty());
 }
 
+GroomPlacing placing(double metres, FileAxis up) {
+  GroomPlacing made;
+  made.metres = metres;
+  made.up = up;
+  return made;
+}
+GroomPlacing dropping() {
+  GroomPlacing made;
+  made.bad = BadStrands::drop;
+  return made;
+}
+GroomPlacing every_second() {
+  GroomPlacing made;
+  made.every = 2;
+  return made;
+}
+
 /// A strand of 0.2 m that hangs from (0.1, 0.2, 0.3) m, as a file with another unit and
 /// axis has it.
 TEST(PlacedGroom, HasMetresAndZUp) {
@@ -276,7 +293,7 @@ TEST(PlacedGroom, HasMetresAndZUp) {
     EXPECT_NEAR(norm(placed.lines.points[2] - Vec{0.1, 0.2, 0.1}), 0, 1e-15);
     EXPECT_EQ(placed.notes.size(), notes);
   };
-  check(place_groom(cm_y_up, "f", {.metres = 0.01, .up = FileAxis{1, false}}), 0);
+  check(place_groom(cm_y_up, "f", placing(0.01, {1, false})), 0);
   const PlacedGroom guessed = place_groom(cm_y_up, "f", {});
   check(guessed, 2);
   EXPECT_THAT(guessed.notes[0], HasSubstr("guessed: cm"));
@@ -291,8 +308,7 @@ TEST(PlacedGroom, HasMetresAndZUp) {
       GroomFile axes;
       axes.lines.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
       axes.lines.end_strand(0, 0);
-      const Polylines lines =
-          place_groom(axes, "f", {.metres = 1, .up = FileAxis{axis, back}}).lines;
+      const Polylines lines = place_groom(axes, "f", placing(1, {axis, back})).lines;
       const Vec x = lines.points[1], y = lines.points[2], z = lines.points[3];
       EXPECT_NEAR(dot(cross(x, y), z), 1, 1e-15);
       EXPECT_EQ(lines.points[static_cast<std::size_t>(axis) + 1].z, back ? -1 : 1);
@@ -319,17 +335,17 @@ TEST(PlacedGroom, RefusesOrDropsBadStrandsAndSaysSo) {
     EXPECT_THAT(refusal([&] { place_groom(read, "f.hair", {}); }),
                 AllOf(HasSubstr(said), HasSubstr("f.hair: byte 200"),
                       HasSubstr("bad_strands = \"drop\"")));
-    const PlacedGroom left = place_groom(read, "f.hair", {.bad = BadStrands::drop});
+    const PlacedGroom left = place_groom(read, "f.hair", dropping());
     EXPECT_EQ(left.lines.size(), 1u);
     EXPECT_FALSE(left.notes.empty());
-    EXPECT_EQ(place_groom(read, "f.hair", {.every = 2}).lines.size(), 1u);
+    EXPECT_EQ(place_groom(read, "f.hair", every_second()).lines.size(), 1u);
   }
   GroomFile twice;
   twice.metres = 1;
   twice.up = FileAxis{2, false};
   twice.lines.points = {{0, 0, 1}, {0, 0, 1}, {0, 0, 0}};
   twice.lines.end_strand(0, 0);
-  EXPECT_EQ(place_groom(twice, "f", {.bad = BadStrands::drop}).lines.points.size(), 2u);
+  EXPECT_EQ(place_groom(twice, "f", dropping()).lines.points.size(), 2u);
 }
 
 /// Our own exports, of two frames: read again they are the same places, units and axes,
