@@ -12,7 +12,7 @@
 #include "models/catalogue.h"
 #include "models/effects/wind.h"
 #include "models/strand/strand_parameters.h"
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 namespace tress::experiments::family {
 namespace {

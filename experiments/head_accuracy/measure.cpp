@@ -13,11 +13,11 @@
 #include "math/helix.h"
 #include "models/reduced/reduced_strand.h"
 #include "simulation/export/full_hair.h"
+#include "simulation/groom/guide_choice.h"
 #include "simulation/run/head_run.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/changes.h"
-#include "simulation/scene/guide_choice.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::experiments::head_accuracy {

@@ -16,6 +16,7 @@
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
+#include "simulation/groom/fitted_groom.h"
 #include "simulation/run/head_classes.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
@@ -25,11 +26,11 @@ namespace tress::experiments::scene_runs {
 namespace {
 
 struct Arguments {
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, exports;
   std::string out = "results/scenes";
   int threads = 1;
   std::size_t hairs = 0;
-  bool resume = false, vtk = false, usd = false, print_defaults = false,
+  bool resume = false, vtk = false, usd = false, hair = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
        full = false, error_bars = false;
   std::string progress = "auto", as = "auto", frames = "32";
@@ -56,6 +57,10 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 100'000));
   app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
   app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
+  app.add_flag("--hair", a.hair, "also .hair files, one a frame, for renderers");
+  app.add_option("--export", a.exports, "the same by name: vtk,usd,hair")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"vtk", "usd", "hair"}));
   app.add_option("--as", a.as,
                  "strands: one by one; head: all side by side, up to a million; auto: a "
                  "head, where the scene can be one and has 1000 strands (default auto)")
@@ -187,6 +192,18 @@ Job job_of(const std::string& file, const Arguments& a) {
   return job;
 }
 
+/// Says how near strands are to the files they come from, and writes that table.
+void tell_fits(const Scene& scene, const std::string& stem) {
+  if (scene.fitted.empty()) return;
+  for (const auto& groom : scene.fitted) {
+    for (const std::string& note : groom->notes) {
+      tell("simulate: {}: {}: {}\n", scene.name,
+           std::filesystem::path(groom->file).filename().string(), note);
+    }
+  }
+  replace_file(stem + ".fit.csv", fit_csv(scene.fitted));
+}
+
 /// False: the scene did not run to its end.
 bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
              Interruption& interruption) {
@@ -200,8 +217,12 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   options.threads = a.threads;
   options.resume = a.resume;
   options.hairs = a.hairs;
-  options.vtk = a.vtk;
-  options.usd = a.usd;
+  const auto exports = [&a](bool flag, std::string_view name) {
+    return flag || std::ranges::count(a.exports, name) > 0;
+  };
+  options.vtk = exports(a.vtk, "vtk");
+  options.usd = exports(a.usd, "usd");
+  options.hair = exports(a.hair, "hair");
   options.progress = line.progress;
   options.pack = pack_of(a);
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
@@ -214,6 +235,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   key.add("scene", contents_checksum({file}));
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));
   if (job.head) check_room(job.outline, options);
+  tell_fits(scene, options.stem);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
   const SceneRun run = job.head ? run_head(outline, key, options, interruption)

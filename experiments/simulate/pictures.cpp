@@ -19,6 +19,16 @@ void write_vtk(const Animation& animation, const std::string& stem) {
   replace_file(folder + name + ".pvd", pvd(animation, name));
 }
 
+void write_hair(const Animation& animation, const std::string& stem) {
+  const std::string name = std::filesystem::path(stem).filename();
+  const std::string folder = stem + "_hair/";
+  std::error_code shown_by_the_first_file;
+  std::filesystem::create_directories(folder, shown_by_the_first_file);
+  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
+    replace_file(folder + hair_name(name, f), hair(animation, animation.frames[f]));
+  }
+}
+
 }  // namespace
 
 Pictures::Pictures(const Scene& scene, const World& world, const Readout& readout,
@@ -50,6 +60,7 @@ void write_pictures(const Animation& animation, const SceneRunOptions& options) 
     replace_file(options.stem + ".json", page_json(animation));
   }
   if (options.vtk) write_vtk(animation, options.stem);
+  if (options.hair) write_hair(animation, options.stem);
   if (options.usd) replace_file(options.stem + ".usda", usda(animation));
 }
 

@@ -19,6 +19,7 @@ struct SceneRunOptions {
   std::size_t hairs = 0;  // drawn between the strands, in .json and .usda
   bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
   bool usd = false;       // <stem>.usda
+  bool hair = false;      // <stem>_hair/: .hair for every frame
   ProgressMode progress = ProgressMode::automatic;
   // Of a head.
   models::HeadPack pack = {};

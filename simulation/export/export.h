@@ -36,14 +36,20 @@ struct Animation {
 std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
 
 /// For ParaView: one .vtp per frame (PolyData, appended raw, float32) with every channel,
-/// radius and strand as point data, and the .pvd that lists them with their times [VTK
-/// file formats, XML].
+/// radius and strand as point data and the time as field data, and the .pvd that lists
+/// them with their times [VTK file formats, XML].
 std::string vtp(const Animation& animation, const Frame3d& frame);
 std::string pvd(const Animation& animation, const std::string& stem);
 std::string vtp_name(const std::string& stem, std::size_t frame);
 
 /// For Blender, Houdini: USD text with one animated BasisCurves [OpenUSD, UsdGeom]; time
-/// codes count the scene's frames, and primvars:strand is the strand of each curve.
+/// codes count the scene's frames, primvars:strand is the strand of each curve, and the
+/// extent of each frame is that of the points and half the largest width.
 std::string usda(const Animation& animation);
+
+/// For renderers: one .hair per frame [Yuksel], whose comment says the time and the unit;
+/// thickness is the diameter. Throws InputError on a line of more than 65536 points.
+std::string hair(const Animation& animation, const Frame3d& frame);
+std::string hair_name(const std::string& stem, std::size_t frame);
 
 }  // namespace tress::simulation

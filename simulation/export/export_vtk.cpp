@@ -64,6 +64,8 @@ std::string vtp(const Animation& animation, const Frame3d& frame) {
   return fmt::format(
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
              "byte_order=\"LittleEndian\" header_type=\"UInt32\">\n<PolyData>\n"
+             "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
+             "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n</FieldData>\n"
              "<Piece NumberOfPoints=\"{}\" NumberOfLines=\"{}\">\n<PointData>\n{}"
              "</PointData>\n<Points>\n<DataArray type=\"Float32\" "
              "NumberOfComponents=\"3\" format=\"appended\" offset=\"{}\"/>\n</Points>\n"
@@ -71,7 +73,7 @@ std::string vtp(const Animation& animation, const Frame3d& frame) {
              "format=\"appended\" offset=\"{}\"/>\n<DataArray type=\"Int32\" "
              "Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n</Lines>\n</Piece>\n"
              "</PolyData>\n<AppendedData encoding=\"raw\">\n_",
-             points, offsets.size(), arrays, places, lines, ends) +
+             frame.series[0], points, offsets.size(), arrays, places, lines, ends) +
          data + "\n</AppendedData>\n</VTKFile>\n";
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "contract/input_error.h"
-#include "simulation/scene/guide_choice.h"
+#include "simulation/groom/guide_choice.h"
 
 namespace tress::simulation {
 namespace {

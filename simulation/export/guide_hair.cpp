@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "contract/input_error.h"
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 namespace tress::simulation {
 namespace {

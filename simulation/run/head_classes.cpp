@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
-#include "simulation/run/crew.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 

@@ -5,7 +5,7 @@
 
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
-#include "simulation/run/crew.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 

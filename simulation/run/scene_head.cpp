@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "models/reduced/reduced_strand.h"
-#include "simulation/run/crew.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 namespace {
@@ -70,6 +70,9 @@ std::optional<NoHead> no_strands(const Scene& scene) {
     }
     if (source.groom && p.whole("guides") > 0) {
       return NoHead{"all strands of a head are simulated", "leave out guides"};
+    }
+    if (source.file && p.word("cuts") != "equal") {
+      return NoHead{"elements of different lengths", "give [groom] cuts = \"equal\""};
     }
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};

@@ -11,11 +11,11 @@
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
-#include "simulation/run/crew.h"
 #include "simulation/run/guard.h"
 #include "simulation/run/metered.h"
 #include "simulation/run/rubbing.h"
 #include "simulation/scene/scene.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 

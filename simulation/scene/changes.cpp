@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "simulation/scene/guide_choice.h"
+#include "simulation/groom/guide_choice.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/typical_strands.h"
@@ -52,6 +52,7 @@ Scene cut_anew(Scene scene, const Change& changed) {
   CutStrands cut = StrandSeries(tables, scene.head, scene.seed, held_at_once).all();
   scene.strands = std::move(cut.strands);
   scene.followers = std::move(cut.followers);
+  scene.fitted = std::move(cut.fitted);
   scene.tables = std::move(tables);
   return scene;
 }
@@ -124,7 +125,9 @@ Scene every_strand(Scene scene, std::size_t most) {
                        set_whole(groom, "guides", 0);
                        clear_detail(groom);
                        if (all <= most) return;
-                       set_whole(groom, "density_1_m2", 0);
+                       if (groom.values().word("file").empty()) {
+                         set_whole(groom, "density_1_m2", 0);
+                       }
                        set_whole(groom, "count", share_of(most, all, strands));
                      });
 }

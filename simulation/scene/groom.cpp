@@ -9,9 +9,11 @@
 #include "contract/constants.h"
 #include "contract/input_error.h"
 #include "models/strand/needed_elements.h"
-#include "simulation/scene/cap.h"
+#include "simulation/groom/cap.h"
+#include "simulation/groom/frames.h"
+#include "simulation/groom/random.h"
 #include "simulation/scene/directions.h"
-#include "simulation/scene/random.h"
+#include "simulation/scene/file_groom.h"
 #include "simulation/scene/shapes.h"
 
 namespace tress::simulation {
@@ -93,6 +95,14 @@ constexpr Parameter own_parameters[] = {
 };
 
 constexpr Parameter detail_keys[] = {
+    {.name = "fit_tolerance",
+     .help =
+         "file: each strand gets as few elements as bring it this near to its points, "
+         "over its length, up to `elements`; 0: all get `elements`; tolerance_m is "
+         "the same in m",
+     .number = 0,
+     .min = 0,
+     .max = 1},
     {.name = "tolerance_m",
      .help = "level of detail: each strand gets as few elements as its shape at rest "
              "needs to be within this distance, up to `elements`, by its length, curl "
@@ -174,6 +184,7 @@ double varied(Random& random, double variation) {
 std::span<const Parameter> groom_table_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list(std::begin(own_parameters), std::end(own_parameters));
+    for (const Parameter& p : file_groom_parameters()) list.push_back(p);
     for (const Parameter& p : detail_parameters()) list.push_back(p);
     for (const Parameter& p : cut_parameters()) list.push_back(p);
     return list;
@@ -202,7 +213,7 @@ Groom::Groom(const Table& table, const Table* own_material, const Common& common
              std::size_t most)
     : table_(table),
       common_(common),
-      material_((table.refuse_unused("shape", shape_uses()),
+      material_((table.refuse_unused("shape", shape_uses()), refuse_file_keys(table),
                  strand_material(common.material, own_material))),
       cap_(table.values().vec("centre_m"), table.values().vec("half_axes_m"),
            direction(table, "cap_axis"), table.values().number("cap_angle_rad")),

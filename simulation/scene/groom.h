@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "simulation/scene/cap.h"
+#include "simulation/groom/cap.h"
 #include "simulation/scene/strand_table.h"
 
 namespace tress::simulation {

@@ -13,6 +13,7 @@
 #include "models/effects/obstacle.h"
 #include "models/strand/geometry.h"
 #include "simulation/files/parse.h"
+#include "simulation/scene/file_groom.h"
 #include "simulation/scene/read_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
@@ -196,6 +197,7 @@ class Reader {
     CutStrands cut = outlined ? series_->outline() : series_->all();
     scene_.strands = std::move(cut.strands);
     scene_.followers = std::move(cut.followers);
+    scene_.fitted = std::move(cut.fitted);
     for (const std::size_t i : cut.source) {
       places_.strands.push_back(scene_.tables->sources[i].table.place());
     }
@@ -211,6 +213,7 @@ class Reader {
           read_table(*one, declared, "[" + name + "]", file_, material_table),
           {},
           name == "groom"};
+      if (source.groom) source.file = read_file_groom(source.table);
       if (const toml::node* own = one->get("material")) {
         const std::string own_name = name + ".material";
         source.material =

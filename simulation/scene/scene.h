@@ -14,6 +14,7 @@
 namespace tress::simulation {
 
 struct StrandTables;
+struct FittedGroom;
 class StrandSeries;
 
 /// One [effects.id] that a scene names.
@@ -43,6 +44,8 @@ struct Scene {
   std::vector<Strand> followers;
   /// The tables that describe them; null if there are none.
   std::shared_ptr<const StrandTables> tables;
+  /// How near the strands of grooms from files are to them, at the time of reading.
+  std::vector<std::shared_ptr<const FittedGroom>> fitted;
   RootMotion head;  // the rigid motion of roots and of bodies that follow them
 
   /// Those on each strand, then the one between strands.

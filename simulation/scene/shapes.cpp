@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 namespace tress::simulation {
 namespace {

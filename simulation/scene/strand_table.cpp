@@ -5,6 +5,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "simulation/groom/frames.h"
 #include "simulation/scene/directions.h"
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/shared_parameter.h"

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "contract/input_error.h"
+#include "simulation/groom/guide_choice.h"
+#include "simulation/scene/file_groom.h"
 #include "simulation/scene/groom.h"
-#include "simulation/scene/guide_choice.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/strand_table.h"
 
@@ -49,15 +51,25 @@ void set_elements(StrandSource& source, long elements) {
 
 StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
                            const RootMotion& head, std::uint64_t seed, StrandLimits most)
+    : StrandSeries(std::move(tables), head, seed, most, {}) {}
+
+StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
+                           const RootMotion& head, std::uint64_t seed, StrandLimits most,
+                           const Fits& fits)
     : tables_(std::move(tables)),
       head_(head),
       free_root_(free_motion(tables_->root)),
-      common_{tables_->material, head_, free_root_, seed} {
-  for (const StrandSource& source : tables_->sources) {
+      common_{tables_->material, head_, free_root_, seed},
+      fits_(fits) {
+  fits_.resize(tables_->sources.size());
+  for (std::size_t i = 0; i < tables_->sources.size(); ++i) {
+    const StrandSource& source = tables_->sources[i];
     const std::size_t each = elements_of(source);
     std::size_t count = 1;
     grooms_.emplace_back();
-    if (source.groom) {
+    if (source.file) {
+      count = file_strands(source.table, *source.file);
+    } else if (source.groom) {
       const std::size_t room =
           std::min(most.strands - size(), (most.elements - elements_) / each);
       grooms_.back().emplace(source.table, own_material(source), common_, room);
@@ -65,18 +77,29 @@ StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
     }
     first_.push_back(size() + count);
     elements_ += each * count;
-    if (size() <= most.strands && elements_ <= most.elements) continue;
-    throw InputError(
-        fmt::format("{} strands of {} elements altogether", size(), elements_),
-        source.table.place(),
-        fmt::format("give at most {} strands and {} elements", most.strands,
-                    most.elements));
+    if (size() > most.strands || elements_ > most.elements) {
+      throw InputError(
+          fmt::format("{} strands of {} elements altogether", size(), elements_),
+          source.table.place(),
+          fmt::format("give at most {} strands and {} elements", most.strands,
+                      most.elements));
+    }
+    if (source.file && !fits_[i]) {
+      fits_[i] = fit_file_groom(source.table, *source.file, count);
+    }
   }
 }
 
 StrandSeries::StrandSeries(const StrandSeries& all, std::vector<std::size_t> some)
-    : StrandSeries(all.tables_, all.head_, all.common_.seed, made_singly) {
+    : StrandSeries(all.tables_, all.head_, all.common_.seed, made_singly, all.fits_) {
   some_ = std::move(some);
+}
+
+StrandSeries::Fits StrandSeries::fitted() const {
+  Fits made;
+  std::ranges::copy_if(fits_, std::back_inserter(made),
+                       [](const auto& fit) { return fit != nullptr; });
+  return made;
 }
 
 std::size_t StrandSeries::source(std::size_t k) const {
@@ -90,15 +113,20 @@ Strand StrandSeries::strand(std::size_t k) const {
   // Strands of one scene differ by their streams.
   if (grooms_[i]) return grooms_[i]->strand(n - first_[i], n);
   const StrandSource& source = tables_->sources[i];
+  if (fits_[i]) {
+    return file_strand(source.table, own_material(source), common_,
+                       fits_[i]->strands[n - first_[i]]);
+  }
   return scene_strand(source.table, own_material(source), common_, n);
 }
 
 CutStrands StrandSeries::all() const {
   CutStrands all;
+  all.fitted = fitted();
   for (std::size_t i = 0; i < grooms_.size(); ++i) {
     std::vector<Strand> made;
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) made.push_back(strand(k));
-    if (grooms_[i]) {
+    if (tables_->sources[i].groom) {
       keep_guides(tables_->sources[i].table, common_.seed, made, all.followers);
     }
     all.source.insert(all.source.end(), made.size(), i);
@@ -109,6 +137,7 @@ CutStrands StrandSeries::all() const {
 
 CutStrands StrandSeries::outline() const {
   CutStrands all;
+  all.fitted = fitted();
   for (std::size_t i = 0; i < grooms_.size(); ++i) {
     all.strands.push_back(strand(first_[i]));
     all.source.push_back(i);
@@ -117,7 +146,8 @@ CutStrands StrandSeries::outline() const {
 }
 
 bool has_tolerance(const StrandSource& source) {
-  return source.groom && detail_tolerance(source.table) > 0;
+  return source.groom && (detail_tolerance(source.table) > 0 ||
+                          source.table.values().number("fit_tolerance") > 0);
 }
 
 void clear_detail(Table& groom) {

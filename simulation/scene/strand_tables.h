@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/strand/strand.h"
+#include "simulation/groom/fitted_groom.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/table.h"
 
@@ -17,6 +18,8 @@ struct StrandSource {
   Table table;
   std::optional<Table> material;
   bool groom = false;
+  /// The strands of a groom's file; null: it makes them up.
+  std::shared_ptr<const PlacedGroom> file = {};
 };
 
 /// The tables, as read, from which the strands of a scene are made.
@@ -29,6 +32,7 @@ struct CutStrands {
   std::vector<Strand> strands;
   std::vector<std::size_t> source;  // of every strand, its index in StrandTables
   std::vector<Strand> followers;    // of grooms with guides, all others
+  std::vector<std::shared_ptr<const FittedGroom>> fitted;  // of grooms from files
 };
 
 /// Of a scene that is read whole, and of one whose strands are made one at a time.
@@ -59,10 +63,17 @@ class StrandSeries {
   /// First strand of each of these tables, and the end; for a series of all.
   std::span<const std::size_t> first() const { return first_; }
   CutStrands all() const;
+  /// The fits of all grooms from files.
+  std::vector<std::shared_ptr<const FittedGroom>> fitted() const;
   /// The first strand of each table alone.
   CutStrands outline() const;
 
  private:
+  using Fits = std::vector<std::shared_ptr<const FittedGroom>>;
+
+  /// `fits`: those of an equal series, or none.
+  StrandSeries(std::shared_ptr<const StrandTables> tables, const RootMotion& head,
+               std::uint64_t seed, StrandLimits most, const Fits& fits);
   /// Among all that the tables describe.
   std::size_t number(std::size_t k) const { return some_.empty() ? k : some_[k]; }
 
@@ -70,7 +81,8 @@ class StrandSeries {
   RootMotion head_;
   std::optional<FreeRoot> free_root_;
   Common common_;
-  std::vector<std::optional<Groom>> grooms_;  // of each source
+  std::vector<std::optional<Groom>> grooms_;  // of each source that makes strands up
+  Fits fits_;                                 // of each source with a file
   std::vector<std::size_t> first_{0};         // strand of each source, and the end
   std::size_t elements_ = 0;
   std::vector<std::size_t> some_;  // empty: all

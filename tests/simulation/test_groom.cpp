@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "simulation/scene/cap.h"
+#include "simulation/groom/cap.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::test_groom {

@@ -10,8 +10,8 @@
 
 #include "contract/input_error.h"
 #include "simulation/export/full_hair.h"
+#include "simulation/groom/guide_choice.h"
 #include "simulation/run/readout.h"
-#include "simulation/scene/guide_choice.h"
 
 namespace tress::test_guide_choice {
 

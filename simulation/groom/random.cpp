@@ -1,4 +1,4 @@
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 #include <cmath>
 #include <numbers>

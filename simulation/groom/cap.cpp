@@ -1,11 +1,11 @@
-#include "simulation/scene/cap.h"
+#include "simulation/groom/cap.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
 
-#include "simulation/scene/directions.h"
+#include "simulation/groom/frames.h"
 
 namespace tress::simulation {
 namespace {

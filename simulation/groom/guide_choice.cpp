@@ -1,4 +1,4 @@
-#include "simulation/scene/guide_choice.h"
+#include "simulation/groom/guide_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "models/strand/geometry.h"
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 namespace tress::simulation {
 namespace {

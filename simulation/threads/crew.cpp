@@ -1,4 +1,4 @@
-#include "simulation/run/crew.h"
+#include "simulation/threads/crew.h"
 
 #include <exception>
 

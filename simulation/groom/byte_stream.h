@@ -1,0 +1,76 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contract/layers.h"
+#include "simulation/files/files.h"
+
+namespace tress::simulation {
+
+/// Reads a file once, through a buffer of fixed size, and knows where it is. Numbers are
+/// little endian, as on all machines that tress runs on.
+class ByteStream {
+ public:
+  /// Throws InputError unless it is a regular file that can be read.
+  explicit ByteStream(std::string file);
+
+  const std::string& file() const { return file_; }
+  std::uint64_t size() const { return size_; }
+  std::uint64_t at() const { return base_ + next_; }
+  std::uint64_t left() const { return size_ - at(); }
+  int line() const { return line_; }  // from 1, as far as read by get()
+  void seek(std::uint64_t to);
+
+  /// The next byte, -1 at the end.
+  int get() {
+    const int c = peek();
+    if (c >= 0) ++next_;
+    if (c == '\n') ++line_;
+    return c;
+  }
+  int peek() {
+    if (next_ == end_ && !fill()) return -1;
+    return static_cast<unsigned char>(buffer_[next_]);
+  }
+  /// Throws InputError where the file ends before.
+  void take(void* to, std::size_t bytes);
+  template <class T>
+  T number() {
+    T x;
+    take(&x, sizeof x);
+    return x;
+  }
+  /// Bytes of so many numbers, or InputError with `what` where the file has not as many.
+  void require(std::uint64_t count, std::uint64_t each, const std::string& what) const;
+
+  void skip_blanks();
+  /// A number in decimal digits, nan or inf; InputError if there is none.
+  double decimal();
+  std::uint64_t whole();
+  /// The rest of the line, without its end; InputError beyond 4096 bytes.
+  std::string text_line();
+
+  /// "file:line" or "file: byte n".
+  std::string text_place() const;
+  std::string byte_place() const;
+  [[noreturn]] void refuse_text(const std::string& problem, const std::string& remedy);
+  [[noreturn]] void refuse(const std::string& problem, const std::string& remedy) const;
+
+ private:
+  bool fill();
+  /// What may be a number, 60 bytes at most; until the next call.
+  std::string_view digits();
+
+  std::string file_;
+  File input_;
+  std::uint64_t size_ = 0, base_ = 0;
+  std::vector<char> buffer_;
+  std::size_t next_ = 0, end_ = 0;
+  int line_ = 1;
+};
+
+}  // namespace tress::simulation

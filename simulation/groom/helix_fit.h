@@ -1,0 +1,63 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "math/frame.h"
+#include "simulation/groom/space_curve.h"
+
+namespace tress::simulation {
+
+/// Angle by which the tangent of a curve turns in all, rad, up to each of its arcs().
+std::vector<double> turning(const SpaceCurve& curve);
+
+/// Number of helices by which a curve of so much turning (rad) is within `tolerance` of
+/// its length: max(2, ceil(turning sqrt(0.02/tolerance))), since the distance falls as
+/// the square of the angle of an element.
+int elements_by_turning(double turning, double tolerance);
+
+/// Ends of n elements, n + 1 arc lengths from 0: equal shares of half the length plus
+/// half the turning, so that a bend gets more of them than a straight part and no element
+/// is longer than twice the mean.
+std::vector<double> cut_by_turning(const SpaceCurve& curve,
+                                   std::span<const double> turning, int n);
+/// Equal ones.
+std::vector<double> cut_equally(double length, int n);
+
+/// A chain of helices, each of constant Darboux vector, that starts at the curve's root.
+struct HelixChain {
+  Vec place;                  // of the root, m
+  Frame root;                 // there
+  std::vector<double> joint;  // n + 1 arc lengths from 0, m
+  std::vector<Vec> darboux;   // twist and curvatures in the frame, 1/m
+};
+
+/// The chain next to a curve, with joints at these arc lengths: least
+///
+///     1/L^3 int |x(s) - c(s)|^2 ds + w1 sum |l (k_{i+1} - k_i)|^2 + w2 sum |l_i tau_i|^2
+///
+/// over all Darboux vectors and the frame at the root, l the mean
+/// of two lengths, tau the twist, the integral by 3 Gauss points an element [Levenberg
+/// 1944; Marquardt 1963]. It starts from the curvature of the twistless frame, averaged
+/// over each element: that alone is ten times as far away, since errors of angle add up
+/// along the strand. The two small weights hold what the curve leaves open: the twist of
+/// a straight part, and strains that oscillate from element to element. O(n^3) for each
+/// of a dozen steps at most.
+HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints);
+
+/// That sum, of a chain.
+double misfit(const SpaceCurve& curve, const HelixChain& chain);
+
+/// Places on a chain at ascending arc lengths from 0 to its length.
+std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs);
+
+/// Root mean square, over the length, and largest distance of the points of a curve from
+/// the places of the same arc length: on the chain, or on the straight edges between its
+/// joints; m.
+struct FitError {
+  double rms = 0, largest = 0;
+};
+enum class Between { helices, edges };
+FitError distance(const SpaceCurve& curve, const HelixChain& chain, Between between);
+
+}  // namespace tress::simulation

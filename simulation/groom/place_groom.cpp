@@ -1,0 +1,189 @@
+#include "simulation/groom/place_groom.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contract/input_error.h"
+#include "simulation/groom/space_curve.h"
+
+namespace tress::simulation {
+namespace {
+
+constexpr double farthest = 1e3;       // m
+constexpr double usual_length = 0.15;  // m, of hair
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr Unit usual_units[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}};
+
+double polyline_length(std::span<const Vec> x) {
+  double length = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) length += norm(x[i] - x[i - 1]);
+  return length;
+}
+
+/// The middle one of the lengths that are finite and not 0; 0: none is.
+double middle_length(const Polylines& lines) {
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const double length = polyline_length(lines.strand(k));
+    if (std::isfinite(length) && length > 0) lengths.push_back(length);
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::ranges::nth_element(lengths, middle);
+  return *middle;
+}
+
+Unit guessed_unit(double length) {
+  return *std::ranges::min_element(usual_units, {}, [length](const Unit& unit) {
+    return std::abs(std::log(length * unit.metres / usual_length));
+  });
+}
+
+FileAxis guessed_up(const Polylines& lines) {
+  Vec sum;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const std::span<const Vec> x = lines.strand(k);
+    if (x.empty()) continue;
+    const Vec d = x.back() - x.front();
+    if (is_finite(d) && norm(d) > 0) sum = sum + 1 / norm(d) * d;
+  }
+  const std::array<double, 3> down{sum.x, sum.y, sum.z};
+  // Of a groom that hangs nowhere: z, as in Blender.
+  const auto most = std::ranges::max_element(
+      down, [](double a, double b) { return std::abs(a) < std::abs(b); });
+  if (*most == 0) return {2, false};
+  return {static_cast<int>(most - down.begin()), *most > 0};
+}
+
+Vec upright(const Vec& x, const FileAxis& up) {
+  const Vec y = up.axis == 0 ? Vec{x.y, x.z, x.x} : up.axis == 1 ? Vec{x.z, x.x, x.y} : x;
+  return up.back ? Vec{y.x, -y.y, -y.z} : y;
+}
+
+std::string axis_name(const FileAxis& up) {
+  return std::string(up.back ? "-" : "") + "xyz"[up.axis];
+}
+
+/// Goes through the strands of a file and keeps those that are good.
+class Cleaning {
+ public:
+  Cleaning(const GroomFile& read, const std::string& file, BadStrands bad)
+      : read_(read), file_(file), bad_(bad) {}
+
+  /// Strand k with these points, which it may change.
+  void add(std::size_t k, std::vector<Vec>& x) {
+    const std::size_t before = x.size();
+    if (before < 2) {
+      return leave_out(k, fmt::format("has {} point{}", before, before == 1 ? "" : "s"),
+                       few_);
+    }
+    for (std::size_t i = 0; i < before; ++i) {
+      const bool finite = is_finite(x[i]);
+      if (finite && norm(x[i]) <= farthest) continue;
+      return leave_out(k,
+                       finite ? fmt::format("has point {} {:.3g} m away", i, norm(x[i]))
+                              : fmt::format("has point {} that is not finite", i),
+                       far_);
+    }
+    const auto repeats = [](const Vec& a, const Vec& b) {
+      return !(norm(b - a) >= 2 * SpaceCurve::least_step);
+    };
+    const auto twice = std::adjacent_find(x.begin(), x.end(), repeats);
+    if (twice != x.end()) {
+      if (bad_ == BadStrands::refuse) {
+        refuse(k, fmt::format("has point {} twice", twice - x.begin()));
+      }
+      x.erase(std::unique(x.begin(), x.end(), repeats), x.end());
+      repeated_ += before - x.size();
+      if (x.size() < 2) return leave_out(k, "has one point, repeated", few_);
+    }
+    lines.points.insert(lines.points.end(), x.begin(), x.end());
+    lines.end_strand(read_.lines.numbers[k], read_.lines.places[k]);
+  }
+
+  void note(std::vector<std::string>& notes) const {
+    const auto say = [&](std::size_t count, const char* what) {
+      if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
+    };
+    say(few_, "strands of fewer than two points are left out");
+    say(far_, "strands with points that are not finite, or far away, are left out");
+    say(repeated_, "repeated points are left out");
+  }
+
+  Polylines lines;
+
+ private:
+  [[noreturn]] void refuse(std::size_t k, const std::string& what) const {
+    const std::uint64_t place = read_.lines.places[k];
+    const std::string where =
+        place == 0 ? file_
+                   : fmt::format("{}: {} {}", file_, read_.text ? "line" : "byte", place);
+    throw InputError(fmt::format("strand {} {}", read_.lines.numbers[k], what), where,
+                     "mend the file, or give bad_strands = \"drop\" to leave such out");
+  }
+  void leave_out(std::size_t k, const std::string& what, std::size_t& count) const {
+    if (bad_ == BadStrands::refuse) refuse(k, what);
+    ++count;
+  }
+
+  const GroomFile& read_;
+  const std::string& file_;
+  BadStrands bad_;
+  mutable std::size_t few_ = 0, far_ = 0;
+  std::size_t repeated_ = 0;
+};
+
+}  // namespace
+
+PlacedGroom place_groom(GroomFile read, const std::string& file,
+                        const GroomPlacing& placing) {
+  PlacedGroom placed;
+  placed.file = file;
+  if (!read.note.empty()) placed.notes.push_back(read.note);
+  const double middle = middle_length(read.lines);
+  std::optional<double> metres = placing.metres ? placing.metres : read.metres;
+  if (!metres) {
+    if (middle == 0) {
+      throw InputError("no strand has a length", file, "give a file with strands");
+    }
+    const Unit unit = guessed_unit(middle);
+    metres = unit.metres;
+    placed.notes.push_back(
+        fmt::format("the unit is guessed: {}, by which half the strands are longer than "
+                    "{:.3g} m (unit = \"{}\" says so)",
+                    unit.name, middle * unit.metres, unit.name));
+  }
+  std::optional<FileAxis> up = placing.up ? placing.up : read.up;
+  if (!up) {
+    up = guessed_up(read.lines);
+    placed.notes.push_back(fmt::format(
+        "the axis that points up is guessed: {0}, against which hair hangs (up = \"{0}\" "
+        "says so)",
+        axis_name(*up)));
+  }
+  Cleaning cleaning(read, file, placing.bad);
+  cleaning.lines.points.reserve(read.lines.points.size() / placing.every);
+  std::vector<Vec> x;
+  for (std::size_t k = 0; k < read.lines.size(); k += placing.every) {
+    x.clear();
+    for (const Vec& point : read.lines.strand(k)) {
+      x.push_back(placing.position + *metres * upright(point, *up));
+    }
+    cleaning.add(k, x);
+  }
+  cleaning.note(placed.notes);
+  placed.lines = std::move(cleaning.lines);
+  if (placed.lines.size() == 0) {
+    throw InputError("no strand is left", file, "give a file with strands");
+  }
+  return placed;
+}
+
+}  // namespace tress::simulation

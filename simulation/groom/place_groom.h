@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/groom/read_groom.h"
+
+namespace tress::simulation {
+
+/// What to do with strands that cannot be simulated.
+enum class BadStrands { refuse, drop };
+
+/// How a file's strands come into a scene.
+struct GroomPlacing {
+  std::optional<double> metres;  // per unit; none: as the file says, or a guess
+  std::optional<FileAxis> up;    // likewise
+  Vec position;                  // of the file's origin, m
+  BadStrands bad = BadStrands::refuse;
+  std::size_t every = 1;  // take each so-manieth strand
+};
+
+/// In m, z up, thinned; with what a user should know of guesses and strands left out, one
+/// sentence each.
+struct PlacedGroom {
+  std::string file;
+  Polylines lines;
+  std::vector<std::string> notes;
+};
+
+/// An axis that points up becomes z by a cyclic exchange of the axes (x, y, z) -> (y, z,
+/// x) or (z, x, y), and a turn by pi about x where its negative direction points up; so
+/// that what faces z in a file with y up, as in Houdini, faces x, as a head does here.
+///
+/// A unit is guessed as the one of m, cm, mm and inch in which the middle one of all
+/// lengths is nearest to 15 cm, by ratio; an axis as the one against which hair hangs on
+/// average, from roots to tips. Both are said.
+///
+/// A strand is bad if it has fewer than two points, one that is not finite or farther
+/// than 1 km from the origin, or a point that repeats the one before (within 1 nm).
+/// Refused, an InputError names the first with its number, from 0, and its place in the
+/// file; dropped, they are counted, and of repeated points only the repetition is left
+/// out.
+PlacedGroom place_groom(GroomFile read, const std::string& file,
+                        const GroomPlacing& placing);
+
+}  // namespace tress::simulation

@@ -1,0 +1,197 @@
+#include "simulation/scene/file_groom.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "contract/input_error.h"
+#include "simulation/scene/groom.h"
+
+namespace tress::simulation {
+namespace {
+
+// The fit of a strand is of third order in its elements.
+constexpr int most_fitted_elements = 200;
+
+constexpr Parameter file_keys[] = {
+    {.name = "file",
+     .help = "strands from a .hair, .data, .bin, .ply, .usda or .vtp, instead of from "
+             "numbers: all keys of the head, of shape and length are left out, count "
+             "takes so many of them, evenly spread",
+     .text = true},
+    {.name = "unit",
+     .help = "of the file; file: as it says (.usda), or else guessed, and said",
+     .choices = "file|m|cm|mm|inch"},
+    {.name = "unit_m",
+     .help = "the same as a number: metres per unit; 0: by unit",
+     .number = 0,
+     .min = 0,
+     .max = 1e6},
+    {.name = "up",
+     .help =
+         "axis of the file that points up; file: as it says (.usda), or else guessed, "
+         "and said",
+     .choices = "file|x|y|z|-x|-y|-z"},
+    {.name = "position_m",
+     .help = "file: place of its origin x, y, z (m)",
+     .min = -1e3,
+     .max = 1e3,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "every",
+     .help = "file: each so-manieth strand is taken",
+     .number = 1,
+     .min = 1,
+     .max = 1e9,
+     .whole = true},
+    {.name = "bad_strands",
+     .help =
+         "file: strands of fewer than two points, with repeated points, or with points "
+         "that are not finite; drop: left out, and counted",
+     .choices = "refuse|drop"},
+    {.name = "strand_points",
+     .help = "file: points of every strand of a .ply that does not say; 0: it says",
+     .number = 0,
+     .min = 0,
+     .max = 1e6,
+     .whole = true},
+    {.name = "cuts",
+     .help =
+         "file: where elements end: half by length and half by turning, or all equal, "
+         "as a head of hair needs them",
+     .choices = "turning|equal"},
+    {.name = "fit",
+     .help = "file: a distance counts from the helices between joints, or from straight "
+             "edges between nodes, as of models of nodes",
+     .choices = "helices|edges"},
+};
+
+/// The keys of a groom that also count beside a file.
+constexpr std::string_view beside_file[] = {"count", "guides", "elements", "initial"};
+
+bool among(std::span<const Parameter> keys, std::string_view name) {
+  return std::ranges::find(keys, name, &Parameter::name) != keys.end();
+}
+
+void refuse_beside_file(const Table& groom) {
+  for (const Parameter& p : groom.declared()) {
+    if (!groom.given(p.name) || among(file_keys, p.name) ||
+        among(detail_parameters(), p.name) ||
+        std::ranges::count(beside_file, p.name) > 0) {
+      continue;
+    }
+    throw InputError(fmt::format("{} beside file, which has its strands", p.name),
+                     groom.place(p.name), "leave one of them out");
+  }
+  const Parameters& p = groom.values();
+  if (p.number("unit_m") > 0 && p.word("unit") != "file") {
+    throw InputError("unit_m beside unit", groom.place("unit_m"),
+                     "leave one of them out");
+  }
+  if (p.whole("elements") > most_fitted_elements) {
+    throw InputError(fmt::format("{} elements to fit", p.whole("elements")),
+                     groom.place("elements"),
+                     fmt::format("give at most {}", most_fitted_elements));
+  }
+  const bool tolerance = detail_tolerance(groom) > 0 || p.number("fit_tolerance") > 0;
+  if (tolerance && p.whole("guides") > 0) {
+    throw InputError("guides of several numbers of elements", groom.place("guides"),
+                     "leave out guides, or the tolerance");
+  }
+}
+
+std::optional<double> metres_per_unit(const Parameters& p) {
+  if (p.number("unit_m") > 0) return p.number("unit_m");
+  const std::string_view unit = p.word("unit");
+  if (unit == "m") return 1;
+  if (unit == "cm") return 1e-2;
+  if (unit == "mm") return 1e-3;
+  if (unit == "inch") return 0.0254;
+  return std::nullopt;
+}
+
+std::optional<FileAxis> up_axis(std::string_view up) {
+  if (up == "file") return std::nullopt;
+  return FileAxis{up.back() - 'x', up.front() == '-'};
+}
+
+}  // namespace
+
+std::span<const Parameter> file_groom_parameters() { return file_keys; }
+
+std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom) {
+  const Parameters& p = groom.values();
+  const std::string file(p.word("file"));
+  if (file.empty()) return nullptr;
+  refuse_beside_file(groom);
+  GroomPlacing placing;
+  placing.metres = metres_per_unit(p);
+  placing.up = up_axis(p.word("up"));
+  placing.position = p.vec("position_m");
+  placing.bad = p.word("bad_strands") == "drop" ? BadStrands::drop : BadStrands::refuse;
+  placing.every = static_cast<std::size_t>(p.whole("every"));
+  return std::make_shared<const PlacedGroom>(
+      place_groom(read_groom(file, p.whole("strand_points")), file, placing));
+}
+
+void refuse_file_keys(const Table& groom) {
+  for (const Parameter& p : groom.declared()) {
+    if (!among(file_keys, p.name) && p.name != "fit_tolerance") continue;
+    if (groom.values().text(p.name) == p.default_text()) continue;
+    throw InputError(fmt::format("{} does nothing without file", p.name),
+                     groom.place(p.name), "leave it out, or name a file");
+  }
+}
+
+std::size_t file_strands(const Table& groom, const PlacedGroom& file) {
+  const std::size_t all = file.lines.size();
+  if (!groom.given("count")) return all;
+  const auto count = static_cast<std::size_t>(groom.values().whole("count"));
+  if (count >= 1 && count <= all) return count;
+  throw InputError(fmt::format("{} of the {} strands of the file", count, all),
+                   groom.place("count"),
+                   "give at most as many as there are, or leave it out");
+}
+
+std::shared_ptr<const FittedGroom> fit_file_groom(const Table& groom,
+                                                  const PlacedGroom& file,
+                                                  std::size_t count) {
+  const Parameters& p = groom.values();
+  GroomFit fit;
+  fit.elements = p.whole("elements");
+  fit.tolerance_m = detail_tolerance(groom);
+  fit.tolerance_rel = p.number("fit_tolerance");
+  fit.by_turning = p.word("cuts") == "turning";
+  fit.between = p.word("fit") == "edges" ? Between::edges : Between::helices;
+  constexpr unsigned most_threads = 16;
+  const unsigned threads =
+      std::clamp(std::thread::hardware_concurrency(), 1U, most_threads);
+  return std::make_shared<const FittedGroom>(
+      fit_groom(file, count, fit, static_cast<int>(threads)));
+}
+
+Strand file_strand(const Table& groom, const Table* own_material, const Common& common,
+                   const FittedStrand& fitted) {
+  const StrandMaterial material = strand_material(common.material, own_material);
+  const bool straight = groom.values().word("initial") == "straight";
+  const HelixChain& chain = fitted.chain;
+  Strand strand;
+  strand.material = material.material;
+  for (int i = 0; i < fitted.elements(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Segment segment;
+    segment.parent = i - 1;
+    segment.length = chain.joint[k + 1] - chain.joint[k];
+    segment.section = material.section;
+    segment.natural = chain.darboux[k];
+    if (!straight) segment.initial = segment.natural;
+    strand.segments.push_back(segment);
+  }
+  set_root(strand, common.head, common.free_root, chain.place, chain.root);
+  models::check(strand);
+  return strand;
+}
+
+}  // namespace tress::simulation
