@@ -9,7 +9,7 @@
 #include "experiments/numerics/tip_track.h"
 #include "integrators/catalogue.h"
 #include "integrators/control/point_norm.h"
-#include "simulation/scene/random.h"
+#include "simulation/groom/random.h"
 
 namespace tress::experiments::family {
 namespace {
