@@ -43,8 +43,8 @@ std::string usda(const Animation& animation) {
       points +=
           fmt::format("{}({}, {}, {})", i == 0 ? "" : ", ", x[i], x[i + 1], x[i + 2]);
     }
-    samples += fmt::format("        {:.12g}: [{}],\n", time_code(frame), points);
-    extents += fmt::format("        {:.12g}: {},\n", time_code(frame),
+    samples += fmt::format("            {:.12g}: [{}],\n", time_code(frame), points);
+    extents += fmt::format("            {:.12g}: {},\n", time_code(frame),
                            extent(x, static_cast<float>(widest / 2)));
   }
   std::vector<double> widths;

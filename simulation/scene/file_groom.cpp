@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "contract/input_error.h"
@@ -126,6 +128,10 @@ std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom) {
   const std::string file(p.word("file"));
   if (file.empty()) return nullptr;
   refuse_beside_file(groom);
+  if (std::error_code error; !std::filesystem::is_regular_file(file, error)) {
+    throw InputError("there is no file " + file, groom.place("file"),
+                     "name one relative to the scene's folder");
+  }
   GroomPlacing placing;
   placing.metres = metres_per_unit(p);
   placing.up = up_axis(p.word("up"));
