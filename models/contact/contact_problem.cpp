@@ -28,8 +28,9 @@ constexpr std::size_t least_part = 500, most_parts = 4;
 constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}, {0, 2},
                                                                   {1, 3}, {0, 3}, {1, 2}};
 
-// The contacts about the worst one are solved at once after so many sweeps, then after
-// twice as many, but so many more at most; unless they are more than these.
+// The contacts about the worst one, unless they are more than these, are solved at once
+// after so many sweeps; then after so many more where that solved them, else after twice
+// as many as before.
 constexpr int first_joint = 3, next_joint = 10, joint_steps = 6;
 constexpr std::size_t most_joint = 64;
 
@@ -329,7 +330,7 @@ std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() con
   return all;
 }
 
-/// False: they are too many.
+/// Whether they obey the laws then.
 bool ContactProblem::solve_jointly(double tolerance) {
   const std::vector<const Solved*> all = about_the_worst();
   if (all.size() > most_joint) return false;
@@ -343,7 +344,7 @@ bool ContactProblem::solve_jointly(double tolerance) {
     }
     joint_.contacts()[i] = {contact.friction, free, contact.force};
   }
-  joint_.solve(tolerance, joint_steps);
+  const bool solved = joint_.solve(tolerance, joint_steps) <= tolerance;
   for (std::size_t i = 0; i < all.size(); ++i) {
     Contact& contact = *all[i]->contact;
     const Vec change = joint_.contacts()[i].force - contact.force;
@@ -351,7 +352,7 @@ bool ContactProblem::solve_jointly(double tolerance) {
     contact.force = joint_.contacts()[i].force;
     push(*all[i], change);
   }
-  return true;
+  return solved;
 }
 
 ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
@@ -362,17 +363,16 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
   double quiet = quiet_part * tolerance;
   Outcome outcome;
   outcome.violation = worst(loop);
-  int joint = first_joint;
+  int wait = first_joint, joint = wait;  // sweeps
   while (outcome.violation > tolerance && outcome.sweeps < most_sweeps) {
     each_part(loop, [&](Part& part) { sweep(part, quiet); });
     ++outcome.sweeps;
     const double seen = largest_seen();
-    if (outcome.sweeps == joint && seen > tolerance) {
-      joint += std::min(joint, next_joint);
-      if (solve_jointly(tolerance)) {
-        outcome.violation = worst(loop);
-        continue;
-      }
+    if (seen > tolerance && outcome.sweeps >= joint) {
+      wait = solve_jointly(tolerance) ? next_joint : 2 * wait;
+      joint += wait;
+      outcome.violation = worst(loop);
+      continue;
     }
     // What each saw at its visit is an estimate; at the end it is what is left.
     if (seen > tolerance && outcome.sweeps < most_sweeps) continue;

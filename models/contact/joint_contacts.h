@@ -9,8 +9,8 @@
 namespace tress::models {
 
 /// A few contacts that respond to each other, solved at once by Newton's method on the
-/// functions of Alart & Curnier [1991, eq. 4.7], whose roots are the forces that obey the
-/// laws of contact_force(). With s = r - u/m, m = tr W_ii/3, a contact
+/// functions of Alart and Curnier [Alart & Curnier 1991], whose roots are forces that
+/// obey the laws of contact_force(). With s = r - u/m, m = tr W_ii/3, a contact
 ///
 ///     is open where s_n <= 0:               r = 0
 ///     sticks where |s_t| <= mu s_n:         u = 0
