@@ -32,7 +32,7 @@ constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}
 // after so many sweeps; then after so many more where that solved them, else after twice
 // as many as before.
 constexpr int first_joint = 3, next_joint = 10, joint_steps = 6;
-constexpr std::size_t most_joint = 64;
+constexpr std::size_t most_joint = 32;
 
 Pack packed(const Vec& x) { return {x.x, x.y, x.z, 0}; }
 Vec first3(const Pack& x) { return {x[0], x[1], x[2]}; }
