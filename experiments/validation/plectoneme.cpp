@@ -21,11 +21,10 @@ namespace {
 
 using std::numbers::pi;
 
-// Rubber; only T R^2/EI matters. R is the contact radius, which keeps the plies apart by
-// more than the thread's thickness: fewer segments follow its turns.
+// Rubber; only T R^2/EI matters.
 constexpr double length = 0.5, radius = 5e-4;  // m
-constexpr double ply_radius = 4e-3;            // m, R
-constexpr double thread_separation = 0.03;     // m
+constexpr double ply_radius = HeldThread::ply_radius;
+constexpr double thread_separation = 0.03;  // m
 // At half the speed, or half the step, the angle changes by less than 0.3 %.
 constexpr double turning = 2, waiting = 3;  // s
 constexpr Material material{
@@ -70,20 +69,14 @@ std::vector<double> start_places(const ModelVariant& variant, const Strand& stra
   return x;
 }
 
-/// Relative to the angle of the equilibrium: 1 where theory and model agree.
 double measured_angle(const ModelTrial& trial) {
-  const Strand strand = thread(trial.elements, trial.parameter);
-  const Held held = handle(trial.elements);
-  std::vector<double> x = start_places(trial.variant, strand);
-  constexpr double stiffness = 1;  // N/m: yields by 0.4 mm
-  std::vector<std::shared_ptr<const Tether>> hands;
-  std::vector<std::size_t> nodes;
-  for (const int node : {held.first, held.corner, held.tip}) {
-    nodes.push_back(3 * static_cast<std::size_t>(node));
-    hands.push_back(std::make_shared<Tether>(
-        Tether::Settings{.at = static_cast<double>(node) / trial.elements,
-                         .stiffness = stiffness,
-                         .target = load3(&x[nodes.back()]),
+  const HeldThread thread = held_thread(trial.variant, trial.elements, trial.parameter);
+  Effects effects;
+  for (const HeldThread::Hand& hand : thread.hands) {
+    effects.push_back(std::make_shared<Tether>(
+        Tether::Settings{.at = static_cast<double>(hand.node) / trial.elements,
+                         .stiffness = HeldThread::stiffness,
+                         .target = hand.place,
                          .off = 1e9}));
   }
   const ContactLaw law({.stiffness = 200,
@@ -91,27 +84,60 @@ double measured_angle(const ModelTrial& trial) {
                         .inner = 2 * ply_radius,
                         .outer = 2.5 * ply_radius},
                        "plectoneme");
-  Effects effects(hands.begin(), hands.end());
   effects.push_back(std::make_shared<SelfContact>(law, thread_separation));
   effects.push_back(std::make_shared<LinearDrag>(1e-3));
-  const auto system = on_strand(trial.variant, strand, effects);
+  const auto system = on_strand(trial.variant, thread.strand, effects);
 
   MaterialPoints& points = *system->material_points();
-  const double t_end = 2 * turning + waiting;
+  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
   const Look look = [&](double t, In q, In) {
-    if (t >= t_end) points.positions(t, q, x);
+    if (t >= thread.settled) points.positions(t, q, x);
     return t;
   };
   // One linear solve a step: Newton's iteration does not converge on the snap.
-  const Track run = track("semi_implicit_euler", *system, 2e-3, t_end, look,
+  const Track run = track("semi_implicit_euler", *system, 2e-3, thread.settled, look,
                           [&](double) { return trial.deadline.passed(); });
-  if (run.t.back() < t_end) throw std::runtime_error("the time for the row was over");
-
-  double tension = 0;
-  for (std::size_t k = 0; k < hands.size(); ++k) {
-    tension += stiffness * (hands[k]->target(t_end).x - x[nodes[k]]);
+  if (run.t.back() < thread.settled) {
+    throw std::runtime_error("the time for the row was over");
   }
-  const Ply found = ply(std::span(x).first(nodes.front()), length / trial.elements,
+  return thread.angle_over_equilibrium(x);
+}
+
+}  // namespace
+
+HeldThread held_thread(const ModelVariant& variant, int elements, double turns) {
+  HeldThread made{thread(elements, turns), {}, 2 * turning + waiting};
+  const std::vector<double> x = start_places(variant, made.strand);
+  const Held held = handle(elements);
+  const int nodes[] = {held.first, held.corner, held.tip};
+  for (std::size_t k = 0; k < made.hands.size(); ++k) {
+    made.hands[k] = {nodes[k], load3(&x[3 * static_cast<std::size_t>(nodes[k])])};
+  }
+  return made;
+}
+
+Vec HeldThread::pull(const Hand& hand, std::span<const double> x) const {
+  return stiffness * (hand.place - load3(&x[3 * static_cast<std::size_t>(hand.node)]));
+}
+
+double HeldThread::tension(std::span<const double> x) const {
+  double sum = 0;
+  for (const Hand& hand : hands) sum += pull(hand, x).x;
+  return sum;
+}
+
+double HeldThread::moment(std::span<const double> x) const {
+  double sum = 0;
+  for (const Hand& hand : hands) {
+    sum -= cross(load3(&x[3 * static_cast<std::size_t>(hand.node)]), pull(hand, x)).x;
+  }
+  return sum;
+}
+
+double HeldThread::angle_over_equilibrium(std::span<const double> x) const {
+  const auto free_points = 3 * static_cast<std::size_t>(hands.front().node);
+  const double tension = this->tension(x);
+  const Ply found = ply(x.first(free_points), strand.segments.front().length,
                         thread_separation, 2.4 * ply_radius);
   if (found.pairs == 0 || !(tension > 0)) {
     throw std::runtime_error("it makes no plectoneme");
@@ -119,8 +145,6 @@ double measured_angle(const ModelTrial& trial) {
   const double bending = models::stiffness(material, {radius, radius}).y;
   return found.angle / ply_angle(tension * found.radius * found.radius / bending);
 }
-
-}  // namespace
 
 double ply_angle(double tension) {
   const auto off = [tension](double a) {

@@ -18,7 +18,8 @@ const std::vector<ValidationTest>& validation_tests() {
          {cantilever_tests, vibration_tests, buckling_tests, localised_buckling_tests,
           curl_tests, hanging_tests, pendulum_tests, chain_tests, ringing_tests,
           spring_tests, plane_tests, stick_slip_tests, capstan_tests, ladder_tests,
-          touching_tests, knot_tests, wisp_tests, plectoneme_tests}) {
+          touching_tests, knot_tests, wisp_tests, plectoneme_tests,
+          plectoneme_exact_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;

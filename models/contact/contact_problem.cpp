@@ -28,6 +28,12 @@ constexpr std::size_t least_part = 500, most_parts = 4;
 constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}, {0, 2},
                                                                   {1, 3}, {0, 3}, {1, 2}};
 
+// The contacts about the worst one, unless they are more than these, are solved at once
+// after so many sweeps; then after so many more where that solved them, else after twice
+// as many as before.
+constexpr int first_joint = 3, next_joint = 10, joint_steps = 6;
+constexpr std::size_t most_joint = 32;
+
 Pack packed(const Vec& x) { return {x.x, x.y, x.z, 0}; }
 Vec first3(const Pack& x) { return {x[0], x[1], x[2]}; }
 
@@ -276,6 +282,79 @@ double ContactProblem::worst(const Loop& loop) {
   return largest_seen();
 }
 
+/// Velocity of a contact by unit forces along another one's axes, in its own.
+Mat3 ContactProblem::response(const Contact& contact, const Solved& to) const {
+  Pack by_axis[3] = {Pack(0), Pack(0), Pack(0)};
+  for (const Solved::Pushed& pushed : to.bodies) {
+    if (pushed.body == nullptr) break;
+    for (const End& end : contact.ends) {
+      if (&bodies_[static_cast<std::size_t>(end.body)] != pushed.body) continue;
+      const Pack* const at = pushed.columns + 3 * static_cast<std::size_t>(end.point);
+      for (std::size_t k = 0; k < 3; ++k) by_axis[k] += Pack(end.weight) * at[k];
+    }
+  }
+  return contact.axes *
+         transposed({first3(by_axis[0]), first3(by_axis[1]), first3(by_axis[2])});
+}
+
+/// Those contacts with forces that share a body with the one that violates the laws most:
+/// sweeps between a few that bear each other may need hundreds to settle.
+std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() const {
+  const Solved* worst = nullptr;
+  double most = 0;
+  for (const Part& part : parts_) {
+    for (const Solved& solved : part.contacts) {
+      const Contact& contact = *solved.contact;
+      if (trace(contact.local) == 0) continue;
+      const double violation = contact_violation(contact.local, velocity(contact),
+                                                 contact.force, contact.friction);
+      if (!(violation > most)) continue;
+      most = violation;
+      worst = &solved;
+    }
+  }
+  std::vector<const Solved*> all;
+  if (worst == nullptr) return all;
+  const auto shares = [&](const Body* body) {
+    return body != nullptr &&
+           (body == worst->bodies[0].body || body == worst->bodies[1].body);
+  };
+  for (const Part& part : parts_) {
+    for (const Solved& solved : part.contacts) {
+      if (is_zero(solved.contact->force) && &solved != worst) continue;
+      if (shares(solved.bodies[0].body) || shares(solved.bodies[1].body)) {
+        all.push_back(&solved);
+      }
+    }
+  }
+  return all;
+}
+
+/// Whether they obey the laws then.
+bool ContactProblem::solve_jointly(double tolerance) {
+  const std::vector<const Solved*> all = about_the_worst();
+  if (all.size() > most_joint) return false;
+  joint_.resize(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Contact& contact = *all[i]->contact;
+    Vec free = velocity(contact);
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      joint_.block(i, j) = response(contact, *all[j]);
+      free = free - joint_.block(i, j) * all[j]->contact->force;
+    }
+    joint_.contacts()[i] = {contact.friction, free, contact.force};
+  }
+  const bool solved = joint_.solve(tolerance, joint_steps) <= tolerance;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Contact& contact = *all[i]->contact;
+    const Vec change = joint_.contacts()[i].force - contact.force;
+    if (is_zero(change)) continue;
+    contact.force = joint_.contacts()[i].force;
+    push(*all[i], change);
+  }
+  return solved;
+}
+
 ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
                                               int most_sweeps, const Loop& loop) {
   divide();
@@ -284,10 +363,17 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
   double quiet = quiet_part * tolerance;
   Outcome outcome;
   outcome.violation = worst(loop);
+  int wait = first_joint, joint = wait;  // sweeps
   while (outcome.violation > tolerance && outcome.sweeps < most_sweeps) {
     each_part(loop, [&](Part& part) { sweep(part, quiet); });
     ++outcome.sweeps;
     const double seen = largest_seen();
+    if (seen > tolerance && outcome.sweeps >= joint) {
+      wait = solve_jointly(tolerance) ? next_joint : 2 * wait;
+      joint += wait;
+      outcome.violation = worst(loop);
+      continue;
+    }
     // What each saw at its visit is an estimate; at the end it is what is left.
     if (seen > tolerance && outcome.sweeps < most_sweeps) continue;
     outcome.violation = worst(loop);

@@ -8,6 +8,7 @@
 #include "math/mat3.h"
 #include "math/pack.h"
 #include "models/contact/box_pairs.h"
+#include "models/contact/joint_contacts.h"
 
 namespace tress::models {
 
@@ -18,6 +19,9 @@ namespace tress::models {
 /// than unknowns W is singular and the sweeps slow down or stall; each local problem
 /// therefore keeps near its last force by `proximal` times its own compliance [Acary &
 /// Brogliato 2008, section 13.4], which leaves the solution as it is.
+///
+/// Every few sweeps the contacts of the two bodies that violate the laws most are solved
+/// at once (JointContacts): a few that bear each other need hundreds of sweeps to settle.
 ///
 /// Many contacts are divided into up to four parts of neighbours, on any threads. Those
 /// between two parts are visited after those within parts, two pairs of parts at a time:
@@ -120,11 +124,15 @@ class ContactProblem {
   Vec change(const Contact& contact) const;
   double visit(Solved& solved, double quiet);
   void sweep(Part& part, double quiet);
+  Mat3 response(const Contact& contact, const Solved& to) const;
+  std::vector<const Solved*> about_the_worst() const;
+  bool solve_jointly(double tolerance);
   double largest_seen() const;
   double worst(const Loop& loop);
 
   std::vector<Body> bodies_;
   std::vector<Contact> contacts_;
+  JointContacts joint_;
   // Those within parts, then those between two parts: pairs that share none in turn.
   std::vector<Part> parts_;
   std::vector<std::size_t> rounds_;  // parts that are visited at once, in turn

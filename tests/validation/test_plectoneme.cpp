@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -46,6 +47,23 @@ TEST(Ply, OfAStraightLineIsNone) {
   std::vector<double> x;
   for (int k = 0; k < 100; ++k) x.insert(x.end(), {1e-3 * k, 0, 0});
   EXPECT_EQ(ply(x, 1e-3, 0.03, 0.01).pairs, 0);
+}
+
+// Without friction the clamp has its work back but for what drag and steps take; friction
+// takes more where the plies slide.
+TEST(Plectoneme, LosesWorkToFrictionWhenTwistedOnAndBack) {
+  const auto variants = length_variants();
+  const auto der = std::ranges::find_if(
+      variants, [](const ModelVariant& v) { return v.model->id == "der"; });
+  ASSERT_NE(der, variants.end());
+  const auto lost = [&](double friction) {
+    const TwistWork work = twist_on_and_back(*der, 125, friction, 2e-3, Deadline(600));
+    EXPECT_GT(work.given, 0) << friction;
+    return (work.given - work.returned) / work.given;
+  };
+  const double none = lost(0), some = lost(0.2);
+  EXPECT_GT(none, 0);
+  EXPECT_GT(some, 2 * none);
 }
 
 }  // namespace tress::test_plectoneme

@@ -12,15 +12,15 @@ namespace tress::experiments::validation {
 
 simulation::Scene touching_strands(const ModelVariant& variant,
                                    std::vector<Strand> strands,
-                                   const std::vector<EffectSettings>& effects,
-                                   double dt) {
+                                   const std::vector<EffectSettings>& effects, double dt,
+                                   std::string_view integrator) {
   simulation::Scene scene;
   scene.name = "touching";
   scene.model = variant.model;
   scene.model_options =
       Parameters(variant.model->parameters, "model " + std::string(variant.model->id));
   for (const auto& [key, value] : variant.settings) scene.model_options.set(key, value);
-  scene.integrator = "backward_euler";
+  scene.integrator = integrator;
   const auto system = variant.model->on_strand(strands.front(), scene.model_options, {});
   const auto formulation =
       preferred_formulation(find_integrator(scene.integrator), *system);

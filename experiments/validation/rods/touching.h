@@ -16,10 +16,11 @@ struct EffectSettings {
   std::vector<std::pair<std::string_view, std::string>> settings;
 };
 
-/// Strands of that model that touch each other, by backward Euler with a step of dt (s).
+/// Strands of that model that touch each other, and the step dt (s) of their method.
 simulation::Scene touching_strands(const ModelVariant& variant,
                                    std::vector<Strand> strands,
-                                   const std::vector<EffectSettings>& effects, double dt);
+                                   const std::vector<EffectSettings>& effects, double dt,
+                                   std::string_view integrator = "backward_euler");
 
 /// Throws std::runtime_error if the world does not get there.
 void go_on(simulation::World& world, double t);

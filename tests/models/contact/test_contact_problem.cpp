@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <thread>
 #include <vector>
 
 #include "models/contact/cone.h"
+#include "models/contact/joint_contacts.h"
 #include "tests/models/contact/random_contacts.h"
 
 namespace tress::test_contact_problem {
@@ -105,6 +107,80 @@ TEST(ContactProblem, SolvesMoreContactsThanUnknowns) {
     const auto outcome = problem.solve(1e-2, 1e-6, 20000);
     EXPECT_LE(outcome.violation, 1e-6) << seed;
   }
+}
+
+/// Two contacts at points that move as one but for 1 - `together`: each sweep leaves
+/// together^2 of the error, so that sweeps alone need hundreds to gain a digit.
+void add_stiff_pair(ContactProblem& problem, const ContactProblem::Compliance& response) {
+  const int body = problem.add_body(response);
+  for (int i = 0; i < 2; ++i) {
+    problem.add({.ends = {{{body, i, 1}, {body, i, 0}, {body, 0, 0}, {body, 0, 0}}},
+                 .friction = 0.3,
+                 .axes = identity(),
+                 .free = {-1, 0.05, 0.1 * i},
+                 .force = {},
+                 .local = {}});
+  }
+}
+
+TEST(ContactProblem, SolvesContactsThatBearEachOtherAtOnce) {
+  constexpr double together = 0.999;
+  const Mat3 one = identity(), both = together * one;
+  const ContactProblem::Compliance pair(std::vector<Mat3>{one, both, both, one});
+  ContactProblem alone;
+  add_stiff_pair(alone, pair);
+  const auto outcome = alone.solve(1e-2, 1e-10, 100);
+  EXPECT_LE(outcome.violation, 1e-10);
+  // Among others, of which it is the worst when they have settled.
+  const RandomContacts all = random_contacts(40, 4, 40, 60, 5);
+  ContactProblem many = all.problem();
+  add_stiff_pair(many, pair);
+  const auto among = many.solve(1e-2, 1e-8, 100);
+  EXPECT_LE(among.violation, 1e-8);
+}
+
+// What it says of its forces is so, and never worse than the guess.
+TEST(JointContacts, FindsForcesThatObeyTheLaws) {
+  std::mt19937 random(3);
+  int found = 0;
+  constexpr std::size_t count = 6;
+  constexpr int problems = 50;
+  for (int k = 0; k < problems; ++k) {
+    // W = J J^T of rank 12, of 18: singular.
+    std::array<std::array<Vec, 12>, count> j;
+    for (auto& row : j) {
+      for (Vec& mode : row) mode = random_vec(random);
+    }
+    JointContacts joint;
+    joint.resize(count);
+    double guess = 0;
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = 0; b < count; ++b) {
+        Mat3 block{};
+        for (std::size_t m = 0; m < 12; ++m) block = block + outer(j[a][m], j[b][m]);
+        joint.block(a, b) = block;
+      }
+      const Vec free = random_vec(random);
+      joint.contacts()[a] = {0.3, free, {}};
+      guess = std::max(guess, contact_violation(joint.block(a, a), free, {}, 0.3));
+    }
+    const double said = joint.solve(1e-9, 20);
+    double is = 0, size = 1;
+    for (std::size_t a = 0; a < count; ++a) {
+      const JointContacts::Contact& contact = joint.contacts()[a];
+      Vec u = contact.free;
+      for (std::size_t b = 0; b < count; ++b) {
+        u = u + joint.block(a, b) * joint.contacts()[b].force;
+      }
+      is = std::max(is, contact_violation(joint.block(a, a), u, contact.force, 0.3));
+      size = std::max(size, trace(joint.block(a, a)) * norm(contact.force));
+    }
+    EXPECT_NEAR(said, is, 1e-14 * size);  // rounding of W r, some 20 terms
+    EXPECT_LE(said, guess);
+    if (said <= 1e-9) ++found;
+  }
+  // Newton's method from no forces at all, without any sweeps.
+  EXPECT_GT(found, problems / 2);
 }
 
 TEST(ContactProblem, ForcesOfItsContactsChangeTheVelocities) {

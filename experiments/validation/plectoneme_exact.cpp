@@ -1,0 +1,108 @@
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "contract/parameters.h"
+#include "experiments/validation/plectoneme.h"
+#include "experiments/validation/rods/motion.h"
+#include "experiments/validation/rods/touching.h"
+
+namespace tress::experiments::validation {
+namespace {
+
+constexpr double turns = 12, more_turns = 4, twisting = 2;  // of the clamp, s
+constexpr double dt = 2e-3;                                 // s
+
+/// Its effects, and its plies at the distance of those of `plectoneme`.
+simulation::Scene exact_thread(const ModelVariant& variant, const HeldThread& thread,
+                               double friction, double step) {
+  std::vector<EffectSettings> effects;
+  const auto elements = static_cast<double>(thread.strand.segments.size());
+  for (const HeldThread::Hand& hand : thread.hands) {
+    const Vec& x = hand.place;
+    effects.push_back({"tether",
+                       {{"at", number_text(hand.node / elements)},
+                        {"stiffness_n_m", number_text(HeldThread::stiffness)},
+                        {"target_m", number_text(x.x) + "," + number_text(x.y) + "," +
+                                         number_text(x.z)},
+                        {"t_off_s", "1e6"}}});
+  }
+  effects.push_back({"linear_drag", {{"drag_kg_m_s", "1e-3"}}});
+  // A ply that turns moves at some centimetres a second.
+  effects.push_back({"strand_friction",
+                     {{"friction", number_text(friction)},
+                      {"thickness_m", number_text(2 * HeldThread::ply_radius)},
+                      {"tolerance_m_s", "1e-5"}}});
+  // One linear solve a step, as `plectoneme`.
+  return touching_strands(variant, {thread.strand}, effects, step, "semi_implicit_euler");
+}
+
+void proceed(simulation::World& world, double t, const Deadline& deadline) {
+  go_on(world, t);
+  if (deadline.passed()) throw std::runtime_error("the time for the row was over");
+}
+
+double measured_angle(const ModelTrial& trial) {
+  const HeldThread thread = held_thread(trial.variant, trial.elements, turns);
+  simulation::World world(exact_thread(trial.variant, thread, trial.parameter, dt));
+  for (int i = 1; i <= 100; ++i) {
+    proceed(world, thread.settled * i / 100, trial.deadline);
+  }
+  return thread.angle_over_equilibrium(world.positions());
+}
+
+}  // namespace
+
+TwistWork twist_on_and_back(const ModelVariant& variant, int elements, double friction,
+                            double step, const Deadline& deadline) {
+  HeldThread thread = held_thread(variant, elements, turns);
+  const double most = 2 * std::numbers::pi * more_turns;
+  const Signal on = smooth_step(most, thread.settled, twisting);
+  const Signal back = smooth_step(-most, thread.settled + twisting, twisting);
+  for (const Signal& signal : {on, back}) {
+    thread.strand.root.rotations.push_back({{1, 0, 0}, signal});
+  }
+  simulation::World world(exact_thread(variant, thread, friction, step));
+  proceed(world, thread.settled, deadline);
+  const auto moment = [&] { return thread.moment(world.positions()); };
+  const auto work = [&](double from, const Signal& turned) {
+    double sum = 0, before = moment();
+    const auto steps = static_cast<int>(std::lround(twisting / step));
+    for (int i = 1; i <= steps; ++i) {
+      const double t0 = from + (i - 1) * step, t1 = from + i * step;
+      proceed(world, t1, deadline);
+      const double now = moment();
+      sum += (before + now) / 2 * (turned(t1).value - turned(t0).value);
+      before = now;
+    }
+    return sum;
+  };
+  const double given = work(thread.settled, on);
+  return {given, -work(thread.settled + twisting, back)};
+}
+
+std::vector<ValidationTest> plectoneme_exact_tests() {
+  return {{
+      .name = "plectoneme_exact",
+      .what = "the same with exact contact and friction of its plies",
+      .source = "Bertails-Descoubes 2010, plectoneme; Clauvelin, Audoly & Neukirch 2009",
+      .parameter = "friction coefficient mu",
+      .quantity = "angle of the plies over that of the equilibrium without friction",
+      .range = {0, 0.05},
+      .quick = {{0}, {125}},
+      .usual = {{0, 0.05}, {125}},
+      .full = {{0, 0.02, 0.05}, {125, 250}},
+      .tolerance = 0.05,
+      .why = "as `plectoneme`; with friction a ply rests between the angle at which it "
+             "would wind on and the one at which it would unwind, some mu apart",
+      .judged_from = 125,
+      .claimed = {"der", "corde"},
+      .reference = [](double) { return 1.0; },
+      .refusal = no_twist,
+      // A full matrix of 375 unknowns, factored in every step.
+      .slow = {"super_helix", "articulated_chain", "force_transport", "kirchhoff_nodal"},
+      .measure = measured_angle,
+  }};
+}
+
+}  // namespace tress::experiments::validation
