@@ -52,7 +52,7 @@ void HeadRecording::open(const Scene& scene, HeadRun& run, StoredFrames stored,
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {
-    progress_ = load_head(state, key_, run.head());
+    progress_ = load_head(state, key_, run.change());
     frames_.emplace(stem_, run.head(), std::move(stored), progress_.sums);
   } else {
     if (std::filesystem::remove(state, error); error) {

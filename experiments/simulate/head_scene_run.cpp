@@ -82,6 +82,7 @@ class HeadSceneRun {
       run_.emplace(std::move(made_head.head), options_.threads,
                    std::move(made_head.interaction));
       reach = std::move(made_head.reach);
+      if (options_.device != DeviceChoice::cpu) choose_device(outcome);
     });
     const std::vector<std::size_t> shown = shown_strands(run_->head().strands());
     StoredFrames stored{options_.frame_bits, shown, {}};
@@ -107,6 +108,30 @@ class HeadSceneRun {
     made.end = SceneRun::End::failed;
     made.reason = fmt::format("{} of {} strands were lost: {}.lost.csv", outcome.lost,
                               outcome.strands, options_.stem);
+  }
+
+  /// The device, if there is one; else, unless it is asked for, the processor.
+  void choose_device(HeadOutcome& outcome) {
+    try {
+      outcome.device = run_->move_to_device();
+    } catch (const InputError& no) {
+      if (options_.device == DeviceChoice::gpu) throw;
+      stay(no.what());
+    } catch (const DeviceFailure& no) {
+      if (options_.device == DeviceChoice::gpu) throw no_device(no);
+      stay(no.what());
+    }
+    if (outcome.device == "cpu") return;
+    // Other products are fused than here: other last bits.
+    key_.add("device", "gpu");
+    tell("simulate: {}: on {}\n", scene_.name, outcome.device);
+  }
+  void stay(const std::string& reason) const {
+    tell("simulate: {}: --device auto stays on the processor: {}\n", scene_.name, reason);
+  }
+  InputError no_device(const DeviceFailure& no) const {
+    return InputError(no.what(), "--device gpu of " + scene_.name,
+                      "give --device cpu, or auto to go on without a device");
   }
 
   /// To the last frame, unless a signal ends the program.
@@ -142,13 +167,28 @@ class HeadSceneRun {
                      std::max(1.0, std::ceil((end - begin) / scene_.options.step - 1e-9)),
                  h = (end - begin) / count;
     for (std::size_t i = done; i < static_cast<std::size_t>(count); ++i) {
-      if (stop.asked()) end_here(i, stop);
+      if (stop.asked()) {
+        fetch(h);
+        end_here(i, stop);
+      }
       const double t = begin + static_cast<double>(i) * h;
       run_->step(t, h);
       ++steps_;
       if (guard_) guard_->step(t, h);
       for (const auto& loss : run_->lost()) recording_->lose({loss.strand, t + h});
     }
+    fetch(h);
+  }
+
+  /// What a device has done in steps of h.
+  void fetch(double h) {
+    if (options_.device == DeviceChoice::cpu) return;
+    try {
+      run_->fetch();
+    } catch (const DeviceFailure& no) {
+      throw no_device(no);
+    }
+    for (const auto& loss : run_->lost()) recording_->lose({loss.strand, loss.time + h});
   }
 
   void save_state(std::size_t step) {
@@ -160,10 +200,10 @@ class HeadSceneRun {
     if (!guard_) return;
     if (t == 0) guard_->start(energies_);
     if (!scene_.guard) return;
-    Head& head = run_->head();
+    const Head& head = run_->head();
     for (std::size_t k = 0; k < energies_.size(); ++k) {
       if (head.lost(k) || !guard_->breached(t, energies_[k])) continue;
-      head.lose(k);
+      run_->change().lose(k);
       recording_->lose({k, t, true});
     }
   }

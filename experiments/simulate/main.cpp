@@ -33,7 +33,7 @@ struct Arguments {
   bool resume = false, vtk = false, usd = false, hair = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
        full = false, error_bars = false;
-  std::string progress = "auto", as = "auto", frames = "32";
+  std::string progress = "auto", as = "auto", frames = "32", device = "cpu";
   int bits = 64, lanes = 0;
 };
 
@@ -71,6 +71,10 @@ void declare(CLI::App& app, Arguments& a) {
                  "strands of a head side by side: 1, 4, 8 of 64 bits, 8, 16 of 32 "
                  "(default 8, 16); results are the same bits")
       ->check(CLI::IsMember({1, 4, 8, 16}));
+  app.add_option("--device", a.device,
+                 "that takes a head's steps: cpu; gpu; auto: gpu where there is one and "
+                 "the scene has gravity and drag only (default cpu)")
+      ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
   app.add_option("--frames", a.frames,
                  "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
       ->check(CLI::IsMember({"32", "64", "none"}));
@@ -187,6 +191,10 @@ Job job_of(const std::string& file, const Arguments& a) {
                     strands, held_at_once.strands, no->reason),
         file, no->remedy);
   }
+  if (!job.head && a.device == "gpu") {
+    throw InputError("a device steps heads of hair only, and this runs strand by strand",
+                     file, "give --as head, or --device cpu");
+  }
   if (!job.head && a.verify) check_verifiable(read_scene(file));
   if (!job.head) read_scene(file);
   return job;
@@ -225,6 +233,9 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   options.hair = exports(a.hair, "hair");
   options.progress = line.progress;
   options.pack = pack_of(a);
+  options.device = a.device == "cpu"   ? DeviceChoice::cpu
+                   : a.device == "gpu" ? DeviceChoice::gpu
+                                       : DeviceChoice::automatic;
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
   std::error_code ignored;  // what a run before has left would only mislead
   for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv"}) {

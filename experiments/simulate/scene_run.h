@@ -12,6 +12,9 @@
 
 namespace tress::experiments::scene_runs {
 
+/// What takes the steps of a head: `automatic` is a GPU where there is one for it.
+enum class DeviceChoice { cpu, gpu, automatic };
+
 struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
   int threads = 1;
@@ -23,12 +26,14 @@ struct SceneRunOptions {
   ProgressMode progress = ProgressMode::automatic;
   // Of a head.
   models::HeadPack pack = {};
+  DeviceChoice device = DeviceChoice::cpu;
   int frame_bits = 32;  // of a coordinate in <stem>.h5; 0: frames only of shown strands
 };
 
 /// Of a head.
 struct HeadOutcome {
   models::HeadPack pack;
+  std::string device = "cpu";  // that took its steps, or the name of another one
   std::size_t strands, lost;
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end

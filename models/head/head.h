@@ -104,6 +104,8 @@ struct HeadEnergy {
   double mass = 0;                  // kg
 };
 
+class HelixSource;
+
 /// Many clamped strands of equal discretisation whose roots move with one head: blocks of
 /// strands, each advanced by itself, by as many threads as there are. A strand takes its
 /// state, its rest shape and some twenty numbers of memory, nothing else. Units of all
@@ -180,6 +182,10 @@ class Head {
   virtual std::size_t kept() const = 0;
   virtual void keep(std::size_t block, std::span<double> x) const = 0;
   virtual void recall(std::size_t block, std::span<const double> x) = 0;
+
+  /// What a device needs to take its steps (models/head/helix_source.h); null: there is
+  /// no such code.
+  virtual const HelixSource* source() const { return nullptr; }
 };
 
 /// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors

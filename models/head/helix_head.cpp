@@ -8,15 +8,18 @@
 #include "contract/input_error.h"
 #include "models/head/helix_energies.h"
 #include "models/head/helix_loads.h"
+#include "models/head/helix_motion.h"
 #include "models/head/helix_places.h"
+#include "models/head/helix_source.h"
 #include "models/head/helix_strand.h"
 #include "models/head/lane_head.h"
+#include "models/head/lane_numbers.h"
 
 namespace tress::models {
 namespace {
 
 template <class T>
-class HelixHead final : public Head {
+class HelixHead final : public Head, public HelixSource {
  public:
   HelixHead(const HeadOptions& options, Instructions instructions)
       : options_(with_uniform_effects(options)),
@@ -209,6 +212,41 @@ class HelixHead final : public Head {
     }
   }
 
+  const HelixSource* source() const override { return this; }
+  std::optional<HeadRefusal> refused_by_device() const override {
+    if (!bodies_.empty()) return HeadRefusal{"bodies", "leave them out"};
+    if (!others_.empty()) {
+      return HeadRefusal{"effect " + std::string(others_.front()->name()),
+                         "leave it out"};
+    }
+    if (!own_.empty()) {
+      return HeadRefusal{"effects on single strands, such as interaction",
+                         "leave them out"};
+    }
+    return {};
+  }
+  Shape shape() const override {
+    return {options_.elements, options_.points, options_.twist,
+            sizeof(typename T::Scalar) == sizeof(double) ? HeadNumber::float64
+                                                         : HeadNumber::float32};
+  }
+  void fixed(std::size_t block, std::span<double> each) const override {
+    double* to = each.data();
+    const auto put = [&](int lane, const T* from, std::size_t numbers) {
+      for (std::size_t i = 0; i < numbers; ++i) *to++ = lane_of(from[i], lane);
+    };
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      HelixFixed<T> own{materials_[block], roots_[block]};
+      put(lane, numbers_of<T>(own).data(), numbers_of<T>(own).size());
+      put(lane, &rest_[n_ * block].x, 3 * n_);
+    }
+  }
+  HelixMotion motion_at(double t) const override {
+    return motion_of(options_.motion.at(t));
+  }
+  double time_unit() const override { return units_.time; }
+
   std::size_t kept() const override { return 6 * n_ + 1; }
   void keep(std::size_t block, std::span<double> x) const override {
     double* to = x.data();
@@ -327,19 +365,17 @@ class HelixHead final : public Head {
     return !to.empty();
   }
 
-  HelixRoot<T> root_of(const Root& root, const RootPose& pose) const {
-    // In the components of the head, without units.
+  HelixMotion motion_of(const RootPose& pose) const {
     const double l = units_.length, tau = units_.time;
     const auto in_head = [&](const Vec& x, double unit) {
-      return Vec3<T>((1 / unit) * pose.frame.back(x));
+      return (1 / unit) * pose.frame.back(x);
     };
-    const Vec3<T> omega = in_head(pose.omega, 1 / tau),
-                  alpha = in_head(pose.alpha, 1 / (tau * tau));
-    const Vec3<T> v = in_head(pose.v, l / tau) + cross(omega, root.from);
-    const Vec3<T> a = in_head(pose.a - options_.gravity, l / (tau * tau)) +
-                      cross(alpha, root.from) + cross(omega, cross(omega, root.from));
-    return {root.frame.back(v), root.frame.back(omega), root.frame.back(a),
-            root.frame.back(alpha)};
+    return {in_head(pose.v, l / tau), in_head(pose.omega, 1 / tau),
+            in_head(pose.a - options_.gravity, l / (tau * tau)),
+            in_head(pose.alpha, 1 / (tau * tau))};
+  }
+  HelixRoot<T> root_of(const Root& root, const RootPose& pose) const {
+    return root_motion(root, motion_of(pose));
   }
 
   void freeze(std::size_t block, const T& finite, double h, const Own& scratch) {

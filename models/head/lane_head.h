@@ -13,18 +13,12 @@
 #include "math/lanes.h"
 #include "models/head/head.h"
 #include "models/head/head_units.h"
+#include "models/head/lane_root.h"
 
 /// What all heads of hair have in common, whatever their kernel.
 namespace tress::models {
 
 inline constexpr const char* place_of_head = "head of hair";
-
-/// Where a strand's root is in the head at rest.
-template <class T>
-struct LaneRoot {
-  Vec3<T> from;  // the motion's position
-  FrameOf<T> frame;
-};
 
 /// Throws InputError unless these numbers make sense.
 inline void check_for_head(const HeadOptions& options) {

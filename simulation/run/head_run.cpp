@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "contract/input_error.h"
+
 namespace tress::simulation {
 namespace {
 
@@ -57,7 +59,27 @@ void HeadRun::exchange(double t) {
       });
 }
 
+const std::string& HeadRun::move_to_device() {
+  if (const auto no = refused_by_device(*head_)) {
+    throw InputError(no->reason, "head of hair", no->remedy);
+  }
+  device_ = device_head(*head_);
+  return device_->name();
+}
+
+void HeadRun::fetch() {
+  if (!device_) return;
+  lost_ = device_->fetch(
+      [this](std::size_t count, const std::function<void(std::size_t)>& work) {
+        crew_.run(count, work);
+      });
+}
+
 void HeadRun::step(double t, double h) {
+  if (device_) {
+    lost_.clear();
+    return device_->step(t, h);
+  }
   exchange(t);
   share([&](std::size_t first, std::size_t last, Head::Scratch& scratch) {
     head_->step(first, last, t, h, scratch);

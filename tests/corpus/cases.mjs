@@ -121,7 +121,7 @@ const ofAll = ['--elments 3', '--set', '--set x', '--set =1', '--set none_such=1
   '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--options', '-x', '--', '-'];
 const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads nan',
   '--hairs -1', '--hairs 1e308', '--hairs nan', '--progress loud', '--elments 3', '-x', '--out',
-  '--as none', '--as', '--bits 16', '--bits nan', '--bits 1e308', '--lanes 0', '--lanes -8',
+  '--as none', '--as', '--device none', '--device', '--bits 16', '--bits nan', '--bits 1e308', '--lanes 0', '--lanes -8',
   '--lanes 3', '--lanes 16', '--bits 32 --lanes 4', '--frames 16', '--frames', '--frames nan',
   'scene.toml --as head --out o', 'head.toml --as head --out o --hairs 3',
   'head.toml --as head --out o --error-bars', 'head.toml --as head --out file',
