@@ -12,6 +12,7 @@
 #include "experiments/run/message.h"
 #include "experiments/simulate/error_bars.h"
 #include "experiments/simulate/head_scene_run.h"
+#include "experiments/simulate/held_report.h"
 #include "experiments/simulate/outcome.h"
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
@@ -40,7 +41,8 @@ struct Arguments {
 constexpr const char* help_end =
     "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
-    "the\nreport page), with --error-bars .errors.csv (errors over time); of a head .h5 "
+    "the\nreport page), with --error-bars .errors.csv (errors over time); of a "
+    "scene with rest = \"inverse\" .rest.csv\n(how each strand is held); of a head .h5 "
     "and .xdmf\n(all frames, for ParaView and others) and .lost.csv (strands that could "
     "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
@@ -238,10 +240,11 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
                                        : DeviceChoice::automatic;
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
   std::error_code ignored;  // what a run before has left would only mislead
-  for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv"}) {
+  for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv", ".rest.csv"}) {
     if (job.head && ending != std::string_view(".errors.csv")) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
+  if (!job.head) scene = settled(scene, options.stem + ".rest.csv", options.threads);
   RunKey key;
   key.add("scene", contents_checksum({file}));
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));

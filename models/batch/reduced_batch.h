@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/natural_strains.h"
 #include "models/batch/packed_strands.h"
 #include "models/groom/strand_block.h"
 #include "models/reduced/recursive_solver.h"
@@ -59,7 +60,9 @@ class TransportMechanics {
 /// those of single strands to rounding (points are summed in another order), at little
 /// more than the cost of one strand. The Kernel is over packs.
 template <template <class, int> class Mechanics, class Kernel, int dofs>
-class ReducedBatch final : public StrandBlock, private ExplicitForm {
+class ReducedBatch final : public StrandBlock,
+                           public NaturalStrains,
+                           private ExplicitForm {
  public:
   /// `strands`: the packed strands as single systems, used for everything but steps.
   ReducedBatch(PackedStrands packed, std::vector<std::unique_ptr<System>> strands)
@@ -102,7 +105,34 @@ class ReducedBatch final : public StrandBlock, private ExplicitForm {
     return this;
   }
 
+  std::vector<double> natural() const override {
+    return of_strands(&NaturalStrains::natural);
+  }
+  void set_natural(In values) override {
+    for (std::size_t k = 0; k < strands(); ++k) {
+      natural_strains(strand(k))->set_natural(part(values, k));
+    }
+    gather(values, q_);
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      kinematics_.set_rest(i, Kinematics<Kernel, dofs>::components(q_, i));
+    }
+  }
+  std::vector<double> natural_stiffness() const override {
+    return of_strands(&NaturalStrains::natural_stiffness);
+  }
+  bool strains_are_coordinates() const override { return true; }
+
  private:
+  std::vector<double> of_strands(std::vector<double> (NaturalStrains::*values)()
+                                     const) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < strands(); ++k) {
+      const std::vector<double> one = (natural_strains(strand(k))->*values)();
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  }
+
   std::size_t unknowns() const { return static_cast<std::size_t>(first(1)); }  // each
 
   Status acceleration(double t, In q, In v, Out a) noexcept override {

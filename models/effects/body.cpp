@@ -153,14 +153,20 @@ Body::Body(BodyShape shape, const StrandPlace& place, const BodyContact& law,
   }
 }
 
+std::shared_ptr<const Body> Body::with_offsets(std::vector<double> more) const {
+  auto copy = std::make_shared<Body>(*this);
+  copy->more_ = std::move(more);
+  return copy;
+}
+
 void Body::add_load(double t, const Points& p, InOut f) const noexcept {
   const BodyPose now = contact_.body.pose(t);
   contact_.body.for_near<RigidBody::With::velocity>(
-      now, p, [&](std::size_t) { return contact_.law.offset; },
+      now, p, [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
         double* load = &f[3 * at.point];
         store3(load3(load) +
-                   p.length[at.point] * (now.frame * contact_.law.load(at.to, at.u)),
+                   p.length[at.point] * (now.frame * law(at.point).load(at.to, at.u)),
                load);
       });
 }
@@ -170,9 +176,9 @@ void Body::add_derivatives(double t, const Points& p, double pos, double vel,
   const BodyPose now = contact_.body.pose(t);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
   contact_.body.for_near<RigidBody::With::curvature>(
-      now, p, [&](std::size_t) { return contact_.law.offset; },
+      now, p, [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
-        const auto [by_x, by_u] = contact_.law.slopes(at.to, at.curvature, at.u);
+        const auto [by_x, by_u] = law(at.point).slopes(at.to, at.curvature, at.u);
         // The surface moves faster further out: du/dx = -omega x.
         const Mat3 block = pos * (by_x - by_u * spin) + vel * by_u;
         add9(turned(now.frame, p.length[at.point] * block), &blocks[9 * at.point]);
@@ -182,9 +188,9 @@ void Body::add_derivatives(double t, const Points& p, double pos, double vel,
 double Body::potential(double t, const Points& p) const noexcept {
   double sum = 0;
   contact_.body.for_near<RigidBody::With::position>(
-      contact_.body.pose(t), p, [&](std::size_t) { return contact_.law.offset; },
+      contact_.body.pose(t), p, [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
-        sum += p.length[at.point] * contact_.law.normal().energy(at.to);
+        sum += p.length[at.point] * law(at.point).normal().energy(at.to);
       });
   return sum;
 }
@@ -193,13 +199,13 @@ double Body::power(double t, const Points& p) const noexcept {
   const BodyPose now = contact_.body.pose(t);
   double sum = 0;
   contact_.body.for_near<RigidBody::With::velocity>(
-      now, p, [&](std::size_t) { return contact_.law.offset; },
+      now, p, [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
         // f.v - f_elastic.(v - w), the second being the rate of the potential.
         const Vec v = now.frame.back(load3(&p.v[3 * at.point]));
         sum +=
-            p.length[at.point] * (dot(contact_.law.load(at.to, at.u), v) -
-                                  dot(contact_.law.normal().elastic_load(at.to), at.u));
+            p.length[at.point] * (dot(law(at.point).load(at.to, at.u), v) -
+                                  dot(law(at.point).normal().elastic_load(at.to), at.u));
       });
   return sum;
 }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "contract/parameters.h"
 #include "models/contact/body_contact.h"
@@ -32,9 +33,11 @@ class Body final : public Effect {
   Needs needs() const override {
     return {.position = true, .velocity = true, .derivatives = true};
   }
-  const RigidContact* rigid_contact() const noexcept override { return &contact_; }
+  const RigidContact* rigid_contact() const noexcept override {
+    return more_.empty() ? &contact_ : nullptr;
+  }
   bool reaches(double t, const Ball& ball) const noexcept override {
-    return contact_.body.reaches(contact_.body.pose(t), ball);
+    return !more_.empty() || contact_.body.reaches(contact_.body.pose(t), ball);
   }
   void add_load(double t, const Points& p, InOut f) const noexcept override;
   void add_derivatives(double t, const Points& p, double pos, double vel,
@@ -49,9 +52,22 @@ class Body final : public Effect {
   }
 
   BodyPose pose(double t) const { return contact_.body.pose(t); }
+  const RigidContact& contact_on_points() const { return contact_; }
+
+  /// The same for one strand whose points are met `more` (m, one each) farther from the
+  /// surface than its radius: so that each is as deep at rest as its force there asks.
+  std::shared_ptr<const Body> with_offsets(std::vector<double> more) const;
 
  private:
+  /// The law at a point.
+  BodyContact law(std::size_t point) const {
+    BodyContact own = contact_.law;
+    if (point < more_.size()) own.offset += more_[point];
+    return own;
+  }
+
   RigidContact contact_;
+  std::vector<double> more_;
 };
 
 /// With regularised friction, or as ExactBody.

@@ -10,7 +10,7 @@ namespace tress::models {
 
 /// Stretching, bending and twisting of a discrete rod (der.cpp), coordinates z = (x_0,
 /// ..., x_n, theta_0, ..., theta_{n-1}).
-class DerElasticity final : public Elasticity {
+class DerElasticity final : public Elasticity, private NaturalStrains {
  public:
   struct EdgeData {
     Frame reference;
@@ -33,8 +33,22 @@ class DerElasticity final : public Elasticity {
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
+  NaturalStrains* natural_strains() override { return this; }
 
  private:
+  std::vector<double> natural() const override {
+    return of_joints(joint_data_, &RodJoint::rest);
+  }
+  void set_natural(In values) override {
+    for (std::size_t j = 0; j < joint_data_.size(); ++j) {
+      joint_data_[j].rest = load3(&values[3 * j]);
+    }
+    placed_ = false;
+  }
+  std::vector<double> natural_stiffness() const override {
+    return of_joints(joint_data_, &RodJoint::stiffness);
+  }
+
   struct Edge {
     EdgeTurn turn;
     Frame frame;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contract/natural_strains.h"
 #include "models/maximal/groups.h"
 #include "models/motion/root_motion.h"
 
@@ -59,6 +60,8 @@ class Elasticity {
   virtual void recall(In /*memory*/) {}
   /// Null if the energy is not a function of strains.
   virtual StrainForm* strain_form() { return nullptr; }
+  /// Null if it has no natural strain for every direction in which the strand bends.
+  virtual NaturalStrains* natural_strains() { return nullptr; }
 };
 
 }  // namespace tress::models

@@ -55,6 +55,7 @@ struct MaximalStrand {
 /// diagonal blocks per point. If mass points are nodes and the elasticity has a
 /// StrainForm, the system has a ComplianceForm.
 class MaximalSystem final : public System,
+                            public NaturalStrains,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
@@ -85,6 +86,17 @@ class MaximalSystem final : public System,
   History* history() override { return this; }
   MaterialPoints* material_points() override { return this; }
   ContactForm* contact_form() override { return held_contacts_.form(); }
+
+  std::vector<double> natural() const override {
+    const NaturalStrains* strains = strand_.elasticity->natural_strains();
+    return strains == nullptr ? std::vector<double>{} : strains->natural();
+  }
+  void set_natural(In values) override {
+    strand_.elasticity->natural_strains()->set_natural(values);
+  }
+  std::vector<double> natural_stiffness() const override {
+    return strand_.elasticity->natural_strains()->natural_stiffness();
+  }
 
  private:
   bool accept(double t, InOut q, InOut v) override;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "contract/layers.h"
 #include "models/strand/strand.h"
 
@@ -26,6 +28,14 @@ inline RodJoint rod_joint(const Material& material, const Segment* before,
   }
   const double friction = material.internal_friction / l;
   return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
+}
+
+/// A member of every joint, three numbers each.
+inline std::vector<double> of_joints(const std::vector<RodJoint>& joints,
+                                     Vec RodJoint::*member) {
+  std::vector<double> all(3 * joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) store3(joints[j].*member, &all[3 * j]);
+  return all;
 }
 
 /// Converts h over the edge between two nodes and `others` more coordinates to a matrix

@@ -38,7 +38,9 @@ struct QuaternionJoint {
 /// x_n, q_0, ..., q_{n-1}). `Edge` holds the strains of a single edge: a Part over
 /// (x_{i+1} - x_i, q_i). Instantiated for CordeEdge and CosseratEdge.
 template <class Edge>
-class QuaternionRod final : public Elasticity, private StrainForm {
+class QuaternionRod final : public Elasticity,
+                            private StrainForm,
+                            private NaturalStrains {
  public:
   /// `joints`: between neighbouring edges; if `walled`, the clamp's joint comes first.
   QuaternionRod(std::vector<Edge> edges, std::vector<QuaternionJoint> joints,
@@ -53,8 +55,29 @@ class QuaternionRod final : public Elasticity, private StrainForm {
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
   StrainForm* strain_form() override { return this; }
+  NaturalStrains* natural_strains() override { return this; }
 
  private:
+  std::vector<double> natural() const override {
+    return of_joints([](const QuaternionJoint& joint) { return joint.rest; });
+  }
+  void set_natural(In values) override {
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      std::copy_n(&values[3 * j], 3, joints_[j].rest);
+    }
+  }
+  std::vector<double> natural_stiffness() const override {
+    return of_joints([](const QuaternionJoint& joint) { return joint.stiffness; });
+  }
+  template <class Member>
+  std::vector<double> of_joints(Member member) const {
+    std::vector<double> all;
+    for (const QuaternionJoint& joint : joints_) {
+      all.insert(all.end(), member(joint), member(joint) + 3);
+    }
+    return all;
+  }
+
   /// Coordinates of one part and their rates.
   template <class Part>
   struct Local {

@@ -73,6 +73,8 @@ class Kinematics {
   int unknowns() const { return count() * dofs + (free_root_ ? 6 : 0); }
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<PointBlock>& blocks() const { return blocks_; }
+  /// The unknowns of a segment at rest; those that it has not are 0.
+  void set_rest(std::size_t i, const Vec& rest) { segments_[i].rest = rest; }
   const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
   const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
   const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "contract/natural_strains.h"
 #include "models/effects/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
@@ -21,6 +22,7 @@ namespace tress::models {
 /// comes from the recursion.
 template <class Kernel, int dofs>
 class ReducedSystem : public System,
+                      public NaturalStrains,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -151,6 +153,17 @@ class ReducedSystem : public System,
   MaterialPoints* material_points() override { return this; }
   ContactForm* contact_form() override { return held_contacts_.form(); }
 
+  std::vector<double> natural() const override { return of_segments(&Segment::rest); }
+  void set_natural(In values) override {
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      kinematics_.set_rest(i, K::components(values, i));
+    }
+  }
+  std::vector<double> natural_stiffness() const override {
+    return of_segments(&Segment::stiffness);
+  }
+  bool strains_are_coordinates() const override { return !kinematics_.free(); }
+
  protected:
   bool accept(double, InOut q, InOut v) override {
     return kinematics_.free_root().rebase(q.last(6), v.last(6));
@@ -169,6 +182,16 @@ class ReducedSystem : public System,
   using K = Kinematics<Kernel, dofs>;
   using Mass = MassShape<dofs>;
   using Exact = ExactShape<dofs>;
+
+  using Segment = ReducedSegment;
+  /// The unknowns' components of a member of every segment.
+  std::vector<double> of_segments(Vec Segment::*member) const {
+    std::vector<double> all;
+    for (const Segment& segment : kinematics_.segments()) {
+      for (int k = 0; k < dofs; ++k) all.push_back(dot(K::unit(k), segment.*member));
+    }
+    return all;
+  }
 
   static Status finite(In x) {
     return std::ranges::all_of(x, [](double y) { return std::isfinite(y); })

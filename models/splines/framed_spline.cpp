@@ -43,6 +43,23 @@ FramedSpline::FramedSpline(std::vector<Span> spans,
   }
 }
 
+std::vector<double> FramedSpline::natural() const {
+  std::vector<double> all;
+  each_strain(*this, [&all](double rest, double) { all.push_back(rest); });
+  return all;
+}
+
+void FramedSpline::set_natural(In values) {
+  std::size_t k = 0;
+  each_strain(*this, [&](double& rest, double) { rest = values[k++]; });
+}
+
+std::vector<double> FramedSpline::natural_stiffness() const {
+  std::vector<double> all;
+  each_strain(*this, [&all](double, double stiffness) { all.push_back(stiffness); });
+  return all;
+}
+
 std::vector<std::vector<int>> FramedSpline::groups() const {
   std::vector<std::vector<int>> all = stretching_.groups();
   for (std::size_t i = 0; i < spans_.size(); ++i) {

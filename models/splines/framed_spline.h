@@ -8,7 +8,7 @@ namespace tress::models {
 /// Stretching, bending and twisting of a cubic spline with material frames at its knots
 /// (dynamic_spline.cpp), coordinates z = (control points, theta at the knots). If
 /// `clamped`, the first knot has the clamp's frame and no angle.
-class FramedSpline final : public Elasticity {
+class FramedSpline final : public Elasticity, private NaturalStrains {
  public:
   struct Span {
     struct Point {
@@ -44,8 +44,25 @@ class FramedSpline final : public Elasticity {
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
+  NaturalStrains* natural_strains() override { return this; }
 
  private:
+  // Of the twist of each span, then of the bending at its points; lengths at rest, of
+  // stretching, are those of the natural shape.
+  std::vector<double> natural() const override;
+  void set_natural(In values) override;
+  std::vector<double> natural_stiffness() const override;
+  /// see(value at rest, stiffness) for all of them, in order.
+  template <class Self, class See>
+  static void each_strain(Self& self, See see) {
+    for (auto& span : self.spans_) {
+      see(span.twist.rest[0], span.twist.stiffness[0]);
+      for (auto& point : span.points) {
+        for (int k = 0; k < 2; ++k) see(point.bend.rest[k], point.bend.stiffness[k]);
+      }
+    }
+  }
+
   static constexpr std::size_t most = 14;  // coordinates of a span, and of SplineBend
   /// Coordinates of the strains of a span, and their rates.
   struct Local {

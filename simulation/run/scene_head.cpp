@@ -47,6 +47,10 @@ std::optional<NoHead> no_method(const Scene& scene) {
     return NoHead{fmt::format("{} does not step a head", scene.integrator),
                   "use [integrator] id = \"semi_implicit_euler\""};
   }
+  if (scene.rest == RestStrains::inverse) {
+    return NoHead{"strands of a head have the natural strains of their tables",
+                  "leave out rest = \"inverse\""};
+  }
   const Options& options = scene.options;
   if (options.max_work > 0) {
     return NoHead{"a head does not count its work", "leave out [integrator] max_work"};

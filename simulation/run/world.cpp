@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "contract/input_error.h"
+#include "contract/natural_strains.h"
 #include "integrators/catalogue.h"
 #include "integrators/error_indicator.h"
 #include "math/pack.h"
@@ -109,9 +111,9 @@ std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
                                           std::size_t count) const {
   std::vector<GuardedStrand> all;
   for (std::size_t k = first; k < first + count; ++k) {
-    Effects effects = effects_;
+    Effects effects = effects_on(k);
     add_effects_between(k, effects);
-    all.push_back(guarded_strand(scene.strands[k], std::move(effects)));
+    all.push_back(guarded_strand(strand(scene, k), std::move(effects)));
   }
   return all;
 }
@@ -121,13 +123,46 @@ void World::add_effects_between(std::size_t strand, Effects& effects) const {
   if (mesh_) effects.push_back(mesh_->effect(strand));
 }
 
+/// Natural strains by which all strands are at rest.
+void World::hold(const Scene& scene) {
+  if (scene.rest != RestStrains::inverse) return;
+  if (interaction_) {
+    const std::vector<double> x = points_at_start(scene);
+    interaction_->update(x, std::vector<double>(x.size()), loop());
+  }
+  held_ = held_shapes(
+      scene,
+      [this](std::size_t k) {
+        return interaction_ ? Effects{interaction_->effect(k)} : Effects{};
+      },
+      loop());
+  if (scene.unstable != Unstable::drop) return;
+  const auto falls = std::ranges::find_if(held_, &HeldShape::falls);
+  if (falls == held_.end()) return;
+  throw InputError(
+      fmt::format("strand {} would fall, and only simulate leaves strands out",
+                  falls - held_.begin()),
+      "unstable = \"drop\"", "use unstable = \"stiffen\" or \"keep\"");
+}
+
+Strand World::strand(const Scene& scene, std::size_t k) const {
+  return held_.empty() ? scene.strands[k] : stiffer(scene.strands[k], held_[k]);
+}
+
+/// Those of the scene on each strand.
+Effects World::effects_on(std::size_t strand) const {
+  return held_.empty() ? effects_ : supporting(effects_, held_[strand]);
+}
+
 /// Each strand separately, or up to four of equal discretisation together; strands that
 /// rub, separately.
 void World::build_strands(const Scene& scene, const Parameters* between) {
-  const std::vector<Strand>& strands = scene.strands;
   if (between != nullptr) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
+  hold(scene);
+  std::vector<Strand> strands = scene.strands;
+  for (std::size_t k = 0; k < strands.size(); ++k) strands[k] = strand(scene, k);
   if (const Parameters* mesh = scene.mesh(); mesh != nullptr) {
     mesh_ = std::make_unique<ControlMesh>(*mesh, segment_lengths(strands));
   }
@@ -136,9 +171,17 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
   }
   std::vector<std::shared_ptr<const Metered>> meters;  // of the body being built
   const auto effects_of = [&](std::size_t k) {
-    Effects effects = metered(effects_, meters);
+    Effects effects = metered(effects_on(k), meters);
     add_effects_between(k, effects);
     return effects;
+  };
+  const auto hold_last = [&](std::size_t first, std::size_t end) {
+    if (held_.empty()) return;
+    std::vector<double> natural;
+    for (std::size_t k = first; k < end; ++k) {
+      natural.insert(natural.end(), held_[k].natural.begin(), held_[k].natural.end());
+    }
+    natural_strains(*bodies_.back().system)->set_natural(natural);
   };
   for (std::size_t k = 0; k < strands.size();) {
     std::size_t end = k + 1;
@@ -153,6 +196,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
                                             scene.model_options, std::move(effects));
       if (system != nullptr) {
         add(std::move(system), end - k);
+        hold_last(k, end);
         bodies_.back().meters = std::exchange(meters, {});
         if (scene.guard) guard(guarded(scene, k, end - k));
         k = end;
@@ -161,6 +205,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
       meters.clear();
     }
     add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
+    hold_last(k, k + 1);
     bodies_.back().meters = std::exchange(meters, {});
     if (scene.guard) guard(guarded(scene, k, 1));
     ++k;

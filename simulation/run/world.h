@@ -11,6 +11,7 @@
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
+#include "simulation/rest/held_shape.h"
 #include "simulation/run/guard.h"
 #include "simulation/run/metered.h"
 #include "simulation/run/rubbing.h"
@@ -85,6 +86,9 @@ class World {
   /// Since restore(); none where exchanges follow the step.
   const Exchanges& exchanges() const { return exchanges_; }
 
+  /// What holds each strand; empty unless the scene's rest is inverse.
+  const std::vector<HeldShape>& held() const { return held_; }
+
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
   /// From the systems' Energetics.
@@ -153,6 +157,9 @@ class World {
   std::vector<GuardedStrand> guarded(const Scene& scene, std::size_t first,
                                      std::size_t count) const;
   void add_effects_between(std::size_t strand, Effects& effects) const;
+  void hold(const Scene& scene);
+  Strand strand(const Scene& scene, std::size_t k) const;
+  Effects effects_on(std::size_t strand) const;
   void build_strands(const Scene& scene, const Parameters* between);
   void build_coupled(const Scene& scene, const Parameters& between);
   void ready(const Scene& scene);
@@ -188,6 +195,7 @@ class World {
   std::unique_ptr<StrandInteraction> interaction_;
   std::unique_ptr<ControlMesh> mesh_;
   std::unique_ptr<Rubbing> rubbing_;
+  std::vector<HeldShape> held_;
   std::optional<StepControl> control_;  // of the exchanges, with a tolerance
   Exchanges exchanges_;
   std::vector<Body> bodies_;

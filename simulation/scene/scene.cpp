@@ -105,6 +105,16 @@ class Reader {
     scene_.checkpoint = p.number("checkpoint_s");
     scene_.guard = p.word("guard") == "true";
     scene_.seed = static_cast<std::uint64_t>(p.number("seed"));
+    scene_.rest =
+        p.word("rest") == "inverse" ? RestStrains::inverse : RestStrains::natural;
+    scene_.unstable = p.word("unstable") == "stiffen" ? Unstable::stiffen
+                      : p.word("unstable") == "keep"  ? Unstable::keep
+                                                      : Unstable::drop;
+    if (scene_.rest == RestStrains::natural && top.given("unstable")) {
+      throw InputError("unstable does nothing without rest = \"inverse\"",
+                       top.place("unstable"), "leave it out");
+    }
+    places_.rest = top.place("rest");
     if (scene_.duration * scene_.frame_rate <= most_frames) return;
     throw InputError(
         fmt::format("{:.0f} frames", scene_.duration * scene_.frame_rate),

@@ -23,6 +23,12 @@ struct EffectChoice {
   Parameters parameters;
 };
 
+/// Natural strains of strands: those of their tables, or such that the shapes at t = 0
+/// are at rest (simulation/rest). Those that would fall nevertheless are made stiffer,
+/// fall, or are left out.
+enum class RestStrains { natural, inverse };
+enum class Unstable { stiffen, keep, drop };
+
 /// The contents of a scene file, checked and complete: everything a run needs, with
 /// nothing constructed yet.
 struct Scene {
@@ -56,6 +62,8 @@ struct Scene {
   double checkpoint = 0;  // s between saved states; 0: none
   std::uint64_t seed = 1;
   bool guard = true;  // impossible states end the run (simulation/run/guard.h)
+  RestStrains rest = RestStrains::natural;
+  Unstable unstable = Unstable::stiffen;
 
   // Of effects between strands; null if the scene names none.
   const Parameters* interaction() const { return parameters_of("strand_interaction"); }

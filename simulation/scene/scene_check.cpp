@@ -101,7 +101,27 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
 
 }  // namespace
 
+NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
+                                const std::string& where) {
+  if (strand.free_root) {
+    throw InputError("rest = \"inverse\" of a free root, which falls whatever its strand",
+                     where, "use another [root] motion, or leave out rest");
+  }
+  if (NaturalStrains* strains = natural_strains(system)) return *strains;
+  throw InputError(
+      fmt::format("rest = \"inverse\" for {}, which lacks a natural strain for each "
+                  "direction in which it bends",
+                  scene.model->id),
+      where,
+      "use super_helix, articulated_chain, der, corde, xpbd_cosserat or dynamic_spline");
+}
+
 void check(const Scene& scene, const ScenePlaces& places) {
+  if (scene.model->on_strand == nullptr && scene.rest == RestStrains::inverse) {
+    throw InputError(fmt::format("rest = \"inverse\" for {}, which brings its own shape",
+                                 scene.model->id),
+                     places.rest, "leave out rest");
+  }
   if (scene.model->on_strand == nullptr) {
     const auto system =
         at_place(places.model, [&] { return scene.model->make(scene.model_options); });
@@ -111,6 +131,11 @@ void check(const Scene& scene, const ScenePlaces& places) {
   check_friction(scene, places);
   check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
+  if (scene.rest == RestStrains::inverse && interaction != nullptr &&
+      interaction->word("coupling") == "monolithic") {
+    throw InputError("rest = \"inverse\" for strands that are one system", places.rest,
+                     "use [effects.strand_interaction] coupling = \"lagged\"");
+  }
   if (!places.tolerance.empty() && interaction != nullptr &&
       interaction->word("coupling") != "monolithic" &&
       !find_integrator(scene.integrator).error_controlled) {
@@ -131,6 +156,9 @@ void check(const Scene& scene, const ScenePlaces& places) {
                                     std::move(effects));
     });
     if (before == nullptr) check_integrator(scene, *system, places);
+    if (scene.rest == RestStrains::inverse) {
+      strains_to_hold(scene, scene.strands[i], *system, places.rest);
+    }
     before = &place;
   }
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/natural_strains.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
@@ -13,7 +14,13 @@ struct ScenePlaces {
   std::string tolerance;             // empty: the step is given
   std::vector<std::string> strands;  // of each strand's table
   std::vector<std::string> effects;
+  std::string rest;
 };
+
+/// The natural strains of a system for rest = "inverse". Throws InputError with `where`
+/// if it has none, or its strand falls whatever they are.
+NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
+                                const std::string& where);
 
 /// Constructs once what a run will construct: effects, the model on one strand of each
 /// table, the integrator. Throws InputError with the location of what fails.

@@ -39,6 +39,16 @@ constexpr Parameter top[] = {
      .help = "end the run where it does what physics rules out: a piece stretched by "
              "half, energy or speed from nowhere",
      .choices = "true|false"},
+    {.name = "rest",
+     .help =
+         "natural strains: those of the tables, or inverse: such that all strands are "
+         "at rest as they are at t = 0, under what acts on them then (of wind its "
+         "mean)",
+     .choices = "natural|inverse"},
+    {.name = "unstable",
+     .help = "rest = inverse: strands too soft to stay: made twice as stiff as they must "
+             "be, left to fall, or left out by simulate",
+     .choices = "stiffen|keep|drop"},
     {.name = "seed",
      .help = "of everything random",
      .number = 1,

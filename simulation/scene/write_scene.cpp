@@ -79,6 +79,14 @@ void add_top(std::string& text, const Scene& scene) {
     if (p.name == "frames_1_s") return number_text(scene.frame_rate);
     if (p.name == "checkpoint_s") return number_text(scene.checkpoint);
     if (p.name == "guard") return scene.guard ? "true" : "false";
+    if (p.name == "rest") {
+      return scene.rest == RestStrains::inverse ? "inverse" : "natural";
+    }
+    if (p.name == "unstable") {
+      return scene.unstable == Unstable::stiffen ? "stiffen"
+             : scene.unstable == Unstable::keep  ? "keep"
+                                                 : "drop";
+    }
     if (p.name == "seed") return std::to_string(scene.seed);
     throw std::logic_error("a key of scenes that is not written");
   });

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "contract/natural_strains.h"
 #include "integrators/formulation/projection.h"
 #include "tests/support/compliance.h"
 
@@ -112,6 +113,57 @@ TEST_P(SystemContract, RecallContinuesWhereMemoryWasTaken) {
   ASSERT_EQ(system_->residual(t0, s.q, s.v, s.a, expected), Status::ok);
   ASSERT_EQ(other->residual(t0, s.q, s.v, s.a, r), Status::ok);
   EXPECT_EQ(r, expected);
+}
+
+/// E = sum k (s - n)^2/2 + ...: its second difference in n is sum k d^2, the residual is
+/// affine in n, and a change of it is the gradient of the change of the energy. Rounding
+/// is that of the whole energy and residual, whose stretch outweighs bending some 1e4
+/// times.
+TEST_P(SystemContract, NaturalStrainsActAsTheirEnergySays) {
+  NaturalStrains* const strains = natural_strains(*system_);
+  if (strains == nullptr) GTEST_SKIP() << "no natural strains";
+  States s(*system_);
+  s.shake(0.05);
+  std::ranges::fill(s.v, 0.0);
+  const std::vector<double> natural = strains->natural(),
+                            stiffness = strains->natural_stiffness();
+  ASSERT_EQ(natural.size(), stiffness.size());
+  std::vector<double> change(natural.size());
+  double second = 0;
+  for (std::size_t k = 0; k < change.size(); ++k) {
+    change[k] = s.uniform();
+    second += stiffness[k] * change[k] * change[k];
+  }
+  const auto energy = [&](double part, const std::vector<double>& q) {
+    strains->set_natural(plus(natural, part, change));
+    return system_->energetics()->energy(t0, q, s.v).potential;
+  };
+  const auto residual = [&](double part) {
+    strains->set_natural(plus(natural, part, change));
+    std::vector<double> r(s.n);
+    EXPECT_EQ(system_->residual(t0, s.q, s.v, s.a, r), Status::ok);
+    return r;
+  };
+  const double whole = std::abs(energy(1, s.q)) + std::abs(energy(-1, s.q));
+  EXPECT_NEAR(energy(1, s.q) + energy(-1, s.q) - 2 * energy(0, s.q), second,
+              1e-12 * whole + 1e-9 * second);
+  const std::vector<double> r = residual(0), once = residual(1), twice = residual(2);
+  const std::vector<double> x = s.random(s.q_typ);
+  double by_residual = 0, size = 0;
+  for (std::size_t i = 0; i < s.n; ++i) {
+    EXPECT_NEAR(twice[i] - r[i], 2 * (once[i] - r[i]),
+                1e-12 * (std::abs(twice[i]) + largest(r)));
+    by_residual += (once[i] - r[i]) * x[i];
+    size += std::abs((once[i] - r[i]) * x[i]);
+  }
+  EXPECT_GT(size, 0);
+  const double by_energy = central_difference(difference_step, [&](double e) {
+    const std::vector<double> q = plus(s.q, e, x);
+    return std::vector<double>{energy(1, q) - energy(0, q)};
+  })[0];
+  EXPECT_NEAR(by_energy, by_residual, 1e-6 * size + 1e-12 * whole / difference_step);
+  strains->set_natural(natural);
+  EXPECT_EQ(strains->natural(), natural);
 }
 
 /// Guards and impulses read states between a step and the use of its matrix.

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "models/strand/strand.h"
+
+namespace tress::models {
+
+/// A clamped rod of one section under a uniform load, as its own weight.
+struct LoadedRod {
+  Material material;
+  CrossSection section;
+  double length = 0;  // m
+  Shape natural;      // 1/m
+  Frame clamp;        // at the root
+  Vec load;           // N/m
+};
+
+/// Lengths of elements of constant curvature, and the largest distance of their shape at
+/// rest from that of the rod, as estimated.
+struct GradedCut {
+  std::vector<double> lengths;  // m, from the root
+  double error = 0;             // m
+};
+
+/// Elements that share |kappa'|^(2/3) equally, kappa(s) the Darboux vector at rest: for
+/// so many elements the least error of kappa, sum h^3 |kappa'|^2/12, is near that [De
+/// Boor 1973]. kappa' is had without differences, from the balance of moments (N the load
+/// beyond s, R the frame, K = diag(GJ, EI1, EI2), kappa_n the natural curvatures),
+///
+///     kappa' = kappa_n' + K^-1 (-kappa x K (kappa - kappa_n) + (R^T N) x e0),
+///
+/// on elements that are at rest themselves: 4 passes, from equal ones on. No element gets
+/// less than .3 of the mean of |kappa'|^(2/3), so none is longer than 3.4 mean ones;
+/// with .15, passes swing about a worse answer where elements are few.
+///
+/// An element's own shape is off by kappa' h^3/12 at its end, where the tangent is right:
+/// the error is the largest sum of these, as vectors, up to any place. O(elements) per
+/// iteration for the equilibrium. Throws std::runtime_error if there is no equilibrium.
+GradedCut graded_cut(const LoadedRod& rod, int elements);
+
+/// make_strand() with elements of these lengths; clamped as the rod.
+Strand cut_into(const LoadedRod& rod, const std::vector<double>& lengths,
+                const Shape& initial = {});
+
+/// Coordinates of super_helix at rest under the load, three an element: a stable
+/// equilibrium, reached from the initial shape with falling energy. Throws
+/// std::runtime_error if none is found.
+std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load);
+
+}  // namespace tress::models

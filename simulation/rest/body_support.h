@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "models/effects/effect.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::simulation {
+
+/// How bodies support a strand at rest (held_shape.h).
+struct BodySupport {
+  int contacts = 0;  // points with a force
+  /// Of a body, by its index among the effects: what with_offsets() takes.
+  std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
+};
+
+/// For a strand of a scene without motion, under these effects. Throws InputError if it
+/// is inside a body whose forces are not a function of the state.
+BodySupport body_support(const Scene& scene, const Strand& strand,
+                         const models::Effects& effects);
+
+/// A body of body_support() with its offsets.
+std::shared_ptr<const models::Effect> with_offsets(const models::Effect& body,
+                                                   const std::vector<double>& more);
+
+}  // namespace tress::simulation

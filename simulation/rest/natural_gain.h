@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "simulation/rest/dense_statics.h"
+
+namespace tress::simulation {
+
+/// Where errors of rest = "inverse" are, outside a file.
+inline constexpr const char* inverse_rest = "rest = \"inverse\"";
+
+std::vector<double> coordinates_at_start(const System& system);
+
+/// The changes of natural strains that answer a residual: for strains that are
+/// coordinates exactly, else so that the least displacement remains (held_shape.h).
+Eigen::MatrixXd natural_gain(DenseStatics& statics, NaturalStrains& strains);
+
+}  // namespace tress::simulation
