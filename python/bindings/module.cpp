@@ -10,7 +10,8 @@ PYBIND11_MODULE(_core, m) {
   using namespace tress::python;
   m.attr("version") = TRESS_VERSION;
   // With the text that the programs print; tress/__init__.py gives them their parts.
-  static const py::object errors = py::module_::import("tress.errors");
+  // Never given back: the interpreter ends before the destructors of this library run.
+  static const py::handle errors = py::module_::import("tress.errors").release();
   py::register_local_exception_translator([](std::exception_ptr raised) {
     if (!raised) return;
     try {

@@ -100,13 +100,21 @@ class Curl(unittest.TestCase):
                 system = curl(model, 20)
                 q, _ = system.initial_state()
                 m, k = system.mass(0, q), system.stiffness(0, q)
-                squares = scipy.linalg.eigh(
-                    (k + k.T).toarray() / 2, (m + m.T).toarray() / 2, eigvals_only=True
+                # K^-1 M: its largest values have small errors, as the lowest frequencies of
+                # M^-1 K have not.
+                inverse = scipy.linalg.eigh(
+                    (m + m.T).toarray() / 2, (k + k.T).toarray() / 2, eigvals_only=True
                 )
-                ours = np.sqrt(squares[:6])
+                ours = 1 / np.sqrt(inverse[::-1][:6])
                 theirs = np.array(reference("frequencies", model, 20)[:6])
-                print(model, np.abs(ours / theirs - 1).max())
-                np.testing.assert_allclose(ours, theirs, rtol=1e-10)
+                print(model, 'largest relative difference', np.abs(ours / theirs - 1).max())
+                # Springs of stretch make K of der ill-conditioned: each of the two
+                # solutions has rounding of eps times the ratio of its eigenvalues.
+                rtol = 1e-10
+                if model == "der":
+                    rtol = np.finfo(float).eps * np.linalg.cond(k.toarray())
+                    self.assertLess(rtol, 1e-5)
+                np.testing.assert_allclose(ours, theirs, rtol=rtol)
 
 
 class Errors(unittest.TestCase):
@@ -121,7 +129,7 @@ class Errors(unittest.TestCase):
             tress.model("der", element=4)
         with self.assertRaisesRegex(tress.InputError, "step"):
             tress.Integrator("rk4", tress.model("double_pendulum"), stepp=1)
-        with self.assertRaisesRegex(tress.InputError, "constraints"):
+        with self.assertRaisesRegex(tress.InputError, "rattle cannot drive"):
             tress.Integrator("rattle", tress.model("super_helix", elements=4))
 
     def test_sizes(self):
