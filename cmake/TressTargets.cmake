@@ -70,15 +70,19 @@ endfunction()
 
 # tress_program(target): what experiments are made of. Models and integrators do the work
 # and are optimised; programs and tests are not as much, which costs more than it brings.
+# All of it can be linked into the Python module, and precompiled headers want the same
+# option everywhere.
 function(tress_program target)
   if(NOT TARGET tress_program_headers)
     tress_headers(tress_program_headers <Eigen/Dense> <chrono> <filesystem> <fmt/format.h>
                   <map> <nlohmann/json.hpp> <set> <stdexcept>)
     target_link_libraries(tress_program_headers PRIVATE Eigen3::Eigen fmt::fmt
                           nlohmann_json::nlohmann_json Threads::Threads)
+    target_compile_options(tress_program_headers PRIVATE -fPIC)
     tress_optimise_less(tress_program_headers)
   endif()
   target_precompile_headers(${target} REUSE_FROM tress_program_headers)
+  target_compile_options(${target} PRIVATE -fPIC)
   tress_optimise_less(${target})
   tress_warnings(${target})
 endfunction()

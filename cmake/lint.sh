@@ -5,7 +5,7 @@ set -euo pipefail
 cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.."
 
 sources() {
-  find math contract linear models integrators simulation experiments tests -name node_modules -prune -o \
+  find math contract linear models integrators simulation experiments python tests -name node_modules -prune -o \
     \( -name '*.h' -o -name '*.cpp' \) -print0
 }
 
@@ -20,6 +20,6 @@ case ${1:-} in
     run-clang-tidy -quiet -p "${2:?build tree}" \
       -extra-arg=-Wno-unknown-warning-option -extra-arg=-Wno-unused-command-line-argument \
       -extra-arg=-Wno-sign-conversion \
-      "$PWD/(math|contract|linear|models|integrators|simulation|experiments|tests)/" ;;
+      "$PWD/(math|contract|linear|models|integrators|simulation|experiments|python|tests)/" ;;
   *) echo "usage: cmake/lint.sh format|fix|shellcheck|tidy BUILD_TREE" >&2; exit 2 ;;
 esac

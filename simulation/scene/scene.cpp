@@ -328,7 +328,7 @@ Scene read_scene(const std::string& file) {
 }
 
 SceneOutline read_outline(const std::string& file) {
-  return Reader(read_file(file, most_toml_bytes), file).read_outline();
+  return parse_outline(read_file(file, most_toml_bytes), file);
 }
 
 std::vector<Scene> read_scenes(const std::vector<std::string>& files) {
@@ -345,6 +345,9 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files) {
 
 Scene parse_scene(const std::string& text, const std::string& file) {
   return Reader(text, file).read();
+}
+SceneOutline parse_outline(const std::string& text, const std::string& file) {
+  return Reader(text, file).read_outline();
 }
 
 }  // namespace tress::simulation

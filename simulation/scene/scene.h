@@ -97,9 +97,10 @@ Scene read_scene(const std::string& file);
 SceneOutline read_outline(const std::string& file);
 /// As above for several files with different names, which identify scenes in tables.
 std::vector<Scene> read_scenes(const std::vector<std::string>& files);
-/// As above for a text; `file` is its name in messages, and files that the scene names
-/// are relative to its folder.
+/// As the first two for a text; `file` is its name in messages, and files that the scene
+/// names are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
+SceneOutline parse_outline(const std::string& text, const std::string& file);
 
 /// Lengths of the segments of each strand, root to tip, m. Throws InputError, naming the
 /// strand, where one has branches.

@@ -14,7 +14,7 @@ ln -s "$build" "$work/build/release"
 
 commands=$(awk '/^```/ { inside = !inside; next }
                 inside && /^(build\/|\.\/tress)/ { print }' "$work/README.md" |
-  grep -vE '^\./tress (run|test|bench|peers|setup)\b')
+  grep -vE '^\./tress (run|test|bench|peers|python|setup)\b')
 [[ $(wc -l <<<"$commands") -ge 4 ]] || { echo "README.md has no commands"; exit 1; }
 
 cd "$work"

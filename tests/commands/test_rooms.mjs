@@ -13,6 +13,7 @@ const may_see = {
   integrators: ["contract", "linear"],
   simulation: ["math", "contract", "linear", "models", "integrators"],
   experiments: ["math", "contract", "linear", "models", "integrators", "simulation"],
+  python: ["math", "contract", "linear", "models", "integrators", "simulation", "experiments"],
 };
 // Below experiments/: everything else is a study, which sees no other study.
 const shared = ["experiments/run", "experiments/problems", "experiments/numerics"];

@@ -32,6 +32,10 @@ usage() {
   expect 2 "unknown option '--fast'" "$repository/tress" run --fast
   expect_one_line
   expect 2 "unknown option '--fast'" "$repository/tress" test --fast
+  expect 2 "unknown option '--fast'" "$repository/tress" python --fast
+  expect_one_line
+  expect 2 "no interpreter '/none'" "$repository/tress" python --interpreter /none
+  expect_one_line
   expect 0 './tress setup' "$repository/tress" help
   expect 0 './tress setup' "$repository/tress"
 

@@ -1,0 +1,28 @@
+// tress._core: what python/tress/ is made of.
+#include "python/bindings/owned_system.h"
+
+#ifndef TRESS_VERSION
+#define TRESS_VERSION ""
+#endif
+
+PYBIND11_MODULE(_core, m) {
+  namespace py = pybind11;
+  using namespace tress::python;
+  m.attr("version") = TRESS_VERSION;
+  // With the text that the programs print; tress/__init__.py gives them their parts.
+  // Never given back: the interpreter ends before the destructors of this library run.
+  static const py::handle errors = py::module_::import("tress.errors").release();
+  py::register_local_exception_translator([](std::exception_ptr raised) {
+    if (!raised) return;
+    try {
+      std::rethrow_exception(raised);
+    } catch (const tress::InputError& error) {
+      PyErr_SetString(errors.attr("InputError").ptr(), error.what());
+    } catch (const SolveError& error) {
+      PyErr_SetString(errors.attr("SolveError").ptr(), error.what());
+    }
+  });
+  add_systems(m);
+  add_integrators(m);
+  add_scenes(m);
+}

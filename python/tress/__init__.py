@@ -1,0 +1,43 @@
+"""tress, a testbed for rod and elastic-strand solvers, from Python. See docs/python.md."""
+
+from .errors import InputError, ProgramError, SolveError
+from ._core import scene_defaults, scene_schema, version as __version__
+from .scenes import Frames, HeadRun, Scene, StrandsRun
+from .systems import (
+    Integrator,
+    System,
+    first_order,
+    integrator_options,
+    integrators,
+    model,
+    model_options,
+    models,
+    refusal,
+)
+from .tables import Table, experiment, programs_folder, read_table, unit_of
+
+__all__ = [
+    "Frames",
+    "HeadRun",
+    "InputError",
+    "Integrator",
+    "ProgramError",
+    "Scene",
+    "SolveError",
+    "StrandsRun",
+    "System",
+    "Table",
+    "experiment",
+    "first_order",
+    "integrator_options",
+    "integrators",
+    "model",
+    "model_options",
+    "models",
+    "programs_folder",
+    "read_table",
+    "refusal",
+    "scene_defaults",
+    "scene_schema",
+    "unit_of",
+]

@@ -1,0 +1,168 @@
+"""Tables of experiments: results/*.csv with their manifests, and programs that write them."""
+
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from . import _core
+from .errors import InputError, ProgramError
+
+# Ends of column names that are units (results/README.md).
+_UNITS = {
+    "s": "s", "m": "m", "j": "J", "n": "N", "pa": "Pa", "kg": "kg", "hz": "1/s", "rad": "rad",
+    "rel": "1", "m_s": "m/s", "rad_s": "rad/s", "1_m": "1/m", "1_s": "1/s", "kg_m3": "kg/m^3",
+    "kg_m_s": "kg/(m s)", "kg_m3_s": "kg m^3/s", "m_s2": "m/s^2", "n_m": "N m", "bytes": "B",
+}  # fmt: skip
+
+
+def unit_of(column):
+    """The unit at the end of a column's name ("dt_s": "s"); "": it has none."""
+    words = column.split("_")
+    for k in range(1, len(words)):
+        if (end := "_".join(words[k:])) in _UNITS:
+            return _UNITS[end]
+    return ""
+
+
+class Table(Mapping):
+    """A table by columns: ``table["dt_s"]`` is an array of float64, empty cells nan; of
+    bool where all cells are true or false; else of str.
+
+    ``units``     {column: unit}     ``help``   {column: what it is}, of the manifest
+    ``manifest``  how the table was made; {} where none lies beside it
+    ``complete``  False: the program ended with rows failed or a check that does not hold
+    """
+
+    def __init__(self, columns, manifest=None, file="", complete=True):
+        self._columns = columns
+        self.manifest = manifest or {}
+        self.file = str(file)
+        self.complete = complete
+
+    def __getitem__(self, column):
+        try:
+            return self._columns[column]
+        except KeyError:
+            raise KeyError(f"{column}; there are: {', '.join(self._columns)}") from None
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __len__(self):
+        return len(self._columns)
+
+    @property
+    def rows(self):
+        return len(next(iter(self._columns.values()), ()))
+
+    @property
+    def units(self):
+        return {column: unit_of(column) for column in self._columns}
+
+    @property
+    def help(self):
+        return dict(self.manifest.get("columns", {}))
+
+    def where(self, **values):
+        """The rows in which these columns have these values."""
+        chosen = np.ones(self.rows, dtype=bool)
+        for column, value in values.items():
+            chosen &= self[column] == value
+        columns = {name: column[chosen] for name, column in self._columns.items()}
+        return Table(columns, self.manifest, self.file, self.complete)
+
+    def pandas(self):
+        """As a pandas.DataFrame (package python3-pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+
+def _column(cells):
+    if all(cell in ("true", "false") for cell in cells) and cells:
+        return np.array([cell == "true" for cell in cells])
+    if any(re.search(r"[^0-9eEinfa.+-]", cell) for cell in cells):
+        return np.array(cells, dtype=str)
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return np.array(cells, dtype=str)
+
+
+def read_table(file):
+    """A CSV file and the manifest beside it; InputError where it is no table."""
+    path = Path(file)
+    try:
+        with path.open(newline="") as lines:
+            header, *rows = csv.reader(lines)
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        raise InputError(f"cannot be read as a table ({file}): {error}") from error
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(header):
+            raise InputError(
+                f"{len(row)} cells instead of {len(header)} ({file}:{number}): "
+                "give every row a cell for each column"
+            )
+    cells = zip(*rows) if rows else ([] for _ in header)
+    sidecar = path.with_suffix(".meta.json")
+    manifest = json.loads(sidecar.read_text()) if sidecar.exists() else {}
+    return Table({name: _column(c) for name, c in zip(header, cells)}, manifest, path)
+
+
+def programs_folder():
+    """Where the experiments' programs are: of the environment's TRESS_BUILD, of the build
+    that this module belongs to, or of the clone that holds the working folder."""
+    folders = [Path(_core.__file__).resolve().parents[2]]
+    if "TRESS_BUILD" in os.environ:
+        folders = [Path(os.environ["TRESS_BUILD"])]
+    here = Path.cwd()
+    folders += [folder / "build" / "release" for folder in (here, *here.parents)]
+    for folder in folders:
+        if (folder / "experiments" / "list.txt").exists():
+            return folder / "experiments"
+    raise InputError(
+        "the experiments are not built (TRESS_BUILD): run ./tress list in a clone, and set "
+        "TRESS_BUILD to its build/release, or work in that clone"
+    )
+
+
+def experiment(name, *words, out=None):
+    """Runs an experiment's program with these arguments and reads its table.
+
+    ``experiment("stability_limit", "--quick", "--models", "der")``. out: the CSV file to
+    keep; none: a temporary one. InputError with the program's own line on bad input,
+    ProgramError where it fails. Rows that failed and checks that do not hold are in the
+    table (``complete`` is False). Ctrl-C ends the program.
+    """
+    folder = programs_folder()
+    there = (folder / "list.txt").read_text().split()
+    if name not in there or not (folder / name).exists():
+        raise InputError(f"no experiment '{name}' (experiment): there are {' '.join(there)}")
+    with tempfile.TemporaryDirectory(prefix="tress-") as scratch:
+        file = Path(out) if out is not None else Path(scratch) / f"{name}.csv"
+        command = [str(folder / name), *map(str, words), "--out", str(file)]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as program:
+            try:
+                _, said = program.communicate()
+            except KeyboardInterrupt:
+                program.send_signal(signal.SIGINT)
+                program.wait()
+                raise
+        last = said.strip().splitlines()[-1] if said.strip() else ""
+        if program.returncode == 2:
+            raise InputError(last.removeprefix(f"{name}: "))
+        if program.returncode not in (0, 3):
+            error = ProgramError(last or f"{name} ended with {program.returncode}")
+            error.code = program.returncode
+            raise error
+        table = read_table(file)
+        table.complete = program.returncode == 0
+        return table
