@@ -54,10 +54,11 @@ constexpr Column columns_of_outcome[] = {
     {"lost_strands", "of a head: those whose step was impossible"},
     {"bits", "of a head's numbers"},
     {"lanes", "strands of a head computed side by side"},
+    {"ranks", "processes that shared a head"},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
     {"state",
-     "of a head: checksum of all states at the end, the same for any number of threads "
-     "and lanes"},
+     "of a head: checksum of all states at the end, the same for any number of ranks, "
+     "threads and lanes"},
     {"build_s", "of a head: time to make its strands", true},
     {"step_s", "to step them", true},
     {"read_s", "to read, and compress, its frames and energies", true},
@@ -111,7 +112,8 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     const HeadOutcome& head = *run.head;
     row.set("strands", head.strands).set("lost_strands", head.lost);
     row.set("bits", head.pack.number == models::HeadNumber::float64 ? 64 : 32);
-    row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
+    row.set("lanes", head.pack.lanes).set("ranks", head.ranks);
+    row.set("bytes_per_strand", head.bytes_per_strand);
     row.set("state", head.state).set("build_s", head.build_s);
     row.set("step_s", head.step_s).set("read_s", head.read_s);
     row.set("write_s", head.write_s);

@@ -7,6 +7,7 @@
 #include "experiments/run/interruption.h"
 #include "models/head/head.h"
 #include "simulation/files/run_key.h"
+#include "simulation/run/ranks.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 
@@ -22,12 +23,14 @@ struct SceneRunOptions {
   ProgressMode progress = ProgressMode::automatic;
   // Of a head.
   models::HeadPack pack = {};
+  Ranks* ranks = nullptr;  // that share it
   int frame_bits = 32;  // of a coordinate in <stem>.h5; 0: frames only of shown strands
 };
 
 /// Of a head.
 struct HeadOutcome {
   models::HeadPack pack;
+  int ranks = 1;
   std::size_t strands, lost;
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end
