@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <filesystem>
 #include <mutex>
+#include <stdexcept>
+#include <utility>
 
 #include "contract/input_error.h"
 #include "experiments/simulate/head_pictures.h"
@@ -16,6 +19,7 @@
 #include "experiments/simulate/time_bar.h"
 #include "simulation/run/head_guard.h"
 #include "simulation/run/memory.h"
+#include "simulation/run/ranks.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/strand_tables.h"
@@ -28,11 +32,20 @@ namespace {
 class StopRequest {
  public:
   bool asked() const { return asked_; }
-  /// By the thread of signals: returns when the run has answered.
-  void ask() {
+  /// By the thread of signals: returns when the run has answered. A run of several ranks
+  /// may wait in vain for one that was killed, and mpirun ends it a second later.
+  void ask(bool ranks) {
+    constexpr std::chrono::milliseconds before_mpirun_kills(800);
     asked_ = true;
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return answered_; });
+    const auto answered = [this] { return answered_; };
+    if (!ranks) changed_.wait(lock, answered);
+    if (ranks && !changed_.wait_for(lock, before_mpirun_kills, answered)) {
+      throw std::runtime_error(
+          "its ranks do not answer (mpirun says if one was killed): the same command "
+          "with "
+          "--resume goes on from the last checkpoint_s");
+    }
     if (!problem_.empty()) throw std::runtime_error(problem_);
   }
   /// By the run, when it has saved itself or is over.
@@ -59,6 +72,7 @@ class HeadSceneRun {
         scene_(outline.scene),
         options_(options),
         interruption_(interruption),
+        ranks_(*options.ranks),
         key_(std::move(
             key.add("run", fmt::format("head of {} bits, frames of {}",
                                        bits_of(options.pack), options.frame_bits)))) {}
@@ -80,30 +94,38 @@ class HeadSceneRun {
     outcome.build_s = seconds_of([&] {
       SceneHead made_head = make_head(outline_, options_.pack, options_.threads);
       run_.emplace(std::move(made_head.head), options_.threads,
-                   std::move(made_head.interaction));
+                   std::move(made_head.interaction), ranks_);
       reach = std::move(made_head.reach);
       if (options_.device != DeviceChoice::cpu) choose_device(outcome);
     });
     const std::vector<std::size_t> shown = shown_strands(run_->head().strands());
     StoredFrames stored{options_.frame_bits, shown, {}};
     for (const Reading& column : head_series()) stored.columns.push_back(column.name);
-    recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
-                       options_.resume);
-    if (reach) guard_.emplace(std::move(*reach), recording_->progress().speed);
+    if (ranks_.first()) {
+      recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
+                         options_.resume);
+    }
+    const double speed = begin();
+    if (reach) guard_.emplace(std::move(*reach), speed);
     advance(outcome);
+    made.frames = frames_;
+    made.simulated_s = scene_.duration;
+    made.work.steps = steps_;
+    if (!ranks_.first()) {
+      if (lost_ > 0) made.end = SceneRun::End::failed;
+      return;
+    }
     write_head_pictures(outline_, recording_->frames(), shown, options_);
     const auto whole = interruption_.hold();
     recording_->close();
     const Head& head = run_->head();
     outcome.pack = options_.pack;
+    outcome.ranks = ranks_.size();
     outcome.strands = head.strands();
     outcome.lost = recording_->progress().lost.size();
     outcome.bytes_per_strand =
         static_cast<double>(head.bytes()) / static_cast<double>(head.strands());
     outcome.state = fmt::format("{:016x}", head.hash());
-    made.frames = recording_->frames().size();
-    made.simulated_s = scene_.duration;
-    made.work.steps = steps_;
     if (outcome.lost == 0) return;
     made.end = SceneRun::End::failed;
     made.reason = fmt::format("{} of {} strands were lost: {}.lost.csv", outcome.lost,
@@ -113,6 +135,10 @@ class HeadSceneRun {
   /// The device, if there is one; else, unless it is asked for, the processor.
   void choose_device(HeadOutcome& outcome) {
     try {
+      if (ranks_.size() > 1) {
+        throw InputError("ranks share a head on processors only", scene_.name,
+                         "leave out mpirun, or give --device cpu");
+      }
       outcome.device = run_->move_to_device();
     } catch (const InputError& no) {
       if (options_.device == DeviceChoice::gpu) throw;
@@ -134,10 +160,29 @@ class HeadSceneRun {
                       "give --device cpu, or auto to go on without a device");
   }
 
+  /// All ranks go on where the recording of the first does; speed: of its guard.
+  double begin() {
+    // The frames that are written, steps since, speed.
+    std::vector<double> known(3);
+    if (recording_) {
+      known = {static_cast<double>(recording_->frames().size()),
+               static_cast<double>(recording_->progress().step),
+               recording_->progress().speed};
+      lost_ = recording_->progress().lost.size();
+    }
+    std::vector<std::size_t> sizes(static_cast<std::size_t>(ranks_.size()), 0);
+    sizes.front() = known.size();
+    ranks_.share(known, sizes);
+    frames_ = static_cast<std::size_t>(known[0]);
+    step_ = static_cast<std::size_t>(known[1]);
+    if (frames_ > 0) run_->follow_first();
+    return known[2];
+  }
+
   /// To the last frame, unless a signal ends the program.
   void advance(HeadOutcome& outcome) {
     StopRequest stop;
-    const Interruption::Save save(interruption_, [&] { stop.ask(); });
+    const Interruption::Save save(interruption_, [&] { stop.ask(ranks_.size() > 1); });
     // Before `save` waits for the thread of signals, which waits for an answer.
     const struct Answer {
       StopRequest& to;
@@ -146,11 +191,11 @@ class HeadSceneRun {
     const auto between_saves =
         static_cast<std::size_t>(std::round(scene_.checkpoint * scene_.frame_rate));
     TimeBar bar(options_.progress, scene_);
-    if (recording_->progress().sums.empty()) add_frame(0, outcome);
-    std::size_t step = recording_->progress().step;
+    if (frames_ == 0) add_frame(0, outcome);
+    std::size_t step = step_;
     const std::size_t last = scene_.last_frame();
-    while (recording_->frames().size() <= last) {
-      const std::size_t frame = recording_->frames().size();
+    while (frames_ <= last) {
+      const std::size_t frame = frames_;
       outcome.step_s += seconds_of([&] { take_steps(frame, step, stop); });
       step = 0;
       add_frame(scene_.time_of(frame), outcome);
@@ -167,7 +212,7 @@ class HeadSceneRun {
                      std::max(1.0, std::ceil((end - begin) / scene_.options.step - 1e-9)),
                  h = (end - begin) / count;
     for (std::size_t i = done; i < static_cast<std::size_t>(count); ++i) {
-      if (stop.asked()) {
+      if (ranks_.largest(stop.asked() ? 1 : 0) > 0) {
         fetch(h);
         end_here(i, stop);
       }
@@ -175,7 +220,7 @@ class HeadSceneRun {
       run_->step(t, h);
       ++steps_;
       if (guard_) guard_->step(t, h);
-      for (const auto& loss : run_->lost()) recording_->lose({loss.strand, t + h});
+      for (const auto& loss : run_->lost()) new_lost_.push_back({loss.strand, t + h});
     }
     fetch(h);
   }
@@ -188,11 +233,56 @@ class HeadSceneRun {
     } catch (const DeviceFailure& no) {
       throw no_device(no);
     }
-    for (const auto& loss : run_->lost()) recording_->lose({loss.strand, loss.time + h});
+    for (const auto& loss : run_->lost())
+      new_lost_.push_back({loss.strand, loss.time + h});
   }
 
+  /// After gather().
   void save_state(std::size_t step) {
-    recording_->save(run_->head(), step, guard_ ? guard_->speed() : 0);
+    if (recording_) recording_->save(run_->head(), step, guard_ ? guard_->speed() : 0);
+  }
+
+  void gather() {
+    run_->gather();
+    gather_lost();
+  }
+
+  /// The first rank hears of strands that were lost, by the time and then by the strand.
+  void gather_lost() {
+    const auto size = static_cast<std::size_t>(ranks_.size()),
+               own = static_cast<std::size_t>(ranks_.rank());
+    std::vector<double> counts(size);
+    counts[own] = static_cast<double>(new_lost_.size());
+    ranks_.share(counts, std::vector<std::size_t>(size, 1));
+    constexpr std::size_t numbers = 2;
+    std::vector<std::size_t> sizes(size);
+    std::size_t all = 0, before = 0;
+    for (std::size_t r = 0; r < size; ++r) {
+      if (r == own) before = all;
+      sizes[r] = numbers * static_cast<std::size_t>(counts[r]);
+      all += sizes[r];
+    }
+    if (all == 0) return;
+    std::vector<double> entries(all);
+    for (const LostStrand& lost : new_lost_) {
+      entries[before++] = static_cast<double>(lost.strand);
+      entries[before++] = lost.t;
+    }
+    ranks_.share(entries, sizes);
+    new_lost_.clear();
+    for (std::size_t i = 0; i < all; i += numbers) {
+      new_lost_.push_back({static_cast<std::size_t>(entries[i]), entries[i + 1]});
+    }
+    std::ranges::sort(new_lost_, {}, [](const LostStrand& lost) {
+      return std::pair(lost.t, lost.strand);
+    });
+    for (const LostStrand& lost : new_lost_) lose(lost);
+    new_lost_.clear();
+  }
+
+  void lose(const LostStrand& lost) {
+    ++lost_;
+    if (recording_) recording_->lose(lost);
   }
 
   /// Strands that go on where physics does not are lost from this frame on.
@@ -204,14 +294,16 @@ class HeadSceneRun {
     for (std::size_t k = 0; k < energies_.size(); ++k) {
       if (head.lost(k) || !guard_->breached(t, energies_[k])) continue;
       run_->change().lose(k);
-      recording_->lose({k, t, true});
+      lose({k, t, true});
     }
   }
 
   /// A signal has come: the thread that handles it ends the program.
   [[noreturn]] void end_here(std::size_t step, StopRequest& stop) {
     try {
+      gather();
       save_state(step);
+      ranks_.largest(0);  // none ends before the first has saved
       stop.answer();
     } catch (const std::exception& error) {
       stop.answer(error.what());
@@ -221,23 +313,30 @@ class HeadSceneRun {
   }
 
   void add_frame(double t, HeadOutcome& outcome) {
+    ++frames_;
     std::vector<double> series;
     outcome.read_s += seconds_of([&] {
+      gather();
       run_->energies(t, energies_);
       check(t);
+      if (!recording_) return;
       series = head_series_row(t, run_->head(), energies_);
       recording_->read(*run_, t);
     });
-    outcome.write_s += seconds_of([&] { recording_->add(series); });
+    if (recording_) outcome.write_s += seconds_of([&] { recording_->add(series); });
   }
 
   const SceneOutline& outline_;
   const Scene& scene_;
   const SceneRunOptions& options_;
   Interruption& interruption_;
+  Ranks& ranks_;
   RunKey key_;
   std::optional<HeadRun> run_;
-  std::optional<HeadRecording> recording_;
+  std::optional<HeadRecording> recording_;  // of the first rank
+  std::vector<LostStrand> new_lost_;        // not yet known to the first rank
+  std::size_t frames_ = 0, step_ = 0;       // written; taken before this process began
+  std::size_t lost_ = 0;
   std::optional<HeadGuard> guard_;
   std::vector<models::HeadEnergy> energies_;
   long steps_ = 0;

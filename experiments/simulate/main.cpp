@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
 
 #include "contract/input_error.h"
@@ -19,6 +21,7 @@
 #include "simulation/files/files.h"
 #include "simulation/groom/fitted_groom.h"
 #include "simulation/run/head_classes.h"
+#include "simulation/run/ranks.h"
 #include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
@@ -47,7 +50,8 @@ constexpr const char* help_end =
     "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
     "scene did not run to\nits end, or lost strands, 130 interrupted (--resume "
-    "continues)\n";
+    "continues)\n\nmpirun -n 4 simulate ... --as head: four processes share the "
+    "head; the results are the same\n";
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
@@ -178,7 +182,7 @@ std::vector<Job> heads_of(const Job& job, const Arguments& a) {
 }
 
 /// Throws InputError if the scene cannot run as asked for.
-Job job_of(const std::string& file, const Arguments& a) {
+Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   constexpr std::size_t many = 1000;
   Job job{file, read_outline(file)};
   const std::size_t strands =
@@ -196,6 +200,10 @@ Job job_of(const std::string& file, const Arguments& a) {
   if (!job.head && a.device == "gpu") {
     throw InputError("a device steps heads of hair only, and this runs strand by strand",
                      file, "give --as head, or --device cpu");
+  }
+  if (!job.head && ranks.size() > 1) {
+    throw InputError("strands that run one by one are not shared by ranks", file,
+                     "leave out mpirun, or give --as head");
   }
   if (!job.head && a.verify) check_verifiable(read_scene(file));
   if (!job.head) read_scene(file);
@@ -215,7 +223,7 @@ void tell_fits(const Scene& scene, const std::string& stem) {
 }
 
 /// False: the scene did not run to its end.
-bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
+bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks& ranks,
              Interruption& interruption) {
   const std::string& file = job.file;
   SceneOutline outline = job.outline;
@@ -239,9 +247,11 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
                    : a.device == "gpu" ? DeviceChoice::gpu
                                        : DeviceChoice::automatic;
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
+  options.ranks = &ranks;
   std::error_code ignored;  // what a run before has left would only mislead
   for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv", ".rest.csv"}) {
     if (job.head && ending != std::string_view(".errors.csv")) continue;
+    if (!ranks.first()) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
   if (!job.head) scene = settled(scene, options.stem + ".rest.csv", options.threads);
@@ -249,13 +259,14 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line,
   key.add("scene", contents_checksum({file}));
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));
   if (job.head) check_room(job.outline, options);
-  tell_fits(scene, options.stem);
+  if (ranks.first()) tell_fits(scene, options.stem);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
   const SceneRun run = job.head ? run_head(outline, key, options, interruption)
                                 : run_scene(scene, key, options, interruption);
   Row row = outcome(scene, run);
   bool complete = run.end != SceneRun::End::failed;
+  if (!ranks.first()) return complete;
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
        scene.name, run.frames, run.simulated_s, run.wall_s, control_in_words(scene, run),
        complete ? "" : "; ", run.reason, options.stem);
@@ -282,22 +293,28 @@ int run(const Arguments& a, CommandLine line) {
   line.progress = a.progress == "none"   ? ProgressMode::none
                   : a.progress == "json" ? ProgressMode::json
                                          : ProgressMode::automatic;
+  // Before the threads of MPI, and of anything else.
+  Interruption interruption("simulate");
+  const std::unique_ptr<Ranks> ranks = ranks_of_job();
+  // All say the same, but what the first says is enough.
+  if (!ranks->first() && std::freopen("/dev/null", "w", stderr) == nullptr) {
+    return internal_error;
+  }
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
   static_cast<void>(models::helix_head({}, pack_of(a)));  // refuses other lanes
   std::vector<Job> jobs;
   std::set<std::string> names;
   for (const std::string& file : files) {
-    jobs.push_back(job_of(file, a));
+    jobs.push_back(job_of(file, a, *ranks));
     if (names.insert(jobs.back().outline.scene.name).second) continue;
     throw InputError("two scenes of one name", file,
                      "rename one of them, or run it with another --out");
   }
   ready_folder(a.out, "--out " + a.out);
-  Interruption interruption("simulate");
   bool complete = true;
   for (const Job& whole : jobs) {
     for (const Job& job : heads_of(whole, a)) {
-      complete = run_job(job, a, line, interruption) && complete;
+      complete = run_job(job, a, line, *ranks, interruption) && complete;
     }
   }
   return complete ? done : rows_failed;

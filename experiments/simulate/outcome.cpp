@@ -55,10 +55,11 @@ constexpr Column columns_of_outcome[] = {
     {"bits", "of a head's numbers"},
     {"lanes", "strands of a head computed side by side"},
     {"device", "that took a head's steps: cpu, or the name of a GPU"},
+    {"ranks", "processes that shared a head"},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
     {"state",
-     "of a head: checksum of all states at the end, the same for any number of threads "
-     "and lanes"},
+     "of a head: checksum of all states at the end, the same for any number of ranks, "
+     "threads and lanes"},
     {"build_s", "of a head: time to make its strands", true},
     {"step_s", "to step them", true},
     {"read_s", "to read, and compress, its frames and energies", true},
@@ -112,7 +113,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     const HeadOutcome& head = *run.head;
     row.set("strands", head.strands).set("lost_strands", head.lost);
     row.set("bits", head.pack.number == models::HeadNumber::float64 ? 64 : 32);
-    row.set("device", head.device);
+    row.set("device", head.device).set("ranks", head.ranks);
     row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
     row.set("state", head.state).set("build_s", head.build_s);
     row.set("step_s", head.step_s).set("read_s", head.read_s);

@@ -7,6 +7,7 @@
 #include "experiments/run/interruption.h"
 #include "models/head/head.h"
 #include "simulation/files/run_key.h"
+#include "simulation/run/ranks.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 
@@ -27,6 +28,7 @@ struct SceneRunOptions {
   // Of a head.
   models::HeadPack pack = {};
   DeviceChoice device = DeviceChoice::cpu;
+  Ranks* ranks = nullptr;  // that share it
   int frame_bits = 32;  // of a coordinate in <stem>.h5; 0: frames only of shown strands
 };
 
@@ -34,6 +36,7 @@ struct SceneRunOptions {
 struct HeadOutcome {
   models::HeadPack pack;
   std::string device = "cpu";  // that took its steps, or the name of another one
+  int ranks = 1;
   std::size_t strands, lost;
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end

@@ -109,6 +109,22 @@ else
   echo "== Snakemake is not installed: left out"
 fi
 
+echo "== a head by mpirun inside a job"
+simulate=$repository/build/release/experiments/simulate
+sed 's/^duration_s.*/duration_s = 0.1/; s/^count.*/count = 300/' scenes/full_head.toml >"$work/head.toml"
+{
+  echo '#!/bin/sh'
+  echo 'export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1'
+  echo 'export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none'
+  # The line of docs/cluster.md, with a smaller scene.
+  sed -n "/^mpirun/{s|scenes/full_head.toml|$work/head.toml|;s|\$| --progress none --out $work/mpi|;p}" docs/cluster.md
+} >"$work/mpi.sh"
+grep -q '^mpirun' "$work/mpi.sh" || fail "docs/cluster.md has no line with mpirun"
+"$simulate" "$work/head.toml" --as head --progress none --out "$work/whole" 2>"$work/out"
+sbatch -W -n "$(nproc)" -o "$work/mpi.log" "$work/mpi.sh" >"$work/out" 2>&1 ||
+  { cat "$work/out" "$work/mpi.log"; fail "mpirun inside a job"; }
+cmp "$work/whole/head.csv" "$work/mpi/head.csv" || fail "another head inside a job"
+
 echo "== the commands of docs/cluster.md"
 rm -rf results/cluster/{springs,snake}
 while IFS= read -r line; do

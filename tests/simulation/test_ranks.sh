@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# test_ranks.sh SIMULATE SUPPORT: a head with a body and hairs that touch, by mpirun: the same
+# results for any number of ranks and threads, also after a rank was killed and other ranks
+# went on. Ends with 77, and says why, where there is no MPI.
+set -euo pipefail
+simulate=$1
+# shellcheck source=tests/support/expect.sh
+. "$2/expect.sh"
+command -v mpirun >/dev/null || { echo "left out: no mpirun (cmake/mpi_packages.txt)"; exit 77; }
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+# As many ranks as there are, on a machine that others use too.
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none \
+  OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl=self,vader
+work=$(mktemp -d /tmp/tress-ranks-XXXXXX)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+fail() { echo "FAILED: $*"; exit 1; }
+cat >head.toml <<'TOML'
+title = "hairs that touch, on a turning head"
+duration_s = 1
+frames_1_s = 10
+checkpoint_s = 0.1
+[model]
+id = "super_helix"
+tangent = "stiff"
+[integrator]
+id = "semi_implicit_euler"
+dt_s = 0.005
+[material]
+name = "hair.caucasian"
+[groom]
+count = 70
+elements = 4
+length_m = 0.1
+[root]
+motion = "rotate"
+axis = [0, 0, 1]
+angle_rad = 0.5
+[effects.gravity]
+[effects.linear_drag]
+drag_kg_m_s = 1e-4
+[effects.body]
+shape = "ellipsoid"
+half_axes_m = [0.11, 0.1, 0.13]
+moves = "head"
+[effects.strand_interaction]
+outer_radius_m = 0.02
+TOML
+
+# head OUT RANKS [option...]
+head() {
+  local out=$1 ranks=$2 by=()
+  ((ranks == 0)) || by=(mpirun -n "$ranks")
+  "${by[@]}" "$simulate" head.toml --as head --frames 64 --progress none --out "$out" "${@:3}"
+}
+state() { sed -n 's/.*"state": *"\([0-9a-f]*\)".*/\1/p' "$1/head.meta.json"; }
+# same OUT: its results are those of one process.
+same() {
+  [[ -n $(state one) && $(state "$1") == "$(state one)" ]] || fail "$1: other states"
+  cmp one/head.csv "$1/head.csv" || fail "$1: another series"
+  cmp one/head.json "$1/head.json" || fail "$1: other pictures"
+}
+
+head one 0 2>log || { cat log; fail "one process"; }
+if ! head r1 1 2>log && grep -q 'built without MPI' log; then
+  echo "left out: built without MPI (cmake/mpi_packages.txt)"
+  exit 77
+fi
+same r1
+for case in '2' '4' '2 --threads 2'; do
+  read -ra words <<<"$case"
+  rm -rf "r${words[0]}"
+  head "r${words[0]}" "${words[@]}" 2>log || { cat log; fail "$case"; }
+  same "r${words[0]}"
+done
+grep -q '"ranks": 2' r2/head.meta.json || fail "the outcome does not name the ranks"
+
+# Longer, so that a rank can be killed under way; the same again by one process.
+sed -i 's/^duration_s = 1/duration_s = 6/' head.toml
+head one 0 2>log
+mpirun -n 2 "$simulate" head.toml --as head --frames 64 --progress none --out killed 2>log &
+job=$!
+for _ in {1..600}; do [[ -s killed/head.state ]] && break; sleep 0.02; done
+mapfile -t ranks < <(pgrep -P "$job" -x simulate)
+((${#ranks[@]} == 2)) || fail "${#ranks[@]} ranks run"
+kill -9 "${ranks[1]}"
+wait "$job" && fail "a killed rank went unnoticed"
+lines=$(grep -c '^simulate: .*--resume goes on from the last checkpoint_s' log || true)
+((lines == 1)) || { cat log; fail "$lines lines say what to do"; }
+[[ -s killed/head.state ]] || fail "nothing to go on from"
+head killed 4 --resume 2>log || { cat log; fail "resumed by four"; }
+same killed
+
+expect 2 'strands that run one by one are not shared by ranks' \
+  mpirun -n 2 "$simulate" head.toml --as strands --out no
