@@ -210,7 +210,8 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, DerHead,
     testing::Values(RodCase{"Curly"}, RodCase{.name = "Moved", .moves = true},
                     RodCase{.name = "Straight", .curl = 0},
-                    RodCase{.name = "OneEdge", .elements = 1},
+                    // Within half a turn, beyond which a strand alone counts turns.
+                    RodCase{.name = "OneEdge", .elements = 1, .curl = 0.3},
                     RodCase{.name = "Fine", .elements = 40, .moves = true},
                     RodCase{.name = "Tight", .curl = 4},
                     RodCase{.name = "InVacuum", .drag = 0, .mass_damping = 0},
