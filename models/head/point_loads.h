@@ -13,6 +13,7 @@ struct PointLoad {
   Symmetric3<T> block;
 };
 
+using tress::where_less;  // not hidden by this one
 template <class T>
 Symmetric3<T> where_less(const T& x, const T& y, const Symmetric3<T>& yes,
                          const Symmetric3<T>& no) {
