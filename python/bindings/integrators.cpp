@@ -2,6 +2,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "integrators/catalogue.h"
@@ -20,10 +21,12 @@ class Stepper {
   Stepper(const std::string& id, std::shared_ptr<OwnedSystem> system, const Texts& texts)
       : id_(id), system_(std::move(system)) {
     for (const auto& [key, value] : texts) {
-      const IntegratorEntry* owner = integrators::owner_of_option(key);
-      if (owner != nullptr && owner->id != id) {
-        throw InputError("the option '" + key + "' is one of " + std::string(owner->id),
-                         key, "leave it out");
+      const auto readers = integrators::readers_of_option(key);
+      if (!readers.empty() &&
+          std::ranges::count(readers, id, &IntegratorEntry::id) == 0) {
+        throw InputError(
+            "the option '" + key + "' is one of " + std::string(readers.front()->id), key,
+            "leave it out");
       }
       integrators::apply(options_, key, value, key);
     }
@@ -140,10 +143,12 @@ py::list methods() {
 py::list options() {
   py::list all;
   for (const Parameter& p : integrators::integrator_options()) {
-    const IntegratorEntry* owner = integrators::owner_of_option(p.name);
+    std::string readers;
+    for (const IntegratorEntry* reader : integrators::readers_of_option(p.name)) {
+      readers += (readers.empty() ? "" : "|") + std::string(reader->id);
+    }
     all.append(py::make_tuple(std::string(p.name), p.default_text(),
-                              std::string(p.choices), std::string(p.help),
-                              owner == nullptr ? "" : std::string(owner->id)));
+                              std::string(p.choices), std::string(p.help), readers));
   }
   return all;
 }

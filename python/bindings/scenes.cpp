@@ -142,9 +142,9 @@ class HeadOfHair {
     const py::gil_scoped_release release;
     run_->energies(t_, energies_);
     if (!guard_) return;
-    Head& head = run_->head();
+    const Head& head = run_->head();
     for (std::size_t k = 0; k < energies_.size(); ++k) {
-      if (!head.lost(k) && guard_->breached(t_, energies_[k])) head.lose(k);
+      if (!head.lost(k) && guard_->breached(t_, energies_[k])) run_->change().lose(k);
     }
   }
 
