@@ -227,7 +227,7 @@ class HeadSceneRun {
 
   /// What a device has done in steps of h.
   void fetch(double h) {
-    if (options_.device == DeviceChoice::cpu) return;
+    if (!run_->on_device()) return;
     try {
       run_->fetch();
     } catch (const DeviceFailure& no) {

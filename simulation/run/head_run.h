@@ -29,6 +29,7 @@ class HeadRun {
   /// Steps are taken on the first device from now on; its name. Throws InputError if the
   /// head is refused, DeviceFailure if there is no device for it.
   const std::string& move_to_device();
+  bool on_device() const { return device_ != nullptr; }
 
   /// From t to t + h (s). Methods that iterate get blocks by the dozen, so that their
   /// lanes find strands to go on with.

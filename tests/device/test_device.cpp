@@ -268,10 +268,15 @@ class SimulateOnDevice : public testing::Test {
     toy.write("head.toml", scene("[effects.gravity]\n[effects.linear_drag]\n"));
     toy.write("windy.toml", scene("[effects.gravity]\n[effects.wind]\n"));
   }
-  static std::string scene(const std::string& effects) {
-    return "title = \"head\"\nduration_s = 0.1\nframes_1_s = 20\n[model]\nid = "
+  static std::string scene(const std::string& effects,
+                           const std::string& duration = "0.1",
+                           const std::string& step = "0.004") {
+    return "title = \"head\"\nduration_s = " + duration +
+           "\nframes_1_s = 20\n[model]\nid = "
            "\"super_helix\"\ntangent = \"stiff\"\n[integrator]\nid = "
-           "\"semi_implicit_euler\"\ndt_s = 0.004\n[material]\nname = "
+           "\"semi_implicit_euler\"\ndt_s = " +
+           step +
+           "\n[material]\nname = "
            "\"hair.caucasian\"\n[groom]\ncount = 21\nelements = 6\nlength_m = "
            "0.1\n[root]\nmotion = \"rotate\"\naxis = [0, 0, 1]\nangle_rad = 0.5\n" +
            effects;
@@ -329,6 +334,24 @@ TEST_F(SimulateOnDevice, GoesOnWithoutItOrEndsInOneLine) {
   judge("no_memory", fake, "cuMemAlloc failed: CUDA_ERROR_OUT_OF_MEMORY (2)");
   judge("bad_image", fake, "cuModuleLoadData failed: CUDA_ERROR_INVALID_PTX (218)");
   judge("launch=1", fake, "cuLaunchKernel failed: CUDA_ERROR_LAUNCH_FAILED (719)");
+}
+
+// Frames of one step each: the last step of a frame may lose strands.
+TEST_F(SimulateOnDevice, NamesALostStrandOnceWhereverItRuns) {
+  toy.write(
+      "lossy.toml",
+      scene("[effects.gravity]\ngravity_m_s2 = [0, 0, -1e5]\n[effects.linear_drag]\n"
+            "[groom.material]\nyoungs_modulus_pa = 1e3\n",
+            "3", "0.05"));
+  for (const std::string scene : {"lossy.toml", "lossy.toml --no-guard"}) {
+    ASSERT_EQ(run(scene).code, 3);
+    const std::string want = toy.read("out/lossy.lost.csv");
+    EXPECT_GT(outcome("lossy").at("lost_strands"), 0);
+    for (const char* fails : {"no_device", ""}) {
+      EXPECT_EQ(run(scene + " --device auto", fails).code, 3);
+      EXPECT_EQ(toy.read("out/lossy.lost.csv"), want) << scene << fails;
+    }
+  }
 }
 
 TEST_F(SimulateOnDevice, EndsInOneLineWhereTheDeviceFailsOnItsWay) {
