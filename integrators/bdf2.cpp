@@ -1,3 +1,4 @@
+#include "integrators/bdf2_formula.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/stage.h"
@@ -6,12 +7,8 @@
 namespace tress::integrators {
 namespace {
 
-/// Two-step backward differentiation with variable-step coefficients, started by backward
-/// Euler. Order 2, L-stable, damps high frequencies. [Hairer, Norsett, Wanner I, III.5]
-///
-/// y_{n+1} = c0 y_n - c1 y_{n-1} + b h y'_{n+1} for y = q and y = v, with
-/// w = h / h_previous: b = (1 + w)/(1 + 2w), c0 = (1 + w)^2/(1 + 2w), c1 = w^2/(1 + 2w).
-/// w = 0 is backward Euler, the first step.
+/// Bdf2Formula for y = q and y = v, started by backward Euler. Order 2, L-stable, damps
+/// high frequencies.
 class Bdf2 final : public FixedStep {
  public:
   Bdf2(System& system, const Options& options)
@@ -29,10 +26,7 @@ class Bdf2 final : public FixedStep {
   }
 
   Status step(double t, double h) override {
-    const double w = h_previous_ > 0 ? h / h_previous_ : 0;
-    const double c0 = (1 + w) * (1 + w) / (1 + 2 * w);
-    const double c1 = w * w / (1 + 2 * w);
-    const double bh = (1 + w) / (1 + 2 * w) * h;
+    const auto [c0, c1, bh] = Bdf2Formula(h, h_previous_ > 0 ? h / h_previous_ : 0);
     for (std::size_t i = 0; i < q_.size(); ++i) {
       v_bar_[i] = c0 * v_[i] - c1 * v_previous_[i];
       q_bar_[i] = c0 * q_[i] - c1 * q_previous_[i] + bh * v_bar_[i];

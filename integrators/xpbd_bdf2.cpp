@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "integrators/bdf2_formula.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/position_sweeps.h"
@@ -12,9 +13,7 @@ namespace {
 /// gains: the next step is one of backward Euler.
 constexpr double settled = 0.1;
 
-/// Position-based dynamics by the two-step backward differentiation formula: for y = q
-/// and y = v, y_{n+1} = c0 y_n - c1 y_{n-1} + b h y'_{n+1} as in bdf2.cpp, whose sweeps
-/// solve
+/// Position-based dynamics by Bdf2Formula for y = q and y = v, whose sweeps solve
 ///
 ///     x = q_c + bh v_c + (bh)^2 (rest + W G^T s),   v = (x - q_c)/bh,
 ///
@@ -48,9 +47,7 @@ class XpbdBdf2 final : public FixedStep {
     ++dynamics_.stats.residuals;
     const double w =
         h_previous_ > 0 && sweeps_.unsettled() <= settled ? h / h_previous_ : 0;
-    const double c0 = (1 + w) * (1 + w) / (1 + 2 * w);
-    const double c1 = w * w / (1 + 2 * w);
-    const double bh = (1 + w) / (1 + 2 * w) * h;
+    const auto [c0, c1, bh] = Bdf2Formula(h, w);
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const double rest = rest_[i] + w * (rest_[i] - rest_previous_[i]);
       const double v_center = c0 * v_[i] - c1 * v_previous_[i];

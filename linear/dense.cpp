@@ -1,6 +1,7 @@
 #include "linear/dense.h"
 
 #include "linear/dense_lu.h"
+#include "linear/sparse_pattern.h"
 
 namespace tress {
 
@@ -16,15 +17,8 @@ DenseSolver::DenseSolver(const Pattern& pattern)
 DenseSolver::~DenseSolver() = default;
 
 double DenseSolver::factor_scaled(In values) noexcept {
-  const Pattern& a = pattern();
-  dense_->a.setZero();
-  for (int j = 0; j < a.cols; ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    for (int p = a.start[column]; p < a.start[column + 1]; ++p) {
-      const auto entry = static_cast<std::size_t>(p);
-      dense_->a(a.row[entry], j) = values[entry];
-    }
-  }
+  to_dense(pattern(), values,
+           {dense_->a.data(), static_cast<std::size_t>(dense_->a.size())});
   return dense_->lu.factor(dense_->a);
 }
 

@@ -25,4 +25,15 @@ int place_of(const Pattern& pattern, int row, int column) {
   return static_cast<int>(std::lower_bound(first, last, row) - pattern.row.begin());
 }
 
+void to_dense(const Pattern& pattern, In values, Out all) {
+  std::ranges::fill(all, 0.0);
+  const auto rows = static_cast<std::size_t>(pattern.rows);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(pattern.cols); ++j) {
+    for (int k = pattern.start[j]; k < pattern.start[j + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      all[rows * j + static_cast<std::size_t>(pattern.row[at])] = values[at];
+    }
+  }
+}
+
 }  // namespace tress

@@ -1,4 +1,5 @@
 // A comparison as a table and as a page.
+import { plain_page } from '../report/plain_page.mjs';
 import { escape_html, format_number } from '../report/src/format.mjs';
 
 const columns = ['table', 'row', 'column', 'ratio', 'low', 'high', 'verdict', 'change'];
@@ -57,30 +58,19 @@ export function page_of(a, b, rows, how) {
   const summary = counts(rows)
     .map(([verdict, count]) => `${count} ${verdict}`)
     .join(', ');
-  return `<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>${escape_html(b)} beside ${escape_html(a)}</title>
-<style>
-:root { color-scheme: light dark; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 80rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; width: 100%; }
-th, td { text-align: left; padding: .2rem .8rem .2rem 0; border-bottom: 1px solid #8886;
-         vertical-align: top; }
+  const more = `.number { text-align: right; white-space: nowrap; }
 td:nth-child(n + 3) { overflow-wrap: anywhere; }
 td:first-child { white-space: nowrap; }
-.number { text-align: right; white-space: nowrap; }
 :is(.slower, .changed-value, .only-before) td:first-child { font-weight: 600; }
 svg line { stroke: currentColor; stroke-opacity: .4; }
 svg .interval { stroke-opacity: 1; stroke-width: 2; }
 svg circle { fill: currentColor; }
-</style></head><body><main>
-<h1>${escape_html(b)} beside ${escape_html(a)}</h1>
+`;
+  const body = `<h1>${escape_html(b)} beside ${escape_html(a)}</h1>
 <p>${escape_html(summary || 'nothing to compare')}. ${escape_html(how)} A ratio above 1: more time after than before.
 Drawn from half to twice; the upright line is 1.</p>
 <table><thead><tr><th>verdict</th><th>table</th><th>row</th><th>what</th><th class="number">ratio</th>
 <th class="number">interval</th><th>drawn</th></tr></thead>
-<tbody>${sorted.map(line).join('\n')}</tbody></table>
-</main></body></html>
-`;
+<tbody>${sorted.map(line).join('\n')}</tbody></table>`;
+  return plain_page(`${b} beside ${a}`, body, { width: '80rem', more });
 }

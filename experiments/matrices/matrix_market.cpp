@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
-#include <tuple>
 
 namespace tress::experiments::matrices {
 
@@ -34,35 +32,6 @@ Matrix entries_of(const Eigen::MatrixXd& dense) {
     }
   }
   return matrix;
-}
-
-Matrix transposed(const Matrix& matrix) {
-  Matrix other{matrix.cols, matrix.rows, matrix.entries};
-  for (Matrix::Entry& e : other.entries) std::swap(e.row, e.col);
-  std::ranges::stable_sort(
-      other.entries, {}, [](const Matrix::Entry& e) { return std::tuple(e.col, e.row); });
-  return other;
-}
-
-Matrix sum(const std::vector<std::pair<double, const Matrix*>>& terms) {
-  const auto place = [](const Matrix::Entry& e) { return std::tuple(e.col, e.row); };
-  Matrix all{terms.front().second->rows, terms.front().second->cols, {}};
-  std::vector<Matrix::Entry> entries;
-  for (const auto& [factor, matrix] : terms) {
-    for (Matrix::Entry e : matrix->entries) {
-      e.value *= factor;
-      entries.push_back(e);
-    }
-  }
-  std::ranges::stable_sort(entries, {}, place);
-  for (const Matrix::Entry& e : entries) {
-    if (!all.entries.empty() && place(all.entries.back()) == place(e)) {
-      all.entries.back().value += e.value;
-    } else {
-      all.entries.push_back(e);
-    }
-  }
-  return all;
 }
 
 std::string matrix_market(const Matrix& matrix, const std::string& comment) {

@@ -24,9 +24,6 @@ struct Matrix {
 Matrix on_pattern(const Pattern& pattern, In values);
 /// The entries of a dense matrix that are not zero.
 Matrix entries_of(const Eigen::MatrixXd& dense);
-Matrix transposed(const Matrix& matrix);
-/// sum_k factor_k matrix_k of matrices of one shape.
-Matrix sum(const std::vector<std::pair<double, const Matrix*>>& terms);
 
 /// MatrixMarket's coordinate format [Boisvert, Pozo & Remington 1996, NISTIR 5935], real
 /// and general, indices from 1, `comment` of one line at its head; numbers read back to

@@ -77,7 +77,7 @@ Named part(Moment& moment, std::string_view name, std::string_view what, Weights
   SparseForm* form = moment.system->sparse_form();
   if (form == nullptr) {
     const Eigen::MatrixXd dense = tangent_of_residual(*moment.system, at, w);
-    return {name, what, entries_of(dense), w.acc != 0};
+    return {name, what, entries_of(dense), w.vel == 0 && w.pos == 0};
   }
   std::vector<double> values(static_cast<std::size_t>(form->pattern().nonzeros()));
   if (form->values(at.t, at.q, at.v, at.a, w, values) != Status::ok) {
@@ -90,7 +90,7 @@ void add_constraints(Moment& moment, std::vector<Named>& all) {
   System& system = *moment.system;
   const Instant& at = moment.at;
   all.push_back({"G", "dg/dq, gradients of the constraints by rows",
-                 transposed(entries_of(dense_gradient(system, at.t, at.q)))});
+                 entries_of(dense_gradient(system, at.t, at.q).transpose())});
   all.push_back({"C", "d(G^T lambda)/dq; K - C is the stiffness of r - G^T lambda",
                  entries_of(dense_curvature(system, at.t, at.q, moment.multipliers))});
 }
@@ -119,10 +119,9 @@ std::vector<Named> matrices_of(Moment& moment, double h) {
   all.push_back(part(moment, "M", "dr/da, mass", {1, 0, 0}));
   all.push_back(part(moment, "D", "dr/dv, damping and gyroscopic terms", {0, 1, 0}));
   all.push_back(part(moment, "K", "dr/dq, stiffness", {0, 0, 1}));
-  Named step{"S", "M + h D + h^2 K, the matrix of a step of backward Euler",
-             sum({{1, &all[0].matrix}, {h, &all[1].matrix}, {h * h, &all[2].matrix}}),
-             all[2].analytic};
-  all.push_back(std::move(step));
+  all.push_back(part(moment, "S",
+                     "M + h D + h^2 K, the matrix of a step of backward Euler",
+                     {1, h, h * h}));
   if (moment.system->layout().constraints > 0) add_constraints(moment, all);
   return all;
 }

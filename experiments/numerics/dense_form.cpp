@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "linear/sparse_pattern.h"
+
 namespace tress::experiments {
 namespace {
 
@@ -10,29 +12,21 @@ void require(Status s) {
   if (s != Status::ok) throw std::runtime_error("the residual cannot be evaluated");
 }
 
-Eigen::MatrixXd dense(const Pattern& p, In values) {
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(p.rows, p.cols);
-  for (int j = 0; j < p.cols; ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    for (int k = p.start[column]; k < p.start[column + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      all(p.row[at], j) = values[at];
-    }
-  }
+Eigen::MatrixXd dense(const Pattern& pattern, In values) {
+  Eigen::MatrixXd all(pattern.rows, pattern.cols);
+  to_dense(pattern, values, {all.data(), static_cast<std::size_t>(all.size())});
   return all;
 }
 
-Eigen::MatrixXd dense_values(System& system, double t, In q, Weights w) {
-  SparseForm& form = *system.sparse_form();
+/// From the sparse form if the system has it, else of the residual.
+Eigen::MatrixXd tangent_at_rest(System& system, double t, In q, Weights w) {
   const std::vector<double> zero(q.size());
-  std::vector<double> values(static_cast<std::size_t>(form.pattern().nonzeros()));
-  require(form.values(t, q, zero, zero, w, values));
-  return dense(form.pattern(), values);
-}
-
-Instant at_rest(double t, In q) {
-  const std::vector<double> zero(q.size());
-  return {t, {q.begin(), q.end()}, zero, zero};
+  if (SparseForm* form = system.sparse_form(); form != nullptr) {
+    std::vector<double> values(static_cast<std::size_t>(form->pattern().nonzeros()));
+    require(form->values(t, q, zero, zero, w, values));
+    return dense(form->pattern(), values);
+  }
+  return tangent_of_residual(system, {t, {q.begin(), q.end()}, zero, zero}, w);
 }
 
 }  // namespace
@@ -73,13 +67,11 @@ Eigen::MatrixXd tangent_of_residual(System& system, const Instant& at, Weights w
 }
 
 Eigen::MatrixXd dense_mass(System& system, double t, In q) {
-  if (system.sparse_form() != nullptr) return dense_values(system, t, q, {1, 0, 0});
-  return tangent_of_residual(system, at_rest(t, q), {1, 0, 0});
+  return tangent_at_rest(system, t, q, {1, 0, 0});
 }
 
 Eigen::MatrixXd dense_stiffness(System& system, double t, In q) {
-  if (system.sparse_form() != nullptr) return dense_values(system, t, q, {0, 0, 1});
-  return tangent_of_residual(system, at_rest(t, q), {0, 0, 1});
+  return tangent_at_rest(system, t, q, {0, 0, 1});
 }
 
 Eigen::MatrixXd dense_gradient(System& system, double t, In q) {

@@ -2,6 +2,7 @@
 // about one scene, whose tables lie in FOLDER, on one page -> FOLDER/answers.html.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { plain_page } from './plain_page.mjs';
 import { parse_csv } from './src/csv.mjs';
 import { escape_html, format_number, format_time } from './src/format.mjs';
 import { by_pace, by_tolerance, pace } from './src/pace.mjs';
@@ -113,18 +114,7 @@ ${table(heads, rows.filter((row) => row.kind === 'front').map(line))}`;
 }
 
 const name = rows_of('stability_limit')[0]?.scene ?? 'scene';
-writeFileSync(join(folder, 'answers.html'), `<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>${escape_html(name)}: what the experiments say</title>
-<style>
-:root { color-scheme: light dark; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; width: 100%; }
-th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid #8886;
-         vertical-align: top; }
-</style></head><body><main>
-<h1>${escape_html(name)}</h1>
+writeFileSync(join(folder, 'answers.html'), plain_page(`${name}: what the experiments say`, `<h1>${escape_html(name)}</h1>
 <h2>Which steps are stable</h2>
 <p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
 needs shorter ones in its place.</p>
@@ -139,7 +129,5 @@ ${survival()}
 <p>Root mean square over frames and strands, over their length; the verdict is for 1 %.</p>
 ${effects()}
 <h2>What is the cheapest way to 1 %</h2>
-${accuracy()}
-</main></body></html>
-`);
+${accuracy()}`));
 console.log(`${folder}/answers.html`);

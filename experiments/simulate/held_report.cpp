@@ -43,7 +43,10 @@ std::string table_of(const Scene& scene, const std::vector<HeldShape>& all) {
   return text;
 }
 
-void say(const Scene& scene, const std::vector<HeldShape>& all, const std::string& file) {
+}  // namespace
+
+void report_held(const Scene& scene, const std::vector<HeldShape>& all,
+                 const std::string& file) {
   double residual = 0, sag = 0;
   std::size_t unstable = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -62,18 +65,17 @@ void say(const Scene& scene, const std::vector<HeldShape>& all, const std::strin
       "simulate: {}: held at rest: balance within {:.2g} of the loads, sag of those that "
       "stay at most {:.2g} of the length -> {}\n",
       scene.name, residual, sag, file);
+  replace_file(file, table_of(scene, all));
 }
 
-}  // namespace
-
-Scene settled(Scene scene, const std::string& file, int threads) {
-  if (scene.rest == RestStrains::natural) return scene;
+Scene without_falling(Scene scene, const std::string& file, int threads) {
+  if (scene.rest == RestStrains::natural || scene.unstable != Unstable::drop) {
+    return scene;
+  }
   Scene probed = scene;
-  if (scene.unstable == Unstable::drop) probed.unstable = Unstable::keep;
+  probed.unstable = Unstable::keep;
   const World world(probed, threads);
-  say(scene, world.held(), file);
-  replace_file(file, table_of(scene, world.held()));
-  if (scene.unstable != Unstable::drop) return scene;
+  report_held(scene, world.held(), file);
   std::vector<std::size_t> stay;
   for (std::size_t k = 0; k < world.held().size(); ++k) {
     if (!world.held()[k].would_fall()) stay.push_back(k);

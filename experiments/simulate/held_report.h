@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "simulation/rest/held_shape.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::experiments::scene_runs {
@@ -9,8 +11,13 @@ namespace tress::experiments::scene_runs {
 using namespace simulation;
 
 /// Says how the strands of a scene with rest = "inverse" are held, every one that would
-/// fall before it does, and writes `file`, a line each. The scene without those that fall
-/// where it leaves them out (unstable = "drop"); throws InputError if none remains.
-Scene settled(Scene scene, const std::string& file, int threads);
+/// fall before it does, and writes `file`, a line each.
+void report_held(const Scene& scene, const std::vector<HeldShape>& all,
+                 const std::string& file);
+
+/// The scene without the strands that would fall where it leaves them out (unstable =
+/// "drop"), after a report of all; throws InputError if none remains. Other scenes as
+/// they are.
+Scene without_falling(Scene scene, const std::string& file, int threads);
 
 }  // namespace tress::experiments::scene_runs

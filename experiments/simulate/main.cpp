@@ -137,7 +137,7 @@ bool estimate_errors(const Scene& scene, const Arguments& a, const std::string& 
 /// One scene and what it runs as.
 struct Job {
   std::string file;
-  SceneOutline outline;
+  SceneOutline outline;  // unless it is a head, the whole scene
   bool head = false;
   int elements = 0;  // of a head that is one of several of the scene
 };
@@ -205,8 +205,9 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
     throw InputError("strands that run one by one are not shared by ranks", file,
                      "leave out mpirun, or give --as head");
   }
-  if (!job.head && a.verify) check_verifiable(read_scene(file));
-  if (!job.head) read_scene(file);
+  if (job.head) return job;
+  job.outline.scene = read_scene(file);
+  if (a.verify) check_verifiable(job.outline.scene);
   return job;
 }
 
@@ -228,7 +229,6 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   const std::string& file = job.file;
   SceneOutline outline = job.outline;
   Scene& scene = outline.scene;
-  if (!job.head) scene = read_scene(file);
   if (a.no_guard) scene.guard = false;
   SceneRunOptions options;
   options.stem = a.out + "/" + scene.name;
@@ -254,7 +254,9 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
     if (!ranks.first()) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
-  if (!job.head) scene = settled(scene, options.stem + ".rest.csv", options.threads);
+  if (!job.head) {
+    scene = without_falling(std::move(scene), options.stem + ".rest.csv", a.threads);
+  }
   RunKey key;
   key.add("scene", contents_checksum({file}));
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));

@@ -8,25 +8,18 @@
 namespace tress::experiments::scene_runs {
 namespace {
 
-void write_vtk(const Animation& animation, const std::string& stem) {
+/// A file for each frame in the folder <stem>_<kind>, which it returns.
+std::string write_frames(const Animation& animation, const std::string& stem,
+                         const std::string& kind, const auto& name_of,
+                         const auto& text_of) {
   const std::string name = std::filesystem::path(stem).filename();
-  const std::string folder = stem + "_vtk/";
+  const std::string folder = stem + "_" + kind + "/";
   std::error_code shown_by_the_first_file;
   std::filesystem::create_directories(folder, shown_by_the_first_file);
   for (std::size_t f = 0; f < animation.frames.size(); ++f) {
-    replace_file(folder + vtp_name(name, f), vtp(animation, animation.frames[f]));
+    replace_file(folder + name_of(name, f), text_of(animation, animation.frames[f]));
   }
-  replace_file(folder + name + ".pvd", pvd(animation, name));
-}
-
-void write_hair(const Animation& animation, const std::string& stem) {
-  const std::string name = std::filesystem::path(stem).filename();
-  const std::string folder = stem + "_hair/";
-  std::error_code shown_by_the_first_file;
-  std::filesystem::create_directories(folder, shown_by_the_first_file);
-  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
-    replace_file(folder + hair_name(name, f), hair(animation, animation.frames[f]));
-  }
+  return folder;
 }
 
 }  // namespace
@@ -59,8 +52,13 @@ void write_pictures(const Animation& animation, const SceneRunOptions& options) 
   if (std::ranges::all_of(animation.curves.lines(), [](int n) { return n > 1; })) {
     replace_file(options.stem + ".json", page_json(animation));
   }
-  if (options.vtk) write_vtk(animation, options.stem);
-  if (options.hair) write_hair(animation, options.stem);
+  if (options.vtk) {
+    const std::string name = std::filesystem::path(options.stem).filename();
+    const std::string folder =
+        write_frames(animation, options.stem, "vtk", vtp_name, vtp);
+    replace_file(folder + name + ".pvd", pvd(animation, name));
+  }
+  if (options.hair) write_frames(animation, options.stem, "hair", hair_name, hair);
   if (options.usd) replace_file(options.stem + ".usda", usda(animation));
 }
 

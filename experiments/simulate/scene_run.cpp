@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contract/input_error.h"
+#include "experiments/simulate/held_report.h"
 #include "experiments/simulate/pictures.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/export/recording.h"
@@ -40,6 +41,9 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
                    Interruption& interruption) {
   const Clock::time_point begin = Clock::now();
   auto world = std::make_unique<World>(scene, options.threads);
+  if (!world->held().empty() && scene.unstable != Unstable::drop) {
+    report_held(scene, world->held(), options.stem + ".rest.csv");
+  }
   Readout readout(scene, *world);
   const Pictures pictures(scene, *world, readout, options);
   Recording recording(options.stem, key, readout, options.resume);
@@ -83,7 +87,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     }
     add_work(world->stats(), run.work);
     add_exchanges(world->exchanges(), run.exchanges);
-    world = std::make_unique<World>(scene, options.threads);
+    world = std::make_unique<World>(scene, options.threads, world->held());
     world->restore(snapshot);
     readout.restart();
   }

@@ -82,27 +82,20 @@ TwistWork twist_on_and_back(const ModelVariant& variant, int elements, double fr
 }
 
 std::vector<ValidationTest> plectoneme_exact_tests() {
-  return {{
-      .name = "plectoneme_exact",
-      .what = "the same with exact contact and friction of its plies",
-      .source = "Bertails-Descoubes 2010, plectoneme; Clauvelin, Audoly & Neukirch 2009",
-      .parameter = "friction coefficient mu",
-      .quantity = "angle of the plies over that of the equilibrium without friction",
-      .range = {0, 0.05},
-      .quick = {{0}, {125}},
-      .usual = {{0, 0.05}, {125}},
-      .full = {{0, 0.02, 0.05}, {125, 250}},
-      .tolerance = 0.05,
-      .why = "as `plectoneme`; with friction a ply rests between the angle at which it "
-             "would wind on and the one at which it would unwind, some mu apart",
-      .judged_from = 125,
-      .claimed = {"der", "corde"},
-      .reference = [](double) { return 1.0; },
-      .refusal = no_twist,
-      // A full matrix of 375 unknowns, factored in every step.
-      .slow = {"super_helix", "articulated_chain", "force_transport", "kirchhoff_nodal"},
-      .measure = measured_angle,
-  }};
+  ValidationTest test = plectoneme_tests().front();
+  test.name = "plectoneme_exact";
+  test.what = "the same with exact contact and friction of its plies";
+  test.parameter = "friction coefficient mu";
+  test.quantity = "angle of the plies over that of the equilibrium without friction";
+  test.range = {0, 0.05};
+  test.quick = {{0}, {125}};
+  test.usual = {{0, 0.05}, {125}};
+  test.full = {{0, 0.02, 0.05}, {125, 250}};
+  test.why =
+      "as `plectoneme`; with friction a ply rests between the angle at which it would "
+      "wind on and the one at which it would unwind, some mu apart";
+  test.measure = measured_angle;
+  return {test};
 }
 
 }  // namespace tress::experiments::validation

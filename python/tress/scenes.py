@@ -1,6 +1,5 @@
 """Scenes: read, change, run."""
 
-import copy
 import sys
 import tomllib
 from dataclasses import dataclass, field
@@ -25,19 +24,17 @@ class Scene:
     """
 
     def __init__(self, tables, file="scene.toml"):
-        self._set(text_of(tables), file, copy.deepcopy(tables))
+        self._set(text_of(tables), file)
 
-    def _set(self, text, file, tables):
-        self._core = _core.Scene(text, str(file))
-        self._text, self.file, self._tables = text, str(file), tables
+    def _set(self, text, file):
+        self._core = _core.Scene(text, str(file))  # says what is wrong, and where
+        self._text, self.file = text, str(file)
 
     @classmethod
     def parse(cls, text, file="scene.toml"):
         """Of TOML text; files that it names are relative to the folder of ``file``."""
         scene = cls.__new__(cls)
-        core = _core.Scene(text, str(file))  # says what is wrong, and where
-        scene._core, scene._text, scene.file = core, text, str(file)
-        scene._tables = tomllib.loads(text)
+        scene._set(text, file)
         return scene
 
     @classmethod
@@ -52,7 +49,7 @@ class Scene:
     @property
     def tables(self):
         """What the scene gives, as nested dicts: a copy."""
-        return copy.deepcopy(self._tables)
+        return tomllib.loads(self._text)
 
     def changed(self, changes):
         """The scene with other values: {"strand.elements": 40, "effects.wind": {...}}.

@@ -15,12 +15,6 @@ namespace {
 constexpr double farthest = 1e3;       // m
 constexpr double usual_length = 0.15;  // m, of hair
 
-struct Unit {
-  const char* name;
-  double metres;
-};
-constexpr Unit usual_units[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}};
-
 double polyline_length(std::span<const Vec> x) {
   double length = 0;
   for (std::size_t i = 1; i < x.size(); ++i) length += norm(x[i] - x[i - 1]);
@@ -40,8 +34,8 @@ double middle_length(const Polylines& lines) {
   return *middle;
 }
 
-Unit guessed_unit(double length) {
-  return *std::ranges::min_element(usual_units, {}, [length](const Unit& unit) {
+const FileUnit& guessed_unit(double length) {
+  return *std::ranges::min_element(file_units, {}, [length](const FileUnit& unit) {
     return std::abs(std::log(length * unit.metres / usual_length));
   });
 }
@@ -153,7 +147,7 @@ PlacedGroom place_groom(GroomFile read, const std::string& file,
     if (middle == 0) {
       throw InputError("no strand has a length", file, "give a file with strands");
     }
-    const Unit unit = guessed_unit(middle);
+    const FileUnit& unit = guessed_unit(middle);
     metres = unit.metres;
     placed.notes.push_back(
         fmt::format("the unit is guessed: {}, by which half the strands are longer than "

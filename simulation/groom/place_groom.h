@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "simulation/groom/read_groom.h"
@@ -10,6 +11,14 @@ namespace tress::simulation {
 
 /// What to do with strands that cannot be simulated.
 enum class BadStrands { refuse, drop };
+
+/// Units that files have.
+struct FileUnit {
+  std::string_view name;
+  double metres;
+};
+inline constexpr FileUnit file_units[] = {
+    {"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}};
 
 /// How a file's strands come into a scene.
 struct GroomPlacing {
@@ -32,7 +41,7 @@ struct PlacedGroom {
 /// x) or (z, x, y), and a turn by pi about x where its negative direction points up; so
 /// that what faces z in a file with y up, as in Houdini, faces x, as a head does here.
 ///
-/// A unit is guessed as the one of m, cm, mm and inch in which the middle one of all
+/// A unit is guessed as the one of file_units in which the middle one of all
 /// lengths is nearest to 15 cm, by ratio; an axis as the one against which hair hangs on
 /// average, from roots to tips. Both are said.
 ///

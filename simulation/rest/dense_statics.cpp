@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "linear/sparse_pattern.h"
+
 namespace tress::simulation {
 
 using Eigen::Index;
@@ -22,16 +24,9 @@ void check(Status s) {
   if (s != Status::ok) throw std::runtime_error("its forces at rest are not finite");
 }
 
-/// values on the pattern as a dense matrix.
-MatrixXd dense(const Pattern& pattern, const std::vector<double>& values) {
-  MatrixXd all = MatrixXd::Zero(pattern.rows, pattern.cols);
-  for (int c = 0; c < pattern.cols; ++c) {
-    for (int k = pattern.start[static_cast<std::size_t>(c)];
-         k < pattern.start[static_cast<std::size_t>(c) + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      all(pattern.row[at], c) = values[at];
-    }
-  }
+MatrixXd dense(const Pattern& pattern, In values) {
+  MatrixXd all(pattern.rows, pattern.cols);
+  to_dense(pattern, values, {all.data(), static_cast<std::size_t>(all.size())});
   return all;
 }
 

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <stdexcept>
 
 #include "contract/input_error.h"
@@ -143,24 +142,17 @@ HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) 
 
 std::vector<HeldShape> held_shapes(const Scene& scene,
                                    const std::function<Effects(std::size_t)>& between,
-                                   const models::Loop& loop) {
+                                   Crew& crew) {
   const Scene held_scene = still(scene);
   std::vector<HeldShape> all(scene.strands.size());
-  std::vector<std::exception_ptr> errors(all.size());
-  loop(all.size(), [&](std::size_t k) {
+  in_parts(crew, 0, all.size(), all.size(), [&](std::size_t k, std::size_t) {
     try {
       all[k] = held_shape(held_scene, k, between(k));
     } catch (const std::runtime_error& error) {
-      errors[k] = std::make_exception_ptr(
-          InputError(fmt::format("strand {}: {}", k, error.what()), inverse_rest,
-                     "change its shape or what acts on it, or leave out rest"));
-    } catch (...) {
-      errors[k] = std::current_exception();
+      throw InputError(fmt::format("strand {}: {}", k, error.what()), inverse_rest,
+                       "change its shape or what acts on it, or leave out rest");
     }
   });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
   return all;
 }
 

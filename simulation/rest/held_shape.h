@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "models/contact/box_pairs.h"
 #include "models/effects/effect.h"
 #include "simulation/scene/scene.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 
@@ -54,7 +54,7 @@ inline constexpr double stiffened = 2;
 /// the model has no such natural strains, a root is free or a balance does not exist.
 std::vector<HeldShape> held_shapes(
     const Scene& scene, const std::function<models::Effects(std::size_t)>& between,
-    const models::Loop& loop);
+    Crew& crew);
 
 /// Root and tips of elements of all strands at t = 0, (3 points) m.
 std::vector<double> points_at_start(const Scene& scene);

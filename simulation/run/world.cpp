@@ -61,10 +61,11 @@ Effects metered(const Effects& effects,
 
 }  // namespace
 
-World::World(const Scene& scene, int threads)
+World::World(const Scene& scene, int threads, std::vector<HeldShape> held)
     : integrator_(find_integrator(scene.integrator)),
       options_(scene.options),
       effects_(make_effects(scene)),
+      held_(std::move(held)),
       crew_(threads) {
   refuse_too_large(scene);
   if (scene.strands.empty()) {
@@ -106,14 +107,14 @@ void World::guard(std::vector<GuardedStrand> strands) {
   body.guard.emplace(*body.system, std::move(strands), body.first);
 }
 
-/// Empty if the scene has no guard.
-std::vector<GuardedStrand> World::guarded(const Scene& scene, std::size_t first,
-                                          std::size_t count) const {
+/// `first`: number of the first of these strands.
+std::vector<GuardedStrand> World::guarded(std::span<const Strand> strands,
+                                          std::size_t first) const {
   std::vector<GuardedStrand> all;
-  for (std::size_t k = first; k < first + count; ++k) {
-    Effects effects = effects_on(k);
-    add_effects_between(k, effects);
-    all.push_back(guarded_strand(strand(scene, k), std::move(effects)));
+  for (std::size_t k = 0; k < strands.size(); ++k) {
+    Effects effects = effects_on(first + k);
+    add_effects_between(first + k, effects);
+    all.push_back(guarded_strand(strands[k], std::move(effects)));
   }
   return all;
 }
@@ -130,12 +131,14 @@ void World::hold(const Scene& scene) {
     const std::vector<double> x = points_at_start(scene);
     interaction_->update(x, std::vector<double>(x.size()), loop());
   }
-  held_ = held_shapes(
-      scene,
-      [this](std::size_t k) {
-        return interaction_ ? Effects{interaction_->effect(k)} : Effects{};
-      },
-      loop());
+  if (held_.empty()) {
+    held_ = held_shapes(
+        scene,
+        [this](std::size_t k) {
+          return interaction_ ? Effects{interaction_->effect(k)} : Effects{};
+        },
+        crew_);
+  }
   if (scene.unstable != Unstable::drop) return;
   const auto falls = std::ranges::find_if(held_, &HeldShape::falls);
   if (falls == held_.end()) return;
@@ -143,10 +146,6 @@ void World::hold(const Scene& scene) {
       fmt::format("strand {} would fall, and only simulate leaves strands out",
                   falls - held_.begin()),
       "unstable = \"drop\"", "use unstable = \"stiffen\" or \"keep\"");
-}
-
-Strand World::strand(const Scene& scene, std::size_t k) const {
-  return held_.empty() ? scene.strands[k] : stiffer(scene.strands[k], held_[k]);
 }
 
 /// Those of the scene on each strand.
@@ -161,8 +160,11 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
   hold(scene);
-  std::vector<Strand> strands = scene.strands;
-  for (std::size_t k = 0; k < strands.size(); ++k) strands[k] = strand(scene, k);
+  std::vector<Strand> stiffened;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    stiffened.push_back(stiffer(scene.strands[k], held_[k]));
+  }
+  const std::vector<Strand>& strands = held_.empty() ? scene.strands : stiffened;
   if (const Parameters* mesh = scene.mesh(); mesh != nullptr) {
     mesh_ = std::make_unique<ControlMesh>(*mesh, segment_lengths(strands));
   }
@@ -198,7 +200,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
         add(std::move(system), end - k);
         hold_last(k, end);
         bodies_.back().meters = std::exchange(meters, {});
-        if (scene.guard) guard(guarded(scene, k, end - k));
+        if (scene.guard) guard(guarded(std::span(strands).subspan(k, end - k), k));
         k = end;
         continue;
       }
@@ -207,7 +209,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
     add(scene.model->on_strand(strands[k], scene.model_options, effects_of(k)), 1);
     hold_last(k, k + 1);
     bodies_.back().meters = std::exchange(meters, {});
-    if (scene.guard) guard(guarded(scene, k, 1));
+    if (scene.guard) guard(guarded(std::span(strands).subspan(k, 1), k));
     ++k;
   }
 }
@@ -233,7 +235,7 @@ void World::build_coupled(const Scene& scene, const Parameters& between) {
   body.memory.assign(scene.strands.size(), 0);
   body.memory.front() = body.system->memory().size();
   points_ = material_points(scene);
-  if (scene.guard) guard(guarded(scene, 0, scene.strands.size()));
+  if (scene.guard) guard(guarded(scene.strands, 0));
 }
 
 /// Integrators at the initial state.

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,8 +63,9 @@ struct Energies {
 /// discretisation run four at a time if the model supports it (ModelEntry::on_strands).
 class World {
  public:
-  /// Throws InputError if model, strand and effects are incompatible.
-  explicit World(const Scene& scene, int threads = 1);
+  /// Throws InputError if model, strand and effects are incompatible. `held`: that of an
+  /// earlier world of the same scene, which is found anew if it is empty.
+  explicit World(const Scene& scene, int threads = 1, std::vector<HeldShape> held = {});
 
   void restore(const Snapshot& snapshot);
   Snapshot snapshot();
@@ -154,11 +156,10 @@ class World {
 
   void add(std::unique_ptr<System> system, std::size_t strands);
   void guard(std::vector<GuardedStrand> strands);
-  std::vector<GuardedStrand> guarded(const Scene& scene, std::size_t first,
-                                     std::size_t count) const;
+  std::vector<GuardedStrand> guarded(std::span<const Strand> strands,
+                                     std::size_t first) const;
   void add_effects_between(std::size_t strand, Effects& effects) const;
   void hold(const Scene& scene);
-  Strand strand(const Scene& scene, std::size_t k) const;
   Effects effects_on(std::size_t strand) const;
   void build_strands(const Scene& scene, const Parameters* between);
   void build_coupled(const Scene& scene, const Parameters& between);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -106,12 +107,9 @@ void refuse_beside_file(const Table& groom) {
 
 std::optional<double> metres_per_unit(const Parameters& p) {
   if (p.number("unit_m") > 0) return p.number("unit_m");
-  const std::string_view unit = p.word("unit");
-  if (unit == "m") return 1;
-  if (unit == "cm") return 1e-2;
-  if (unit == "mm") return 1e-3;
-  if (unit == "inch") return 0.0254;
-  return std::nullopt;
+  const auto unit = std::ranges::find(file_units, p.word("unit"), &FileUnit::name);
+  if (unit == std::end(file_units)) return std::nullopt;
+  return unit->metres;
 }
 
 std::optional<FileAxis> up_axis(std::string_view up) {
