@@ -187,6 +187,8 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
   if (search.cut()) how += ", cut while refining";
   search.go_on(work.until(last_share));
   Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {
+    // Once the clock has ended the search, the time of the one run that there is must do.
+    if (work.late(last_share)) return WallTime{run.wall_s, slow_run - 1};
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });
