@@ -112,7 +112,9 @@ std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load) {
   double inertia = rate * rate;  // of the mass beside the stiffness
   constexpr int most = 1000;
   constexpr double near = 1e-5;  // rad: there energies differ by less than rounding
-  constexpr double longest = 1, close = 1e-6;  // rad over the whole strand
+  // rad over the whole strand; many elements may turn further altogether.
+  const double longest = std::max(1.0, 0.2 * static_cast<double>(n / 3));
+  constexpr double close = 1e-6;
   const double heaviest = 1e12 * inertia;
   for (int i = 0; i < most; ++i) {
     // From the state at rest: the step of a body that has lost its velocity.

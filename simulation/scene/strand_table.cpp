@@ -1,10 +1,15 @@
 #include "simulation/scene/strand_table.h"
 
+#include <algorithm>
 #include <iterator>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
+#include "contract/constants.h"
 #include "contract/input_error.h"
+#include "models/cut/graded_cut.h"
+#include "models/strand/needed_elements.h"
 #include "simulation/groom/frames.h"
 #include "simulation/scene/directions.h"
 #include "simulation/scene/shapes.h"
@@ -49,10 +54,21 @@ constexpr Parameter own_parameters[] = {
          "points: they are the shape at rest; straight: a straight strand is bent into "
          "them at t = 0, as in a knot",
      .choices = "points|straight"},
+    {.name = "cuts",
+     .help = "where elements end: as grading says, or such that they share what bends "
+             "the strand at rest, clamped and under its weight",
+     .choices = "grading|rest"},
+    {.name = "tolerance_m",
+     .help = "as few elements as its shape at rest needs to be within this distance, up "
+             "to `elements` (m); 0: `elements`",
+     .number = 0,
+     .min = 0,
+     .max = 1e3},
 };
 
 void refuse_beside_points(const Table& table) {
-  for (const char* key : {"length_m", "position_m", "root_tangent", "shape"}) {
+  for (const char* key :
+       {"length_m", "position_m", "root_tangent", "shape", "cuts", "tolerance_m"}) {
     if (!table.given(key)) continue;
     throw InputError(std::string(key) + " beside points", table.place(key),
                      "leave one of them out");
@@ -65,6 +81,71 @@ Vec normal(const Table& table, const Vec& tangent) {
   if (dot(e1, e1) > 0) return e1;
   throw InputError("normal is along the tangent", table.place("normal"),
                    "give a normal in another direction");
+}
+
+void check_winding(const Strand& strand, const Table& table) {
+  for (const Segment& segment : strand.segments) {
+    const Vec& darboux = segment.natural;
+    const double turns = norm(darboux) * segment.length / turn;
+    if (turns <= most_turns) continue;
+    throw InputError("an element winds by " + std::to_string(turns) + " turns",
+                     table.place(),
+                     "give more elements, a shorter strand or less curvature: at most "
+                     "20 turns each");
+  }
+}
+
+/// A strand whose elements share what bends it at rest: `elements`, or as few as are
+/// within the tolerance there.
+Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
+  const Parameters& p = table.values();
+  const double tolerance = p.number("tolerance_m");
+  const int most = p.whole("elements");
+  try {
+    int elements = tolerance > 0 ? std::min(2, most) : most;
+    GradedCut cut = graded_cut(rod, elements);
+    while (elements < most && cut.error > tolerance) {
+      elements = std::min(most, elements + std::max(1, elements / 4));
+      cut = graded_cut(rod, elements);
+    }
+    return cut_into(rod, cut.lengths,
+                    p.word("initial") == "straight" ? uniform_shape({}) : Shape{});
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& failure) {
+    throw InputError(failure.what(), table.place("cuts"), "leave out cuts");
+  }
+}
+
+/// From its root, which `frame` clamps.
+Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape& natural,
+                 const Frame& frame, bool clamped) {
+  const Parameters& p = table.values();
+  const double weight =
+      earth_gravity * material.material.density * material.section.area();
+  const double length = p.number("length_m"), tolerance = p.number("tolerance_m");
+  const bool rest = p.word("cuts") == "rest";
+  const auto refuse_if = [&table](bool bad, const char* problem, const char* key) {
+    if (bad) throw InputError(problem, table.place(key), "leave out one of them");
+  };
+  refuse_if(rest && !clamped, "no rest of a strand that nothing holds", "cuts");
+  refuse_if(rest && p.number("grading") != 1, "grading beside cuts = \"rest\"",
+            "grading");
+  refuse_if(tolerance > 0 && p.number("grading") != 1, "grading beside a tolerance",
+            "grading");
+  if (rest) {
+    Strand strand = cut_at_rest(
+        table,
+        {material.material, material.section, length, natural, frame, {0, 0, -weight}});
+    check_winding(strand, table);
+    return strand;
+  }
+  if (tolerance == 0) return cut_strand(table, material, length, natural);
+  const Vec stiff = models::stiffness(material.material, material.section);
+  return cut_strand(table, material, length, natural, {},
+                    models::elements_for(
+                        {length, weight, std::min(stiff.y, stiff.z), frame.e0, natural},
+                        tolerance, p.whole("elements")));
 }
 
 }  // namespace
@@ -97,15 +178,7 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
   const bool straight = p.word("initial") == "straight";
   Strand strand = make_strand(material.material, material.section, cut, natural,
                               straight ? uniform_shape({}) : initial);
-  for (const Segment& segment : strand.segments) {
-    const Vec& darboux = segment.natural;
-    const double turns = norm(darboux) * segment.length / turn;
-    if (turns <= most_turns) continue;
-    throw InputError("an element winds by " + std::to_string(turns) + " turns",
-                     table.place(),
-                     "give more elements, a shorter strand or less curvature: at most "
-                     "20 turns each");
-  }
+  check_winding(strand, table);
   return strand;
 }
 
@@ -134,11 +207,12 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
     throw InputError("natural = \"straight\" without points", table.place("natural"),
                      "give points, or leave it out");
   }
-  Strand strand = cut_strand(table, material, p.number("length_m"),
-                             natural_shape(table, material, common.seed, stream));
   const Vec tangent = direction(table, "root_tangent");
-  set_root(strand, common.head, common.free_root, p.vec("position_m"),
-           frame_of(tangent, normal(table, tangent)));
+  const Frame frame = frame_of(tangent, normal(table, tangent));
+  Strand strand =
+      cut_shape(table, material, natural_shape(table, material, common.seed, stream),
+                frame, !common.free_root);
+  set_root(strand, common.head, common.free_root, p.vec("position_m"), frame);
   return strand;
 }
 

@@ -146,8 +146,9 @@ CutStrands StrandSeries::outline() const {
 }
 
 bool has_tolerance(const StrandSource& source) {
-  return source.groom && (detail_tolerance(source.table) > 0 ||
-                          source.table.values().number("fit_tolerance") > 0);
+  const Parameters& p = source.table.values();
+  if (!source.groom) return p.number("tolerance_m") > 0;
+  return detail_tolerance(source.table) > 0 || p.number("fit_tolerance") > 0;
 }
 
 void clear_detail(Table& groom) {
@@ -160,7 +161,11 @@ void clear_detail(Table& groom) {
 StrandTables with_elements(StrandTables tables, int elements) {
   for (StrandSource& source : tables.sources) {
     set_elements(source, elements);
-    if (source.groom) clear_detail(source.table);
+    if (source.groom) {
+      clear_detail(source.table);
+    } else {
+      source.table.set("tolerance_m", "0", source.table.place("tolerance_m"));
+    }
   }
   return tables;
 }
