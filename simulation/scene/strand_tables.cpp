@@ -163,7 +163,7 @@ StrandTables with_elements(StrandTables tables, int elements) {
     set_elements(source, elements);
     if (source.groom) {
       clear_detail(source.table);
-    } else {
+    } else if (has_tolerance(source)) {
       source.table.set("tolerance_m", "0", source.table.place("tolerance_m"));
     }
   }
