@@ -92,7 +92,7 @@ std::optional<Trial> Finalists::counting(double target, const Accept& accept) {
 bool Finalists::simpler(const Trial& a, const Trial& b) const {
   const auto key = [this](const Trial& run) {
     const Method& method = methods_[run.method];
-    return std::tuple(method.extrapolated, method.options.size(),
+    return std::tuple(method.extrapolated, method.cut_at_rest, method.options.size(),
                       frame_work(method, run.elements, run.substeps), run.elements,
                       run.method);
   };
@@ -195,7 +195,8 @@ std::optional<BestRuns> Finalists::of(double target) {
   };
   const auto control = [&](const Method& method) {
     return method.by_tolerance == won.by_tolerance &&
-           method.extrapolated == won.extrapolated && method.refresh == won.refresh;
+           method.extrapolated == won.extrapolated && method.refresh == won.refresh &&
+           method.cut_at_rest == won.cut_at_rest;
   };
   BestRuns best{*winner, {}, {}};
   const auto add = [&](std::string_view choice, const auto& other) {
@@ -234,6 +235,11 @@ std::optional<BestRuns> Finalists::of(double target) {
   });
   replace("refresh", [&](const Method& method) {
     return method.refresh != won.refresh && method.by_tolerance == won.by_tolerance;
+  });
+  replace("cuts", [&](const Method& method) {
+    return method.cut_at_rest != won.cut_at_rest &&
+           method.by_tolerance == won.by_tolerance &&
+           method.extrapolated == won.extrapolated;
   });
   best.without.emplace_back("elements", twice_the_elements(*winner, target));
   best.without.emplace_back("dt_s", half_the_step(*winner, target));

@@ -66,6 +66,10 @@ constexpr Parameter own_settings[] = {
      .help = "models, as in super_helix,der, on which methods with error control are "
              "compared with those that know steps only: as long a search again for each",
      .text = true},
+    {.name = "cuts",
+     .help = "given: elements as long as each scene has them; both: also such that they "
+             "share what bends a strand at rest",
+     .choices = "given|both"},
     {.name = "search_work",
      .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
              "--quick, else 60",
@@ -124,6 +128,7 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
     for (const std::string& id : plan.control) static_cast<void>(find_model(id));
   }
   plan.methods.integrators = line.integrators;
+  plan.methods.cuts_at_rest = own.word("cuts") == "both";
   if (line.quick) {
     if (line.models.empty()) {
       plan.methods.models = {"super_helix", "articulated_chain", "der", "mass_spring",

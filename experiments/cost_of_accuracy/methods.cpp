@@ -100,6 +100,11 @@ std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
       }
     }
   }
+  if (!choice.cuts_at_rest || !may_cut_at_rest(given)) return all;
+  for (std::size_t i = 0, count = all.size(); i < count; ++i) {
+    all.push_back(all[i]);
+    all.back().cut_at_rest = true;
+  }
   return all;
 }
 
@@ -137,6 +142,7 @@ std::vector<std::string_view> choices_of(const ModelEntry& model) {
 bool same(const Method& a, const Method& b) {
   return a.model == b.model && a.integrator == b.integrator && a.refresh == b.refresh &&
          a.by_tolerance == b.by_tolerance && a.extrapolated == b.extrapolated &&
+         a.cut_at_rest == b.cut_at_rest &&
          std::ranges::all_of(choices_of(*a.model), [&](std::string_view choice) {
            return a.word(choice) == b.word(choice);
          });

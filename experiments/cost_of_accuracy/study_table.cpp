@@ -34,6 +34,8 @@ constexpr Column columns[] = {
     {"options", "other options of the model that are not the default"},
     {"refresh", "when the Newton matrix is rebuilt, if not in every iteration"},
     {"elements", "number of elements"},
+    {"cuts",
+     "rest: elements share what bends a strand at rest; else as the scene has them"},
     {"extrapolated",
      "whether the tip is extrapolated from these elements and half as many (Richardson)"},
     {"dt_s", "time step; empty: by tolerance"},
@@ -97,6 +99,7 @@ void set_method(const Method& method, Row& row) {
     options.refresh = method.refresh;
     row.set("refresh", integrators::text_of(options, "refresh"));
   }
+  if (method.cut_at_rest) row.set("cuts", "rest");
   if (method.extrapolated) row.set("extrapolated", true);
   for (const std::string_view choice : own_columns) {
     if (!method.word(choice).empty()) row.set(choice, method.word(choice));
@@ -130,6 +133,7 @@ Configuration configuration(const Row& row, double rate) {
     integrators::apply(options, "refresh", row.text("refresh"), "refresh");
     made.method.refresh = options.refresh;
   }
+  made.method.cut_at_rest = row.text("cuts") == "rest";
   made.method.extrapolated = row.text("extrapolated") == "true";
   made.method.by_tolerance = row.has("tolerance");
   made.substeps = made.method.by_tolerance

@@ -65,7 +65,9 @@ bool may_extrapolate(const Scene& scene) {
 
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate) {
-  Scene scene = with_elements(with_method(std::move(given), method), elements);
+  Scene scene = with_method(std::move(given), method);
+  scene = method.cut_at_rest ? with_elements_at_rest(std::move(scene), elements)
+                             : with_elements(std::move(scene), elements);
   if (method.by_tolerance) {
     scene.options.step = Options{}.step;  // does not count
     scene.options.tolerance = tolerance_of(method, substeps);
@@ -84,7 +86,8 @@ std::string physics(Scene scene) {
   scene = with_method(std::move(scene), {&model_catalogue().front(), {}, {}});
   scene.options = {};
   // The strands are not rediscretised: one element may be too few.
-  scene.tables = std::make_shared<const StrandTables>(with_elements(*scene.tables, 1));
+  scene.tables = std::make_shared<const StrandTables>(
+      with_cuts(with_elements(*scene.tables, 1), "grading"));
   std::vector<std::string> files;
   for (EffectChoice& effect : scene.effects) {
     for (const Parameter& p : effect.entry->parameters) {

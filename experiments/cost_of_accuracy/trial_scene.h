@@ -18,6 +18,8 @@ struct Method : simulation::Method {
   /// their square (Richardson). Not where something touches: the instant of contact
   /// depends on the elements.
   bool extrapolated = false;
+  /// Elements share what bends a strand at rest; else they are those of the scene.
+  bool cut_at_rest = false;
 };
 
 /// 0.1 (fineness_unit/s)^p over the length, p the method's order.
@@ -64,9 +66,11 @@ struct MethodChoice {
   /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in
   /// all pairs, others one at a time.
   std::vector<std::string> options;
-  /// When integrators that iterate rebuild their matrix.
   /// Integrators with error control also with fixed steps.
   bool fixed_steps = true;
+  /// Elements also as strands at rest need them, where a scene leaves that open.
+  bool cuts_at_rest = false;
+  /// When integrators that iterate rebuild their matrix.
   std::vector<Refresh> refreshes = {Refresh::every_iteration, Refresh::every_step,
                                     Refresh::when_slow};
 };

@@ -113,6 +113,23 @@ Scene with_elements(Scene scene, int elements) {
   });
 }
 
+Scene with_elements_at_rest(Scene scene, int elements) {
+  return cut_anew(std::move(scene), [elements](const StrandTables& tables) {
+    return with_cuts(with_elements(tables, elements), "rest");
+  });
+}
+
+bool may_cut_at_rest(const Scene& scene) {
+  return scene.tables != nullptr &&
+         std::ranges::all_of(scene.strands,
+                             [](const Strand& strand) { return !strand.free_root; }) &&
+         std::ranges::all_of(scene.tables->sources, [](const StrandSource& source) {
+           const Parameters& p = source.table.values();
+           return !source.groom && p.numbers("points").empty() &&
+                  p.number("grading") == 1 && p.word("cuts") != "rest";
+         });
+}
+
 Scene with_twice_the_elements(Scene scene) {
   return cut_anew(std::move(scene), [](const StrandTables& tables) {
     return with_twice_the_elements(tables);

@@ -170,6 +170,14 @@ StrandTables with_elements(StrandTables tables, int elements) {
   return tables;
 }
 
+StrandTables with_cuts(StrandTables tables, std::string_view cuts) {
+  for (StrandSource& source : tables.sources) {
+    if (source.groom || source.table.values().word("cuts") == cuts) continue;
+    source.table.set("cuts", std::string(cuts), source.table.place("cuts"));
+  }
+  return tables;
+}
+
 StrandTables with_twice_the_elements(StrandTables tables) {
   for (StrandSource& source : tables.sources) {
     if (has_tolerance(source)) {

@@ -95,6 +95,8 @@ void clear_detail(Table& groom);
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
+/// The same tables, every [strand] with these `cuts`.
+StrandTables with_cuts(StrandTables tables, std::string_view cuts);
 /// The same tables, every strand with twice its elements. Throws InputError where these
 /// follow from a tolerance.
 StrandTables with_twice_the_elements(StrandTables tables);

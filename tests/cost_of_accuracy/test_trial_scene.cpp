@@ -5,7 +5,9 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
+#include "simulation/scene/write_scene.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_trial_scene {
@@ -57,6 +59,39 @@ TEST(TrialScene, HasTheChoiceAndNothingElseChanged) {
   EXPECT_EQ(scene.effects.size(), given.effects.size());
   EXPECT_EQ(scene.title, given.title);
   EXPECT_EQ(scene.duration, given.duration);
+}
+
+TEST(TrialScene, ElementsShareWhatBendsTheStrandAtRest) {
+  const Scratch folder;
+  const std::string file = folder.write("curly.toml", curly);
+  const Scene given = read_open_scene(file);
+  Method method{{&find_model("super_helix"), {}, "implicit_midpoint"}};
+  method.cut_at_rest = true;
+  const auto& strand = trial_scene(given, method, 9, 7, 60).strands.front();
+  ASSERT_EQ(strand.segments.size(), 9u);
+  const auto [least, most] =
+      std::ranges::minmax(strand.segments, {}, &models::Segment::length);
+  EXPECT_GT(most.length, 1.2 * least.length);
+  // A row says so, and so does the scene that is written.
+  Row row;
+  set_method(method, row);
+  row.set("elements", 9).set("dt_s", 1.0 / 420);
+  EXPECT_TRUE(configuration(row, 60).method.cut_at_rest);
+  EXPECT_NE(scene_text(trial_scene(given, method, 9, 7, 60)).find("cuts = \"rest\""),
+            std::string::npos);
+  // Cuts are no physics.
+  std::string at_rest = curly;
+  at_rest.replace(at_rest.find("elements = 17"), 13, "cuts = \"rest\"");
+  const Scene cut = read_open_scene(folder.write("cut.toml", at_rest));
+  const auto among = [](const Scene& scene, bool both) {
+    const MethodChoice choice{.models = {"super_helix"},
+                              .integrators = {"implicit_midpoint"},
+                              .options = {"none"},
+                              .cuts_at_rest = both};
+    return methods(scene, choice).size();
+  };
+  EXPECT_EQ(among(given, true), 2 * among(given, false));
+  EXPECT_EQ(among(cut, true), among(cut, false));
 }
 
 TEST(TrialScene, PhysicsDoesNotDependOnWhatIsChosen) {

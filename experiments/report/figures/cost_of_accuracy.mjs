@@ -91,6 +91,7 @@ const choice_words = {
   dt_s: 'time step',
   tolerance: 'step control',
   extrapolated: 'extrapolation',
+  cuts: 'cuts of elements',
   refresh: 'refresh of the matrix',
 };
 const choice_name = (choice) => choice_words[choice] ?? spaced(choice);

@@ -95,6 +95,7 @@ const words = {
   dt_s: 'time step',
   tolerance: 'step control',
   extrapolated: 'extrapolation',
+  cuts: 'cuts of elements',
   refresh: 'refresh of the matrix',
 };
 
