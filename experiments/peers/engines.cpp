@@ -19,6 +19,9 @@ std::span<const Engine> engines() {
 #ifdef TRESS_PEERS_ODE
       {"ode", TRESS_PEERS_ODE, ode_methods(), ode_rubbing()},
 #endif
+#ifdef TRESS_PEERS_MUJOCO_3
+      {"mujoco_3", TRESS_PEERS_MUJOCO_3, mujoco_3_methods(), {}},
+#endif
   };
   return found;
 }
@@ -36,6 +39,9 @@ std::span<const std::string_view> missing() {
 #endif
 #ifndef TRESS_PEERS_ODE
       "libode-dev",
+#endif
+#ifndef TRESS_PEERS_MUJOCO_3
+      "@mujoco/mujoco (npm)",
 #endif
   };
   return packages;

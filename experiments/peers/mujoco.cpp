@@ -1,7 +1,6 @@
 // MuJoCo: joint coordinates, composite inertia with a sparse L^T D L factor;
 // semi-implicit Euler, or implicit in velocity. Ball joints, or universal joints as two
 // hinges.
-#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include <cmath>
@@ -10,46 +9,17 @@
 #include <vector>
 
 #include "experiments/peers/mujoco_model.h"
+#include "experiments/peers/mujoco_strand.h"
 #include "experiments/peers/peer.h"
 
 namespace tress::experiments::peers {
 namespace {
 
-enum class Joint { ball, universal };
-
-std::string joints(Joint joint, double stiffness) {
-  if (joint == Joint::ball) {
-    return fmt::format("<joint type='ball' stiffness='{}'/>", stiffness);
-  }
-  return fmt::format(
-      "<joint type='hinge' axis='0 1 0' stiffness='{0}'/>"
-      "<joint type='hinge' axis='0 0 1' stiffness='{0}'/>",
-      stiffness);
-}
-
-/// The strand in MuJoCo's own format: links nested from the clamp outwards.
-std::string description(const Swing& swing, double dt, Joint joint,
-                        std::string_view integrator) {
-  std::string text = fmt::format(
-      "<mujoco><compiler angle='radian'/><option timestep='{}' integrator='{}'>"
-      "<flag constraint='disable' contact='disable'/></option><worldbody>",
-      dt, integrator);
-  const double l = swing.link_length();
-  for (int i = 0; i < swing.links; ++i) {
-    text += fmt::format("<body pos='{} 0 0'>{}", i == 0 ? 0 : l,
-                        joints(joint, swing.stiffness(i)));
-    text += fmt::format("<inertial pos='{0} 0 0' mass='{1}' diaginertia='{2} {2} {2}'/>",
-                        l / 2, swing.mass(), swing.moment());
-  }
-  for (int i = 0; i < swing.links; ++i) text += "</body>";
-  return text + "</worldbody></mujoco>";
-}
-
 class Mujoco : public Peer {
  public:
-  Mujoco(const Swing& swing, double dt, Joint joint, std::string_view integrator)
+  Mujoco(const Swing& swing, double dt, MujocoJoint joint, std::string_view integrator)
       : swing_(swing),
-        made_(description(swing, dt, joint, integrator)),
+        made_(mujoco_strand(swing, dt, joint, integrator)),
         model_(&made_.model()),
         data_(&made_.data()),
         momentum_(static_cast<std::size_t>(model_->nv)) {}
@@ -92,15 +62,15 @@ class Mujoco : public Peer {
   std::vector<mjtNum> momentum_;
 };
 
-template <Joint joint, bool implicit>
+template <MujocoJoint joint, bool implicit>
 std::unique_ptr<Peer> make(const Swing& swing, double dt) {
   return std::make_unique<Mujoco>(swing, dt, joint, implicit ? "implicit" : "Euler");
 }
 
 constexpr Method methods[] = {
-    {"ball joints: Euler", 1, make<Joint::ball, false>},
-    {"universal joints: Euler", 1, make<Joint::universal, false>},
-    {"universal joints: implicit", 1, make<Joint::universal, true>},
+    {"ball joints: Euler", 1, make<MujocoJoint::ball, false>},
+    {"universal joints: Euler", 1, make<MujocoJoint::universal, false>},
+    {"universal joints: implicit", 1, make<MujocoJoint::universal, true>},
 };
 
 }  // namespace

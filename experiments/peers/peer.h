@@ -67,6 +67,8 @@ class Peer {
   virtual ~Peer() = default;
   /// From t to t + dt, with the dt that it was made with.
   virtual void step(double t) = 0;
+  /// So many of those steps of dt: their wall time, s.
+  virtual double advance(double t, double dt, int steps);
   virtual Motion motion() = 0;
 };
 
@@ -93,5 +95,6 @@ std::span<const Method> simbody_methods();
 std::span<const Method> bullet_methods();
 std::span<const Method> mujoco_methods();
 std::span<const Method> ode_methods();
+std::span<const Method> mujoco_3_methods();
 
 }  // namespace tress::experiments::peers

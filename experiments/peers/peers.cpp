@@ -1,16 +1,22 @@
-// What do other simulators pay for a strand? Debian's Simbody, Bullet, MuJoCo and ODE on
-// scene `swing`: tip error against each one's own finest run, over a ladder of steps.
+// What do other simulators pay for a strand? Debian's Simbody, Bullet, MuJoCo and ODE,
+// and npm's MuJoCo 3, on scene `swing`: tip error against each one's own finest run, over
+// a ladder of steps.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/input_error.h"
+#include "experiments/numerics/tip_track.h"
 #include "experiments/peers/peer.h"
+#include "experiments/problems/strand_models.h"
+#include "experiments/problems/strand_reference.h"
+#include "experiments/problems/strand_scenes.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/message.h"
 #include "experiments/run/settings.h"
@@ -37,6 +43,8 @@ constexpr Column columns[] = {
     {"tip_error_rel",
      "rms over the run of the tip's distance from the same peer's finest run, over L; "
      "of first order understated by the ratio of the finest step to dt_s"},
+    {"total_error_rel",
+     "the same distance from the continuous rod: of links, joints and steps together"},
     {"largest_stable", "the largest step with none unstable below it"},
     {"cheapest_1pct", "fastest run with a tip error of at most 1 %", true},
     {"cheapest_0p1pct", "fastest run with a tip error of at most 0.1 %", true},
@@ -48,7 +56,7 @@ constexpr Column columns[] = {
 constexpr Parameter settings[] = {
     {.name = "peer",
      .help = "the one library to run",
-     .choices = "all|simbody|bullet|mujoco|ode"},
+     .choices = "all|simbody|bullet|mujoco|ode|mujoco_3"},
 };
 
 constexpr double sample = 0.02;  // s between looks at the tip, and the largest step
@@ -72,15 +80,11 @@ bool sane(const Motion& motion, const Swing& swing) {
 }
 
 Run simulate(const Method& method, const Swing& swing, int steps_per_sample) {
-  using Clock = std::chrono::steady_clock;
   const double dt = sample / steps_per_sample;
   const std::unique_ptr<Peer> peer = method.make(swing, dt);
   Run run;
   for (int i = 0; i < samples; ++i) {
-    const auto start = Clock::now();
-    for (int j = 0; j < steps_per_sample; ++j)
-      peer->step((i * steps_per_sample + j) * dt);
-    run.wall_s += std::chrono::duration<double>(Clock::now() - start).count();
+    run.wall_s += peer->advance(i * sample, dt, steps_per_sample);
     const Motion motion = peer->motion();
     if (!sane(motion, swing)) {
       run.gave_up_at = (i + 1) * sample;
@@ -115,8 +119,32 @@ Track read_track(std::string_view text) {
   return track;
 }
 
+/// The continuous rod, by our own models.
+TipReference rod() {
+  const MakeStrand make = [](std::string_view model, int elements) {
+    const ModelEntry& entry = find_model(model);
+    Parameters p(setup_parameters(entry), fmt::format("model {}", model));
+    set_known(p, find_strand_scene("swing").settings);
+    set_known(p, {{"modes", "bend"}, {"tangent", "stiff"}});
+    p.set("elements", std::to_string(elements));
+    return entry.make(p);
+  };
+  return converged_rod(make, {samples * sample, samples, 1e-3 * Swing::length});
+}
+
+/// Of a track seen from the clamp, over the length.
+double distance_from(const TipReference& rod, const Track& track) {
+  std::vector<double> tips;  // m
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const double t = sample * static_cast<double>(i + 1);
+    const Vec tip = 1e-3 * (track[i] + Vec{0, Swing::clamp(t), 0});
+    tips.insert(tips.end(), {tip.x, tip.y, tip.z});
+  }
+  return tip_error(tips, rod.tip, 1e-3 * Swing::length);
+}
+
 void measure(const Method& method, const Swing& swing, int steps_per_sample, int repeat,
-             Row& row) {
+             const TipReference& rod, Row& row) {
   constexpr double long_run = 0.2;  // s; beyond it one interruption is a small part
   const int steps = samples * steps_per_sample;
   Run run = simulate(method, swing, steps_per_sample);
@@ -135,6 +163,7 @@ void measure(const Method& method, const Swing& swing, int steps_per_sample, int
     return;
   }
   row.set("wall_s", median(walls)).set("us_per_step", 1e6 * median(walls) / steps);
+  row.set("total_error_rel", distance_from(rod, run.track));
   row.set("tip_um", text(run.track));
 }
 
@@ -152,6 +181,11 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   std::vector<int> elements = line.elements;
   if (elements.empty()) elements = line.full ? std::vector{5, 20, 80} : std::vector{20};
+  std::shared_ptr<const TipReference> continuous;
+  if (!line.dry_run) {
+    tell("peers: the continuous rod\n");
+    continuous = std::make_shared<const TipReference>(rod());
+  }
   std::vector<Case> all;
   for (const Engine& engine : peers::engines()) {
     if (chosen != "all" && chosen != engine.id) continue;
@@ -163,9 +197,10 @@ std::vector<Case> cases(const CommandLine& line) {
           identity.set("peer", engine.id).set("version", engine.version);
           identity.set("method", method.name).set("elements", links);
           identity.set("dt_s", sample / steps_per_sample);
-          all.push_back({identity, [&method, links, steps_per_sample,
+          all.push_back({identity, [&method, links, steps_per_sample, continuous,
                                     repeat = line.repeat](Row& row, const Deadline&) {
-                           measure(method, Swing{links}, steps_per_sample, repeat, row);
+                           measure(method, Swing{links}, steps_per_sample, repeat,
+                                   *continuous, row);
                          }});
         }
       }

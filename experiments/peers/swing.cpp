@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -31,6 +32,13 @@ Vec Swing::gravity(double t) {
 }
 
 double Swing::clamp(double t) { return amplitude * (1 - std::cos(omega * t)); }
+
+double Peer::advance(double t, double dt, int steps) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  for (int i = 0; i < steps; ++i) step(t + i * dt);
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 Vec rotation_vector(double w, const Vec& xyz) {
   const double sine = norm(xyz);
