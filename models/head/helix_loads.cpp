@@ -1,6 +1,7 @@
 #include "models/head/helix_loads.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "models/head/semidefinite.h"
 
@@ -34,8 +35,10 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
   return loads_.data();
 }
 
+// Flat: functions of its own that another source has, too, compiled with fused products,
+// could be taken from there.
 template <class T>
-void HelixLoads<T>::place(const Element* elements) {
+[[gnu::flatten]] void HelixLoads<T>::place(const Element* elements) {
   Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -50,8 +53,8 @@ void HelixLoads<T>::place(const Element* elements) {
 
 /// Whether some of its points have a load, which is in sums_ then.
 template <class T>
-bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
-                            bool others) {
+[[gnu::flatten]] bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate,
+                                             const Element& e, bool others) {
   const HelixElement<T> helix(e.q, rate);
   const Functions functions(e.q, block_.material->length);
   bool ready = false;
@@ -114,7 +117,8 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
 ///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
 ///     phi.
 template <class T>
-void HelixLoads<T>::look_for(const NearBody& body, std::span<char> near) const {
+[[gnu::flatten]] void HelixLoads<T>::look_for(const NearBody& body,
+                                              std::span<char> near) const {
   const T length = T(units_.length) * block_.material->length;
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
@@ -159,11 +163,14 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
   for (std::size_t k = 0; k < points_; ++k) {
     Point& point = at_[k];
     const Vec3T x = start + turn * (length * point.p);
+    T bound(std::numeric_limits<typename T::Scalar>::lowest());
     if constexpr (requires { shape.at_least(x); }) {
-      if (!any_less(shape.at_least(x), reach)) continue;
+      bound = shape.at_least(x) - reach;
+      if (!any_less(bound, o)) continue;
     }
     const NearestOf<T> near = shape.nearest(x);
-    const T outside = near.to.value - reach;
+    // The bound again: rounding must not decide otherwise beside a lane that is near.
+    const T outside = larger(bound, near.to.value - reach);
     if (!any_less(outside, o)) continue;
     const Vec3T local =
         e.v + cross(e.omega, point.p) + helix.slope(functions.at(arc_of(k))) * rate;
@@ -191,7 +198,8 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
 
 /// Effects other than bodies, strand by strand.
 template <class T>
-void HelixLoads<T>::take_others(const Vec3T* v, const Element* elements) {
+[[gnu::flatten]] void HelixLoads<T>::take_others(const Vec3T* v,
+                                                 const Element* elements) {
   const std::size_t all = n_ * points_;
   others_.assign(all, {});
   some_.assign(all, T(0));
