@@ -1,20 +1,10 @@
 #include "models/head/helix_loads.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
-namespace {
-
-template <class T>
-Vec3<T> in_body(const BodyPose& pose, const Vec3<T>& x) {
-  return FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2}.back(x);
-}
-
-}  // namespace
-
 template <class T>
 const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v,
                                               const Element* elements) {
@@ -146,53 +136,20 @@ template <class Shape>
 void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
                           const Element& e, const HelixElement<T>& helix,
                           const Functions& functions, const Vec3T& rate) {
-  const BodyPose& pose = body.pose;
-  const BodyContact& law = body.contact->law;
   const Start& at = starts_[i];
-  // From the components of the element to those of the body, and where it starts.
-  const auto turn = Matrix3<T>::columns(
-      in_body(pose, at.frame.e0), in_body(pose, at.frame.e1), in_body(pose, at.frame.e2));
-  const Vec3T start = in_body(pose, at.x - Vec3T(pose.x));
-  const Vec3T moves(pose.frame.back(pose.v)), turns(pose.frame.back(pose.omega));
-  const T length(units_.length), speed(units_.speed()), o(0), reach(law.offset);
-  // The surface moves faster further out: du/dx = -omega x.
-  const double pos = block_.h * block_.h, vel = block_.h;
-  const Mat3Of<T> by_place = {{T(vel), T(pos) * turns.z, -(T(pos) * turns.y)},
-                              {-(T(pos) * turns.z), T(vel), T(pos) * turns.x},
-                              {T(pos) * turns.y, -(T(pos) * turns.x), T(vel)}};
+  const BodyTouch<T, Shape> of_body(body, shape, at.frame, block_.h);
+  const Vec3T start = of_body.in_body(at.x);
+  const T length(units_.length), speed(units_.speed());
   for (std::size_t k = 0; k < points_; ++k) {
     Point& point = at_[k];
-    const Vec3T x = start + turn * (length * point.p);
-    T bound(std::numeric_limits<typename T::Scalar>::lowest());
-    if constexpr (requires { shape.at_least(x); }) {
-      bound = shape.at_least(x) - reach;
-      if (!any_less(bound, o)) continue;
-    }
-    const NearestOf<T> near = shape.nearest(x);
-    // The bound again: rounding must not decide otherwise beside a lane that is near.
-    const T outside = larger(bound, near.to.value - reach);
-    if (!any_less(outside, o)) continue;
-    const Vec3T local =
-        e.v + cross(e.omega, point.p) + helix.slope(functions.at(arc_of(k))) * rate;
-    const Vec3T u = turn * (speed * local) - (moves + cross(turns, x));
-    ContactSlopesOf<T> slopes;
-    const Vec3T force = law.load(near.to, shape.curvature(x, near), u, slopes);
-    const Mat3Of<T> b = T(-pos) * slopes.by_x - slopes.by_u * by_place;
-    const Symmetric3<T> symmetric{b.r0.x,
-                                  b.r1.y,
-                                  b.r2.z,
-                                  T(0.5) * (b.r0.y + b.r1.x),
-                                  T(0.5) * (b.r0.z + b.r2.x),
-                                  T(0.5) * (b.r1.z + b.r2.y)};
+    const auto velocity = [&] {
+      return speed * (e.v + cross(e.omega, point.p) +
+                      helix.slope(functions.at(arc_of(k))) * rate);
+    };
     const T w = weight_of(k);
-    const T to_force = w * T(units_.length / units_.force()),
-            to_block = w * T(1 / units_.density);
-    point.load.force =
-        point.load.force + where_less(outside, o, to_force * turn.back(force), Vec3T{});
-    point.load.block =
-        point.load.block +
-        where_less(outside, o, to_block * congruent(turn.transposed(), symmetric), {});
-    point.some = where_less(outside, o, T(1), point.some);
+    of_body.touch(start + of_body.turn() * (length * point.p), velocity,
+                  w * T(units_.length / units_.force()), w * T(1 / units_.density),
+                  point.load, point.some);
   }
 }
 
