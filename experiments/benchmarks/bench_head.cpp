@@ -41,7 +41,7 @@ std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag,
 /// Hair combed down on an ellipsoid, which is `away` from it (m) or, without a number,
 /// not there.
 std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
-                             std::optional<double> away) {
+                             std::optional<double> away, Make make) {
   const Vec axes{0.08, 0.1, 0.12};
   models::HeadOptions options;
   options.elements = elements;
@@ -53,7 +53,7 @@ std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
         models::BodyContact{
             .stiffness = 10, .damping = 1, .friction = 0.3, .offset = 4e-5})};
   }
-  auto made = helix_head(options, pack);
+  auto made = make(options, pack);
   made->reserve(strands);
   for (std::size_t k = 0; k < strands; ++k) {
     // Over the upper half, neighbours in height side by side.
@@ -105,7 +105,10 @@ constexpr Line lines[] = {
     {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.5, models::der_head},
     {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1.5, models::der_head},
     {"der, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1.5, models::der_head},
-    {"der, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 1.5, models::der_head}};
+    {"der, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 1.5, models::der_head},
+    {"springs, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1, models::spring_head},
+    {"springs, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1, models::spring_head},
+    {"springs, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1, models::spring_head}};
 
 void register_all() {
   benchmark::RegisterBenchmark("reference/64", [](benchmark::State& state) {
@@ -167,10 +170,18 @@ bool costs_met() {
 bool bodies_met() {
   constexpr std::size_t strands = 256;
   bool met = true;
-  for (const int lanes : {4, 8}) {
-    const HeadPack pack{HeadNumber::float64, lanes};
-    Stepping without{combed(strands, pack, {})}, on{combed(strands, pack, 0.0)},
-        beside{combed(strands, pack, 5.0)};
+  struct Kind {
+    std::string_view name;
+    int lanes;
+    Make make;
+  };
+  for (const Kind& kind : {Kind{"4 of 64 bits", 4, models::helix_head},
+                           {"8 of 64 bits", 8, models::helix_head},
+                           {"springs, 4 of 64 bits", 4, models::spring_head}}) {
+    const HeadPack pack{HeadNumber::float64, kind.lanes};
+    Stepping without{combed(strands, pack, {}, kind.make)},
+        on{combed(strands, pack, 0.0, kind.make)},
+        beside{combed(strands, pack, 5.0, kind.make)};
     ReferenceStrands kernel(strands);
     for (Stepping* one : {&without, &on, &beside}) {
       for (int s = 0; s < 500; ++s) one->step();
@@ -180,8 +191,8 @@ bool bodies_met() {
         for (int i = 0; i < 40; ++i) what.step();
       };
     };
-    const auto name = [lanes](const char* what) {
-      return fmt::format("{} of 64 bits, {}", lanes, what);
+    const auto name = [&kind](const char* what) {
+      return fmt::format("{}, {}", kind.name, what);
     };
     met = kept("heads", name("drag and a head that hair lies on, over gravity and drag"),
                time_ratio(repeated(on), repeated(without)), 1.3) &&

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/head/der_strand.h"
+#include "models/head/edge_model.h"
 #include "models/head/stepping_head.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
@@ -14,37 +15,35 @@ namespace {
 
 /// DerStrand as a Model of models/head/stepping_head.h.
 template <class Pack, bool exact>
-class DerModel {
+class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
  public:
   using Real = Pack;
   using Kernel = DerStrand<Real, exact>;
+  using Base = EdgeModel<Real, Kernel::per_element>;
+  using Base::clamp, Base::elements;
   using V = Vec3<Real>;
+  static constexpr bool iterates = true, takes_bodies = false;
   struct Strand {
     LaneRoot<Real> root;
     DerMaterial<Real> material;
   };
   using Element = DerEdge<Real>;
-  using Clamp = DerClamp<Real>;
+  using Clamp = LaneClamp<Real>;
   struct Scratch {
-    explicit Scratch(std::size_t edges) : placed(edges), now(edges), factors(edges) {}
+    explicit Scratch(const DerModel& model)
+        : placed(model.elements()), now(model.elements()), factors(model.elements()) {}
     std::vector<typename Kernel::Placed> placed, now;
     std::vector<typename Kernel::Factor> factors;
   };
 
   DerModel(const HeadOptions& options, const HeadUnits& units, Instructions instructions)
-      : instructions_(instructions),
-        n_(static_cast<std::size_t>(options.elements)),
+      : Base(options.elements),
+        instructions_(instructions),
         drag_(options.drag),
         mass_damping_(options.mass_damping),
         turning_(options.rotary_inertia),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
-
-  std::size_t elements() const { return n_; }
-  std::size_t unknowns() const { return Kernel::per_element * n_; }
-  double unit(const HeadUnits& units, std::size_t k) const {
-    return k % Kernel::per_element == 3 ? 1 : units.length;
-  }
 
   /// In the state in which models/maximal/der.cpp starts.
   void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
@@ -72,9 +71,9 @@ class DerModel {
     set_lane(m.friction, lane,
              strand.material.internal_friction / (first.length * moment * tau));
     set_lane(m.rate, lane, typical_rate(strand) * tau);
-    const NodalStrand nodal(strand, "der", n_);
+    const NodalStrand nodal(strand, "der", this->elements());
     const Vec spin = tau * nodal.root.spin;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < this->elements(); ++i) {
       const Frame& before = i > 0 ? nodal.natural[i - 1] : nodal.root.place.frame;
       set_lane(elements[i].rest, lane, joint_strain(before, nodal.natural[i]));
       const Frame& frame = nodal.initial[i];
@@ -92,22 +91,8 @@ class DerModel {
     }
   }
 
-  Clamp clamp(const Strand& strand, const RootPose& pose) const {
-    const V from = frame_of(pose.frame) * strand.root.from, omega(pose.omega);
-    return {frame_of(pose.frame) * strand.root.frame, V(pose.v) + cross(omega, from),
-            omega};
-  }
   void renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
     kernel_.renew(elements, clamp, q, v);
-  }
-  /// The first edge starts at the root, wherever that has gone.
-  void predict(const Strand& strand, const RootPose& from, const RootPose& to, double h,
-               const Real* q, const Real* v, Real* q_bar) const {
-    for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
-    const Frame turned{to.frame.e0 - from.frame.e0, to.frame.e1 - from.frame.e1,
-                       to.frame.e2 - from.frame.e2};
-    const V moved = V(to.x - from.x) + frame_of(turned) * strand.root.from;
-    store3(load3(q_bar) - moved, q_bar);
   }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
@@ -141,35 +126,14 @@ class DerModel {
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
                               const RootPose& pose, const Real* q, const Real* v) const {
     return kernel_.energies(strand.material, elements, clamp(strand, pose),
-                            frame_of(pose.frame) * strand.root.from, q, v);
+                            Base::root_at(strand, pose.frame), q, v);
   }
   double mass(const Strand& strand, int lane) const {
-    return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
-  }
-  template <class Use>
-  void velocities(const Clamp& clamp, const Real* v, Use use) const {
-    use(0, clamp.v);
-    V at{};  // the first rate is that of a place, not of an edge
-    for (std::size_t i = 0; i < n_; ++i) {
-      at = at + load3(v + 4 * i);
-      use(i + 1, at);
-    }
-  }
-  template <class Use>
-  void positions(const Strand& strand, const Frame& head, const Real* q, Use use) const {
-    V at = frame_of(head) * strand.root.from;
-    use(0, at);
-    for (std::size_t i = 0; i < n_; ++i) {
-      at = at + load3(q + 4 * i);
-      use(i + 1, at);
-    }
+    return static_cast<double>(elements()) * lane_of(strand.material.mass, lane);
   }
 
  private:
-  static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
-
   Instructions instructions_;
-  std::size_t n_;
   double drag_, mass_damping_;
   bool turning_;
   Kernel kernel_;

@@ -8,6 +8,7 @@
 #include "math/lanes.h"
 #include "models/head/der_elimination.h"
 #include "models/head/lane_energies.h"
+#include "models/head/lane_root.h"
 
 namespace tress::models {
 
@@ -29,13 +30,6 @@ struct DerEdge {
     set_lane(tangent, lane, load3(from));
     set_lane(direction, lane, load3(from + 3));
   }
-};
-
-/// Position and motion of the clamp's frame, axes as those of the edges.
-template <class T>
-struct DerClamp {
-  FrameOf<T> frame;
-  Vec3<T> v, omega;
 };
 
 /// The discrete elastic rod of models/maximal/der.cpp (clamped, edges of equal length,
@@ -83,7 +77,7 @@ class DerStrand {
   /// displacements over edges, angles, speeds over rate times edges, angular speeds over
   /// rate; NaN unless all are finite. `placed` and `factors` (edges) then serve again().
   [[gnu::flatten]] T newton(const DerMaterial<T>& m, const DerEdge<T>* edges,
-                            const DerClamp<T>& clamp, Weights w, const T* q, const T* v,
+                            const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
                             const T* a, T* correction, Placed* placed,
                             Factor* factors) const {
     place<true>(m, edges, clamp, w, q, v, a, placed);
@@ -94,7 +88,7 @@ class DerStrand {
   /// The same by the matrix of the last newton() at another state. `now` (edges):
   /// scratch.
   [[gnu::flatten]] T again(const DerMaterial<T>& m, const DerEdge<T>* edges,
-                           const DerClamp<T>& clamp, Weights w, const T* q, const T* v,
+                           const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
                            const T* a, T* correction, const Placed* placed,
                            Factor* factors, Placed* now) const {
     place<false>(m, edges, clamp, w, q, v, a, now);
@@ -122,7 +116,7 @@ class DerStrand {
   /// Takes the present frame of an edge as its reference if it has turned by more than 60
   /// degrees, as renew_reference() in models/maximal/rod_edge.h; a second call changes
   /// nothing.
-  void renew(DerEdge<T>* edges, const DerClamp<T>& clamp, T* q, T* v) const {
+  void renew(DerEdge<T>* edges, const LaneClamp<T>& clamp, T* q, T* v) const {
     for (int i = 0; i < n_; ++i) {
       const Vec e = load3(q + 4 * i);
       const T far = T(0.5) - dot(edges[i].tangent, e) * inverse_sqrt(dot(e, e));
@@ -146,7 +140,7 @@ class DerStrand {
 
   /// At (q, v); `at`: of the root, seen from the head's position.
   LaneEnergies<T> energies(const DerMaterial<T>& m, const DerEdge<T>* edges,
-                           const DerClamp<T>& clamp, Vec at, const T* q,
+                           const LaneClamp<T>& clamp, Vec at, const T* q,
                            const T* v) const {
     const auto moves = [&](const T& mass, const Vec& u) {
       return T(0.5) * mass * dot(u, u);
@@ -189,7 +183,7 @@ class DerStrand {
   };
 
   template <bool with_tangent>
-  void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const DerClamp<T>& clamp,
+  void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const LaneClamp<T>& clamp,
              Weights w, const T* q, const T* v, const T* a, Placed* placed) const {
     Vec node_v{}, node_a{}, spin_before = clamp.frame.back(clamp.omega);
     FrameOf<T> before = clamp.frame;

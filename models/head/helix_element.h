@@ -8,26 +8,26 @@
 namespace tress::models {
 
 /// math/helix.h's functions at arc length s <= length, for kernels whose lanes are
-/// strands: which formula a lane takes does not depend on its neighbours, so results are
-/// the same bits for any number of lanes. Series of 9 terms, or 6 in 32 bits, for
-/// elements that wind by 1.5 rad at most, 16 terms up to 4.5 rad, closed forms beyond.
+/// strands: which formula a lane takes, and by which code, does not depend on its
+/// neighbours, so results are the same bits for any number of lanes. Series of 9 terms,
+/// or 6 in 32 bits, for elements that wind by 1.5 rad at most; beyond it
+/// models/head/long_windings.h.
 template <class T>
 class LaneFunctions {
  public:
   LaneFunctions(const Vec3<T>& kappa, const T& length)
       : x2_(dot(kappa, kappa)),
         winding_(x2_ * length * length),
-        short_(all_up_to(winding_, static_cast<typename T::Scalar>(helix::short_end))) {}
+        short_(all_up_to(winding_, most)) {}
 
   HelixFunctions<T> at(const T& s) const {
-    HelixFunctions<T> f;
-    if (short_) [[likely]] {
-      f = helix::series<few>(s, x2_);
-    } else {
+    HelixFunctions<T> f = helix::series<few>(s, x2_);
+    if (!short_) [[unlikely]] {
       const HelixFunctions<Numbers> all =
           longer(s.numbers(), x2_.numbers(), winding_.numbers());
       for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
-        f.*HelixFunctions<T>::all[i] = T(all.*HelixFunctions<Numbers>::all[i]);
+        T& own = f.*HelixFunctions<T>::all[i];
+        own = where_up_to(winding_, most, own, T(all.*HelixFunctions<Numbers>::all[i]));
       }
     }
     return f;
@@ -39,30 +39,13 @@ class LaneFunctions {
 
   /// Six terms leave 1e-9 at 1.5 rad.
   static constexpr int few = sizeof(typename T::Scalar) == sizeof(double) ? 9 : 6;
+  static constexpr auto most = static_cast<typename T::Scalar>(helix::short_end);
 
-  /// Apart, with arguments by value: what a call might change could not stay in
-  /// registers. As arrays, which all instructions pass alike (math/instructions.h).
+  /// For lanes that wind by more. Apart, with arguments by value: what a call might
+  /// change could not stay in registers. As arrays, which all instructions pass alike
+  /// (math/instructions.h). Defined in models/head/long_windings.h.
   [[gnu::noinline]] static HelixFunctions<Numbers> longer(Numbers arc, Numbers squared,
-                                                          Numbers angle) {
-    const T s(arc), x2(squared), winding(angle);
-    const HelixFunctions<T> below = helix::series<few>(s, x2);
-    const HelixFunctions<T> more = helix::series<16>(s, x2);
-    HelixFunctions<T> all;
-    for (T HelixFunctions<T>::*f : HelixFunctions<T>::all) {
-      all.*f = where_up_to(winding, static_cast<typename T::Scalar>(helix::short_end),
-                           below.*f, more.*f);
-    }
-    for (int lane = 0; lane < T::lanes; ++lane) {
-      if (!(lane_of(winding, lane) > helix::long_end)) continue;
-      set_lane(all, lane, helix::closed_forms(lane_of(s, lane), lane_of(x2, lane)));
-    }
-    HelixFunctions<Numbers> numbers;
-    for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
-      numbers.*HelixFunctions<Numbers>::all[i] =
-          (all.*HelixFunctions<T>::all[i]).numbers();
-    }
-    return numbers;
-  }
+                                                          Numbers angle);
 
   T x2_, winding_;
   bool short_;

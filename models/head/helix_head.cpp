@@ -300,13 +300,7 @@ class HelixHead final : public Head, public HelixSource {
     scratch.t = t;
     scratch.pose = options_.motion.at(t);
     const Ball ball{scratch.pose.x, radius_};
-    scratch.bodies.clear();
-    for (const RigidContact* contact : bodies_) {
-      BodyPose pose = contact->body.pose(t);
-      if (!contact->body.reaches(pose, ball)) continue;
-      pose.x = pose.x - scratch.pose.x;
-      scratch.bodies.push_back({contact, pose});
-    }
+    bodies_around(bodies_, t, ball, scratch.bodies);
     scratch.all_strands.clear();
     for (const Effect* effect : others_) {
       if (effect->reaches(t, ball)) scratch.all_strands.push_back(effect);
@@ -324,16 +318,7 @@ class HelixHead final : public Head, public HelixSource {
     const FrameOf<T> axes{head.e0, head.e1, head.e2};
     const Vec3<T> from = T(units_.length) * (axes * root.from);
     const T radius = T(static_cast<double>(n_) * units_.length) * material.length;
-    scratch.near.clear();
-    for (const NearBody& body : scratch.bodies) {
-      const Frame& f = body.pose.frame;
-      const Vec3<T> seen = FrameOf<T>{f.e0, f.e1, f.e2}.back(from - Vec3<T>(body.pose.x));
-      const T reach = radius + T(body.contact->body.offset());
-      const bool near = std::visit(
-          [&](const auto& shape) { return any_less(below(shape, seen).value, reach); },
-          body.contact->body.shape());
-      if (near) scratch.near.push_back(body);
-    }
+    bodies_near<T>(scratch.bodies, from, radius, scratch.near);
     bool others = false;
     if (!scratch.all_strands.empty() || !own_.empty()) {
       for (std::size_t k = 0; k < strands_of(block); ++k) {

@@ -22,6 +22,7 @@
 #pragma clang force_cuda_host_device begin
 #include "math/lane_math.h"
 #include "models/head/helix_launch.h"
+#include "models/head/long_windings.h"
 
 namespace tress::helix {
 

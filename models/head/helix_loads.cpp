@@ -5,15 +5,6 @@
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
-namespace {
-
-template <class T>
-Vec3<T> in_body(const BodyPose& pose, const Vec3<T>& x) {
-  return FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2}.back(x);
-}
-
-}  // namespace
-
 template <class T>
 const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v,
                                               const Element* elements) {
@@ -34,8 +25,10 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
   return loads_.data();
 }
 
+// Flat: functions of its own that another source has, too, compiled with fused products,
+// could be taken from there.
 template <class T>
-void HelixLoads<T>::place(const Element* elements) {
+[[gnu::flatten]] void HelixLoads<T>::place(const Element* elements) {
   Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -50,8 +43,8 @@ void HelixLoads<T>::place(const Element* elements) {
 
 /// Whether some of its points have a load, which is in sums_ then.
 template <class T>
-bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate, const Element& e,
-                            bool others) {
+[[gnu::flatten]] bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate,
+                                             const Element& e, bool others) {
   const HelixElement<T> helix(e.q, rate);
   const Functions functions(e.q, block_.material->length);
   bool ready = false;
@@ -114,7 +107,8 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
 ///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
 ///     phi.
 template <class T>
-void HelixLoads<T>::look_for(const NearBody& body, std::span<char> near) const {
+[[gnu::flatten]] void HelixLoads<T>::look_for(const NearBody& body,
+                                              std::span<char> near) const {
   const T length = T(units_.length) * block_.material->length;
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
@@ -142,56 +136,27 @@ template <class Shape>
 void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
                           const Element& e, const HelixElement<T>& helix,
                           const Functions& functions, const Vec3T& rate) {
-  const BodyPose& pose = body.pose;
-  const BodyContact& law = body.contact->law;
   const Start& at = starts_[i];
-  // From the components of the element to those of the body, and where it starts.
-  const auto turn = Matrix3<T>::columns(
-      in_body(pose, at.frame.e0), in_body(pose, at.frame.e1), in_body(pose, at.frame.e2));
-  const Vec3T start = in_body(pose, at.x - Vec3T(pose.x));
-  const Vec3T moves(pose.frame.back(pose.v)), turns(pose.frame.back(pose.omega));
-  const T length(units_.length), speed(units_.speed()), o(0), reach(law.offset);
-  // The surface moves faster further out: du/dx = -omega x.
-  const double pos = block_.h * block_.h, vel = block_.h;
-  const Mat3Of<T> by_place = {{T(vel), T(pos) * turns.z, -(T(pos) * turns.y)},
-                              {-(T(pos) * turns.z), T(vel), T(pos) * turns.x},
-                              {T(pos) * turns.y, -(T(pos) * turns.x), T(vel)}};
+  const BodyTouch<T, Shape> of_body(body, shape, at.frame, block_.h);
+  const Vec3T start = of_body.in_body(at.x);
+  const T length(units_.length), speed(units_.speed());
   for (std::size_t k = 0; k < points_; ++k) {
     Point& point = at_[k];
-    const Vec3T x = start + turn * (length * point.p);
-    if constexpr (requires { shape.at_least(x); }) {
-      if (!any_less(shape.at_least(x), reach)) continue;
-    }
-    const NearestOf<T> near = shape.nearest(x);
-    const T outside = near.to.value - reach;
-    if (!any_less(outside, o)) continue;
-    const Vec3T local =
-        e.v + cross(e.omega, point.p) + helix.slope(functions.at(arc_of(k))) * rate;
-    const Vec3T u = turn * (speed * local) - (moves + cross(turns, x));
-    ContactSlopesOf<T> slopes;
-    const Vec3T force = law.load(near.to, shape.curvature(x, near), u, slopes);
-    const Mat3Of<T> b = T(-pos) * slopes.by_x - slopes.by_u * by_place;
-    const Symmetric3<T> symmetric{b.r0.x,
-                                  b.r1.y,
-                                  b.r2.z,
-                                  T(0.5) * (b.r0.y + b.r1.x),
-                                  T(0.5) * (b.r0.z + b.r2.x),
-                                  T(0.5) * (b.r1.z + b.r2.y)};
+    const auto velocity = [&] {
+      return speed * (e.v + cross(e.omega, point.p) +
+                      helix.slope(functions.at(arc_of(k))) * rate);
+    };
     const T w = weight_of(k);
-    const T to_force = w * T(units_.length / units_.force()),
-            to_block = w * T(1 / units_.density);
-    point.load.force =
-        point.load.force + where_less(outside, o, to_force * turn.back(force), Vec3T{});
-    point.load.block =
-        point.load.block +
-        where_less(outside, o, to_block * congruent(turn.transposed(), symmetric), {});
-    point.some = where_less(outside, o, T(1), point.some);
+    of_body.touch(start + of_body.turn() * (length * point.p), velocity,
+                  w * T(units_.length / units_.force()), w * T(1 / units_.density),
+                  point.load, point.some);
   }
 }
 
 /// Effects other than bodies, strand by strand.
 template <class T>
-void HelixLoads<T>::take_others(const Vec3T* v, const Element* elements) {
+[[gnu::flatten]] void HelixLoads<T>::take_others(const Vec3T* v,
+                                                 const Element* elements) {
   const std::size_t all = n_ * points_;
   others_.assign(all, {});
   some_.assign(all, T(0));

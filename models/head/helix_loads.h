@@ -4,18 +4,11 @@
 #include <vector>
 
 #include "math/instructions.h"
-#include "models/effects/body.h"
 #include "models/head/head_units.h"
 #include "models/head/helix_strand.h"
+#include "models/head/near_bodies.h"
 
 namespace tress::models {
-
-/// What acts on a head at one time: a body and where it is, seen from the head's position
-/// along the axes of the world.
-struct NearBody {
-  const RigidContact* contact;
-  BodyPose pose;
-};
 
 /// Loads of effects on the points of a block of super-helices in one step, between the
 /// sweeps of HelixStrand. Bodies: all strands at once, a point only if its element's ball

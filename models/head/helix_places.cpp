@@ -4,9 +4,10 @@
 
 namespace tress::models {
 
+// Flat as functions of HelixLoads.
 template <class T>
-void HelixPlaces<T>::write(std::size_t strands, std::span<double> x,
-                           std::span<double> v) const {
+[[gnu::flatten]] void HelixPlaces<T>::write(std::size_t strands, std::span<double> x,
+                                            std::span<double> v) const {
   const FrameOf<T> axes{pose.frame.e0, pose.frame.e1, pose.frame.e2};
   FrameOf<T> at_frame = axes * frame;
   Vec3<T> at = axes * from, velocity = root.v, omega = root.omega;

@@ -95,8 +95,9 @@ class StateHash {
 };
 
 /// The Head of this pack: made<T>(instructions) for the type T of the pack's numbers.
-/// Throws InputError if there is no such pack.
-template <class Made>
+/// Throws InputError if there is no such pack. `short_numbers`: whether there are those
+/// of 32 bits.
+template <bool short_numbers = true, class Made>
 std::unique_ptr<Head> on_pack(const HeadPack& pack, Made made) {
   const Instructions set = pack.instructions.value_or(widest_instructions());
   refuse_if(!available(set),
@@ -106,7 +107,7 @@ std::unique_ptr<Head> on_pack(const HeadPack& pack, Made made) {
     if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>(set);
     if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>(set);
     if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
-  } else {
+  } else if constexpr (short_numbers) {
     if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>(set);
     if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
   }

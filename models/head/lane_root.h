@@ -11,4 +11,12 @@ struct LaneRoot {
   FrameOf<T> frame;
 };
 
+/// The frame of a strand of edges at its root, and its motion, in axes as those of the
+/// edges.
+template <class T>
+struct LaneClamp {
+  FrameOf<T> frame;
+  Vec3<T> v, omega;
+};
+
 }  // namespace tress::models

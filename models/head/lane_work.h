@@ -25,7 +25,7 @@ class LaneWork {
         q(q_bar),
         v(q_bar),
         step(q_bar),
-        scratch(model.elements()),
+        scratch(model),
         size_(model.unknowns()) {}
 
   // At t: what is known of the strands, q, v and the guess of a, which solutions replace.

@@ -7,6 +7,7 @@
 
 #include "models/head/lane_head.h"
 #include "models/head/lone_strand.h"
+#include "models/head/near_bodies.h"
 
 namespace tress::models {
 
@@ -15,7 +16,7 @@ namespace tress::models {
 ///
 ///     Real                                  // PackOf
 ///     Strand, Element                       // Real only: what is known of them
-///     Clamp, Scratch(elements)
+///     Clamp, Scratch(Model)
 ///     elements(), unknowns()                // of a strand
 ///     describe(strand, units, lane, Strand&, Element*, q, v)
 ///     clamp(Strand, RootPose)
@@ -28,6 +29,12 @@ namespace tress::models {
 ///     velocities(Clamp, v, use(i, Vec3<Real>))
 ///     energies(Strand, Element*, RootPose, q, v)   // LaneEnergies
 ///     mass(Strand, lane)
+///     iterates                              // whether there is more than one step
+///     takes_bodies                          // whether it has these, too:
+///     root_at(Strand, Frame), length(Strand)   // from the head's position; of strands
+///     most_stretched                        // their length over that
+///     find_loads(Strand, bodies, RootPose, HeadUnits, h, q, v, Scratch&)  // for
+///     newton()
 ///
 /// and an Element has keep(lane, double*), recall(lane, const double*): `kept` numbers.
 ///
@@ -50,7 +57,12 @@ class SteppingHead final : public Head {
         size_(model_.unknowns()),
         of_state_((iterates_ ? 3 : 2) * size_) {
     options_.motion.frame = {};
-    refuse(options_.effects);
+    for (const auto& effect : options_.effects) {
+      check_for_head(*effect);
+      refuse_if(!Model::takes_bodies || effect->rigid_contact() == nullptr,
+                on_this_model(*effect), place_of_head, use_others);
+      bodies_.push_back(effect->rigid_contact());
+    }
   }
 
   void reserve(std::size_t strands) override {
@@ -66,9 +78,15 @@ class SteppingHead final : public Head {
   void add(const models::Strand& strand, Effects own) override {
     models::check(strand);
     check_for_head(strand, n_);
-    refuse(own);
+    refuse_if(!own.empty(), own.empty() ? "" : on_this_model(*own.front()), place_of_head,
+              use_others);
     if (units_.density == 0) {
       units_.density = strand.material.density * strand.segments.front().section.area();
+    }
+    if constexpr (Model::takes_bodies) {
+      radius_ = std::max(radius_, norm(strand.root.position - options_.motion.position) +
+                                      Model::most_stretched * static_cast<double>(n_) *
+                                          strand.segments.front().length);
     }
     const std::size_t block = lost_.size() / width;
     const int lane_of_own = static_cast<int>(lost_.size() % width);
@@ -110,11 +128,11 @@ class SteppingHead final : public Head {
     Own& own = static_cast<Own&>(given);
     own.from = pose(t);
     own.to = pose(t + h);
-    if (iterates_) {
-      iterate(first, last, t, h, own);
-    } else {
-      for (std::size_t block = first; block < last; ++block) once(block, t, h, own);
+    if constexpr (Model::takes_bodies) look_around(t + h, own);
+    if constexpr (Model::iterates) {
+      if (iterates_) return iterate(first, last, t, h, own);
     }
+    for (std::size_t block = first; block < last; ++block) once(block, t, h, own);
   }
 
   bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
@@ -230,13 +248,32 @@ class SteppingHead final : public Head {
     LaneWork<Model> work;
     RootPose from, to;
     std::vector<std::size_t> failed, stuck;
+    double t = std::numeric_limits<double>::quiet_NaN();  // of what follows
+    Vec head;                                             // its position, m
+    std::vector<NearBody> around, near;  // bodies that reach the head, and a block
   };
 
-  /// No effect but those that the options' numbers say as well.
-  static void refuse(const Effects& effects) {
-    if (effects.empty()) return;
-    throw InputError("effect " + std::string(effects.front()->name()) + " on this model",
-                     place_of_head, "use super_helix, or run the strands one by one");
+  // Beyond those that the options' numbers say as well.
+  static std::string on_this_model(const Effect& effect) {
+    return "effect " + std::string(effect.name()) + " on this model";
+  }
+  static constexpr const char* use_others =
+      "use super_helix, or run the strands one by one";
+
+  /// Bodies that reach the ball in which all strands are at t, the step's end.
+  void look_around(double t, Own& own) const {
+    if (bodies_.empty() || own.t == t) return;
+    own.t = t;
+    own.head = options_.motion.at(t).x;
+    bodies_around(bodies_, t, {own.head, radius_}, own.around);
+  }
+  /// Those of them that reach strands of a block.
+  std::span<const NearBody> reached(std::size_t block, Own& own) const {
+    if (own.around.empty()) return {};
+    const T unit(units_.length), longest(Model::most_stretched * units_.length);
+    bodies_near<T>(own.around, unit * model_.root_at(strands_[block], own.to.frame),
+                   longest * model_.length(strands_[block]), own.near);
+    return own.near;
   }
 
   T* q_of(std::size_t block) { return &state_[of_state_ * block]; }
@@ -271,6 +308,10 @@ class SteppingHead final : public Head {
     model_.renew(elements, model_.clamp(strand, own.from), q, v);
     model_.predict(strand, own.from, own.to, h, q, v, work.q_bar.data());
     std::fill_n(a, size_, T(0));
+    if constexpr (Model::takes_bodies) {
+      model_.find_loads(strand, reached(block, own), own.to, units_, h_s,
+                        work.q_bar.data(), v, work.scratch);
+    }
     const T size =
         model_.newton(strand, elements, model_.clamp(strand, own.to), {1, h, h * h},
                       work.q_bar.data(), v, a, work.step.data(), work.scratch);
@@ -445,6 +486,8 @@ class SteppingHead final : public Head {
   std::vector<T> state_;                           // (blocks; q, v, and a if it iterates)
   std::vector<char> lost_;                         // of each strand
   HeadLosses losses_;
+  std::vector<const RigidContact*> bodies_;
+  double radius_ = 0;  // of the ball about the head's position that holds all strands, m
 };
 
 }  // namespace tress::models

@@ -15,25 +15,42 @@ namespace {
 
 using models::HeadOptions;
 
+bool of_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
+
+/// An option of the model that heads do not have.
+NoHead no_option(const Parameters& p, const char* key, const char* remedy) {
+  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)), remedy};
+}
+
+std::optional<NoHead> no_springs(const Parameters& p) {
+  if (p.word("bending") != "angular") {
+    return no_option(p, "bending", "give [model] bending = \"angular\"");
+  }
+  if (p.word("torsion") != "none") {
+    return no_option(p, "torsion", "give [model] torsion = \"none\"");
+  }
+  if (p.word("tangent") != "filtered") {
+    return no_option(p, "tangent", "give [model] tangent = \"filtered\"");
+  }
+  return {};
+}
+
 std::optional<NoHead> no_model(const Scene& scene) {
+  const Parameters& p = scene.model_options;
+  if (of_springs(scene)) return no_springs(p);
   if (scene.model->id != "super_helix") {
     return NoHead{fmt::format("{} does not come as a head", scene.model->id),
-                  "use [model] id = \"super_helix\""};
+                  "use [model] id = \"super_helix\", or \"mass_spring\""};
   }
-  const Parameters& p = scene.model_options;
   if (p.word("modes") == "bend_planar") {
     return NoHead{"strands of a head bend in both directions",
                   "give [model] modes = \"bend_twist\" or \"bend\""};
   }
   if (p.word("tangent") != "stiff") {
-    return NoHead{
-        fmt::format("tangent = \"{}\" does not come as a head", p.word("tangent")),
-        "give [model] tangent = \"stiff\""};
+    return no_option(p, "tangent", "give [model] tangent = \"stiff\"");
   }
   if (p.word("solver") != "recursive") {
-    return NoHead{
-        fmt::format("solver = \"{}\" does not come as a head", p.word("solver")),
-        "leave out [model] solver"};
+    return no_option(p, "solver", "leave out [model] solver");
   }
   if (p.whole("quadrature") == 1 || p.whole("quadrature") > 16) {
     return NoHead{fmt::format("{} points of an element", p.whole("quadrature")),
@@ -94,6 +111,14 @@ std::optional<NoHead> no_effects(const Scene& scene) {
     if (effect != nullptr) {
       if (auto no = models::refused_by_heads(*effect))
         return NoHead{no->reason, no->remedy};
+      if (of_springs(scene) && !effect->uniform_acceleration() && !effect->viscosity() &&
+          effect->rigid_contact() == nullptr) {
+        return NoHead{fmt::format("[effects.{}] on a head of springs", choice.entry->id),
+                      "leave it out, or use [model] id = \"super_helix\""};
+      }
+    } else if (of_springs(scene) && &choice.parameters == scene.interaction()) {
+      return NoHead{"interaction on a head of springs",
+                    "leave it out, or use [model] id = \"super_helix\""};
     } else if (&choice.parameters != scene.interaction()) {
       return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
                     "leave it out"};
@@ -118,13 +143,20 @@ bool at_rest_in_head(const Scene& scene) {
 HeadOptions options_of(const Scene& scene) {
   HeadOptions options;
   options.elements = static_cast<int>(scene.strands.front().segments.size());
-  options.points = scene.model_options.whole("quadrature");
-  options.twist = scene.model_options.word("modes") == "bend_twist";
-  options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
+  if (!of_springs(scene)) {
+    options.points = scene.model_options.whole("quadrature");
+    options.twist = scene.model_options.word("modes") == "bend_twist";
+    options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
+  }
   options.gravity = {};
   options.motion = scene.head;
   options.effects = make_effects(scene);
   return with_uniform_effects(std::move(options));
+}
+
+std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
+                                 const HeadPack& pack) {
+  return of_springs(scene) ? spring_head(options, pack) : helix_head(options, pack);
 }
 
 /// Strands of a scene as a series.
@@ -179,7 +211,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     made_head.interaction = std::make_unique<models::StrandInteraction>(
         *between, std::vector<int>(series.size(), options.elements + 1));
   }
-  made_head.head = helix_head(options, pack);
+  made_head.head = empty_head(scene, options, pack);
   Head* const head = made_head.head.get();
   head->reserve(series.size());
   constexpr std::size_t at_once = 1024;
@@ -227,7 +259,7 @@ std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {
   HeadOptions options = options_of(outline.scene);
   options.longest = 1;
   if (options.points == 0) options.points = 8;
-  const std::unique_ptr<Head> block = helix_head(options, pack);
+  const std::unique_ptr<Head> block = empty_head(outline.scene, options, pack);
   const auto lanes = static_cast<std::size_t>(pack.lanes);
   for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
   const std::size_t blocks = (outline.series->size() + lanes - 1) / lanes;

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "models/head/helix_launch.h"
+#include "models/head/long_windings.h"
 
 namespace {
 

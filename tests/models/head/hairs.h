@@ -26,6 +26,7 @@ struct Case {
   int elements = 10, points = 8;
   bool twist = true, moves = false;
   double curl = 1;     // scales the rest shapes
+  double uneven = 1;   // and once more those of every third strand
   bool sprung = true;  // released from another shape than that at rest
   double drag = 2e-5, mass_damping = 0.5;
   Effects effects = {};                                 // on all strands
@@ -63,11 +64,12 @@ inline Strand strand(const Case& c, std::size_t k) {
   material.internal_friction = 2e-11 * (1 + x);
   const Vec natural{c.twist ? 4 - x / 3 : 0, 20 + 3 * std::sin(x), 5 * std::cos(x)};
   const Vec initial{c.twist ? x / 4 : 0, 12, -7};
+  const double curl = c.curl * (k % 3 == 1 ? c.uneven : 1);
   Strand made =
       make_strand(material, {4e-5 + 2e-6 * x, 5e-5},
                   {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
-                  uniform_shape(c.curl * natural),
-                  uniform_shape(c.curl * (c.sprung ? initial : natural)));
+                  uniform_shape(curl * natural),
+                  uniform_shape(curl * (c.sprung ? initial : natural)));
   const HeadOptions o = options(c);
   made.root = o.motion;
   made.root.centre = o.motion.position;

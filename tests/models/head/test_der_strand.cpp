@@ -49,7 +49,7 @@ struct Rod {
   RodCase c;
   DerMaterial<One> m;
   std::vector<DerEdge<One>> edges;
-  DerClamp<One> clamp;
+  LaneClamp<One> clamp;
   Vec root;
 };
 

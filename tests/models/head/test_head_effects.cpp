@@ -103,6 +103,10 @@ std::vector<Case> cases() {
   Case bends = one("BendingOnly", {body(Sphere{0.1}, low)});
   bends.twist = false;
   all.push_back(bends);
+  Case uneven = one("OnAnEllipsoidUneven", {body(Ellipsoid({0.08, 0.1, 0.12}), low)});
+  uneven.points = 12;
+  uneven.uneven = 5;
+  all.push_back(uneven);
   Case interacts{.name = "Interacting"};
   interacts.own = [of = neighbours(strands)](std::size_t k) {
     // The effect refers to it.

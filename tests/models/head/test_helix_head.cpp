@@ -80,6 +80,9 @@ INSTANTIATE_TEST_SUITE_P(
                     // Elements wind by up to 3 and by up to 6 rad: other formulas.
                     Case{.name = "Tight", .points = 12, .curl = 5},
                     Case{.name = "Tightest", .points = 16, .curl = 11},
+                    // Strands beside each other need different formulas.
+                    Case{.name = "Uneven", .points = 12, .uneven = 5},
+                    Case{.name = "VeryUneven", .points = 16, .uneven = 11},
                     Case{.name = "InVacuum", .drag = 0, .mass_damping = 0}),
     [](const auto& of) { return of.param.name; });
 

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+
+#include "models/head/head_units.h"
+#include "models/head/lane_root.h"
+#include "models/motion/root_motion.h"
+
+namespace tress::models {
+
+/// What Models of models/head/stepping_head.h have in common whose strands are chains of
+/// edges from the root on: `per_element` numbers of an edge, the first three the vector
+/// along it, in axes of the world. The rate of the first edge is that of its end. Flat as
+/// HelixLoads.
+template <class Pack, int per_element>
+class EdgeModel {
+ public:
+  using Real = Pack;
+  using V = Vec3<Real>;
+  using Clamp = LaneClamp<Real>;
+
+  explicit EdgeModel(int edges) : n_(static_cast<std::size_t>(edges)) {}
+
+  std::size_t elements() const { return n_; }
+  std::size_t unknowns() const { return per_element * n_; }
+  double unit(const HeadUnits& units, std::size_t k) const {
+    return k % per_element == 3 ? 1 : units.length;
+  }
+
+  template <class Strand>
+  [[gnu::flatten]] Clamp clamp(const Strand& strand, const RootPose& pose) const {
+    const V from = frame_of(pose.frame) * strand.root.from, omega(pose.omega);
+    return {frame_of(pose.frame) * strand.root.frame, V(pose.v) + cross(omega, from),
+            omega};
+  }
+  /// The first edge starts at the root, wherever that has gone.
+  template <class Strand>
+  [[gnu::flatten]] void predict(const Strand& strand, const RootPose& from,
+                                const RootPose& to, double h, const Real* q,
+                                const Real* v, Real* q_bar) const {
+    for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
+    const Frame turned{to.frame.e0 - from.frame.e0, to.frame.e1 - from.frame.e1,
+                       to.frame.e2 - from.frame.e2};
+    const V moved = V(to.x - from.x) + frame_of(turned) * strand.root.from;
+    store3(load3(q_bar) - moved, q_bar);
+  }
+  template <class Use>
+  [[gnu::flatten]] void velocities(const Clamp& clamp, const Real* v, Use use) const {
+    use(0, clamp.v);
+    V at{};  // the first rate is that of a place, not of an edge
+    for (std::size_t i = 0; i < n_; ++i) {
+      at = at + load3(v + per_element * i);
+      use(i + 1, at);
+    }
+  }
+  template <class Strand, class Use>
+  [[gnu::flatten]] void positions(const Strand& strand, const Frame& head, const Real* q,
+                                  Use use) const {
+    V at = root_at(strand, head);
+    use(0, at);
+    for (std::size_t i = 0; i < n_; ++i) {
+      at = at + load3(q + per_element * i);
+      use(i + 1, at);
+    }
+  }
+
+  /// The root, seen from the head's position.
+  template <class Strand>
+  static V root_at(const Strand& strand, const Frame& head) {
+    return frame_of(head) * strand.root.from;
+  }
+
+ private:
+  static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
+
+  std::size_t n_;
+};
+
+}  // namespace tress::models

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "math/instructions.h"
+#include "models/head/head_units.h"
+#include "models/head/near_bodies.h"
+#include "models/head/semidefinite.h"
+#include "models/head/spring_strand.h"
+
+namespace tress::models {
+
+/// Loads of bodies on the nodes of strands of edges, side by side, in one step; a node
+/// only if it is near in some lane.
+template <class T>
+class NodeLoads {
+ public:
+  using Vec3T = Vec3<T>;
+
+  explicit NodeLoads(std::size_t edges) : loads_(edges), x_(edges), v_(edges) {}
+
+  /// Of the ends of edges, or null; from the motion at the step's end, whose length is h
+  /// (s). `root`: from the head's position, in its units as `length` of an edge, its
+  /// `drag` on the velocity, q and v.
+  [[gnu::flatten]] const NodeLoad<T>* find(std::span<const NearBody> bodies,
+                                           const HeadUnits& units, double h, Vec3T root,
+                                           const T& length, const T& drag, const T* q,
+                                           const T* v) {
+    if (bodies.empty()) return nullptr;
+    Vec3T rate{};
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      root = root + load3(q + 3 * i);
+      rate = rate + load3(v + 3 * i);
+      x_[i] = T(units.length) * root;
+      v_[i] = T(units.speed()) * rate;
+      loads_[i] = {{}, T(0)};
+    }
+    for (const NearBody& body : bodies) {
+      std::visit([&](const auto& shape) { touch(body, shape, units, h, length); },
+                 body.contact->body.shape());
+    }
+    bool loaded = false;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (!any_less(T(0), loads_[i].some)) continue;
+      loaded = true;
+      // Of all effects together, linear drag among them, as HelixLoads.
+      const T own = T(h / units.time) * part(i) * drag;
+      Symmetric3<T>& block = loads_[i].load.block;
+      shift(block, own);
+      block = semidefinite(block, loads_[i].some);
+      shift(block, -own);
+    }
+    return loaded ? loads_.data() : nullptr;
+  }
+
+ private:
+  /// Of an edge, at the node at its end.
+  T part(std::size_t i) const { return T(i + 1 < x_.size() ? 1 : 0.5); }
+
+  template <class Shape>
+  [[gnu::flatten]] void touch(const NearBody& body, const Shape& shape,
+                              const HeadUnits& units, double h, const T& length) {
+    const T o(0), one(1);
+    const BodyTouch<T, Shape> of_body(body, shape,
+                                      {{one, o, o}, {o, one, o}, {o, o, one}}, h);
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const T w = part(i) * length;
+      of_body.touch(
+          of_body.in_body(x_[i]), [&] { return v_[i]; },
+          w * T(units.length / units.force()), w * T(1 / units.density), loads_[i].load,
+          loads_[i].some);
+    }
+  }
+  static void shift(Symmetric3<T>& block, const T& by) {
+    block.xx += by;
+    block.yy += by;
+    block.zz += by;
+  }
+
+  std::vector<NodeLoad<T>> loads_;
+  std::vector<Vec3T> x_, v_;  // m, m/s, from the head's position
+};
+
+}  // namespace tress::models
