@@ -20,17 +20,20 @@ namespace {
 constexpr double t_end = 2;  // s
 constexpr int samples = 200;
 constexpr double fine_step = 2.5e-4;  // s, of the cantilever's reference
+constexpr double long_run = 0.5;      // s, of wall time
 constexpr double apart = 10;          // lengths from the direct step: unstable
 
-/// The rod of the published example: EI = 4 N m^2, EA = k GA = 100 N, 1 kg/m, 1 m of 10
-/// edges, clamped horizontally and damped. Of a solid circle EA/EI = 4/r^2, so that it is
-/// 0.4 m thick; only the products enter.
+/// The rod of the published example [Hsu et al. 2025, their code's cantilever]: EI = 4 N
+/// m^2, EA = k GA = 100 N, 1 kg/m, 1 m of 10 edges, clamped horizontally and damped. EA
+/// is that of a section of 2 mm, so that sections have no rotary inertia to speak of,
+/// softened.
 const ModelSettings cantilever{{"length_m", "1"},
-                               {"radius_m", "0.4"},
-                               {"youngs_modulus_pa", "198.94367886486918"},
-                               {"density_kg_m3", "1.9894367886486918"},
+                               {"radius_m", "0.002"},
+                               {"youngs_modulus_pa", "3.183098861837907e11"},
+                               {"density_kg_m3", "79577.47154594767"},
                                {"poisson_ratio", "0"},
-                               {"shear_factor", "2"},
+                               {"stretch_factor", "2.5e-5"},
+                               {"shear_factor", "5e-5"},
                                {"gravity_m_s2", "9.8"},
                                {"mass_damping_1_s", "3"},
                                {"root_tangent", "x"},
@@ -156,7 +159,9 @@ void measure(const Work& work, const References& references, Row& row) {
   const auto& [trial, p, options, repeat] = work;
   const auto system = find_model(trial.model).make(p);
   const double length = p.number("length_m");
-  const Course now = course_of(*system, trial.integrator, options);
+  Course now;
+  const double wall =
+      seconds_of([&] { now = course_of(*system, trial.integrator, options); });
   row.set("steps", now.run.stats.steps);
   if (now.run.status != Status::ok) {
     row.failed("diverged", now.run.failure);
@@ -177,12 +182,10 @@ void measure(const Work& work, const References& references, Row& row) {
     row.set("direct_error_rel", tip_error(direct.tips, rod.tip, length));
     row.set("energy_distance_rel", largest_apart(now.energies, direct.energies) / scale);
   }
-  if (repeat == 0) return;
+  // In a long run reading tips and energies takes no time beside the sweeps.
   const State start = initial_state(*system);
-  row.set("wall_s_per_sim_s", time_run(repeat, [&] {
-                                simulate(trial.integrator, *system, options, start,
-                                         t_end);
-                              }) / t_end);
+  const auto run = [&] { simulate(trial.integrator, *system, options, start, t_end); };
+  row.set("wall_s_per_sim_s", (wall > long_run ? wall : time_run(repeat, run)) / t_end);
 }
 
 /// EA L^2/(E I), softened as the model is.

@@ -1,5 +1,6 @@
+#include <span>
+
 #include "experiments/block_descent/block_descent.h"
-#include "simulation/files/parse.h"
 
 namespace tress::experiments::block_descent {
 namespace {
@@ -15,30 +16,35 @@ Words with(Words words, std::string key, const std::string& value) {
   return words;
 }
 
-/// A way to solve the step, and the models on which it is tried.
+/// A way to solve the step.
 struct Way {
   std::string integrator;
   Words options;
-  bool rods;  // on xpbd_cosserat too, whose nodes are twice as many
+  bool quick;
 };
 
-const std::vector<Way>& ways() {
-  static const std::vector<Way> all{{"xpbd", {}, true},
-                                    {"vbd", {}, true},
-                                    {"vbd", {{"chebyshev", "0.8"}}, false},
-                                    {"vbd", {{"block", "2"}}, true},
-                                    {"vbd", {{"block", "4"}}, true},
-                                    {"vbd", {{"block", "8"}}, true},
-                                    {"vbd", {{"block", "16"}}, true},
-                                    {"vbd", {{"block", "0"}}, true},
-                                    {"vbd_augmented", {}, true},
-                                    {"vbd_augmented", {{"block", "4"}}, false},
-                                    {"stable_cosserat_rods", {}, true}};
-  return all;
-}
+const Way of_springs[] = {{"xpbd", {}, true},
+                          {"vbd", {}, true},
+                          {"vbd", {{"chebyshev", "0.8"}}, true},
+                          {"vbd", {{"block", "2"}}, false},
+                          {"vbd", {{"block", "4"}}, true},
+                          {"vbd", {{"block", "8"}}, false},
+                          {"vbd", {{"block", "16"}}, true},
+                          {"vbd", {{"block", "0"}}, true},
+                          {"vbd_augmented", {}, true},
+                          {"vbd_augmented", {{"block", "4"}}, true}};
+// Their nodes are twice as many: positions and quaternions.
+const Way of_rods[] = {{"xpbd", {}, false},
+                       {"vbd", {}, false},
+                       {"vbd", {{"block", "8"}}, false},
+                       {"vbd", {{"block", "32"}}, false},
+                       {"vbd", {{"block", "0"}}, false},
+                       {"vbd_augmented", {}, false},
+                       {"stable_cosserat_rods", {}, false}};
 
-std::vector<std::string> levels(const CommandLine& line, std::vector<std::string> all,
-                                std::size_t quick) {
+/// The first `quick` of all, or all.
+template <class T>
+std::vector<T> levels(const CommandLine& line, std::vector<T> all, std::size_t quick) {
   if (line.quick) all.resize(quick);
   return all;
 }
@@ -50,15 +56,11 @@ std::vector<Trial> descent_trials(const CommandLine& line) {
   const auto add = [&](const Trial& trial) {
     if (chosen(line, trial)) all.push_back(trial);
   };
-  for (const char* model : {"mass_spring", "xpbd_cosserat"}) {
-    const bool rod = std::string_view(model) == "xpbd_cosserat";
-    if (rod && line.quick) continue;
-    for (const Way& way : ways()) {
-      if ((rod && !way.rods) || (!rod && way.integrator == "stable_cosserat_rods")) {
-        continue;
-      }
-      for (const std::string& sweeps :
-           levels(line, {"20", "5", "1", "2", "10", "50", "100", "300", "1000"}, 2)) {
+  const auto add_ways = [&](const char* model, std::span<const Way> ways) {
+    for (const Way& way : ways) {
+      if (line.quick && !way.quick) continue;
+      for (const char* sweeps : levels<const char*>(
+               line, {"1", "5", "20", "100", "2", "10", "50", "300"}, 4)) {
         add({.part = "sweeps",
              .scene = "swing",
              .model = model,
@@ -67,14 +69,13 @@ std::vector<Trial> descent_trials(const CommandLine& line) {
              .options = with(way.options, "sweeps", sweeps)});
       }
     }
-  }
-  for (const double dt : {substep, 1e-3, 1.0 / 60}) {
-    if (line.quick && dt != substep) continue;
-    for (const std::string& primal : levels(line, {"1", "4"}, 1)) {
-      for (const std::string& penalty : levels(line,
-                                               {"6e5", "1e4", "1e8", "3e4", "1e5", "2e5",
-                                                "3e5", "9e5", "1.5e6", "3e6", "1e7"},
-                                               3)) {
+  };
+  add_ways("mass_spring", of_springs);
+  add_ways("xpbd_cosserat", of_rods);
+  for (const double dt : levels<double>(line, {substep, 1e-3, 1.0 / 60}, 2)) {
+    for (const char* primal : levels<const char*>(line, {"1", "4"}, 1)) {
+      for (const char* penalty : {"3e4", "1e5", "2e5", "4e5", "6e5", "9e5", "2e6", "5e6",
+                                  "1e7", "3e7", "1e8"}) {
         add({.part = "penalty",
              .scene = "swing",
              .model = "mass_spring",
@@ -99,7 +100,7 @@ std::vector<Trial> rod_trials(const CommandLine& line) {
   };
   std::vector<Rod> rods;
   constexpr double isotropic = 2.96;  // E/G of the swinging strand, 2 (1 + 0.48)
-  for (const double factor : {1.0, 1e-2, 1e-4, 1e-6}) {
+  for (const double factor : {1.0, 1e-2, 1e-4, 1e-5}) {
     rods.push_back({"swing",
                     {{"stretch_factor", number_text(factor)},
                      {"shear_factor", number_text(isotropic * factor)}},
@@ -108,16 +109,16 @@ std::vector<Trial> rod_trials(const CommandLine& line) {
   rods.push_back({"cantilever", {}, 10});
   std::vector<Trial> all;
   for (const Rod& rod : rods) {
-    if (line.quick && rod.scene != "cantilever") continue;
-    for (const double dt : {1.0 / 120, 1.0 / 30, substep, 1e-3, 2.5e-4}) {
-      for (const std::string& sweeps : levels(line, {"4", "20", "100"}, 2)) {
-        if (line.quick && dt < 1.0 / 120) continue;
+    for (const double dt :
+         levels<double>(line, {1.0 / 30, 1.0 / 120, substep, 1e-3, 2.5e-4}, 4)) {
+      for (const int sweeps : {4, 20, 100}) {
+        if (line.quick && sweeps == 100 && dt <= substep) continue;
         const Trial trial{.part = "rods",
                           .scene = rod.scene,
                           .model = "xpbd_cosserat",
                           .integrator = "stable_cosserat_rods",
                           .model_settings = rod.settings,
-                          .options = {{"sweeps", sweeps}},
+                          .options = {{"sweeps", std::to_string(sweeps)}},
                           .elements = rod.elements,
                           .dt = dt};
         if (chosen(line, trial)) all.push_back(trial);

@@ -24,7 +24,7 @@ inline constexpr Parameter chebyshev_option{
     .help = "rate of sweeps for which they are accelerated, 0: they are not",
     .number = 0,
     .min = 0,
-    .max = 0.999999};
+    .max = 1};
 
 /// Of values of sweeps_option, sweep_order_option and the above.
 DescentChoice descent_choice(const Parameters& chosen);
