@@ -18,6 +18,9 @@ import { cell_fills, model_style } from './palette.mjs';
 
 const least = 1e-10; // distances below it are rounding
 
+// 1e8, 25
+const power = (x) => (x >= 1e4 ? x.toExponential().replace('e+', 'e') : format_number(x));
+
 export const descent_rows = (tables, part) =>
   (tables.block_descent ?? []).filter((row) => row.part === part);
 
@@ -40,10 +43,16 @@ const drawn = (rows) =>
 const of_sweeps = (tables) =>
   drawn(descent_rows(tables, 'sweeps')).map((row) => ({ ...row, way: way_of(row) }));
 
+// Of the rows that ask for sweeps.
+const usual_step = (tables) => descent_rows(tables, 'sweeps')[0]?.dt_s;
+
 // One sweep before multipliers are improved: the others are in the table.
 const of_penalties = (tables) =>
   drawn(descent_rows(tables, 'penalty').filter((row) => row.primal_sweeps === 1)).map(
-    (row) => ({ ...row, way: `vbd_augmented, steps of ${format_time(row.dt_s)}` }),
+    (row) => ({
+      ...row,
+      way: way_of(row) + (row.dt_s === usual_step(tables) ? '' : `, steps of ${format_time(row.dt_s)}`),
+    }),
   );
 
 // The penalties within one per cent of the direct step, by step.
@@ -74,7 +83,7 @@ export function descent_findings(tables) {
       good.length === 0
         ? `Steps of ${format_time(dt_s)}: no penalty of ${tried} comes within 1 %.`
         : `Steps of ${format_time(dt_s)}: penalties within 1 % of the direct step from ` +
-          `${format_number(Math.min(...good))} to ${format_number(Math.max(...good))} 1/s².`,
+          `${power(Math.min(...good))} to ${power(Math.max(...good))} 1/s².`,
     ),
   ];
 }
@@ -170,7 +179,7 @@ const bands = [
 ];
 
 const rod_of = (row) =>
-  `${row.scene === 'swing' ? 'hair' : row.scene}, ${format_number(row.stretch_over_bending)}`;
+  `${row.scene === 'swing' ? 'hair' : row.scene}, ${power(row.stretch_over_bending)}`;
 
 const cells = (tables) =>
   descent_rows(tables, 'rods').map((row) => {

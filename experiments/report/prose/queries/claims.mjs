@@ -79,8 +79,7 @@ export const multipliers_free = asserted(
 export const map_unreached = asserted(
   (tables) => {
     const rows = rows_of(tables, 'block_descent', { part: 'rods', scene: 'swing' });
-    const at = (row) => (succeeded(row) ? row.error_rel : Infinity);
-    return rows.length >= 40 && rows.every((row) => at(row) > 0.01);
+    return rows.length >= 40 && rows.every((row) => succeeded(row) && row.error_rel > 0.01);
   },
   'On the hair no point of the map is within the wanted error: as stiff as it is, it locks at any tried number of ' +
     'sweeps, and softened until sweeps converge it is another rod. Stable it is everywhere',
