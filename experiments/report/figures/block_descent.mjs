@@ -1,6 +1,6 @@
 // Figures 13 and 14: how many sweeps of block descent make a step, and where stable
 // Cosserat rods are right.
-import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
+import { distinct, group_by, is_number, is_positive, succeeded } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
 import {
   dimmed_unless,
@@ -181,9 +181,11 @@ const bands = [
 const rod_of = (row) =>
   `${row.scene === 'swing' ? 'hair' : row.scene}, ${power(row.stretch_over_bending)}`;
 
+const measured = (row) => succeeded(row) && is_number(row.error_rel);
+
 const cells = (tables) =>
   descent_rows(tables, 'rods').map((row) => {
-    const error = succeeded(row) ? row.error_rel : Infinity;
+    const error = measured(row) ? row.error_rel : Infinity;
     const band = bands.find(({ most }) => error <= most);
     return {
       ...row,
@@ -201,7 +203,7 @@ export function map_findings(tables) {
   const reached = all.filter((row) => row.band === bands[0].name);
   return [
     `${reached.length} of ${all.length} points of the map are within 1 % of the rod.`,
-    ...[...group_by(all.filter(succeeded), (row) => row.rod)].map(([rod, rows]) => {
+    ...[...group_by(all.filter(measured), (row) => row.rod)].map(([rod, rows]) => {
       const best = rows.reduce((a, b) => (b.error_rel < a.error_rel ? b : a));
       return (
         `${rod}: least error ${format_number(100 * best.error_rel)} %, at ` +
