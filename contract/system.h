@@ -133,7 +133,35 @@ class ComplianceForm {
   virtual Status rest(double t, In q, In v, Out a) noexcept = 0;
   /// Evaluates block k at x, the values of its coordinates.
   virtual void evaluate(double t, std::size_t k, In x, Value& value) noexcept = 0;
+
+  using Second = double[most_coordinates][most_coordinates];
+  /// h += sum_r stress_r d^2 C_r/dx^2 of block k at x, a row of C each. False: the second
+  /// derivatives are not known, h is as it was.
+  virtual bool add_second(double /*t*/, std::size_t /*k*/, In /*x*/, In /*stress*/,
+                          Second& /*h*/) noexcept {
+    return false;
+  }
+
+  /// Four coordinates that are the quaternion of a frame, with norm 1 at rest.
+  struct Orientation {
+    std::vector<int> coordinates;  // that the energy of its blocks depends on, ascending
+    std::size_t own = 0;           // place of its four among them
+  };
+  static constexpr int most_oriented = 18;
+  /// Ordered along the body; fixed for life. Empty: no coordinates are quaternions, or
+  /// there is no closed form for them.
+  virtual const std::vector<Orientation>& orientations();
+  /// Moves the orientation k in x, the values of its coordinates, towards the one of norm
+  /// 1 at which energy and friction, at the rates (x - origin)/h, are balanced with the
+  /// others held and no inertia: in closed form, repeated calls converge.
+  virtual void orient(double /*t*/, double /*h*/, std::size_t /*k*/, In /*origin*/,
+                      InOut /*x*/) noexcept {}
 };
+
+inline const std::vector<ComplianceForm::Orientation>& ComplianceForm::orientations() {
+  static const std::vector<Orientation> none;
+  return none;
+}
 
 struct Energy {
   double kinetic = 0;    // J

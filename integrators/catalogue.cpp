@@ -25,6 +25,9 @@
   METHOD(generalized_alpha)          \
   METHOD(xpbd)                       \
   METHOD(xpbd_bdf2)                  \
+  METHOD(vbd)                        \
+  METHOD(vbd_augmented)              \
+  METHOD(stable_cosserat_rods)       \
   METHOD(gsl_rkf45)                  \
   METHOD(gsl_rk8pd)                  \
   METHOD(gsl_msadams)                \

@@ -184,9 +184,9 @@ std::span<const Parameter> integrator_options() {
   static const std::vector<Parameter> parameters = [] {
     std::vector<Parameter> list(common_options().begin(), common_options().end());
     for (const IntegratorEntry& entry : integrator_catalogue()) {
-      const auto& own = entry.parameters;
-      if (own.empty() || readers_of_option(own.front().name).front() != &entry) continue;
-      list.insert(list.end(), own.begin(), own.end());
+      for (const Parameter& own : entry.parameters) {
+        if (readers_of_option(own.name).front() == &entry) list.push_back(own);
+      }
     }
     return list;
   }();

@@ -112,7 +112,7 @@ Row answer(Row row, const Claim& claim, double value, bool holds);
 Row no_answer(Row row, const Claim& claim, std::string_view status,
               std::string_view reason);
 
-extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance;
+extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance, sweeps;
 
 /// Linear interpolation between order statistics [Hyndman & Fan 1996, type 7];
 /// `share` in [0, 1], `values` not empty.

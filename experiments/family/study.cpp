@@ -6,7 +6,8 @@
 namespace tress::experiments::family {
 
 std::span<const Study> studies() {
-  static const std::array all{stable_steps, twist, bdf_order, equal_accuracy, tolerance};
+  static const std::array all{stable_steps,   twist,     bdf_order,
+                              equal_accuracy, tolerance, sweeps};
   return all;
 }
 

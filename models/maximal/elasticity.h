@@ -26,6 +26,15 @@ class StrainForm {
   /// a turning clamp.
   virtual void strain(std::size_t k, const RootPose& root, const double* z,
                       ComplianceForm::Value& value) noexcept = 0;
+  /// As ComplianceForm::add_second, over all coordinates of the block.
+  virtual void add_second(std::size_t k, const RootPose& root, const double* z, In stress,
+                          ComplianceForm::Second& h) noexcept = 0;
+  /// As the ComplianceForm's; coordinates are indices into z.
+  virtual std::vector<ComplianceForm::Orientation> orientations() const { return {}; }
+  /// z, origin: the coordinates of orientation k. `q`: its four of z, to be moved.
+  virtual void orient(std::size_t /*k*/, const RootPose& /*root*/, double /*h*/,
+                      const double* /*origin*/, const double* /*z*/,
+                      double* /*q*/) noexcept {}
 };
 
 /// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are

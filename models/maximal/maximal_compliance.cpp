@@ -18,12 +18,18 @@ ComplianceForm* MaximalSystem::compliance_form() {
   if (strains == nullptr || strand_.constraints || !diagonal_mass()) return nullptr;
   if (!compliant_.empty()) return this;
   compliant_ = strains->strain_blocks();
-  for (Block& block : compliant_) {  // from places in z to places in q
-    const auto moving =
-        std::ranges::lower_bound(block.coordinates, static_cast<int>(held()));
-    prescribed_.push_back(static_cast<std::size_t>(moving - block.coordinates.begin()));
-    block.coordinates.erase(block.coordinates.begin(), moving);
-    for (int& coordinate : block.coordinates) coordinate -= static_cast<int>(held());
+  orientations_ = strains->orientations();
+  const auto to_moving = [this](std::vector<int>& coordinates) {  // from z to q
+    const auto moving = std::ranges::lower_bound(coordinates, static_cast<int>(held()));
+    const auto prescribed = static_cast<std::size_t>(moving - coordinates.begin());
+    coordinates.erase(coordinates.begin(), moving);
+    for (int& coordinate : coordinates) coordinate -= static_cast<int>(held());
+    return prescribed;
+  };
+  for (Block& block : compliant_) prescribed_.push_back(to_moving(block.coordinates));
+  for (Orientation& orientation : orientations_) {
+    prescribed_of_orientation_.push_back(to_moving(orientation.coordinates));
+    orientation.own -= prescribed_of_orientation_.back();
   }
   return this;
 }
@@ -64,6 +70,40 @@ void MaximalSystem::evaluate(double t, std::size_t k, In x, Value& value) noexce
     value.drift[row] += dot(load3(slope), pose_.v);
     std::copy_n(slope + prescribed, x.size(), slope);
   }
+}
+
+bool MaximalSystem::add_second(double t, std::size_t k, In x, In stress,
+                               Second& h) noexcept {
+  look_at(t);
+  StrainForm& strains = *strand_.elasticity->strain_form();
+  const std::size_t prescribed = prescribed_[k];
+  if (prescribed == 0) {
+    strains.add_second(k, pose_, x.data(), stress, h);
+    return true;
+  }
+  double z[most_coordinates];
+  Second of_all = {};
+  store3(pose_.x, z);
+  std::ranges::copy(x, z + prescribed);
+  strains.add_second(k, pose_, z, stress, of_all);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      h[i][j] += of_all[prescribed + i][prescribed + j];
+    }
+  }
+  return true;
+}
+
+void MaximalSystem::orient(double t, double h, std::size_t k, In origin,
+                           InOut x) noexcept {
+  look_at(t);
+  const std::size_t prescribed = prescribed_of_orientation_[k];
+  double z[most_oriented] = {}, from[most_oriented] = {};
+  if (prescribed > 0) store3(pose_.x, z);
+  std::ranges::copy(x, z + prescribed);
+  std::ranges::copy(origin, from + prescribed);
+  strand_.elasticity->strain_form()->orient(k, pose_, h, from, z,
+                                            &x[orientations_[k].own]);
 }
 
 }  // namespace tress::models

@@ -113,6 +113,9 @@ class MaximalSystem final : public System,
   void inverse_mass(Out w) const override;
   Status rest(double t, In q, In v, Out a) noexcept override;
   void evaluate(double t, std::size_t k, In x, Value& value) noexcept override;
+  bool add_second(double t, std::size_t k, In x, In stress, Second& h) noexcept override;
+  const std::vector<Orientation>& orientations() override { return orientations_; }
+  void orient(double t, double h, std::size_t k, In origin, InOut x) noexcept override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   std::optional<Momentum> momentum(double t, In q, In v) override;
@@ -159,9 +162,11 @@ class MaximalSystem final : public System,
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // per mass point
   std::vector<double> blocks_;                                  // (9 mass points)
   std::vector<double> values_, scratch_;
-  // Made on first use: blocks, and the number of prescribed coordinates of each.
+  // Made on first use: blocks and orientations, and the number of prescribed coordinates
+  // of each.
   std::vector<Block> compliant_;
-  std::vector<std::size_t> prescribed_;
+  std::vector<Orientation> orientations_;
+  std::vector<std::size_t> prescribed_, prescribed_of_orientation_;
 };
 
 }  // namespace tress::models

@@ -238,4 +238,22 @@ void SpringElasticity::strain(std::size_t k, const RootPose& root, const double*
   });
 }
 
+void SpringElasticity::add_second(std::size_t k, const RootPose& root, const double* z,
+                                  In stress, ComplianceForm::Second& h) noexcept {
+  at_number(springs_, along_[k], [&]<class Strain>(const Spring<Strain>& spring) {
+    constexpr int edges = Strain::edges;
+    Vec e[edges];
+    for (int i = 0; i < edges; ++i) e[i] = load3(z + 3 * i + 3) - load3(z + 3 * i);
+    Strain now = spring.strain;
+    if constexpr (at_wall<Strain>) now.place(root.frame);
+    EdgeMatrix<edges> of_edges;
+    EdgeMatrix<edges + 1> of_nodes;
+    now.hessian(e, of_edges);
+    to_nodes(of_edges, of_nodes);
+    for (int i = 0; i < of_nodes.size; ++i) {
+      for (int j = 0; j < of_nodes.size; ++j) h[i][j] += stress[0] * of_nodes.m[i][j];
+    }
+  });
+}
+
 }  // namespace tress::models

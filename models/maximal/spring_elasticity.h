@@ -50,6 +50,8 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   std::vector<ComplianceForm::Block> strain_blocks() const override;
   void strain(std::size_t k, const RootPose& root, const double* z,
               ComplianceForm::Value& value) noexcept override;
+  void add_second(std::size_t k, const RootPose& root, const double* z, In stress,
+                  ComplianceForm::Second& h) noexcept override;
 
   Springs springs_;
   SpringTangent tangent_;

@@ -31,6 +31,11 @@ struct CordeEdge {
     s[4] = dot(q, q) - T(1);
   }
   void gradient(const double* x, double (&g)[strains][coordinates]) const;
+  /// J: the energy is const - pull . t(q) for q of norm 1 and fixed e.
+  Vec pull(const double* x) const {
+    const Vec e = load3(x);
+    return (stiffness[1] / norm(e)) * e;
+  }
   void add_second(const double* x, const double* stress,
                   double (&h)[coordinates][coordinates]) const;
 };

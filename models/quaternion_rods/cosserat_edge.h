@@ -26,6 +26,14 @@ struct CosseratEdge {
     s[3] = square - T(1);
   }
   void gradient(const double* x, double (&g)[strains][coordinates]) const;
+  /// J: for q of norm 1, fixed e and d = e/l, the energy is
+  /// l (kGA |d|^2 - 2 EA d . t + (EA - kGA) (d . t)^2)/2 + const with t = t(q), whose
+  /// derivative by t at x is -pull. Shear is the same along both axes.
+  Vec pull(const double* x) const {
+    const Vec d = (1 / length) * load3(x);
+    const double along = dot(d, first_axis(load_quaternion(x + 3)));
+    return (stiffness[0] + (stiffness[1] - stiffness[0]) * along) * d;
+  }
   void add_second(const double* x, const double* stress,
                   double (&h)[coordinates][coordinates]) const;
 };

@@ -5,6 +5,7 @@
 #include "models/maximal/nodal_strand.h"
 #include "models/quaternion_rods/corde_edge.h"
 #include "models/quaternion_rods/cosserat_edge.h"
+#include "models/quaternion_rods/orientation_step.h"
 
 namespace tress::models {
 namespace {
@@ -221,6 +222,55 @@ std::vector<ComplianceForm::Block> QuaternionRod<Edge>::strain_blocks() const {
 }
 
 template <class Edge>
+std::vector<ComplianceForm::Orientation> QuaternionRod<Edge>::orientations() const {
+  std::vector<ComplianceForm::Orientation> all;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    auto& [coordinates, own] = all.emplace_back();
+    for (std::size_t k = 0; k < 6; ++k)
+      coordinates.push_back(static_cast<int>(3 * i + k));
+    own = i > 0 ? 10 : 6;
+    const std::size_t end = i + 1 < edges_.size() ? at(i) + 8 : at(i) + 4;
+    for (std::size_t k = i > 0 ? at(i) - 4 : at(i); k < end; ++k) {
+      coordinates.push_back(static_cast<int>(k));
+    }
+  }
+  return all;
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::orient(std::size_t i, const RootPose& root, double h,
+                                 const double* origin, const double* z,
+                                 double* q) noexcept {
+  const std::size_t own = i > 0 ? 10 : 6;
+  double x[8], rate[8];
+  store3(load3(z + 3) - load3(z), x);
+  Quaternion now = load_quaternion(z + own);
+  now = (1 / std::sqrt(dot(now, now))) * now;
+  store_quaternion(now, x + 3);
+  OrientationStep step(now, edges_[i].pull(x));
+  const auto moving = [&](std::size_t from, std::size_t to) {
+    std::copy_n(z + from, 4, x + to);
+    for (std::size_t k = 0; k < 4; ++k)
+      rate[to + k] = (z[from + k] - origin[from + k]) / h;
+  };
+  if (walled_ || i > 0) {
+    moving(own, 4);
+    if (i > 0) {
+      moving(own - 4, 0);
+    } else {
+      store_wall(root, now, x, rate);
+    }
+    step.add(joints_[before(i)], h, x, rate, OrientationStep::Side::behind);
+  }
+  if (i + 1 < edges_.size()) {
+    moving(own, 0);
+    moving(own + 4, 4);
+    step.add(joints_[before(i + 1)], h, x, rate, OrientationStep::Side::before);
+  }
+  store_quaternion(step.taken(), q);
+}
+
+template <class Edge>
 void QuaternionRod<Edge>::strain(std::size_t k, const RootPose& root, const double* z,
                                  ComplianceForm::Value& value) noexcept {
   std::ranges::fill(value.drift, 0.0);
@@ -235,6 +285,30 @@ void QuaternionRod<Edge>::strain(std::size_t k, const RootPose& root, const doub
     joint.strain(z, value.c);
     joint.gradient(z, g);
     for (int m = 0; m < 3; ++m) std::copy_n(g[m], 8, value.gradient[m]);
+  }
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::add_second(std::size_t k, const RootPose& /*root*/,
+                                     const double* z, In stress,
+                                     ComplianceForm::Second& second) noexcept {
+  const std::size_t place = walled_ ? k : k + 1;  // joints even, edges odd
+  if (place % 2 == 1) {
+    double x[7], h[7][7] = {}, of_nodes[10][10];
+    store3(load3(z + 3) - load3(z), x);
+    std::copy_n(z + 6, 4, x + 3);
+    edges_[place / 2].add_second(x, stress.data(), h);
+    to_nodes<4>(h, of_nodes);
+    for (int i = 0; i < 10; ++i) {
+      for (int j = 0; j < 10; ++j) second[i][j] += of_nodes[i][j];
+    }
+    return;
+  }
+  if (walled_ && k == 0) return;  // linear in the only quaternion that moves
+  double h[8][8] = {};
+  joints_[before(place / 2)].add_second(z, stress.data(), h);
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) second[i][j] += h[i][j];
   }
 }
 

@@ -87,6 +87,11 @@ class QuaternionRod final : public Elasticity,
   std::vector<ComplianceForm::Block> strain_blocks() const override;
   void strain(std::size_t k, const RootPose& root, const double* z,
               ComplianceForm::Value& value) noexcept override;
+  void add_second(std::size_t k, const RootPose& root, const double* z, In stress,
+                  ComplianceForm::Second& h) noexcept override;
+  std::vector<ComplianceForm::Orientation> orientations() const override;
+  void orient(std::size_t k, const RootPose& root, double h, const double* origin,
+              const double* z, double* q) noexcept override;
   void wall_strain(const RootPose& root, const double* z,
                    ComplianceForm::Value& value) const noexcept;
   void edge_strain(std::size_t i, const double* z,
@@ -97,6 +102,8 @@ class QuaternionRod final : public Elasticity,
   std::size_t at(std::size_t edge) const { return quaternions_ + 4 * edge; }
   /// Edge behind a joint; before it is the previous edge, or the clamp.
   std::size_t behind(std::size_t joint) const { return walled_ ? joint : joint + 1; }
+  /// Joint before an edge, unless it is the first of a rod without a wall.
+  std::size_t before(std::size_t edge) const { return walled_ ? edge : edge - 1; }
   Local<Edge> edge(const Placement& p, std::size_t i) const noexcept;
   Local<QuaternionJoint> joint(const Placement& p, std::size_t j) const noexcept;
 

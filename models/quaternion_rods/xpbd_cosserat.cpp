@@ -26,6 +26,9 @@ namespace {
 /// clamp and friction (gamma/l on C_b') are those of corde.cpp; there is no friction on
 /// C_s.
 ///
+/// stretch_factor softens EA alone, as codes do that cannot follow a hair's: the rod then
+/// stretches by its weight over stretch_factor EA.
+///
 /// Order 2 as corde. Stretch and shear have the material's stiffness, so a light
 /// cantilever bends lower by 4 EI/(k GA L^2) of its deflection and nothing locks. The
 /// norm softens joints as in corde.cpp, by 2 (u l)^2/norm in bending of curvature u.
@@ -46,6 +49,7 @@ namespace {
 /// Rotations between neighbours stay below 180 degrees, tensions below k GA (beyond it
 /// edges turn out of their frames).
 struct XpbdCosseratOptions {
+  double stretch_factor = 1;  // stiffness against stretch over EA
   double shear_factor = 0.9;  // k [Cowper 1966: 6 (1 + p)/(7 + 6 p), solid circle, p 1/2]
   double norm = 100;          // nu l^2/EI
   double edge_inertia = 0;    // of quaternions, beyond the section's, over rho A l^3
@@ -59,10 +63,11 @@ CosseratEdge edge(const Material& material, const Segment& segment,
   const double bending =
       material.youngs_modulus * std::max(section.inertia1(), section.inertia2());
   const double shear = l * options.shear_factor * material.shear_modulus * section.area();
-  return {.length = l,
-          .stiffness = {l * material.youngs_modulus * section.area(), shear, shear,
-                        options.norm * bending / l},
-          .friction = {}};
+  return {
+      .length = l,
+      .stiffness = {l * options.stretch_factor * material.youngs_modulus * section.area(),
+                    shear, shear, options.norm * bending / l},
+      .friction = {}};
 }
 
 /// Throws InputError unless the strand is a chain.
@@ -77,6 +82,10 @@ std::unique_ptr<System> xpbd_cosserat(const Strand& strand,
 
 std::span<const Parameter> xpbd_cosserat_parameters() {
   static constexpr std::array all{
+      Parameter{.name = "stretch_factor",
+                .help = "stiffness against stretch over EA",
+                .number = XpbdCosseratOptions{}.stretch_factor,
+                .min = 1e-12},
       Parameter{.name = "shear_factor",
                 .help = "stiffness against shear over GA",
                 .number = XpbdCosseratOptions{}.shear_factor,
@@ -97,7 +106,8 @@ std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                                            const Parameters& parameters,
                                            Effects effects) {
   return xpbd_cosserat(strand,
-                       {.shear_factor = parameters.number("shear_factor"),
+                       {.stretch_factor = parameters.number("stretch_factor"),
+                        .shear_factor = parameters.number("shear_factor"),
                         .norm = parameters.number("norm"),
                         .edge_inertia = parameters.number("edge_inertia"),
                         .solver = maximal_solver(parameters)},

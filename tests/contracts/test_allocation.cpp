@@ -140,12 +140,20 @@ TEST_P(Allocation, ComplianceFormAllocatesNothing) {
   if (form == nullptr) GTEST_SKIP() << "no compliance form";
   States s(*system);
   ComplianceForm::Value value;
-  std::vector<double> x(ComplianceForm::most_coordinates, 0.1);
+  ComplianceForm::Second second = {};
+  std::vector<double> x(ComplianceForm::most_oriented, 0.1);
+  std::vector<double> y = x;
   const auto once = [&] {
     (void)form->rest(0, s.q, s.v, s.a);
     form->inverse_mass(s.a);
     for (std::size_t k = 0; k < form->blocks().size(); ++k) {
-      form->evaluate(0, k, In(x).first(form->blocks()[k].coordinates.size()), value);
+      const In at = In(x).first(form->blocks()[k].coordinates.size());
+      form->evaluate(0, k, at, value);
+      (void)form->add_second(0, k, at, value.c, second);
+    }
+    for (std::size_t k = 0; k < form->orientations().size(); ++k) {
+      const InOut at = InOut(y).first(form->orientations()[k].coordinates.size());
+      form->orient(0, 1e-3, k, In(x).first(at.size()), at);
     }
   };
   EXPECT_EQ(count(once), 0);

@@ -376,6 +376,11 @@ TEST_P(SystemContract, ComplianceFormIsTheResidual) {
   // Strains are differences of numbers of order one: a hundred times their rounding, and
   // that of forces that nearly cancel.
   EXPECT_LE(compliance_error(*system_, *form, s), 1e-12);
+  // Rounding of gradients over a millionth, 1e-9 for edges a tenth as long as the typical
+  // size, and third derivatives times its square, of springs that are nearly straight.
+  const double of_second = second_error(*system_, *form, s);
+  EXPECT_LE(of_second, 1e-5);
+  EXPECT_GT(of_second, 0);  // differences are never exact
 }
 
 TEST_P(SystemContract, InitialStateSatisfiesTheConstraints) {

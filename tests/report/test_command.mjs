@@ -34,6 +34,8 @@ const figures = {
   scaling: ['cost per step (µs)', 'composite / recursive', 'composite: N^2.62'],
   swing: ['wall time (ms)', 'tip error (%)', '20 ms', '50 ms'],
   force_transport: ['off the rod / length', 'elements', 'time (s)'],
+  block_descent: ['off the direct step / length', 'sweeps per step', 'vbd, whole'],
+  cosserat_map: ['steps a second', 'at most 1 %', '20 sweeps'],
 };
 
 // Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser
@@ -133,6 +135,7 @@ test('MissingTables_SayHowToProduceThem', () => {
     'stability_limit',
     'scaling',
     'force_transport',
+    'block_descent',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);
   }

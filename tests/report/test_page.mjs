@@ -28,6 +28,8 @@ const figures = [
   'scaling',
   'swing',
   'force_transport',
+  'block_descent',
+  'cosserat_map',
 ];
 let directory, browser, page;
 
@@ -218,6 +220,7 @@ for (const [figure, entry] of [
   ['stability_limit', 'composite'],
   ['swing', 'implicit_midpoint'],
   ['force_transport', 'corde'],
+  ['block_descent', 'xpbd'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
     await open_measurements({ changes: figure });

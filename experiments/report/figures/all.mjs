@@ -6,6 +6,7 @@ import { validation } from './validation.mjs';
 import { validation_orders } from './validation_orders.mjs';
 import { validation_tests } from './validation_tests.mjs';
 import { bdf_order } from './bdf_order.mjs';
+import { block_descent, cosserat_map } from './block_descent.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
@@ -42,6 +43,8 @@ export const figures = [
   head_accuracy,
   swing,
   force_transport,
+  block_descent,
+  cosserat_map,
 ];
 
 // A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.

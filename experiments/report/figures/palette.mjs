@@ -38,6 +38,9 @@ export const shapes = [
   'M-0.9,-0.9L0.9,-0.9L0.9,-0.3L0.3,-0.3L0.3,0.9L-0.3,0.9L-0.3,-0.3L-0.9,-0.3Z',
   'M-0.9,0.9L0.9,0.9L0.9,0.3L0.3,0.3L0.3,-0.9L-0.3,-0.9L-0.3,0.3L-0.9,0.3Z',
   'M-1,-0.8L0,-0.25L1,-0.8L1,0.8L0,0.25L-1,0.8Z',
+  'M-0.8,-1L0.8,-1L0.25,0L0.8,1L-0.8,1L-0.25,0Z',
+  'M-0.9,-0.9L0.9,-0.9L0.9,-0.3L-0.3,-0.3L-0.3,0.9L-0.9,0.9Z',
+  'M-0.9,-0.9L-0.3,-0.9L-0.3,0.3L0.3,0.3L0.3,-0.9L0.9,-0.9L0.9,0.9L-0.9,0.9Z',
 ];
 
 const dashes = [
@@ -92,7 +95,14 @@ export const families = [
   {
     name: 'position-based',
     colours: ['#4C5BD4', '#8FA6D8'],
-    members: ['predictor_corrector', 'xpbd', 'xpbd_bdf2'],
+    members: [
+      'predictor_corrector',
+      'xpbd',
+      'xpbd_bdf2',
+      'vbd',
+      'vbd_augmented',
+      'stable_cosserat_rods',
+    ],
   },
   { name: 'other', colours: ['#8E6CC9', '#B9A3E0'], members: [] },
 ];

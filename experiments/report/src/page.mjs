@@ -2,6 +2,7 @@
 import { cost_findings } from '../figures/cost_of_accuracy.mjs';
 import { cost_by_model_findings } from '../figures/cost_by_model.mjs';
 import { family_findings } from '../figures/family.mjs';
+import { descent_findings, map_findings } from '../figures/block_descent.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
@@ -80,6 +81,8 @@ const measurements = [
     findings: transport_findings,
     tables: ['force_transport'],
   },
+  { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
+  { figure: 'cosserat_map', findings: map_findings, tables: [] },
 ];
 
 // The three questions first, each a tab; then the measurements behind them.

@@ -50,6 +50,41 @@ export const nodal_verdict = asserted(
     'whole Newton steps take steps that are orders of magnitude longer than explicit ones',
 );
 
+// The springs of the swinging strand at the sweeps of a step that the study judges.
+const springs = (tables, integrator, block, sweeps) =>
+  rows_of(tables, 'block_descent', {
+    part: 'sweeps',
+    model: 'mass_spring',
+    integrator,
+    block,
+    sweeps,
+  }).filter((row) => !(row.chebyshev > 0))[0].direct_distance_rel;
+
+export const descent_locks = asserted(
+  (tables) =>
+    springs(tables, 'vbd', 1, 20) >= 0.1 &&
+    springs(tables, 'vbd', 16, 20) >= 0.1 &&
+    springs(tables, 'vbd', 0, 5) <= 1e-5,
+  'Node by node descent locks: springs of a hair are so stiff that bending cannot pass through held neighbours. ' +
+    'Blocks of several nodes lock as well, down to one that is nearly the strand; the whole strand is solved in a ' +
+    'few sweeps, each of which costs less than one of nodes, for its matrix is a band',
+);
+
+export const multipliers_free = asserted(
+  (tables) => springs(tables, 'vbd_augmented', 1, 20) <= 0.01,
+  'Multipliers that carry the stress from step to step free it, as long as the penalty is within its window: below it ' +
+    'multipliers take too long, above it nodes lock again',
+);
+
+export const map_unreached = asserted(
+  (tables) => {
+    const rows = rows_of(tables, 'block_descent', { part: 'rods', scene: 'swing' });
+    return rows.length >= 40 && rows.every((row) => succeeded(row) && row.error_rel > 0.01);
+  },
+  'On the hair no point of the map is within the wanted error: as stiff as it is, it locks at any tried number of ' +
+    'sweeps, and softened until sweeps converge it is another rod. Stable it is everywhere',
+);
+
 export const transport_wrong = asserted((tables) => {
   const ratios = rows_of(tables, 'force_transport', {
     comparison: 'modes',

@@ -3,6 +3,7 @@ import { cost_findings } from '../../figures/cost_of_accuracy.mjs';
 import { hard_findings } from '../../figures/hard_cases.mjs';
 import { model_step_findings } from '../../figures/model_steps.mjs';
 import { nodal_step_findings } from '../../figures/nodal_steps.mjs';
+import { descent_findings, map_findings } from '../../figures/block_descent.mjs';
 import { transport_findings } from '../../figures/force_transport.mjs';
 import { validation_findings } from '../../figures/validation.mjs';
 import { boundary_sentences, drift_findings, recovery_sentences } from '../../src/findings/drift.mjs';
@@ -31,8 +32,10 @@ export const control = (tables) => {
 export const bdf = listed(bdf_findings);
 export const boundary = listed(boundary_sentences);
 export const cost = listed(cost_findings);
+export const descent = listed(descent_findings);
 export const drift = listed(drift_findings);
 export const hard = listed(hard_findings);
+export const map = listed(map_findings);
 export const models = listed(model_step_findings);
 export const nodal = listed(nodal_step_findings);
 export const recovery = listed(({ constraint_drift }) => recovery_sentences(constraint_drift));

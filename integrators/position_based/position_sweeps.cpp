@@ -1,4 +1,4 @@
-#include "integrators/position_sweeps.h"
+#include "integrators/position_based/position_sweeps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,21 +6,16 @@
 namespace tress::integrators {
 namespace {
 
-constexpr Parameter own[] = {
-    {.name = "sweeps",
-     .help = "Gauss-Seidel sweeps per step",
-     .number = 10,
-     .min = 1,
-     .max = 1e6,
-     .whole = true},
-    {.name = "sweep_order",
-     .help = "order of the blocks in a sweep",
-     .choices = "root_to_tip|bilateral"},
-};
-/// Indices of `count` blocks in the order of a sweep: from the root to the tip, or from
-/// both ends alternately, even indices upwards and odd ones downwards, after the
-/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
-std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t count) {
+constexpr Parameter own[] = {sweeps_option, sweep_order_option};
+
+constexpr std::string_view no_multipliers =
+    "takes energies, not constraints with multipliers";
+
+}  // namespace
+
+std::span<const Parameter> sweep_options() { return own; }
+
+std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t count) {
   std::vector<std::size_t> all;
   if (sweep_order == "root_to_tip") {
     for (std::size_t k = 0; k < count; ++k) all.push_back(k);
@@ -35,13 +30,6 @@ std::vector<std::size_t> order_of(std::string_view sweep_order, std::size_t coun
   return all;
 }
 
-constexpr std::string_view no_multipliers =
-    "takes energies, not constraints with multipliers";
-
-}  // namespace
-
-std::span<const Parameter> sweep_options() { return own; }
-
 PositionSweeps::PositionSweeps(System& system, const Options& options)
     : PositionSweeps(system, own_options(options, own)) {}
 
@@ -49,7 +37,7 @@ PositionSweeps::PositionSweeps(System& system, const Parameters& chosen)
     : sweeps_(chosen.whole("sweeps")),
       form_(*system.compliance_form()),
       blocks_(form_.blocks()),
-      order_(order_of(chosen.word("sweep_order"), blocks_.size())),
+      order_(sweep_indices(chosen.word("sweep_order"), blocks_.size())),
       lambda_of_(blocks_.size()),
       w_(static_cast<std::size_t>(system.layout().coordinates)),
       last_(w_.size()) {

@@ -2,7 +2,7 @@
 
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/position_sweeps.h"
+#include "integrators/position_based/position_sweeps.h"
 
 namespace tress::integrators {
 namespace {

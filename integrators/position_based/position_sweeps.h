@@ -10,8 +10,23 @@
 
 namespace tress::integrators {
 
-/// Options of all methods that sweep.
+inline constexpr Parameter sweeps_option{.name = "sweeps",
+                                         .help = "Gauss-Seidel sweeps per step",
+                                         .number = 10,
+                                         .min = 1,
+                                         .max = 1e6,
+                                         .whole = true};
+inline constexpr Parameter sweep_order_option{.name = "sweep_order",
+                                              .help = "order of the blocks in a sweep",
+                                              .choices = "root_to_tip|bilateral"};
+
+/// The options above, which all methods that sweep have.
 std::span<const Parameter> sweep_options();
+
+/// Indices of `count` blocks in the order of a sweep: from the root to the tip, or from
+/// both ends alternately, even indices upwards and odd ones downwards, after the
+/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t count);
 
 /// Gauss-Seidel sweeps over the blocks of a model's ComplianceForm: from a guess x and
 /// lambda = 0 every block is corrected in turn by x += W G^T dlambda with

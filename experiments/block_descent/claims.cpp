@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/block_descent/block_descent.h"
+
+namespace tress::experiments::block_descent {
+namespace {
+
+/// The row of the swinging springs by this method at 20 sweeps with default penalties, a
+/// node or all at a time.
+const Row* usual(const std::vector<Row>& rows, std::string_view integrator,
+                 std::string_view block, std::string_view sweeps) {
+  const auto found = std::ranges::find_if(rows, [&](const Row& row) {
+    return row.ok() && row.text("part") == "sweeps" &&
+           row.text("model") == "mass_spring" && row.text("integrator") == integrator &&
+           row.text("block") == block && row.text("sweeps") == sweeps &&
+           (!row.has("chebyshev") || row.text("chebyshev") == "0");
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
+  const auto check = [&](const std::string& claim, const Row* row, auto holds) {
+    if (row == nullptr || !row->has("direct_distance_rel")) {
+      verdicts.not_judged(claim);
+      return;
+    }
+    const double distance = row->number("direct_distance_rel");
+    verdicts.check(claim, holds(distance), distance);
+  };
+  check("node by node, twenty sweeps of a hair lock: a tenth of its length or more",
+        usual(rows, "vbd", "1", "20"), [](double x) { return x >= 0.1; });
+  check("multipliers free them: within a hundredth",
+        usual(rows, "vbd_augmented", "1", "20"), [](double x) { return x <= 0.01; });
+  check("solved whole, five sweeps are the direct step to a hundred-thousandth",
+        usual(rows, "vbd", "0", "5"), [](double x) { return x <= 1e-5; });
+  int points = 0, reached = 0;
+  for (const Row& row : rows) {
+    if (row.text("part") != "rods") continue;
+    ++points;
+    if (row.ok() && row.text("within_1_percent") == "true") ++reached;
+  }
+  verdicts.figure("points of the map of stable_cosserat_rods", points);
+  verdicts.figure("of them within one per cent of the rod", reached);
+}
+
+}  // namespace tress::experiments::block_descent

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "integrators/fixed_step.h"
+#include "integrators/position_based/block_descent.h"
+
+namespace tress::integrators {
+
+/// Where the sweeps of a step start from q, v and rest = a of a node.
+enum class Start {
+  inertial,  // q + h v + h^2 a
+  adaptive   // q + h v + h^2 s a, s in [0, 1] the part of a in the last step's motion
+};
+
+inline constexpr Parameter start_option{
+    .name = "start",
+    .help =
+        "where sweeps start: with all of the other forces, or with the part of them "
+        "that the last step's acceleration had",
+    .choices = "inertial|adaptive"};
+
+/// A backward Euler step by BlockDescent: x from the guess, v = (x - q)/h. All forces
+/// that are not of the compliance form are explicit, as in xpbd. [Chen et al. 2024]
+class DescentMethod final : public FixedStep {
+ public:
+  DescentMethod(System& system, const Options& options, const DescentChoice& choice,
+                Start start);
+
+ private:
+  Status reset(double t) override;
+  Status step(double t, double h) override;
+  void guess(double h);
+  /// The part of a node's rest that the last step's acceleration had.
+  double part(const std::vector<int>& node) const;
+
+  BlockDescent descent_;
+  ComplianceForm& form_;
+  Start start_;
+  double h_last_ = 0, ended_ = 0;
+  bool begun_ = false;
+  std::vector<double> x_, target_, rest_, v_last_;
+};
+
+}  // namespace tress::integrators

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "integrators/position_based/descent_method.h"
+
+namespace tress::integrators {
+
+inline constexpr Parameter block_option{
+    .name = "block",
+    .help =
+        "nodes that are solved together, 0: all, which makes a sweep a Newton "
+        "iteration of the step",
+    .number = 1,
+    .min = 0,
+    .max = 1e6,
+    .whole = true};
+inline constexpr Parameter curvature_option{
+    .name = "second_derivatives",
+    .help =
+        "of strains: as they are where the matrix stays positive definite, bounded by "
+        "sums of their rows, or left out",
+    .choices = "exact|majorised|none"};
+inline constexpr Parameter chebyshev_option{
+    .name = "chebyshev",
+    .help = "rate of sweeps for which they are accelerated, 0: they are not",
+    .number = 0,
+    .min = 0,
+    .max = 1};
+
+/// Of values of sweeps_option, sweep_order_option and the above.
+DescentChoice descent_choice(const Parameters& chosen);
+Start start_choice(const Parameters& chosen);
+
+/// Whether a row has no compliance.
+bool has_rigid_rows(const ComplianceForm& form);
+
+}  // namespace tress::integrators

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "contract/system.h"
+#include "linear/skyline.h"
+
+namespace tress::integrators {
+
+/// Coordinates of a ComplianceForm that are solved together, the others held.
+struct Window {
+  /// A block of the form that touches the window.
+  struct Part {
+    std::size_t block;
+    std::vector<int> at;  // of each of its coordinates in the window, -1: it is held
+  };
+
+  std::vector<std::size_t> coordinates;  // indices into q
+  std::vector<Part> parts;
+  Skyline matrix, exact;  // of the profile that the parts give
+};
+
+/// The nodes of a system of n coordinates, those of one of them after the other: sets of
+/// coordinates that enter the same blocks, as the position of a mass point does or a
+/// quaternion. In the order of the blocks, so along the body from the root. Coordinates
+/// in `without` are in none.
+std::vector<std::vector<int>> nodes_of(const ComplianceForm& form, int n,
+                                       const std::vector<int>& without);
+
+/// Windows of `size` consecutive nodes each, the first of `first` and the last of what
+/// is left.
+std::vector<Window> windows_of(const ComplianceForm& form, int n,
+                               const std::vector<std::vector<int>>& nodes,
+                               std::size_t first, std::size_t size);
+
+}  // namespace tress::integrators
