@@ -34,11 +34,12 @@ for id in simo_reissner sdirk2; do
   grep -qE "^  $id .*\(" list || { echo "--list lacks $id"; exit 1; }
 done
 grep -q 'effects.rotating_frame' schema || { echo "the schema lacks the effect"; exit 1; }
-for table in stability_limit work_precision.turntable hard_cases; do
-  grep -E "(^|,)simo_reissner,.*,ok," "results/$table.csv" >rows ||
-    { echo "no row of the model in $table:"; cat "results/$table.csv"; exit 1; }
+for row in 'stability_limit:,simo_reissner,.*,ok,' 'hard_cases:,simo_reissner,.*,sdirk2,' \
+  'hard_cases:,corde,.*,sdirk2,.*,true,' \
+  'work_precision.turntable:,simo_reissner,.*,sdirk2,.*,ok,'; do
+  grep -qE "${row#*:}" "results/${row%%:*}.csv" ||
+    { echo "no row '${row#*:}':"; cat "results/${row%%:*}.csv"; exit 1; }
 done
-grep -q ',sdirk2,' results/hard_cases.csv
 
 grep -q '"file": "build/plugin/libexample.so"' results/stability_limit.meta.json ||
   { echo "the manifest does not name the plug-in"; exit 1; }

@@ -43,8 +43,10 @@ class Summary final : public testing::EmptyTestEventListener {
 
   void OnTestProgramEnd(const testing::UnitTest&) override {
     for (const auto& [name, count] : counts_) {
-      std::printf("%s %s: %d passed", count.failed > 0 ? "FAIL" : "PASS", name.c_str(),
-                  count.passed);
+      const char* verdict = count.failed > 0   ? "FAIL"
+                            : count.passed > 0 ? "PASS"
+                                               : "NONE";
+      std::printf("%s %s: %d passed", verdict, name.c_str(), count.passed);
       if (count.failed > 0) std::printf(", %d failed", count.failed);
       for (const auto& [reason, cases] : count.skipped) {
         std::printf(", %d left out: %s", cases, reason.c_str());

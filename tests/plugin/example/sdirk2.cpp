@@ -14,12 +14,14 @@ using namespace tress::integrators;
 constexpr double diagonal = 1 - std::numbers::sqrt2 / 2;
 
 /// The two-stage SDIRK method of order 2 that is L-stable [Alexander 1977, SIAM J. Numer.
-/// Anal. 14, 1006]: both stages have the diagonal entry gamma, so that one matrix serves
-/// them, and the second is the end of the step:
+/// Anal. 14, 1006], with g = 1 - sqrt 2/2. One matrix serves both stages, the second is
+/// the end of the step:
 ///
-///     v_1 = v + h gamma a_1,                       q_1 = q + h gamma v_1
-///     v_2 = v + h (1 - gamma) a_1 + h gamma a_2,   q_2 = q + h (1 - gamma) v_1 + h gamma
-///     v_2
+///     v_1 = v + h g a_1,                   q_1 = q + h g v_1
+///     v_2 = v + h (1 - g) a_1 + h g a_2,   q_2 = q + h (1 - g) v_1 + h g v_2
+///
+/// Where a strand is so stiff that it follows a constraint, the order is that of a stage,
+/// one; methods with an explicit first stage keep theirs.
 class Sdirk2 final : public FixedStep {
  public:
   Sdirk2(System& system, const Options& options)
@@ -51,12 +53,14 @@ class Sdirk2 final : public FixedStep {
 }  // namespace
 
 IntegratorEntry sdirk2_entry() {
+  std::vector<Treatment> formulations = of_order(2, projected_formulations);
+  formulations.push_back({Formulation::index3, 1});
   return {.id = "sdirk2",
           .summary = "L-stable, two solves with one matrix",
           .source = "Alexander 1977",
           .tangent = true,
           .stages = 2,
-          .formulations = of_order(2, stage_formulations),
+          .formulations = std::move(formulations),
           .make = make_method<Sdirk2>};
 }
 
