@@ -96,7 +96,7 @@ grep -qa '|sizes=' spoilt.so && refused 'cannot be loaded' "$program" --plugin s
 refused "a model 'simo_reissner' already" "$program" --plugin "$library" --plugin "$spoilt" --list
 
 # --- tables of other plug-ins do not mix ---------------------------------------------------
-rows=(--models der --elements 1 --set scene=release --set damping=undamped
+rows=(--models der --elements 1 --set scene=release --set damping=none
   --integrators semi_implicit_euler --quick --out one.csv)
 expect 0 . "$program" --plugin "$library" "${rows[@]}"
 refused 'other settings' "$program" "${rows[@]}" --resume
