@@ -34,6 +34,10 @@ for id in simo_reissner sdirk2; do
   grep -qE "^  $id .*\(" list || { echo "--list lacks $id"; exit 1; }
 done
 grep -q 'effects.rotating_frame' schema || { echo "the schema lacks the effect"; exit 1; }
+while read -r name; do
+  [[ $name == simulate ]] || # has other options
+    expect 0 '^  simo_reissner ' "build/release/experiments/$name" --plugin "$library" --list
+done <build/release/experiments/list.txt
 for row in 'stability_limit:,simo_reissner,.*,ok,' 'hard_cases:,simo_reissner,.*,sdirk2,' \
   'hard_cases:,corde,.*,sdirk2,.*,true,' \
   'work_precision.turntable:,simo_reissner,.*,sdirk2,.*,ok,'; do
