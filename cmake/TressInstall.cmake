@@ -10,6 +10,11 @@ if(TARGET tress_simulation)
   list(APPEND tress_rooms simulation)
 endif()
 list(TRANSFORM tress_rooms PREPEND tress_ OUTPUT_VARIABLE tress_libraries)
+if(TARGET tress_simulation)
+  list(APPEND tress_libraries tress_plugin)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/simulation/plugin/interface_facts.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress/simulation/plugin)
+endif()
 install(TARGETS ${tress_libraries} EXPORT tressTargets)
 install(DIRECTORY ${tress_rooms} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
         FILES_MATCHING PATTERN "*.h")

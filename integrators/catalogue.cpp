@@ -1,10 +1,11 @@
 #include "integrators/catalogue.h"
 
-#include <array>
+#include <algorithm>
 #include <vector>
 
-#include "contract/input_error.h"
+#include "contract/open_catalogue.h"
 #include "contract/parameters.h"
+#include "integrators/integrator_options.h"
 
 /// Every method, in listing order: one line each.
 #define TRESS_METHODS(METHOD)        \
@@ -45,11 +46,46 @@ namespace tress::integrators {
 TRESS_METHODS(TRESS_DECLARE)
 #undef TRESS_DECLARE
 
-std::span<const IntegratorEntry> integrator_catalogue() {
+namespace {
+
+std::vector<IntegratorEntry> built_in_integrators() {
 #define TRESS_ENTRY(id) id##_entry(),
-  static const std::array entries{TRESS_METHODS(TRESS_ENTRY)};
+  return {TRESS_METHODS(TRESS_ENTRY)};
 #undef TRESS_ENTRY
-  return entries;
+}
+
+OpenCatalogue<IntegratorEntry>& all_integrators() {
+  static OpenCatalogue<IntegratorEntry> all("integrator", built_in_integrators());
+  return all;
+}
+
+}  // namespace
+
+std::span<const IntegratorEntry> integrator_catalogue() {
+  static const std::span<const IntegratorEntry> closed = all_integrators().close();
+  return closed;
+}
+
+std::span<const IntegratorEntry> added_integrators() { return all_integrators().added(); }
+
+void add_integrator(const IntegratorEntry& method, const std::string& where) {
+  const std::string name = "integrator '" + std::string(method.id) + "'";
+  refuse_if(method.make == nullptr || method.objection == nullptr,
+            name + " cannot be made", where, "set IntegratorEntry::make");
+  refuse_if(method.formulations.empty(), name + " has no formulation", where,
+            "say in IntegratorEntry::formulations how it takes equations, and its order");
+  for (const Parameter& p : method.parameters) {
+    const auto declares = [&](std::span<const Parameter> list) {
+      return list.data() != method.parameters.data() &&  // a family's
+             std::ranges::count(list, p.name, &Parameter::name) > 0;
+    };
+    refuse_if(declares(common_options()) ||
+                  std::ranges::any_of(all_integrators().entries(), declares,
+                                      &IntegratorEntry::parameters),
+              name + " declares '" + std::string(p.name) + "', an option of others",
+              where, "give it another name");
+  }
+  all_integrators().add(method, where);
 }
 
 const IntegratorEntry& find_integrator(std::string_view id) {

@@ -9,7 +9,13 @@
 
 namespace tress::integrators {
 
+/// Those of tress, then those of plug-ins.
 std::span<const IntegratorEntry> integrator_catalogue();
+std::span<const IntegratorEntry> added_integrators();  // those of plug-ins
+
+/// Before the catalogue is first read. Throws InputError naming `where` if it has been,
+/// on an id or an option that another method has, and on an entry that cannot be used.
+void add_integrator(const IntegratorEntry& method, const std::string& where);
 
 /// Throws InputError naming the nearest id when there is no such integrator.
 const IntegratorEntry& find_integrator(std::string_view id);

@@ -1,12 +1,11 @@
 #include "models/catalogue.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "contract/input_error.h"
+#include "contract/open_catalogue.h"
 #include "models/constrained/bead_on_wire.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/tinkertoys.h"
@@ -47,11 +46,9 @@ std::unique_ptr<System> together(std::span<const Strand> strands,
   return can ? make(strands, options, std::move(effects)) : nullptr;
 }
 
-}  // namespace
-
 // clang-format off
-std::span<const ModelEntry> model_catalogue() {
-  static const std::array entries = {
+std::vector<ModelEntry> built_in_models() {
+  return {
       ModelEntry{"bead_on_wire", "bead on a circle, ellipse, helix or trefoil; x with lambda, or one coordinate", "Witkin 1997", bead_on_wire_parameters(), make_bead_on_wire},
       ModelEntry{"tinkertoys", "3n particles as a chain, ring, net, tree or over-constrained truss", "Witkin 1997", tinkertoys_parameters(), make_tinkertoys},
       ModelEntry{"inextensible_chain", "hanging strand of n rigid links; 3n with n multipliers, open or closed", "Baraff 1996", inextensible_chain_parameters(), make_inextensible_chain},
@@ -71,9 +68,35 @@ std::span<const ModelEntry> model_catalogue() {
       mass_spring_entry(),
       inextensible_strand_entry(),
   };
-  return entries;
 }
 // clang-format on
+
+OpenCatalogue<ModelEntry>& all_models() {
+  static OpenCatalogue<ModelEntry> all("model", built_in_models());
+  return all;
+}
+
+}  // namespace
+
+std::span<const ModelEntry> model_catalogue() {
+  static const std::span<const ModelEntry> closed = all_models().close();
+  return closed;
+}
+
+std::span<const ModelEntry> added_models() { return all_models().added(); }
+
+void add_model(const ModelEntry& model, const std::string& where) {
+  const std::string name = "model '" + std::string(model.id) + "'";
+  refuse_if(model.make == nullptr, name + " cannot be made", where,
+            "set ModelEntry::make");
+  for (const Parameter& p : model.parameters) {
+    refuse_if(model.on_strand != nullptr &&
+                  std::ranges::count(strand_parameters(), p.name, &Parameter::name) > 0,
+              name + " declares '" + std::string(p.name) + "', which all strands have",
+              where, "leave it out: the strand has its value");
+  }
+  all_models().add(model, where);
+}
 
 std::span<const Parameter> setup_parameters(const ModelEntry& model) {
   if (model.on_strand == nullptr) return model.parameters;

@@ -13,7 +13,13 @@ namespace tress::models {
 /// Names and values of setup_parameters().
 using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
+/// Those of tress, then those of plug-ins.
 std::span<const ModelEntry> model_catalogue();
+std::span<const ModelEntry> added_models();  // those of plug-ins
+
+/// Before the catalogue is first read. Throws InputError naming `where` if it has been,
+/// on an id that another model has, and on an entry that cannot be used.
+void add_model(const ModelEntry& model, const std::string& where);
 
 /// What ModelEntry::make reads: the model's own options, and for a model of a strand
 /// before them strand_parameters(), with the values of `motion` that it takes.

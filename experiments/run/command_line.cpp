@@ -24,7 +24,7 @@ struct Raw {
   std::string models, integrators, elements, options, scene, out, shard, timeout,
       progress;
   std::string jobs, repeat, seed;
-  std::vector<std::string> set;
+  std::vector<std::string> set, plugins;
   std::vector<std::string> own;  // the experiment's own options
 };
 
@@ -43,6 +43,11 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
     app.add_option("--" + std::string(own[i].name), raw.own[i], std::string(own[i].help));
   }
   if (!takes_place(own, "scene")) app.add_option("--scene", raw.scene)->group("");
+  app.add_option(
+         "--plugin", raw.plugins,
+         "shared library of further models, integrators, effects (docs/plugins.md); "
+         "again for another")
+      ->allow_extra_args(false);
   app.add_option("--options", raw.options, "TOML file with any of these options");
   app.add_option("--set", raw.set,
                  "key=value for the experiment, integrators or models; again for another")
@@ -137,6 +142,8 @@ void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> o
         "a scene; a file of options goes to --options");
   }
   if (given(raw.options, "options")) line.options_file = raw.options;
+  if (!raw.plugins.empty()) line.places.emplace("plugin", "--plugin");
+  line.plugins = raw.plugins;
   if (given(raw.out, "out")) line.out = raw.out;
   if (given(raw.models, "models")) line.models = split(raw.models, ',', "--models");
   if (given(raw.integrators, "integrators")) {

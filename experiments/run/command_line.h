@@ -22,8 +22,9 @@ struct CommandLine {
   std::vector<int> elements;                     // empty: the experiment's choice
   std::string options_file;
   std::vector<std::pair<std::string, std::string>> set;
-  std::string out;                 // "-": standard output
-  std::vector<std::string> merge;  // tables to join instead of running
+  std::vector<std::string> plugins;  // shared libraries
+  std::string out;                   // "-": standard output
+  std::vector<std::string> merge;    // tables to join instead of running
   bool quick = false, full = false, resume = false, retry_failed = false;
   bool list = false, dry_run = false;
   int jobs = 1, repeat = 3;

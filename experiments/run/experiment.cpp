@@ -24,6 +24,7 @@
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
+#include "simulation/plugin/load_plugin.h"
 
 namespace tress::experiments {
 namespace {
@@ -339,6 +340,7 @@ int answer(const Experiment& experiment, int argc, char** argv) {
   CommandLine line =
       parse_command_line(experiment.name, experiment.question, experiment.example, argc,
                          argv, experiment.options, experiment.unused);
+  for (const std::string& plugin : line.plugins) load_plugin(plugin);
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }

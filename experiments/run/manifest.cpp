@@ -16,6 +16,7 @@
 #include "simulation/files/checksum.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
+#include "simulation/plugin/load_plugin.h"
 
 namespace tress::experiments {
 namespace {
@@ -54,6 +55,15 @@ ordered_json outcome_of(const Row& row) {
 
 }  // namespace
 
+std::string plugins_text() {
+  std::string text;
+  for (const LoadedPlugin& plugin : loaded_plugins()) {
+    const std::string name = std::filesystem::path(plugin.file).filename().string();
+    text += fmt::format(" plugin={}:{}", name, plugin.checksum);
+  }
+  return text;
+}
+
 std::string settings_text(const CommandLine& line) {
   auto sorted = line.set;
   std::sort(sorted.begin(), sorted.end());
@@ -61,7 +71,7 @@ std::string settings_text(const CommandLine& line) {
   if (line.quick) text += " quick";
   if (line.full) text += " full";
   for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
-  return text;
+  return text + plugins_text();
 }
 
 Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
@@ -112,6 +122,14 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
   for (const auto& [file, text] : inputs_) {
     inputs.push_back({{"file", file}, {"fnv1a_64", checksum(text)}, {"text", text}});
   }
+  ordered_json plugins = ordered_json::array();
+  for (const LoadedPlugin& plugin : loaded_plugins()) {
+    plugins.push_back({{"file", plugin.file},
+                       {"fnv1a_64", plugin.checksum},
+                       {"models", plugin.models},
+                       {"integrators", plugin.integrators},
+                       {"effects", plugin.effects}});
+  }
   ordered_json manifest{
       {"experiment", experiment_.name},
       {"question", experiment_.question},
@@ -122,6 +140,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"settings", settings_text(line_)},
       {"options_file", line_.options_file},
       {"inputs", inputs},
+      {"plugins", plugins},
       {"seed", line_.seed},
       {"jobs", line_.jobs},
       {"repeat", line_.repeat},

@@ -43,7 +43,12 @@ class Manifest {
 /// Beside a table, if it is there; `discarded` if it is no JSON.
 std::optional<nlohmann::json> manifest_of(const std::string& table);
 
-/// "--set", seed, quick and the like in canonical order: a resumed run must repeat them.
+/// Names and checksums of the plug-ins that are loaded, a blank before each; empty
+/// without.
+std::string plugins_text();
+
+/// "--set", plug-ins, seed, quick and the like in canonical order: a resumed run must
+/// repeat them.
 std::string settings_text(const CommandLine& line);
 
 }  // namespace tress::experiments

@@ -80,6 +80,10 @@ constexpr std::pair<std::string_view, ReadOption> readers[] = {
      [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.integrators = split(option_text(n, where), ',', where);
      }},
+    {"plugin",
+     [](const toml::node& n, const std::string& where, CommandLine& line) {
+       line.plugins = split(option_text(n, where), ',', where);
+     }},
     {"elements",
      [](const toml::node& n, const std::string& where, CommandLine& line) {
        line.elements = parse_counts(option_text(n, where), where);

@@ -20,6 +20,7 @@
 #include "integrators/error_indicator.h"
 #include "simulation/files/files.h"
 #include "simulation/groom/fitted_groom.h"
+#include "simulation/plugin/load_plugin.h"
 #include "simulation/run/head_classes.h"
 #include "simulation/run/ranks.h"
 #include "simulation/run/scene_head.h"
@@ -30,7 +31,7 @@ namespace tress::experiments::scene_runs {
 namespace {
 
 struct Arguments {
-  std::vector<std::string> scenes, exports;
+  std::vector<std::string> scenes, exports, plugins;
   std::string out = "results/scenes";
   int threads = 1;
   std::size_t hairs = 0;
@@ -56,6 +57,10 @@ constexpr const char* help_end =
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
   app.add_option("--out", a.out, "folder for the results (default results/scenes)");
+  app.add_option("--plugin", a.plugins,
+                 "shared library of further models, integrators, effects "
+                 "(docs/plugins.md); again for another")
+      ->allow_extra_args(false);
   app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--hairs", a.hairs,
@@ -259,6 +264,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   }
   RunKey key;
   key.add("scene", contents_checksum({file}));
+  key.add("plug-ins", plugins_text());
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));
   if (job.head) check_room(job.outline, options);
   if (ranks.first()) tell_fits(scene, options.stem);
@@ -335,6 +341,7 @@ int answer(int argc, char** argv) {
   }
   CommandLine line;
   line.argv.assign(argv, argv + argc);
+  for (const std::string& plugin : a.plugins) load_plugin(plugin);
   return run(a, std::move(line));
 }
 

@@ -1,10 +1,9 @@
 #include "models/effects/catalogue.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
-#include "contract/input_error.h"
+#include "contract/open_catalogue.h"
 #include "models/effects/body.h"
 #include "models/effects/constant_force.h"
 #include "models/effects/control_mesh.h"
@@ -18,9 +17,11 @@
 
 namespace tress::models {
 
+namespace {
+
 // clang-format off
-std::span<const EffectEntry> effects() {
-  static const std::array entries = {
+std::vector<EffectEntry> built_in_effects() {
+  return {
       EffectEntry{"gravity", "uniform acceleration of all mass", "Newton", gravity_parameters(), make_gravity},
       EffectEntry{"linear_drag", "force against the velocity, per length and per mass", "Bertails 2006, section 4.2", linear_drag_parameters(), make_linear_drag},
       EffectEntry{"constant_force", "uniform force per length and per mass", "Newton", constant_force_parameters(), make_constant_force},
@@ -33,9 +34,29 @@ std::span<const EffectEntry> effects() {
       EffectEntry{"strand_friction", "strands, and parts of one, do not pass through each other and rub: exact contact", "Moreau 1999; de Saxcé & Feng 1998", strand_friction_parameters(), nullptr, false, true},
       EffectEntry{"strand_interaction", "strands repel and drag each other", "Wang, thesis, NCTU", strand_interaction_parameters(), nullptr, false, true},
   };
-  return entries;
 }
 // clang-format on
+
+OpenCatalogue<EffectEntry>& all_effects() {
+  static OpenCatalogue<EffectEntry> all("effect", built_in_effects());
+  return all;
+}
+
+}  // namespace
+
+std::span<const EffectEntry> effects() {
+  static const std::span<const EffectEntry> closed = all_effects().close();
+  return closed;
+}
+
+std::span<const EffectEntry> added_effects() { return all_effects().added(); }
+
+void add_effect(const EffectEntry& effect, const std::string& where) {
+  refuse_if(effect.make == nullptr,
+            "effect '" + std::string(effect.id) + "' cannot be made", where,
+            "set EffectEntry::make; an effect between strands cannot be a plug-in");
+  all_effects().add(effect, where);
+}
 
 const EffectEntry& find_effect(std::string_view id, const std::string& where) {
   std::vector<std::string_view> ids;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "contract/parameters.h"
@@ -26,7 +27,13 @@ struct EffectEntry {
   bool contact = false;  // its load begins where parts meet
 };
 
+/// Those of tress, then those of plug-ins.
 std::span<const EffectEntry> effects();
+std::span<const EffectEntry> added_effects();  // those of plug-ins
+
+/// Before the catalogue is first read. Throws InputError naming `where` if it has been,
+/// on an id that another effect has, and on an entry that cannot be used.
+void add_effect(const EffectEntry& effect, const std::string& where);
 
 /// Throws InputError naming `where` and the nearest id if there is no such effect.
 const EffectEntry& find_effect(std::string_view id, const std::string& where);

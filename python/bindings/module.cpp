@@ -1,5 +1,8 @@
 // tress._core: what python/tress/ is made of.
+#include <pybind11/stl/filesystem.h>
+
 #include "python/bindings/owned_system.h"
+#include "simulation/plugin/load_plugin.h"
 
 #ifndef TRESS_VERSION
 #define TRESS_VERSION ""
@@ -21,6 +24,9 @@ PYBIND11_MODULE(_core, m) {
     } catch (const SolveError& error) {
       PyErr_SetString(errors.attr("SolveError").ptr(), error.what());
     }
+  });
+  m.def("load_plugin", [](const std::filesystem::path& library) {
+    tress::simulation::load_plugin(library.string());
   });
   add_systems(m);
   add_integrators(m);

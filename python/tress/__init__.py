@@ -1,7 +1,7 @@
 """tress, a testbed for rod and elastic-strand solvers, from Python. See docs/python.md."""
 
 from .errors import InputError, ProgramError, SolveError
-from ._core import scene_defaults, scene_schema, version as __version__
+from ._core import load_plugin, scene_defaults, scene_schema, version as __version__
 from .scenes import Frames, HeadRun, Scene, StrandsRun
 from .systems import (
     Integrator,
@@ -31,6 +31,7 @@ __all__ = [
     "first_order",
     "integrator_options",
     "integrators",
+    "load_plugin",
     "model",
     "model_options",
     "models",

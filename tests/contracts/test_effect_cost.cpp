@@ -6,6 +6,7 @@
 #include "models/catalogue.h"
 #include "models/strand/strand.h"
 #include "simulation/run/simulation.h"
+#include "tests/support/tested.h"
 
 namespace tress::test_effect_cost {
 
@@ -101,13 +102,13 @@ TEST_P(EffectCost, NoEffectIsNoTerm) {
 
 std::vector<const ModelEntry*> on_strands() {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& entry : model_catalogue()) {
+  for (const ModelEntry& entry : testing_support::tested_models()) {
     if (entry.on_strand != nullptr) all.push_back(&entry);
   }
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EffectCost, testing::ValuesIn(on_strands()),
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectCost, testing::ValuesIn(on_strands()),
                          [](const auto& tested) {
                            return std::string(tested.param->id);
                          });

@@ -118,7 +118,9 @@ const ofAll = ['--elments 3', '--set', '--set x', '--set =1', '--set none_such=1
   '--timeout 1e-300', '--progress loud', '--quick --full', '--retry-failed', 'stray',
   '--out .', '--out none/t.csv', '--out /proc/t.csv', '--out /dev/full', '--out /dev/null',
   '--out loop', '--out loop/t.csv', '--out pipe', '--out file/t.csv', `--out ${'n'.repeat(300)}`,
-  '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--options', '-x', '--', '-'];
+  '--out - --resume', '--merge a.csv', '--merge --out t.csv', '--options', '-x', '--', '-',
+  '--plugin', '--plugin none.so', '--plugin .', '--plugin file', '--plugin pipe', '--plugin loop',
+  '--plugin /dev/zero'];
 const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads nan',
   '--hairs -1', '--hairs 1e308', '--hairs nan', '--progress loud', '--elments 3', '-x', '--out',
   '--as none', '--as', '--device none', '--device', '--bits 16', '--bits nan', '--bits 1e308', '--lanes 0', '--lanes -8',
@@ -127,6 +129,7 @@ const ofSimulate = ['--threads 0', '--threads -1', '--threads 1e9', '--threads n
   'head.toml --as head --out o --error-bars', 'head.toml --as head --out file',
   'none.toml', 'scene.toml none.toml', 'scene.toml --out file', 'scene.toml --out loop',
   'scene.toml --out loop/o', 'scene.toml --out /proc/o', 'scene.toml --out /dev/null/o',
+  'scene.toml --plugin none.so', 'scene.toml --plugin file', 'scene.toml --plugin pipe', '--plugin',
   'scene.toml --out file/o', 'scene.toml --out pipe', `scene.toml --out ${'n'.repeat(300)}`,
   ''];
 

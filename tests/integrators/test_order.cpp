@@ -12,6 +12,7 @@
 #include "integrators/integrator_options.h"
 #include "models/catalogue.h"
 #include "tests/support/small_systems.h"
+#include "tests/support/tested.h"
 
 namespace tress::test_order {
 
@@ -47,7 +48,7 @@ std::unique_ptr<System> bead(Formulation formulation) {
 /// All that take the bead: not those of compliant constraints, which a wire is not.
 std::vector<Method> methods(bool adaptive) {
   std::vector<Method> all;
-  for (const IntegratorEntry& entry : integrator_catalogue()) {
+  for (const IntegratorEntry& entry : testing_support::tested_integrators()) {
     if (entry.adaptive != adaptive) continue;
     for (const auto& [formulation, order] : entry.formulations) {
       if (!refusal(entry, *bead(formulation), formulation).empty()) continue;
@@ -183,43 +184,32 @@ TEST(Bdf2, ErrorFallsAtOrder2AtUnevenSteps) {
   }
 }
 
-TEST(MaxWork, EndsARunOfEveryMethodWithThatReason) {
-  for (const bool adaptive : {false, true}) {
-    for (const Method& method : methods(adaptive)) {
-      const auto system = bead(method.formulation);
-      Options options;
-      options.formulation = method.formulation;
-      options.max_work = 3000;
-      const auto integrator = make_integrator(method.entry->id, *system, options);
-      const auto n = static_cast<std::size_t>(system->layout().coordinates);
-      std::vector<double> q(n), v(n);
-      system->initial_state(q, v);
-      ASSERT_EQ(integrator->start(0, q, v), Status::ok) << method.name();
-      EXPECT_EQ(integrator->advance(100), Status::fatal) << method.name();
-      EXPECT_NE(integrator->failure().find("max_work"), std::string::npos)
-          << method.name() << ": " << integrator->failure();
-      const int coordinates = system->layout().coordinates;
-      EXPECT_GE(total_work(integrator->stats(), coordinates), options.max_work)
-          << method.name();
-      EXPECT_GT(integrator->time(), 0) << method.name();
-    }
+class Gaps : public testing::TestWithParam<const IntegratorEntry*> {};
+
+TEST_P(Gaps, EveryFormulationThatTheMethodLacksHasAReason) {
+  using enum Formulation;
+  const IntegratorEntry& entry = *GetParam();
+  for (const Formulation formulation : {parametric, acceleration, baumgarte, projection,
+                                        index2_ggl, index3, rattle, correction}) {
+    if (entry.order(formulation)) continue;
+    EXPECT_EQ(refusal(entry, *bead(formulation), formulation), entry.gap(formulation));
+    EXPECT_FALSE(entry.gap(formulation).empty());
+  }
+  for (const auto& [formulation, reason] : entry.gaps) {
+    EXPECT_FALSE(entry.order(formulation)) << reason;
   }
 }
 
-TEST(IntegratorEntry, EveryFormulationThatAMethodLacksHasAReason) {
-  using enum Formulation;
-  for (const IntegratorEntry& entry : integrator_catalogue()) {
-    for (const Formulation formulation : {parametric, acceleration, baumgarte, projection,
-                                          index2_ggl, index3, rattle, correction}) {
-      if (entry.order(formulation)) continue;
-      EXPECT_EQ(refusal(entry, *bead(formulation), formulation), entry.gap(formulation));
-      EXPECT_FALSE(entry.gap(formulation).empty()) << entry.id;
-    }
-    for (const auto& [formulation, reason] : entry.gaps) {
-      EXPECT_FALSE(entry.order(formulation)) << entry.id << ": " << reason;
-    }
+std::vector<const IntegratorEntry*> entries() {
+  std::vector<const IntegratorEntry*> all;
+  for (const IntegratorEntry& entry : testing_support::tested_integrators()) {
+    all.push_back(&entry);
   }
+  return all;
 }
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, Gaps, testing::ValuesIn(entries()),
+                         [](const auto& test) { return std::string(test.param->id); });
 
 TEST(IntegratorEntry, AReasonOfItsOwnComesBeforeTheGeneralOne) {
   const IntegratorEntry& gauss = find_integrator("implicit_midpoint");
@@ -272,10 +262,28 @@ TEST(OrderTwoBdf, ErrorFallsAsTheToleranceToTheTwoThirds) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, AdaptiveTolerance, testing::ValuesIn(methods(true)),
                          [](const auto& test) { return test.param.name(); });
 
-class StartAgain : public testing::TestWithParam<Method> {};
+class AnyMethod : public testing::TestWithParam<Method> {};
+
+TEST_P(AnyMethod, EndsARunAtMaxWorkWithThatReason) {
+  const auto system = bead(GetParam().formulation);
+  Options options;
+  options.formulation = GetParam().formulation;
+  options.max_work = 3000;
+  const auto integrator = make_integrator(GetParam().entry->id, *system, options);
+  const int coordinates = system->layout().coordinates;
+  const auto n = static_cast<std::size_t>(coordinates);
+  std::vector<double> q(n), v(n);
+  system->initial_state(q, v);
+  ASSERT_EQ(integrator->start(0, q, v), Status::ok);
+  EXPECT_EQ(integrator->advance(100), Status::fatal);
+  EXPECT_NE(integrator->failure().find("max_work"), std::string::npos)
+      << integrator->failure();
+  EXPECT_GE(total_work(integrator->stats(), coordinates), options.max_work);
+  EXPECT_GT(integrator->time(), 0);
+}
 
 // What was a good guess for the last step of a run is none for the first of the next.
-TEST_P(StartAgain, RepeatsTheRunBitForBit) {
+TEST_P(AnyMethod, StartedAgainRepeatsTheRunBitForBit) {
   for (const Refresh refresh : {Refresh::every_iteration, Refresh::when_slow}) {
     const auto system = bead(GetParam().formulation);
     Options options;
@@ -298,9 +306,13 @@ TEST_P(StartAgain, RepeatsTheRunBitForBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(FixedStep, StartAgain, testing::ValuesIn(methods(false)),
-                         [](const auto& test) { return test.param.name(); });
-INSTANTIATE_TEST_SUITE_P(Adaptive, StartAgain, testing::ValuesIn(methods(true)),
+std::vector<Method> all_methods() {
+  std::vector<Method> all = methods(false);
+  std::ranges::copy(methods(true), std::back_inserter(all));
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, AnyMethod, testing::ValuesIn(all_methods()),
                          [](const auto& test) { return test.param.name(); });
 
 class HeldConstraints : public testing::TestWithParam<Method> {};

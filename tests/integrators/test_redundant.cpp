@@ -6,6 +6,7 @@
 
 #include "experiments/numerics/drift_monitor.h"
 #include "simulation/run/simulation.h"
+#include "tests/support/tested.h"
 
 namespace tress::test_redundant {
 
@@ -30,7 +31,7 @@ void PrintTo(const Method& method, std::ostream* out) {
 std::vector<Method> methods() {
   const auto truss = make_model("tinkertoys", one_bay);
   std::vector<Method> all;
-  for (const IntegratorEntry& entry : integrator_catalogue()) {
+  for (const IntegratorEntry& entry : testing_support::tested_integrators()) {
     for (const auto& [formulation, order] : entry.formulations) {
       const bool known_to_fail = entry.id == "ida" && formulation == Formulation::index3;
       if (!known_to_fail && refusal(entry, *truss, formulation).empty()) {

@@ -9,6 +9,7 @@
 #include "integrators/integrator_options.h"
 #include "models/catalogue.h"
 #include "tests/support/drive.h"
+#include "tests/support/tested.h"
 
 namespace tress::test_strands {
 
@@ -87,10 +88,11 @@ Outcome run(const Method& method, const Options& options) {
 }
 
 /// Every strand model without constraints (those are the formulations' business), and
-/// trees.
+/// trees. Not of plug-ins, whose waves nobody knows.
 std::vector<std::string_view> tested_models() {
   std::vector<std::string_view> all{"super_helix_tree"};
   for (const ModelEntry* model : strand_models()) {
+    if (std::ranges::count(added_models(), model->id, &ModelEntry::id) > 0) continue;
     if (strand(model->id)->constraint_form() == nullptr) all.push_back(model->id);
   }
   return all;
@@ -103,7 +105,7 @@ std::vector<Method> methods(bool adaptive) {
   std::vector<Method> all;
   for (const std::string_view model : tested_models()) {
     const auto system = strand(model);
-    for (const IntegratorEntry& entry : integrator_catalogue()) {
+    for (const IntegratorEntry& entry : testing_support::tested_integrators()) {
       if (entry.adaptive != adaptive || entry.id == of_another_rod) continue;
       if (!refusal(entry, *system, Formulation::parametric).empty()) continue;
       all.push_back({&entry, model});

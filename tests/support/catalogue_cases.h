@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "models/catalogue.h"
+#include "tests/support/tested.h"
 
 namespace tress::testing_support {
 
@@ -37,7 +37,7 @@ struct CatalogueCase {
 
 inline std::vector<CatalogueCase> catalogue_cases() {
   std::vector<CatalogueCase> cases;
-  for (const ModelEntry& entry : model_catalogue()) {
+  for (const ModelEntry& entry : tested_models()) {
     cases.push_back({&entry, "", ""});
     for (const Parameter& parameter : setup_parameters(entry)) {
       const auto words = words_of(parameter.choices);

@@ -7,6 +7,7 @@
 #include "models/motion/root_motion.h"
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
+#include "tests/support/tested.h"
 
 // What every effect of the catalogue keeps, with every word of every choice.
 namespace tress::test_effect_contract {
@@ -95,7 +96,7 @@ void PrintTo(const Case& one, std::ostream* out) { *out << one.name(); }
 /// other: test_self_contact.cpp and test_strand_interaction.cpp.
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const EffectEntry& entry : effects()) {
+  for (const EffectEntry& entry : testing_support::tested_effects()) {
     if (entry.id == "self_contact" || entry.make == nullptr) continue;
     std::vector<Case> of_entry{{&entry, {}}};
     for (const Parameter& parameter : entry.parameters) {

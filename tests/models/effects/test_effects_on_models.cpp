@@ -3,6 +3,7 @@
 #include "integrators/formulation/dynamics.h"
 #include "models/effects/air_drag.h"
 #include "models/effects/body.h"
+#include "models/effects/catalogue.h"
 #include "models/effects/tether.h"
 #include "models/strand/strand_parameters.h"
 #include "tests/support/tangent.h"
@@ -40,9 +41,11 @@ Effects smooth_effects() {
   return effects;
 }
 
+/// All where plug-ins bring an effect.
 std::vector<const ModelEntry*> strand_models() {
   std::vector<const ModelEntry*> all;
-  for (const ModelEntry& entry : model_catalogue()) {
+  const bool every = !added_effects().empty();
+  for (const ModelEntry& entry : every ? model_catalogue() : tested_models()) {
     if (entry.on_strand != nullptr) all.push_back(&entry);
   }
   return all;
@@ -64,7 +67,7 @@ class EffectsOnModels : public testing::TestWithParam<const ModelEntry*> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Models, EffectsOnModels, testing::ValuesIn(strand_models()),
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectsOnModels, testing::ValuesIn(strand_models()),
                          [](const auto& one) { return std::string(one.param->id); });
 
 TEST_P(EffectsOnModels, TheTangentHoldsTheirDerivatives) {
@@ -125,6 +128,9 @@ Effects kinds_of_effects() {
       "quadratic_drag", square, StillAir{}));
   kinds.push_back(std::make_shared<AirDrag<AnisotropicAirLaw<CylinderDrag>, Gusts>>(
       "wind_quadratic", cylinder, Gusts({0.5, 0.3, -0.2}, 0.4, 0.2, 0.4, 3)));
+  for (const EffectEntry& effect : added_effects()) {
+    kinds.push_back(effect.make(Parameters(effect.parameters, "test"), {}));
+  }
   return kinds;
 }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/layers.h"
+
+namespace tress::simulation {
+
+struct LoadedPlugin {
+  std::string file;                                       // as it was given
+  std::string checksum;                                   // of its bytes
+  std::vector<std::string> models, integrators, effects;  // ids that it brought
+};
+
+/// Opens the shared library, for the life of the process, and adds what it brings to the
+/// catalogues. To be called before they are first read, and before other threads run.
+/// Throws InputError if the file is missing or no plug-in, if it was built for another
+/// version of tress or in another way than this program (nothing of it is run then), or
+/// if a catalogue refuses an entry.
+void load_plugin(const std::string& file);
+
+/// In the order in which they were loaded.
+std::span<const LoadedPlugin> loaded_plugins();
+
+}  // namespace tress::simulation

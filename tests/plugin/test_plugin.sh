@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# test_plugin.sh REPOSITORY BUILD INSTALLED OPTION...: builds the example by the commands of
+# docs/plugins.md, with these options of cmake more, runs those that use it, and looks at
+# what they write; then what must be found or refused.
+set -euo pipefail
+repository=$1 build=$2 installed=$3
+shift 3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/build"
+ln -s "$build" "$work/build/release"
+ln -s "$installed" "$work/build/tress"
+ln -s "$repository/tests" "$work/tests"
+# shellcheck source=tests/support/expect.sh
+. "$repository/tests/support/expect.sh"
+cd "$work"
+
+# --- the page's own commands, as they stand ------------------------------------------------
+mapfile -t commands < <(awk '/^```/ { inside = !inside; next }
+  inside && /^(build\/|cmake -S|cmake --build)/ { print }' "$repository/docs/plugins.md")
+((${#commands[@]} >= 8)) || { echo "docs/plugins.md has lost its commands"; exit 1; }
+for command in "${commands[@]}"; do
+  more=()
+  [[ $command != "cmake -S"* ]] || more=("$@")
+  expect 0 . bash -c "$command \"\$@\"" - "${more[@]}"
+  case $command in
+    *--list) cp out list ;;
+    *--print-schema) cp out schema ;;
+  esac
+done
+library=build/plugin/libexample.so
+
+for id in simo_reissner sdirk2; do
+  grep -qE "^  $id .*\(" list || { echo "--list lacks $id"; exit 1; }
+done
+grep -q 'effects.rotating_frame' schema || { echo "the schema lacks the effect"; exit 1; }
+while read -r name; do
+  [[ $name == simulate ]] || # has other options
+    expect 0 '^  simo_reissner ' "build/release/experiments/$name" --plugin "$library" --list
+done <build/release/experiments/list.txt
+for row in 'stability_limit:,simo_reissner,.*,ok,' 'hard_cases:,simo_reissner,.*,sdirk2,' \
+  'hard_cases:,corde,.*,sdirk2,.*,true,' \
+  'work_precision.turntable:,simo_reissner,.*,sdirk2,.*,ok,'; do
+  grep -qE "${row#*:}" "results/${row%%:*}.csv" ||
+    { echo "no row '${row#*:}':"; cat "results/${row%%:*}.csv"; exit 1; }
+done
+
+grep -q '"file": "build/plugin/libexample.so"' results/stability_limit.meta.json ||
+  { echo "the manifest does not name the plug-in"; exit 1; }
+node "$repository/experiments/report/dist/report.mjs" results --out results/report.html
+grep -q simo_reissner results/report.html || { echo "the page lacks the model"; exit 1; }
+
+# --- the contract suites -------------------------------------------------------------------
+mapfile -t checks <build/release/tests/checks.txt
+for check in "${checks[@]}"; do
+  expect 0 '^PASS ' "build/release/tests/$check" --plugin="$library"
+  cat out >>checked
+done
+for contract in SystemContract.TangentIsTheDerivativeOfTheResidual \
+  SystemContract.TangentTestSeesAMissingTerm SystemContract.ResidualIsPure \
+  SystemContract.EnergyChangesByThePowerOfTheRemainingForces \
+  Allocation.ModelCallsAllocateNothingAfterTheFirst EffectCost.OnlyWhatIsAskedForIsComputed \
+  EffectContract.DerivativesByPlaceAreDifferencesOfTheLoad \
+  EffectsOnModels.TheTangentIsExactForEveryEffect FixedStepOrder.ErrorFallsAtTheNominalOrder \
+  FixedStepOnStrands.ErrorFallsAtTheNominalOrder Gaps.EveryFormulationThatTheMethodLacks; do
+  grep -qE "^PASS $contract.*: [1-9][0-9]* passed" checked ||
+    { echo "$contract was not checked:"; cat checked; exit 1; }
+done
+spoilt=build/plugin/libspoilt.so
+expect 3 '^FAIL SystemContract.TangentIsTheDerivativeOfTheResidual' \
+  build/release/tests/test_contracts --plugin="$spoilt"
+grep -q '^PASS SystemContract.ResidualIsPure' out
+
+# --- what is refused, in one line ----------------------------------------------------------
+refused() {
+  local pattern=$1
+  shift
+  expect 2 "error: .*$pattern" "$@"
+  [[ $(wc -l <out) == 1 ]] || { echo "not one line:"; cat out; exit 1; }
+}
+spoil() { sed "s/$1/$2/" "$library" >spoilt.so; }
+program=build/release/experiments/stability_limit
+refused 'none.so' "$program" --plugin none.so --list
+refused 'no plug-in of tress' "$program" --plugin "$repository/README.md" --list
+refused 'no plug-in of tress' "$program" --plugin "$(command -v node)" --list
+spoil '|version=[0-9.]*|' '|version=0.0.1|'
+refused 'built for tress 0\.0\.1, this is' "$program" --plugin spoilt.so --list
+refused 'built for tress 0\.0\.1, this is' build/release/experiments/simulate \
+  --plugin spoilt.so --print-schema
+refused 'built for tress 0\.0\.1, this is' build/release/tests/test_contracts \
+  --plugin=spoilt.so
+spoil '|headers=.' '|headers=x'
+refused 'other headers' "$program" --plugin spoilt.so --list
+spoil '|compiler=[A-Za-z]*' '|compiler=abc'
+refused 'other compiler' "$program" --plugin spoilt.so --list
+spoil '|sizes=.' '|sizes=9'
+refused 'other sizes' "$program" --plugin spoilt.so --list
+head -c 20000 "$library" >spoilt.so
+grep -qa '|sizes=' spoilt.so && refused 'cannot be loaded' "$program" --plugin spoilt.so --list
+refused "a model 'simo_reissner' already" "$program" --plugin "$library" --plugin "$spoilt" --list
+
+# --- tables of other plug-ins do not mix ---------------------------------------------------
+rows=(--models der --elements 1 --set scene=release --set damping=none
+  --integrators semi_implicit_euler --quick --out one.csv)
+expect 0 . "$program" --plugin "$library" "${rows[@]}"
+refused 'other settings' "$program" "${rows[@]}" --resume
+refused 'other settings' "$program" --plugin "$spoilt" "${rows[@]}" --resume
+expect 0 . "$program" --plugin "$library" "${rows[@]}" --resume
+printf 'plugin = ["%s"]\nmodels = "simo_reissner"\n' "$library" >options.toml
+expect 0 simo_reissner "$program" --options options.toml --quick --dry-run
