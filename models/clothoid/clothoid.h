@@ -61,6 +61,9 @@ class ClothoidOf {
     const Vec& at(const At<T>&) const { return value; }
   };
 
+  static constexpr int dofs = functions * modes;
+  using Directions = std::array<Along, dofs>;
+
   ClothoidOf() = default;
   ClothoidOf(const Strain& kappa, const T& length, const Rule& rule)
       : rule_(&rule), length_(length), t_(blocks()), n_(blocks()), b_(blocks()) {
@@ -88,6 +91,10 @@ class ClothoidOf {
     return {to_tip(turning_slope(x1, x2, y))};
   }
 
+  /// W e_k and P'[e_k] of unknown k.
+  const Along& turn_of(int k) const { return turn_[at(k)]; }
+  const Along& slope_of(int k) const { return slope_[at(k)]; }
+
   const Along& position() const { return position_; }
   Along first(const Strain& x) const { return combined(slope_, x); }
   Along second(const Strain& x1, const Strain& x2) const {
@@ -114,6 +121,50 @@ class ClothoidOf {
     return sum(this->second(second, x), third);
   }
 
+  /// second(rate, e_k), acceleration_slope(rate, second, e_k) and second(e_k, e_l) of all
+  /// unknowns: bilinear forms of the same integrals.
+  void derivatives(const Strain& rate, const Strain& second, Directions& velocity,
+                   Directions& acceleration,
+                   std::array<Directions, dofs>& curvature) const {
+    std::array<Directions, dofs> d;  // D(W e_k, e_l), the derivative of W e_l along e_k
+    for (std::size_t k = 0; k < dofs; ++k) {
+      for (std::size_t l = k; l < dofs; ++l) {
+        const Strain e = unit(static_cast<int>(l));
+        d[k][l] = D(turn_[k], e);
+        if (l == k) continue;
+        // As (W x x W y)' = W x x R y - W y x R x.
+        d[l][k] = d[k][l];
+        d[l][k].tip = d[l][k].tip - cross(turn_[k].tip, turn_[l].tip);
+        for (int b = 0; b < blocks(); ++b) {
+          d[l][k].set(b, d[l][k][b] - cross(turn_[k][b], turn_[l][b]));
+        }
+      }
+      for (std::size_t l = 0; l <= k; ++l) {
+        curvature[k][l] = curvature[l][k] = integral([&](int b) {
+          const Vec3<Pack> t = t_[b];
+          return cross(d[k][l][b], t) + cross(turn_[l][b], cross(turn_[k][b], t));
+        });
+      }
+    }
+    const Along w = W(rate);
+    Directions turned_rate;  // D(W e_k, rate)
+    for (std::size_t k = 0; k < dofs; ++k) turned_rate[k] = combined(d[k], rate);
+    const Along d_rate = combined(turned_rate, rate), r_rate = turned(rate);
+    for (std::size_t k = 0; k < dofs; ++k) {
+      velocity[k] = combined(curvature[k], rate);
+      const Along &wx = turn_[k], &dx = turned_rate[k];
+      const Along dd = integral([&](int b) {
+        return cross(dx[b], r_rate[b]) + cross(w[b], cross(wx[b], r_rate[b]));
+      });
+      const Along third = integral([&](int b) {
+        const Vec3<Pack> t = t_[b], tw = cross(w[b], t), tx = cross(wx[b], t);
+        return cross(dd[b], t) + cross(d_rate[b], tx) + cross(dx[b], tw) +
+               cross(w[b], cross(dx[b], t) + cross(w[b], tx));
+      });
+      acceleration[k] = sum(combined(curvature[k], second), third);
+    }
+  }
+
   /// R y at a block of points.
   Vec3<Pack> rotated(const At<Pack>& p, const Vec3<double>& y) const {
     return Pack(y.x) * t_[p.block] + Pack(y.y) * n_[p.block] + Pack(y.z) * b_[p.block];
@@ -131,10 +182,8 @@ class ClothoidOf {
   }
 
  private:
-  static constexpr int dofs = functions * modes;
-  using Directions = std::array<Along, dofs>;
-
   int blocks() const { return rule_->blocks(); }
+  static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
   static constexpr int component(int k) { return Space<modes>::component(k % modes); }
   static Strain unit(int k) {
     const Vec axis(Space<modes>::axis(component(k)));
@@ -148,21 +197,20 @@ class ClothoidOf {
 
   static Along combined(const Directions& all, const Strain& x) {
     Along sum(all[0].blocks);
-    for (int b = 0; b < sum.blocks; ++b) sum.set(b, {Pack(0), Pack(0), Pack(0)});
+    for (int i = 0; i < 3 * sum.blocks; ++i) sum.entries[i] = Pack(0);
     for (int k = 0; k < dofs; ++k) {
       const T& factor = entry(x, k);
       if (factor == T(0)) continue;
       sum.tip = sum.tip + factor * all[k].tip;
-      for (int b = 0; b < sum.blocks; ++b) {
-        sum.set(b, sum[b] + Pack(factor) * all[k][b]);
-      }
+      const Pack wide(factor);
+      for (int i = 0; i < 3 * sum.blocks; ++i) sum.entries[i] += wide * all[k].entries[i];
     }
     return sum;
   }
   static Along sum(const Along& x, const Along& y) {
     Along all(x.blocks);
     all.tip = x.tip + y.tip;
-    for (int b = 0; b < x.blocks; ++b) all.set(b, x[b] + y[b]);
+    for (int i = 0; i < 3 * x.blocks; ++i) all.entries[i] = x.entries[i] + y.entries[i];
     return all;
   }
 

@@ -14,32 +14,28 @@ struct AlongOf {
   static constexpr int most_blocks = most_clothoid_points * lanes<Real> / Pack::lanes;
 
   // Only those in use are set and copied.
-  AlongOf() {
-  }  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
+  AlongOf() {}                                      // NOLINT
   explicit AlongOf(int count) : blocks(count) {}    // NOLINT
   AlongOf(const AlongOf& other) { *this = other; }  // NOLINT
-  AlongOf& operator=(
-      const AlongOf& other) {  // NOLINT(bugprone-unhandled-self-assignment)
+  AlongOf& operator=(const AlongOf& other) {        // NOLINT
     blocks = other.blocks;
     tip = other.tip;
-    for (int b = 0; b < blocks; ++b) {
-      x[b] = other.x[b];
-      y[b] = other.y[b];
-      z[b] = other.z[b];
-    }
+    for (int i = 0; i < 3 * blocks; ++i) entries[i] = other.entries[i];
     return *this;
   }
 
-  Vec3<Pack> operator[](int b) const { return {x[b], y[b], z[b]}; }
+  Vec3<Pack> operator[](int b) const {
+    return {entries[3 * b], entries[3 * b + 1], entries[3 * b + 2]};
+  }
   void set(int b, const Vec3<Pack>& value) {
-    x[b] = value.x;
-    y[b] = value.y;
-    z[b] = value.z;
+    entries[3 * b] = value.x;
+    entries[3 * b + 1] = value.y;
+    entries[3 * b + 2] = value.z;
   }
 
   int blocks = 0;
   Vec3<Real> tip;
-  Pack x[most_blocks], y[most_blocks], z[most_blocks];
+  Pack entries[3 * most_blocks];  // x, y, z a block
 };
 
 /// Gauss collocation on the points of an element that carry its mass: integrals from its
@@ -78,9 +74,9 @@ class Collocation {
       for (std::size_t j = 0; j < all; ++j) {
         const double a = share[j] * integral(place[i], place[j], nodes);
         if constexpr (width == 1) {
-          to_[j][i] = Pack(a);
+          to_[i][j] = Pack(a);
         } else {
-          to_[j][i / width].set(static_cast<int>(i % width), a);
+          to_[i / width][j].set(static_cast<int>(i % width), a);
         }
       }
     }
@@ -92,25 +88,24 @@ class Collocation {
   /// length times the integral to each point and the tip.
   AlongOf<Real> integral(const AlongOf<Real>& f, const Real& length) const {
     AlongOf<Real> sum(blocks_);
-    for (int b = 0; b < blocks_; ++b) sum.set(b, {Pack(0), Pack(0), Pack(0)});
-    const auto add = [&](const auto& at, const Pack& x, const Pack& y, const Pack& z) {
-      for (int b = 0; b < blocks_; ++b) {
-        sum.x[b] += at[b] * x;
-        sum.y[b] += at[b] * y;
-        sum.z[b] += at[b] * z;
-      }
-    };
-    for (int j = 0; j < blocks_; ++j) {
-      if constexpr (lanes<Real> == 1) {
-        for (int lane = 0; lane < Pack::lanes; ++lane) {
-          add(to_[Pack::lanes * j + lane], f.x[j][lane], f.y[j][lane], f.z[j][lane]);
-        }
-      } else {
-        add(to_[j], f.x[j], f.y[j], f.z[j]);
-      }
-    }
     const Pack scale(length);
-    for (int b = 0; b < blocks_; ++b) sum.set(b, scale * sum[b]);
+    for (int b = 0; b < blocks_; ++b) {
+      Vec3<Pack> at{Pack(0), Pack(0), Pack(0)};
+      for (int j = 0; j < blocks_; ++j) {
+        const Vec3<Pack> from = f[j];
+        if constexpr (lanes<Real> == 1) {
+          for (int lane = 0; lane < Pack::lanes; ++lane) {
+            const Pack& a = to_[b][Pack::lanes * j + lane];
+            at.x += a * Pack(from.x[lane]);
+            at.y += a * Pack(from.y[lane]);
+            at.z += a * Pack(from.z[lane]);
+          }
+        } else {
+          at = at + to_[b][j] * from;
+        }
+      }
+      sum.set(b, scale * at);
+    }
     sum.tip = to_tip(f, length);
     return sum;
   }
@@ -145,7 +140,7 @@ class Collocation {
   static constexpr int most_blocks = AlongOf<Real>::most_blocks;
   int blocks_ = 0;
   std::array<Pack, most_blocks> place_, weight_;
-  std::array<std::array<Pack, most_blocks>, most_clothoid_points> to_;
+  std::array<std::array<Pack, most_clothoid_points>, most_blocks> to_;
 };
 
 }  // namespace tress::models

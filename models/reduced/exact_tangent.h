@@ -124,6 +124,10 @@ class ExactTangent {
   /// Derivatives of the positions in a segment with respect to its unknowns.
   struct Derivatives {
     Derivatives(const Kernel& kernel, const typename K::SegmentMotion& m) {
+      if constexpr (Kernel::functions == 2) {
+        kernel.derivatives(m.rate, m.acceleration, velocity, acceleration, curvature);
+        return;
+      }
       for (std::size_t k = 0; k < dofs; ++k) {
         const Strain e = K::unit(static_cast<int>(k));
         velocity[k] = kernel.second(m.rate, e);

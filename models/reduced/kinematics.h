@@ -313,11 +313,24 @@ class Kinematics {
     g.tip = g.kernel.tip();
     g.position = position.at(g.tip);
     g.rotation = g.kernel.rotation(g.tip);
-    std::array<decltype(g.kernel.first(Strain{})), dofs> slope;
-    for (int k = 0; k < dofs; ++k) {
-      slope[k] = g.kernel.first(unit(k));
-      g.slope[k] = slope[k].at(g.tip);
-      g.turn[k] = g.kernel.W(unit(k)).at(g.tip);
+    std::array<decltype(g.kernel.first(Strain{})), Kernel::functions == 2 ? 0 : dofs>
+        slope;
+    const auto slope_of = [&]([[maybe_unused]] std::size_t k) -> const auto& {
+      if constexpr (Kernel::functions == 2) {
+        return g.kernel.slope_of(static_cast<int>(k));
+      } else {
+        return slope[k];
+      }
+    };
+    for (std::size_t k = 0; k < dofs; ++k) {
+      const auto direction = static_cast<int>(k);
+      if constexpr (Kernel::functions == 2) {
+        g.turn[k] = g.kernel.turn_of(direction).at(g.tip);
+      } else {
+        slope[k] = g.kernel.first(unit(direction));
+        g.turn[k] = g.kernel.W(unit(direction)).at(g.tip);
+      }
+      g.slope[k] = slope_of(k).at(g.tip);
     }
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
       BlockGeometry& block = block_geometry_[b];
@@ -327,7 +340,7 @@ class Kinematics {
         block.at = g.kernel.point(blocks_[b].s);
       }
       block.position = position.at(block.at);
-      for (int k = 0; k < dofs; ++k) block.slope[k] = slope[k].at(block.at);
+      for (std::size_t k = 0; k < dofs; ++k) block.slope[k] = slope_of(k).at(block.at);
     }
   }
 

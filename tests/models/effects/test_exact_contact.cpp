@@ -173,14 +173,12 @@ ExactContact law(bool rigid, double restitution = 0) {
 std::unique_ptr<System> strand_on_plane(const std::string& id, const Vec& gravity,
                                         const FreeRoot& root,
                                         std::shared_ptr<const Effect> plane) {
-  const bool clothoids = id == "super_clothoid";
-  Strand strand =
-      make_strand({}, {radius, radius}, {.elements = clothoids ? 3 : 5, .length = 0.05},
-                  uniform_shape({}));
+  Strand strand = make_strand({}, {radius, radius}, {.elements = 5, .length = 0.05},
+                              uniform_shape({}));
   strand.free_root = root;
   const ModelEntry& model = find_model(id);
   Parameters options(model.parameters, "test");
-  if (clothoids) options.set("quadrature", "4");  // as helices have
+  if (id == "super_clothoid") options.set("quadrature", "4");  // as helices have
   return model.on_strand(strand, options,
                          {std::make_shared<Gravity>(gravity), std::move(plane)});
 }
