@@ -32,6 +32,8 @@ struct ModelEntry {
   std::unique_ptr<System> (*on_strands)(std::span<const Strand>, const Parameters&,
                                         std::vector<Effects>) = nullptr;
   Roots roots = Roots::clamped_or_free;
+  /// Errors fall with this power of the length of elements.
+  int order = 2;
 };
 
 using OnStrand = std::unique_ptr<System>(const Strand&, const Parameters&, Effects);

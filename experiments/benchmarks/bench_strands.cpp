@@ -114,7 +114,7 @@ class Parts {
         kinematics_(std::move(strand.segments), std::move(strand.blocks),
                     {std::move(strand.root)}, std::nullopt, 0) {
     for (double& entry : nearby_) entry += 1e-9;
-    for (const ReducedSegment& segment : kinematics_.segments()) {
+    for (const auto& segment : kinematics_.segments()) {
       tangent_.parent.push_back(segment.parent);
     }
     tangent_.segments.resize(tangent_.parent.size());

@@ -112,7 +112,7 @@ std::string how_to_extrapolate(const Configuration& taken) {
   return fmt::format(
       "# Run it with {} elements, as it is, and with {}: the result is x + {:.3g} "
       "(x - y), x the points by {} and y those by {} elements.\n",
-      n, m, 1 / (std::pow(1. * n / m, 2) - 1), n, m);
+      n, m, extrapolation(taken.method, n), n, m);
 }
 
 }  // namespace

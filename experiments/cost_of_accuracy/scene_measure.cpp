@@ -39,8 +39,6 @@ Scene SceneMeasure::scene(const Method& method, int elements, int substeps) cons
                   comparison_);
 }
 
-/// With n and m elements and an error C/n^2 the extrapolated tip is
-/// x_n + (x_n - x_m)/((n/m)^2 - 1): 4/3 x_n - 1/3 x_m for n = 2 m.
 SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
                                             int substeps, double most_s,
                                             std::optional<Change> change) const {
@@ -58,7 +56,7 @@ SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
     throw InputError("nothing to extrapolate from", "elements", "take two at least");
   }
   const TipPaths coarse = of(few);
-  const double factor = 1 / (std::pow(1. * elements / few, 2) - 1);
+  const double factor = extrapolation(method, elements);
   for (std::size_t i = 0; i < made.tips.size(); ++i) {
     made.tips[i] += factor * (made.tips[i] - coarse.x[i]);
   }

@@ -58,6 +58,10 @@ double frame_work(const Method& method, int elements, int substeps) {
   return all * step * substeps / steps_unit(method);
 }
 
+double extrapolation(const Method& method, int elements) {
+  return 1 / (std::pow(1. * elements / coarser(elements), method.model->order) - 1);
+}
+
 bool may_extrapolate(const Scene& scene) {
   return std::ranges::none_of(
       scene.effects, [](const EffectChoice& effect) { return effect.entry->contact; });

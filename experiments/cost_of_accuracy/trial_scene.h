@@ -15,8 +15,8 @@ struct Method : simulation::Method {
   /// work rises with s as with a number of steps (tolerance_of).
   bool by_tolerance = false;
   /// Tips with n elements and with half as many, extrapolated as an error that falls with
-  /// their square (Richardson). Not where something touches: the instant of contact
-  /// depends on the elements.
+  /// the model's power of them (extrapolation). Not where something touches: the instant
+  /// of contact depends on the elements.
   bool extrapolated = false;
   /// Elements share what bends a strand at rest; else they are those of the scene.
   bool cut_at_rest = false;
@@ -35,6 +35,10 @@ double frame_work(const Method& method, int elements, int substeps);
 
 /// Of an extrapolated run, the number of elements of its coarser part.
 inline int coarser(int elements) { return (elements + 1) / 2; }
+
+/// c of the limit x_n + c (x_n - x_m) of an error C/n^p, p the model's order, for n
+/// elements and m = coarser(n) [Richardson 1911]: 1/3 for p = 2 and n = 2 m.
+double extrapolation(const Method& method, int elements);
 
 /// Whether the error of a run may be extrapolated in elements.
 bool may_extrapolate(const Scene& scene);

@@ -52,7 +52,8 @@ Places by_length(const Strand& strand, std::size_t points) {
 }
 
 /// A point between those of another run, by the cubic through the nearest four, whose
-/// error is of order 4 where errors in space are of order 2.
+/// error is of order 4, as errors in space of the most accurate model; elements of one
+/// length have all places among those of twice as many.
 struct Sample {
   std::size_t first = 0, count = 0;
   std::array<double, 4> weight{};
@@ -273,7 +274,8 @@ ErrorBar space_error(const Scene& scene, int threads) try {
   }
   const Scene doubled = with_twice_the_elements(scene);
   Run given(scene, threads), finer(doubled, threads);
-  Comparison comparison(given, finer, 4. / 3);
+  const double falls = std::pow(2, scene.model->order);  // the error, by doubling
+  Comparison comparison(given, finer, falls / (falls - 1));
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     const auto places = [k](const Scene& of, const Run& run) {
       return by_length(of.strands[k], static_cast<std::size_t>(run.world.points()[k]));

@@ -49,8 +49,8 @@ struct ErrorBar {
 /// up to 3/2 of the estimate.
 ErrorBar time_error(const Scene& scene, int threads);
 
-/// Against a run with twice the elements, at equal arc length; every strand model is of
-/// order 2 in the length of an element. Missing for bodies that no table says how to cut.
+/// Against a run with twice the elements, at equal arc length, by the model's order in
+/// their length. Missing for bodies that no table says how to cut.
 ErrorBar space_error(const Scene& scene, int threads);
 
 /// Throws InputError if the scene has no tolerance to compare the error with.

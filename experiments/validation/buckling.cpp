@@ -235,8 +235,8 @@ double measure_beck(const ModelTrial& trial) {
 /// Loads at which a straight or circular equilibrium loses stability: where the least
 /// omega^2 of small motions about it crosses 0.
 std::vector<ValidationTest> buckling_tests() {
-  const std::vector<std::string_view> rods{"super_helix", "der", "corde",
-                                           "dynamic_spline"};
+  const std::vector<std::string_view> rods{"super_helix", "super_clothoid", "der",
+                                           "corde", "dynamic_spline"};
   return {
       {
           .name = "greenhill",

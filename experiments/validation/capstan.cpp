@@ -158,13 +158,9 @@ double measured_friction(const ModelTrial& trial) {
 }  // namespace
 
 std::vector<ValidationTest> capstan_tests() {
-  const std::vector<std::string_view> claimed = {"super_helix",
-                                                 "der",
-                                                 "corde",
-                                                 "xpbd_cosserat",
-                                                 "dynamic_spline",
-                                                 "mass_spring",
-                                                 "inextensible_strand"};
+  const std::vector<std::string_view> claimed = {
+      "super_helix",   "super_clothoid", "der",         "corde",
+      "xpbd_cosserat", "dynamic_spline", "mass_spring", "inextensible_strand"};
   return {
       {
           .name = "capstan",

@@ -134,9 +134,9 @@ double measured_speed(const ModelTrial& trial) {
 
 std::vector<ValidationTest> chain_tests() {
   const std::vector<std::string_view> all{
-      "super_helix", "articulated_chain", "der",
-      "corde",       "xpbd_cosserat",     "dynamic_spline",
-      "mass_spring", "kirchhoff_nodal",   "inextensible_strand"};
+      "super_helix",     "super_clothoid",     "articulated_chain", "der",
+      "corde",           "xpbd_cosserat",      "dynamic_spline",    "mass_spring",
+      "kirchhoff_nodal", "inextensible_strand"};
   return {
       {
           .name = "whip",

@@ -126,8 +126,8 @@ double measure_bathe(const ModelTrial& trial) {
 
 /// Strands with a natural curvature or twist.
 std::vector<ValidationTest> curl_tests() {
-  const std::vector<std::string_view> rods{"super_helix", "der", "corde",
-                                           "dynamic_spline"};
+  const std::vector<std::string_view> rods{"super_helix", "super_clothoid", "der",
+                                           "corde", "dynamic_spline"};
   return {
       {
           .name = "roll_up",

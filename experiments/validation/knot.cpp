@@ -122,8 +122,9 @@ std::vector<ValidationTest> knot_tests() {
       .claimed = {"der", "corde", "xpbd_cosserat", "dynamic_spline", "mass_spring",
                   "inextensible_strand"},
       .reference = [](double) { return 1.0; },
-      .slow = {"super_helix", "articulated_chain", "force_transport", "kirchhoff_nodal",
-               "xpbd_cosserat", "dynamic_spline", "inextensible_strand"},
+      .slow = {"super_helix", "super_clothoid", "articulated_chain", "force_transport",
+               "kirchhoff_nodal", "xpbd_cosserat", "dynamic_spline",
+               "inextensible_strand"},
       .measure = measured_force,
   }};
 }

@@ -87,8 +87,8 @@ std::vector<ValidationTest> ladder_tests() {
       .why = "0.1 % of the search, 0.3 % by which a rod changes its slope before it has "
              "fallen, and sag and yield",
       .judged_from = 10,
-      .claimed = {"super_helix", "der", "corde", "xpbd_cosserat", "dynamic_spline",
-                  "mass_spring", "inextensible_strand"},
+      .claimed = {"super_helix", "super_clothoid", "der", "corde", "xpbd_cosserat",
+                  "dynamic_spline", "mass_spring", "inextensible_strand"},
       .reference = least_slope,
       .measure = measured_slope,
   }};

@@ -98,7 +98,7 @@ std::vector<ValidationTest> localised_buckling_tests() {
              "0.35^2/12 = 1 %, and the tension goes with squares of two rates that are "
              "off by as much",
       .judged_from = 80,
-      .claimed = {"super_helix", "der", "corde", "dynamic_spline"},
+      .claimed = {"super_helix", "super_clothoid", "der", "corde", "dynamic_spline"},
       .reference = [](double degrees) { return helix(TestRod{}, degrees).tension(); },
       .refusal = no_section,
       .measure = measured_tension,

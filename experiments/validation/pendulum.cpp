@@ -112,8 +112,9 @@ std::vector<ValidationTest> pendulum_tests() {
              "segments have an inertia 1/(2 11^2) too large, 0.2 % of the period; the "
              "hinge may be wrong by its length, 0.05 %, and its stiffness, 0.03 %",
       .judged_from = 12,
-      .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
-                  "kirchhoff_nodal", "mass_spring", "inextensible_strand"},
+      .claimed = {"super_helix", "super_clothoid", "articulated_chain", "der", "corde",
+                  "xpbd_cosserat", "kirchhoff_nodal", "mass_spring",
+                  "inextensible_strand"},
       .reference = pendulum_period,
       .measure = swinging_period,
   }};

@@ -74,9 +74,9 @@ double speed_after(const ModelTrial& trial) {
 }  // namespace
 
 std::vector<ValidationTest> plane_tests() {
-  const std::vector<std::string_view> claimed = {"super_helix", "der",
-                                                 "corde",       "dynamic_spline",
-                                                 "mass_spring", "inextensible_strand"};
+  const std::vector<std::string_view> claimed = {
+      "super_helix", "super_clothoid",     "der", "corde", "dynamic_spline",
+      "mass_spring", "inextensible_strand"};
   return {
       {
           .name = "tilted_plane",

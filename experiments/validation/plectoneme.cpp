@@ -218,7 +218,8 @@ std::vector<ValidationTest> plectoneme_tests() {
       .reference = [](double) { return 1.0; },
       .refusal = no_twist,
       // A full matrix of 375 unknowns, factored in every step.
-      .slow = {"super_helix", "articulated_chain", "force_transport", "kirchhoff_nodal"},
+      .slow = {"super_helix", "super_clothoid", "articulated_chain", "force_transport",
+               "kirchhoff_nodal"},
       .measure = measured_angle,
   }};
 }

@@ -94,8 +94,8 @@ std::vector<ValidationTest> spring_tests() {
              "bending rings 7 % too fast, of which a spring, whose wire twists more than "
              "it bends, shows a third; the ends of 5 turns make 0.4 %",
       .judged_from = 60,
-      .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
-                  "dynamic_spline", "kirchhoff_nodal"},
+      .claimed = {"super_helix", "super_clothoid", "articulated_chain", "der", "corde",
+                  "xpbd_cosserat", "dynamic_spline", "kirchhoff_nodal"},
       .reference = [](double turns) { return spring_modes(turns).low; },
       .measure = measured_rate,
   }};

@@ -116,8 +116,9 @@ std::vector<ValidationTest> stick_slip_tests() {
               "by as much over mu_c, 3 % at eps = 0.05, beside 0.5 % of the search and "
               "10 segments' 1 %",
           .judged_from = 10,
-          .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
-                      "dynamic_spline", "mass_spring", "inextensible_strand"},
+          .claimed = {"super_helix", "super_clothoid", "articulated_chain", "der",
+                      "corde", "xpbd_cosserat", "dynamic_spline", "mass_spring",
+                      "inextensible_strand"},
           .reference = least_friction,
           .measure =
               [](const ModelTrial& trial) {
@@ -139,8 +140,9 @@ std::vector<ValidationTest> stick_slip_tests() {
               "what sticks does not creep; 0.1 % of the search, the plane yields by 1e-4 "
               "L, and 20 segments' 0.3 %",
           .judged_from = 20,
-          .claimed = {"super_helix", "articulated_chain", "der", "corde", "xpbd_cosserat",
-                      "dynamic_spline", "mass_spring", "inextensible_strand"},
+          .claimed = {"super_helix", "super_clothoid", "articulated_chain", "der",
+                      "corde", "xpbd_cosserat", "dynamic_spline", "mass_spring",
+                      "inextensible_strand"},
           .reference = least_friction,
           .measure =
               [](const ModelTrial& trial) {

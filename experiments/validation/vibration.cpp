@@ -73,8 +73,8 @@ double measure_curved_beam(const ModelTrial& trial) {
 
 /// Frequencies of small free vibrations about an equilibrium.
 std::vector<ValidationTest> vibration_tests() {
-  const std::vector<std::string_view> rods{"super_helix", "der", "corde",
-                                           "dynamic_spline"};
+  const std::vector<std::string_view> rods{"super_helix", "super_clothoid", "der",
+                                           "corde", "dynamic_spline"};
   return {
       {
           .name = "beam_modes",

@@ -48,6 +48,7 @@ ReducedSegmentOf<Pack> packed_segment(const std::vector<const ReducedStrand*>& s
     set_lane(all.initial, lane, one.initial);
     set_lane(all.stiffness, lane, one.stiffness);
     set_lane(all.friction, lane, one.friction);
+    set_lane(all.inertia, lane, one.inertia);
   }
   return all;
 }

@@ -11,14 +11,14 @@ namespace tress::models {
 
 /// The equations of ReducedSystem with the stiff tangent, solved recursively, for four
 /// strands if the kernel's scalar is a pack.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class RecursiveMechanics {
  public:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
   using In = typename K::In;
   using Out = std::span<typename K::Real>;
 
-  RecursiveMechanics(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+  RecursiveMechanics(K& kinematics, InverseDynamics<Kernel, modes>& dynamics)
       : dynamics_(dynamics), tangent_(kinematics, dynamics), solver_(tangent_.last()) {}
 
   void residual(double t, In q, In v, In a, Out r) { dynamics_.residual(t, q, v, a, r); }
@@ -28,20 +28,20 @@ class RecursiveMechanics {
   Status solve(In b, Out x) { return solver_.solve(b, x); }
 
  private:
-  InverseDynamics<Kernel, dofs>& dynamics_;
-  StiffTangent<Kernel, dofs> tangent_;
-  RecursiveSolver<MassShape<dofs, typename K::Real>> solver_;
+  InverseDynamics<Kernel, modes>& dynamics_;
+  StiffTangent<Kernel, modes> tangent_;
+  RecursiveSolver<MassShapeOf<Kernel, modes>> solver_;
 };
 
 /// The equations of ForceTransport, solved by sweeps.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class TransportMechanics {
  public:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
   using In = typename K::In;
   using Out = std::span<typename K::Real>;
 
-  TransportMechanics(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+  TransportMechanics(K& kinematics, InverseDynamics<Kernel, modes>& dynamics)
       : mass_(kinematics, dynamics), sweeps_(kinematics, dynamics, mass_) {}
 
   void residual(double t, In q, In v, In a, Out r) { sweeps_.residual(t, q, v, a, r); }
@@ -52,14 +52,14 @@ class TransportMechanics {
   }
 
  private:
-  StiffTangent<Kernel, dofs> mass_;
-  TransportSweeps<Kernel, dofs> sweeps_;
+  StiffTangent<Kernel, modes> mass_;
+  TransportSweeps<Kernel, modes> sweeps_;
 };
 
 /// Up to four strands, one per lane of a pack, with the stiff tangent. Results match
 /// those of single strands to rounding (points are summed in another order), at little
 /// more than the cost of one strand. The Kernel is over packs.
-template <template <class, int> class Mechanics, class Kernel, int dofs>
+template <template <class, int> class Mechanics, class Kernel, int modes>
 class ReducedBatch final : public StrandBlock,
                            public NaturalStrains,
                            private ExplicitForm {
@@ -114,7 +114,7 @@ class ReducedBatch final : public StrandBlock,
     }
     gather(values, q_);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      kinematics_.set_rest(i, Kinematics<Kernel, dofs>::components(q_, i));
+      kinematics_.set_rest(i, Kinematics<Kernel, modes>::components(q_, i));
     }
   }
   std::vector<double> natural_stiffness() const override {
@@ -193,9 +193,9 @@ class ReducedBatch final : public StrandBlock,
     }
   }
 
-  Kinematics<Kernel, dofs> kinematics_;
-  InverseDynamics<Kernel, dofs> dynamics_;
-  Mechanics<Kernel, dofs> mechanics_;
+  Kinematics<Kernel, modes> kinematics_;
+  InverseDynamics<Kernel, modes> dynamics_;
+  Mechanics<Kernel, modes> mechanics_;
   Status factored_ = Status::retry;
   std::vector<Pack> q_, v_, a_, zero_, r_;
 };

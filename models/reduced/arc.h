@@ -20,6 +20,8 @@ class ArcOf {
   using Real = R;
   using Vec = Vec3<R>;
   using Frame = FrameOf<R>;
+  using Strain = Vec;
+  static constexpr int functions = 1;
 
   /// The functions at one arc length, or at a pack of them.
   template <class T>

@@ -17,6 +17,8 @@ class BallLinkOf {
   using Real = R;
   using Vec = Vec3<R>;
   using Frame = FrameOf<R>;
+  using Strain = Vec;
+  static constexpr int functions = 1;
 
   template <class T>
   struct At {

@@ -12,12 +12,13 @@ namespace tress::models {
 /// Contribution of a contact to an exact tangent (ExactTangent): derivatives of the
 /// positions and velocities of its points by their segments' states and unknowns, and the
 /// effect of a force on them, at the motion held by Kinematics. O(1) per contact.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class ContactTangent {
  public:
-  using Shape = ExactShape<dofs>;
+  using Shape = ExactShapeOf<Kernel, modes>;
+  static constexpr int dofs = Shape::dofs;
 
-  explicit ContactTangent(const Kinematics<Kernel, dofs>& kinematics)
+  explicit ContactTangent(const Kinematics<Kernel, modes>& kinematics)
       : kinematics_(kinematics) {}
 
   TreeCoupling<Shape> of(const Coupling& contact, Weights w) const {
@@ -29,15 +30,14 @@ class ContactTangent {
   }
 
  private:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
   using Frames = SegmentFrames<Shape>;
   using End = typename TreeCoupling<Shape>::End;
-  static constexpr int size = Space<dofs>::size, rank = TreeCoupling<Shape>::rank;
+  static constexpr int size = Space<modes>::size, rank = TreeCoupling<Shape>::rank;
 
   std::size_t segment_of(std::size_t block) const {
     const auto& all = kinematics_.segments();
-    const auto found =
-        std::ranges::upper_bound(all, block, {}, &ReducedSegment::last_block);
+    const auto found = std::ranges::upper_bound(all, block, {}, &K::Segment::last_block);
     return static_cast<std::size_t>(found - all.begin());
   }
 
@@ -54,7 +54,7 @@ class ContactTangent {
     const Vec u = from.v + cross(from.omega, p) + lane(m.moving.at(block.at));
     std::array<Vec, dofs> slope, turned;  // derivatives of position and u by an unknown
     for (std::size_t k = 0; k < dofs; ++k) {
-      const Vec e = K::unit(static_cast<int>(k));
+      const auto e = K::unit(static_cast<int>(k));
       slope[k] = lane(block.slope[k]);
       turned[k] = cross(from.omega, slope[k]) +
                   lane(kinematics_.geometry(i).kernel.second(m.rate, e).at(block.at));
@@ -68,7 +68,7 @@ class ContactTangent {
       const Vec by_x = from.frame.back(at.by_place[row]);
       const Vec by_v = from.frame.back(at.by_velocity[row]);
       Vec by_start = by_x;
-      if constexpr (dofs == 1) {  // as in ExactTangent
+      if constexpr (modes == 1) {  // as in ExactTangent
         by_start = by_start + by_v.y * Vec{from.omega.z, 0, -from.omega.x};
       }
       const Vec force = from.frame.back(-1.0 * at.onto[row]);
@@ -84,8 +84,8 @@ class ContactTangent {
         end.onto(size + unknown, r) = dot(slope[k], force);
       }
     }
-    if constexpr (dofs > 1) {
-      const ReducedSegment& segment = kinematics_.segments()[i];
+    if constexpr (modes > 1) {
+      const auto& segment = kinematics_.segments()[i];
       if (segment.mounted) {
         Frames::mount_states(segment.mount, end.by);
         Frames::mount_wrench(segment.mount, end.onto);
@@ -94,19 +94,20 @@ class ContactTangent {
     return end;
   }
 
-  const Kinematics<Kernel, dofs>& kinematics_;
+  const Kinematics<Kernel, modes>& kinematics_;
 };
 
 /// World forces on tips of segments, as unknowns and wrenches feel them. Point 0 is the
 /// root, point i + 1 the tip of segment i.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class TipForces {
  public:
-  using S = Space<dofs>;
+  using S = Space<modes>;
+  static constexpr int dofs = Kinematics<Kernel, modes>::dofs;
   using Wrenches = Eigen::Matrix<double, S::size, 3>;
 
   /// At q, whose shape the kinematics has or takes.
-  TipForces(Kinematics<Kernel, dofs>& kinematics, double t, In q)
+  TipForces(Kinematics<Kernel, modes>& kinematics, double t, In q)
       : kinematics_(kinematics), frames_(kinematics.frames(t, q)) {}
 
   /// The wrenches of unit forces on a point along the axes of the world, in its frame.
@@ -153,7 +154,7 @@ class TipForces {
   }
 
  private:
-  Kinematics<Kernel, dofs>& kinematics_;
+  Kinematics<Kernel, modes>& kinematics_;
   const std::vector<Frame>& frames_;
 };
 

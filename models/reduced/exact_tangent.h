@@ -15,10 +15,11 @@ namespace tress::models {
 ///     d(C^T y) = C^T (dy + y x theta),    dF = m dc + phi x f - df
 ///
 /// The Kernel provides the derivatives of shapes. O(1) per segment.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class ExactTangent {
  public:
-  using Shape = ExactShape<dofs>;
+  using Shape = ExactShapeOf<Kernel, modes>;
+  static constexpr int dofs = Shape::dofs;
 
   /// df/dx, df/dv and df/dtangent of the effects at the points, (9) row-major each; empty
   /// if no effect has derivatives.
@@ -26,14 +27,14 @@ class ExactTangent {
     In position, velocity, direction;
   };
 
-  ExactTangent(const Kinematics<Kernel, dofs>& kinematics,
-               const InverseDynamics<Kernel, dofs>& dynamics)
+  ExactTangent(const Kinematics<Kernel, modes>& kinematics,
+               const InverseDynamics<Kernel, modes>& dynamics)
       : kinematics_(kinematics), dynamics_(dynamics) {}
 
   /// Expects zeros in tip and in the zero blocks of transfer (see SegmentTangent).
   void segment(std::size_t i, Weights w, const EffectBlocks& effects,
                SegmentTangent<Shape>& tangent) const {
-    const ReducedSegment& segment = kinematics_.segments()[i];
+    const auto& segment = kinematics_.segments()[i];
     tangent.local.setZero();
     const Derivatives derivatives(kinematics_.geometry(i).kernel, kinematics_.motion(i));
     points(i, w, effects, derivatives, tangent);
@@ -41,9 +42,12 @@ class ExactTangent {
     for (int k = 0; k < dofs; ++k) {
       tangent.stiffness[k] = dot(K::unit(k), restoring(segment, w));
       tangent.local(size + k, 3 * size + k) += tangent.stiffness[k];
+      if constexpr (Kernel::functions == 2) {
+        tangent.local(size + k, 3 * size + k) += w.acc * dot(K::unit(k), segment.inertia);
+      }
     }
     const Vec& omega = kinematics_.motion(i).tip.omega;
-    if constexpr (dofs == 1) {
+    if constexpr (modes == 1) {
       // The moment about e1 is I omega_x omega_z, by in_plane() I (omega_x^2 -
       // omega_z^2).
       const Vec turned = in_plane(omega, Frames::axis(S::rotation[0]));
@@ -55,7 +59,7 @@ class ExactTangent {
   }
 
   void root(Weights w, In v, In a, RootTangent<Shape>& root) const {
-    if constexpr (dofs > 1) {
+    if constexpr (modes > 1) {
       const FreeRootFrame& free = kinematics_.free_root();
       const FrameMotion& m = kinematics_.root();
       const Wrench& held = dynamics_.at_root();
@@ -105,9 +109,10 @@ class ExactTangent {
   }
 
  private:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
+  using Strain = typename Kernel::Strain;
   using Frames = SegmentFrames<Shape>;
-  using S = Space<dofs>;
+  using S = Space<modes>;
   static constexpr int t = S::translations, size = S::size;
 
   template <class Column>
@@ -119,8 +124,12 @@ class ExactTangent {
   /// Derivatives of the positions in a segment with respect to its unknowns.
   struct Derivatives {
     Derivatives(const Kernel& kernel, const typename K::SegmentMotion& m) {
+      if constexpr (Kernel::functions == 2) {
+        kernel.derivatives(m.rate, m.acceleration, velocity, acceleration, curvature);
+        return;
+      }
       for (std::size_t k = 0; k < dofs; ++k) {
-        const Vec e = K::unit(static_cast<int>(k));
+        const Strain e = K::unit(static_cast<int>(k));
         velocity[k] = kernel.second(m.rate, e);
         acceleration[k] = kernel.acceleration_slope(m.rate, m.acceleration, e);
         for (std::size_t l = k; l < dofs; ++l) {
@@ -129,9 +138,9 @@ class ExactTangent {
         }
       }
     }
-    using Second = decltype(Kernel().second(Vec(), Vec()));
+    using Second = decltype(Kernel().second(Strain(), Strain()));
     std::array<Second, dofs> velocity;  // dP'/dq_k
-    std::array<decltype(Kernel().acceleration_slope(Vec(), Vec(), Vec())), dofs>
+    std::array<decltype(Kernel().acceleration_slope(Strain(), Strain(), Strain())), dofs>
         acceleration;                                      // dP''/dq_k
     std::array<std::array<Second, dofs>, dofs> curvature;  // d2P/dq_k dq_l
   };
@@ -141,7 +150,7 @@ class ExactTangent {
 
   void points(std::size_t i, Weights w, const EffectBlocks& effects,
               const Derivatives& derivatives, SegmentTangent<Shape>& tangent) const {
-    const ReducedSegment& segment = kinematics_.segments()[i];
+    const auto& segment = kinematics_.segments()[i];
     const auto& m = kinematics_.motion(i);
     const FrameMotion& from = kinematics_.start(i);
     const Vec3<Pack> omega(from.omega), alpha(from.alpha);
@@ -163,7 +172,7 @@ class ExactTangent {
         by_v = PointMatrix(&effects.velocity[9 * K::first_point(b)], 1, from.frame);
         u = Vec3<Pack>(from.v) + turning + velocity;
         by_start = by_x;
-        if constexpr (dofs == 1) {
+        if constexpr (modes == 1) {
           // Velocity across the plane is not among the states: if the start moves by dx,
           // it is omega x dx.
           by_start.column[0] = by_start.column[0] + omega.z * by_v.column[1];
@@ -196,7 +205,7 @@ class ExactTangent {
           by_omega = by_omega - by_v * lever;
         }
         if (directions) by_phi = by_phi - by_t * cross(e, along);
-        if constexpr (dofs == 1) {
+        if constexpr (modes == 1) {
           // omega within the plane is not among the states: it turns with the frame.
           const Vec3<Pack> turned(in_plane(from.omega, Frames::axis(S::rotation[c])));
           by_phi = by_phi + mass * (cross(turned, turning + Pack(2) * velocity) +
@@ -291,7 +300,7 @@ class ExactTangent {
       }
       back(cross(e, cross(omega, g.position) + 2.0 * m.velocity) + cross(omega, lever),
            cross(e, m.turning), column_of(transfer, size + t + c), 2);
-      if constexpr (dofs == 1) {
+      if constexpr (modes == 1) {
         const Vec turned = in_plane(omega, e);
         back(cross(turned, cross(omega, g.position) + 2.0 * m.velocity) +
                  cross(omega, cross(turned, g.position)),
@@ -304,7 +313,7 @@ class ExactTangent {
     const auto at = g.tip;
     for (int k = 0; k < dofs; ++k) {
       const auto index = static_cast<std::size_t>(k);
-      const Vec e = K::unit(k);
+      const Strain e = K::unit(k);
       const Vec &slope = g.slope[index], &turn = g.turn[index];
       const Vec bent = derivatives.velocity[index].at(at);
       const Vec turned = g.kernel.dW(e, m.rate).at(at);  // d(W kappa')/dkappa_k
@@ -332,9 +341,9 @@ class ExactTangent {
       double wrench[size];
       Frames::put(w.pos * d_force, w.pos * at_start, wrench);
       for (int r = 0; r < size; ++r) local[r] += wrench[r];
-      const Vec by_turn = g.kernel.dW_transposed(at, e, moment);
+      const Strain by_turn = g.kernel.dW_transposed(at, e, moment);
       for (std::size_t l = 0; l < dofs; ++l) {
-        const Vec other = K::unit(static_cast<int>(l));
+        const Strain other = K::unit(static_cast<int>(l));
         local[size + static_cast<int>(l)] +=
             w.pos *
             (dot(g.slope[l], d_force) + dot(g.turn[l], d_moment) +
@@ -372,8 +381,8 @@ class ExactTangent {
     m(t + 2, spin + 1) = -inertia * omega.x;
   }
 
-  const Kinematics<Kernel, dofs>& kinematics_;
-  const InverseDynamics<Kernel, dofs>& dynamics_;
+  const Kinematics<Kernel, modes>& kinematics_;
+  const InverseDynamics<Kernel, modes>& dynamics_;
 };
 
 }  // namespace tress::models

@@ -25,6 +25,8 @@ class HelixOf {
   using Real = T;
   using Vec = Vec3<T>;
   using Frame = FrameOf<T>;
+  using Strain = Vec;
+  static constexpr int functions = 1;  // of arc length, for each component of a strain
 
   /// The functions at one arc length, or at a pack of them.
   template <class P>

@@ -18,14 +18,15 @@ using Wrench = WrenchOf<double>;
 /// from the root to the tips (Kinematics), d'Alembert forces m p'' - f at the quadrature
 /// points (gravity as an acceleration of the root [Luh, Walker, Paul 1980]), wrenches
 /// from the tips to the root. O(N). For as many strands as Kinematics.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class InverseDynamics {
  public:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
   using Real = typename K::Real;
   using In = std::span<const Real>;
   using Out = std::span<Real>;
   using Wrench = WrenchOf<Real>;
+  static constexpr int dofs = K::dofs;
 
   /// Effects of each strand; further lanes have none.
   InverseDynamics(K& kinematics, std::vector<Effects> effects_of_strands)
@@ -231,14 +232,18 @@ class InverseDynamics {
       sum_moment = sum_moment + cross(p, at.total);
       for (int k = 0; k < dofs; ++k) sum_r[k] += dot(block.slope[k], at.total);
     }
-    const Vec kappa = K::components(q, i);
-    const Vec rate = K::components(v, i);
+    const auto kappa = K::components(q, i);
+    const auto rate = K::components(v, i);
     for (int k = 0; k < dofs; ++k) {
-      const Vec e = K::unit(k);
+      const auto e = K::unit(k);
       r[dofs * i + static_cast<std::size_t>(k)] =
           sum_over<Real>(sum_r[k]) + dot(g.slope[k], force) + dot(g.turn[k], moment) +
           dot(e, segment.stiffness) * dot(e, kappa - segment.rest) +
           dot(e, segment.friction) * dot(e, rate);
+      if constexpr (Kernel::functions == 2) {
+        r[dofs * i + static_cast<std::size_t>(k)] +=
+            dot(e, segment.inertia) * dot(e, m.acceleration);
+      }
     }
     Wrench start{sum_over<Real>(sum_force) + force,
                  sum_over<Real>(sum_moment) + moment + cross(g.position, force)};

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <limits>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "contract/system.h"
@@ -14,21 +17,34 @@
 
 namespace tress::models {
 
+/// The rule by which a kernel without closed forms integrates; std::monostate for others.
+template <class Kernel>
+struct RuleOf {
+  using Type = std::monostate;
+};
+template <class Kernel>
+requires requires { typename Kernel::Rule; }
+struct RuleOf<Kernel> {
+  using Type = typename Kernel::Rule;
+};
+
 /// Positions and motion of all frames for unknowns q, v, a: one sweep from the root to
 /// the free ends. Quantities that depend on q only are kept and reused at the same q. For
 /// one strand, or four if the kernel's scalar is a pack; unknowns, geometry and motion
 /// are then packs.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class Kinematics {
  public:
   using Real = typename Kernel::Real;
   using Vec = Vec3<Real>;
   using Frame = FrameOf<Real>;
   using FrameMotion = FrameMotionOf<Real>;
-  using Segment = ReducedSegmentOf<Real>;
+  using Strain = typename Kernel::Strain;
+  using Segment = ReducedSegmentOf<Real, Strain>;
   using In = std::span<const Real>;
   template <class T>
   using Point = typename Kernel::template At<T>;
+  static constexpr int dofs = modes * Kernel::functions;  // unknowns of a segment
 
   struct BlockGeometry {
     Point<Pack> at;
@@ -44,20 +60,21 @@ class Kinematics {
   };
   struct SegmentMotion {
     FrameMotion tip;
-    Vec rate, acceleration;                                      // kappa', kappa''
-    decltype(Kernel().first(Vec())) moving;                      // P'
-    decltype(Kernel().acceleration(Vec(), Vec())) accelerating;  // P''
-    Vec velocity;                                                // P' at the tip
-    Vec turning;                                                 // W kappa' at the tip
+    Strain rate, acceleration;                                         // kappa', kappa''
+    decltype(Kernel().first(Strain())) moving;                         // P'
+    decltype(Kernel().acceleration(Strain(), Strain())) accelerating;  // P''
+    Vec velocity;                                                      // P' at the tip
+    Vec turning;                  // W kappa' at the tip
     Vec tip_v, tip_a, tip_alpha;  // tip, in the components of the start
   };
 
   /// One root motion per strand: lanes<Real> of them.
-  Kinematics(std::vector<Segment> segments, std::vector<PointBlock> blocks,
-             std::vector<RootMotion> roots, const std::optional<FreeRootFrame>& free_root,
-             double root_rotor)
-      : segments_(std::move(segments)),
+  Kinematics(const std::vector<ReducedSegmentOf<Real>>& segments,
+             std::vector<PointBlock> blocks, std::vector<RootMotion> roots,
+             const std::optional<FreeRootFrame>& free_root, double root_rotor)
+      : segments_(segments.begin(), segments.end()),
         blocks_(std::move(blocks)),
+        rule_(rule_of(segments_.front(), blocks_)),
         root_motions_(std::move(roots)),
         free_root_(free_root),
         root_rotor_(root_rotor),
@@ -74,7 +91,7 @@ class Kinematics {
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<PointBlock>& blocks() const { return blocks_; }
   /// The unknowns of a segment at rest; those that it has not are 0.
-  void set_rest(std::size_t i, const Vec& rest) { segments_[i].rest = rest; }
+  void set_rest(std::size_t i, const Strain& rest) { segments_[i].rest = rest; }
   const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
   const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
   const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }
@@ -107,15 +124,26 @@ class Kinematics {
   }
   std::size_t point_step() const { return lanes<Real> == 1 ? 1 : blocks_.size(); }
 
-  /// The unknowns of a segment as a vector (twist, curvature 1, curvature 2); components
-  /// that are not unknowns are 0.
-  static Vec components(In x, std::size_t i) {
+  /// The unknowns of a segment as a strain, vectors of (twist, curvature 1, curvature 2);
+  /// components that are not unknowns are 0.
+  static Strain components(In x, std::size_t i) {
     const Real* p = &x[dofs * i];
-    if constexpr (dofs == 3) return {p[0], p[1], p[2]};
-    if constexpr (dofs == 2) return {Real(0), p[0], p[1]};
-    return {Real(0), p[0], Real(0)};
+    if constexpr (Kernel::functions == 2) {
+      return {of_function(p), of_function(p + modes)};
+    } else {
+      return of_function(p);
+    }
   }
-  static Vec unit(int k) { return Space<dofs>::axis(Space<dofs>::component(k)); }
+  static Strain unit(int k) {
+    const auto axis = [](int mode) {
+      return Vec(Space<modes>::axis(Space<modes>::component(mode)));
+    };
+    if constexpr (Kernel::functions == 2) {
+      return k < modes ? Strain{axis(k), {}} : Strain{{}, axis(k - modes)};
+    } else {
+      return axis(k);
+    }
+  }
 
   /// Shapes of all segments at q, and the position of a free root.
   void shape(In q) {
@@ -166,7 +194,7 @@ class Kinematics {
       const Segment& segment = segments_[i];
       const Tip& parent = tips_[static_cast<std::size_t>(segment.parent + 1)];
       const Frame start = segment.mounted ? parent.frame * segment.mount : parent.frame;
-      const Kernel kernel(segment.held + components(q, i), segment.length);
+      const Kernel kernel = bent(segment, q, i);
       const auto tip = kernel.tip();
       const Vec position = kernel.position().at(tip);
       const Frame rotation = kernel.rotation(tip);
@@ -179,7 +207,7 @@ class Kinematics {
         from_v = segment.mount.back(from_v);
         from_omega = segment.mount.back(from_omega);
       }
-      const Vec rate = components(v, i);
+      const Strain rate = components(v, i);
       to.v = rotation.back(from_v + cross(from_omega, position) +
                            kernel.first(rate).at(tip));
       to.omega = rotation.back(from_omega + kernel.W(rate).at(tip));
@@ -230,6 +258,32 @@ class Kinematics {
  private:
   static constexpr bool may_be_free = lanes<Real> == 1;
 
+  // A rule is on the points of a segment, the same for all segments.
+  using Rule = typename RuleOf<Kernel>::Type;
+  static constexpr bool collocated = !std::same_as<Rule, std::monostate>;
+  static Rule rule_of(const Segment& segment, const std::vector<PointBlock>& blocks) {
+    if constexpr (collocated) {
+      return Rule(std::span(blocks).subspan(segment.first_block,
+                                            segment.last_block - segment.first_block),
+                  segment.length);
+    } else {
+      return {};
+    }
+  }
+  Kernel bent(const Segment& segment, In q, std::size_t i) const {
+    if constexpr (collocated) {
+      return Kernel(segment.held + components(q, i), segment.length, rule_);
+    } else {
+      return Kernel(segment.held + components(q, i), segment.length);
+    }
+  }
+
+  static Vec of_function(const Real* p) {
+    if constexpr (modes == 3) return {p[0], p[1], p[2]};
+    if constexpr (modes == 2) return {Real(0), p[0], p[1]};
+    return {Real(0), p[0], Real(0)};
+  }
+
   FrameMotion root_motion(double t, In q, In v, In a) {
     if constexpr (may_be_free) {
       if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));
@@ -254,22 +308,39 @@ class Kinematics {
   void shape_segment(std::size_t i, In q) {
     const Segment& segment = segments_[i];
     SegmentGeometry& g = geometry_[i];
-    g.kernel = Kernel(segment.held + components(q, i), segment.length);
+    g.kernel = bent(segment, q, i);
     const auto position = g.kernel.position();
     g.tip = g.kernel.tip();
     g.position = position.at(g.tip);
     g.rotation = g.kernel.rotation(g.tip);
-    std::array<decltype(g.kernel.first(Vec{})), dofs> slope;
-    for (int k = 0; k < dofs; ++k) {
-      slope[k] = g.kernel.first(unit(k));
-      g.slope[k] = slope[k].at(g.tip);
-      g.turn[k] = g.kernel.W(unit(k)).at(g.tip);
+    std::array<decltype(g.kernel.first(Strain{})), Kernel::functions == 2 ? 0 : dofs>
+        slope;
+    const auto slope_of = [&]([[maybe_unused]] std::size_t k) -> const auto& {
+      if constexpr (Kernel::functions == 2) {
+        return g.kernel.slope_of(static_cast<int>(k));
+      } else {
+        return slope[k];
+      }
+    };
+    for (std::size_t k = 0; k < dofs; ++k) {
+      const auto direction = static_cast<int>(k);
+      if constexpr (Kernel::functions == 2) {
+        g.turn[k] = g.kernel.turn_of(direction).at(g.tip);
+      } else {
+        slope[k] = g.kernel.first(unit(direction));
+        g.turn[k] = g.kernel.W(unit(direction)).at(g.tip);
+      }
+      g.slope[k] = slope_of(k).at(g.tip);
     }
     for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
       BlockGeometry& block = block_geometry_[b];
-      block.at = g.kernel.point(blocks_[b].s);
+      if constexpr (collocated) {
+        block.at = g.kernel.point(static_cast<int>(b - segment.first_block));
+      } else {
+        block.at = g.kernel.point(blocks_[b].s);
+      }
       block.position = position.at(block.at);
-      for (int k = 0; k < dofs; ++k) block.slope[k] = slope[k].at(block.at);
+      for (std::size_t k = 0; k < dofs; ++k) block.slope[k] = slope_of(k).at(block.at);
     }
   }
 
@@ -321,6 +392,7 @@ class Kinematics {
 
   std::vector<Segment> segments_;
   std::vector<PointBlock> blocks_;
+  [[no_unique_address]] Rule rule_;
   std::vector<RootMotion> root_motions_;
   std::optional<FreeRootFrame> free_root_;
   double root_rotor_;

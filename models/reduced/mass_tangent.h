@@ -10,7 +10,7 @@ namespace tress::models {
 template <class Shape>
 class SegmentFrames {
  public:
-  using S = Space<Shape::dofs>;
+  using S = Space<Shape::wrench == 3 ? 1 : 3>;
   using Real = typename Shape::Real;
   using Vec = Vec3<Real>;
   using Frame = FrameOf<Real>;
@@ -69,21 +69,22 @@ class SegmentFrames {
 };
 
 /// Elastic stiffness and friction of the unknowns, by component.
-template <class Real>
-Vec3<Real> restoring(const ReducedSegmentOf<Real>& segment, Weights w) {
+template <class Real, class Strain>
+Strain restoring(const ReducedSegmentOf<Real, Strain>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
 /// local += sum J^T B J over the points of a segment, with B the symmetric matrices of
 /// the effects.
-template <class Kernel, int dofs>
-void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i,
+template <class Kernel, int modes>
+void add_effect_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
                         In matrices,
-                        SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent) {
+                        SegmentTangent<MassShapeOf<Kernel, modes>>& tangent) {
   using Real = typename Kernel::Real;
-  using K = Kinematics<Kernel, dofs>;
-  using AtPoints = SegmentFrames<MassShape<dofs, Pack>>;
-  using S = Space<dofs>;
+  using K = Kinematics<Kernel, modes>;
+  constexpr int dofs = K::dofs;
+  using AtPoints = SegmentFrames<MassShape<modes, Pack>>;
+  using S = Space<modes>;
   constexpr int t = S::translations, size = S::size, columns = size + dofs;
   const auto& segment = kinematics.segments()[i];
   std::array<Pack, columns*(columns + 1) / 2> total{};  // upper triangle by columns
@@ -122,13 +123,15 @@ void add_effect_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t 
 /// sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times minus the
 /// derivatives of the loads, (9) per point, or empty. Expects tip to be zero or the
 /// result of an earlier call.
-template <class Kernel, int dofs>
-void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Weights w,
-                  SegmentTangent<MassShape<dofs, typename Kernel::Real>>& tangent,
+template <class Kernel, int modes>
+void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, Weights w,
+                  SegmentTangent<MassShapeOf<Kernel, modes>>& tangent,
                   In of_effects = {}) {
   using Real = typename Kernel::Real;
-  using Frames = SegmentFrames<MassShape<dofs, Real>>;
-  using S = Space<dofs>;
+  using K = Kinematics<Kernel, modes>;
+  constexpr int dofs = K::dofs;
+  using Frames = SegmentFrames<MassShapeOf<Kernel, modes>>;
+  using S = Space<modes>;
   constexpr int t = S::translations, size = S::size;
   const auto& segment = kinematics.segments()[i];
   const auto& g = kinematics.geometry(i);
@@ -150,7 +153,7 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
     second[0][0] += mp.x * p.x;
     second[0][2] += mp.x * p.z;
     second[2][2] += mp.z * p.z;
-    if constexpr (dofs > 1) {
+    if constexpr (modes > 1) {
       second[0][1] += mp.x * p.y;
       second[1][1] += mp.y * p.y;
       second[1][2] += mp.y * p.z;
@@ -195,8 +198,11 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
           local(size + static_cast<int>(l), column) = acc * sum_over<Real>(inner[k][l]);
     }
     tangent.stiffness[static_cast<int>(k)] =
-        dot(Kinematics<Kernel, dofs>::unit(static_cast<int>(k)), restoring(segment, w));
+        dot(K::unit(static_cast<int>(k)), restoring(segment, w));
     local(column, column) += tangent.stiffness[static_cast<int>(k)];
+    if constexpr (Kernel::functions == 2) {
+      local(column, column) += acc * dot(K::unit(static_cast<int>(k)), segment.inertia);
+    }
   }
 
   if (!of_effects.empty()) add_effect_tangent(kinematics, i, of_effects, tangent);
@@ -215,7 +221,7 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
     Frames::put(f.back(g.slope[k]), f.back(g.turn[k]),
                 column_of(transfer, size + static_cast<int>(k)));
   }
-  if constexpr (dofs > 1) {
+  if constexpr (modes > 1) {
     tangent.tip(t, t) = acc * segment.rotor;
     if (segment.mounted) Frames::mount(segment.mount, tangent);
   }
@@ -223,12 +229,12 @@ void mass_tangent(const Kinematics<Kernel, dofs>& kinematics, std::size_t i, Wei
 }
 
 /// The same for the free root of one strand.
-template <class Kernel, int dofs>
-void mass_root_tangent(const Kinematics<Kernel, dofs>& kinematics, Weights w,
-                       RootTangent<MassShape<dofs>>& root) {
-  if constexpr (dofs > 1) {
+template <class Kernel, int modes>
+void mass_root_tangent(const Kinematics<Kernel, modes>& kinematics, Weights w,
+                       RootTangent<MassShapeOf<Kernel, modes>>& root) {
+  if constexpr (modes > 1) {
     const FreeRootFrame& free = kinematics.free_root();
-    using Frames = SegmentFrames<MassShape<dofs>>;
+    using Frames = SegmentFrames<MassShapeOf<Kernel, modes>>;
     for (int c = 0; c < 3; ++c) {
       const Vec e = Frames::axis(c);
       Frames::put(free.frame().back(e), Vec{}, column_of(root.transfer, c));

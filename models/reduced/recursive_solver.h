@@ -269,8 +269,38 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   static bool invert(const Pivot& pivot, Square& inverse) {
     Square h;
     copy(pivot, h);
-    inverse = h.inverse();
+    if constexpr (Shape::symmetric && n > 3) {
+      invert_definite(h, inverse);
+    } else {
+      inverse = h.inverse();
+    }
     return is_finite(inverse.sum());
+  }
+
+  /// By the two halves of the unknowns: with S = D - C A^-1 C^T,
+  /// [A C^T; C D]^-1 = [A^-1 + Y^T S^-1 Y, -Y^T S^-1; -S^-1 Y, S^-1], Y = C A^-1.
+  static void invert_definite(const Square& h, Square& inverse) {
+    constexpr int half = n / 2;
+    using Quarter = Eigen::Matrix<Real, half, half>;
+    Quarter a, c, across, rest;
+    copy(part<half, half>(h, 0, 0), a);
+    copy(part<half, half>(h, half, 0), c);
+    copy(part<half, half>(h, 0, half), across);  // C^T
+    copy(part<half, half>(h, half, half), rest);
+    const Quarter first = a.inverse();
+    const Quarter y = product(c, first), y_transposed = product(first, across);
+    subtract_product(y, across, rest);
+    const Quarter last = rest.inverse();
+    const Quarter mixed = product(last, y);
+    Quarter corner = first;
+    add_product(y_transposed, mixed, corner);
+    for (int j = 0; j < half; ++j) {
+      for (int i = 0; i < half; ++i) {
+        inverse(i, j) = corner(i, j);
+        inverse(half + i, half + j) = last(i, j);
+        inverse(half + i, j) = inverse(j, half + i) = Real(-1) * mixed(i, j);
+      }
+    }
   }
 
   /// Adds to `onto` the articulated matrix that the segment passes on.

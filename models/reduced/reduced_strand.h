@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "math/pack.h"
 #include "models/effects/effect.h"
 #include "models/reduced/tree_solver.h"
+#include "models/strand/strain.h"
 #include "models/strand/strand.h"
 
 namespace tress::models {
@@ -18,21 +20,41 @@ struct PointBlock {
   Pack s, mass, length;
 };
 
-/// One segment of a reduced-coordinate strand. Vectors are over (twist, curvature 1,
+/// One segment of a reduced-coordinate strand. Strains are over (twist, curvature 1,
 /// curvature 2); entries of components that are not unknowns are 0 except in `held`.
-/// T = Pack: the same segment of four strands.
-template <class T>
+/// T = Pack: the same segment of four strands. Models of constant strain take the means
+/// (Strain = Vec3).
+template <class T, class Strain = LinearStrainOf<T>>
 struct ReducedSegmentOf {
+  ReducedSegmentOf() = default;
+  template <class Other>
+  requires(!std::same_as<Other, Strain>) explicit ReducedSegmentOf(
+      const ReducedSegmentOf<T, Other>& s)
+      : parent(s.parent),
+        length(s.length),
+        mounted(s.mounted),
+        mount(s.mount),
+        rotor(s.rotor),
+        held(s.held),
+        rest(s.rest),
+        initial(s.initial),
+        stiffness(s.stiffness),
+        friction(s.friction),
+        inertia(s.inertia),
+        first_block(s.first_block),
+        last_block(s.last_block) {}
+
   int parent = -1;
   T length{};
   bool mounted = false;  // mount is not the identity
   FrameOf<T> mount;
-  T rotor{};          // rotational inertia about the tangent at the tip, kg m^2
-  Vec3<T> held;       // fixed values of components that are not unknowns
-  Vec3<T> rest;       // unknowns at rest
-  Vec3<T> initial;    // unknowns at t = 0
-  Vec3<T> stiffness;  // moment per unknown
-  Vec3<T> friction;   // moment per rate of unknown
+  T rotor{};         // rotational inertia about the tangent at the tip, kg m^2
+  Strain held;       // fixed values of components that are not unknowns
+  Strain rest;       // unknowns at rest
+  Strain initial;    // unknowns at t = 0
+  Strain stiffness;  // moment per unknown
+  Strain friction;   // moment per rate of unknown
+  Strain inertia;    // of the section's rotation, beyond the rotors; of linear strains
   std::size_t first_block = 0, last_block = 0;
 };
 using ReducedSegment = ReducedSegmentOf<double>;
@@ -56,9 +78,10 @@ struct ReducedOptions {
 std::span<const Parameter> reduced_parameters();
 ReducedOptions reduced_options(const Parameters& parameters);
 
-/// Unknowns of a segment: the curvatures of a helix, or the rotation vector of a ball
-/// joint, which represents the bending of half of each adjacent link.
-enum class Unknown { curvature, joint_angle };
+/// Unknowns of a segment: the curvatures of a helix, those of a clothoid, two for each
+/// component, or the rotation vector of a ball joint, which represents the bending of
+/// half of each adjacent link.
+enum class Unknown { curvature, linear_curvature, joint_angle };
 
 /// A strand prepared for ReducedSystem.
 struct ReducedStrand {
@@ -85,5 +108,12 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
 /// Gauss-Legendre points for a segment that winds by `angle` (rad), such that the mass
 /// matrix is within 1e-8 of its integral (tests/models/reduced/test_quadrature.cpp).
 int quadrature_points(double angle);
+
+/// The same for a segment whose curvature varies linearly, where the points carry the
+/// integrals of kinematics too: those of the tip are within 1e-11 of the length. `angle`
+/// is the sum of those of mean and half, at most most_clothoid_winding, or InputError.
+int clothoid_points(double angle);
+inline constexpr double most_clothoid_winding = 24;
+inline constexpr int most_clothoid_points = 32;
 
 }  // namespace tress::models

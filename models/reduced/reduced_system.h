@@ -15,12 +15,12 @@
 
 namespace tress::models {
 
-/// A chain or tree of segments with `dofs` unknowns each, of any kernel (Helix,
-/// BallLink), behind the contract of contract/system.h. residual: Newton-Euler, O(N).
-/// linearize and solve: the mass tangent, or the exact one, by the chosen method, or by
-/// `composite` if the strand touches itself. The acceleration of the explicit form always
-/// comes from the recursion.
-template <class Kernel, int dofs>
+/// A chain or tree of segments with one or two unknowns for each mode, of any kernel
+/// (Helix, Clothoid, BallLink), behind the contract of contract/system.h. residual:
+/// Newton-Euler, O(N). linearize and solve: the mass tangent, or the exact one, by the
+/// chosen method, or by `composite` if the strand touches itself. The acceleration of the
+/// explicit form always comes from the recursion.
+template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
                       protected ExplicitForm,
@@ -35,8 +35,7 @@ class ReducedSystem : public System,
         length_(strand.length),
         rate_(strand.rate),
         to_tip_(strand.to_tip),
-        kinematics_(std::move(strand.segments), std::move(strand.blocks),
-                    {std::move(strand.root)},
+        kinematics_(strand.segments, std::move(strand.blocks), {std::move(strand.root)},
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
                                      : std::nullopt,
                     strand.root_rotor),
@@ -179,13 +178,14 @@ class ReducedSystem : public System,
   }
 
   // For ForceTransport, which changes how accelerations enter.
-  using K = Kinematics<Kernel, dofs>;
-  using Mass = MassShape<dofs>;
-  using Exact = ExactShape<dofs>;
+  using K = Kinematics<Kernel, modes>;
+  static constexpr int dofs = K::dofs;
+  using Mass = MassShapeOf<Kernel, modes>;
+  using Exact = ExactShapeOf<Kernel, modes>;
 
-  using Segment = ReducedSegment;
+  using Segment = typename K::Segment;
   /// The unknowns' components of a member of every segment.
-  std::vector<double> of_segments(Vec Segment::*member) const {
+  std::vector<double> of_segments(typename Kernel::Strain Segment::*member) const {
     std::vector<double> all;
     for (const Segment& segment : kinematics_.segments()) {
       for (int k = 0; k < dofs; ++k) all.push_back(dot(K::unit(k), segment.*member));
@@ -218,7 +218,7 @@ class ReducedSystem : public System,
     return full_.couplings.empty() ? *full_solver_ : *coupled_solver_;
   }
 
-  typename ExactTangent<Kernel, dofs>::EffectBlocks effect_blocks(double t) {
+  typename ExactTangent<Kernel, modes>::EffectBlocks effect_blocks(double t) {
     if (by_position_.empty() && by_direction_.empty()) return {};
     dynamics_.place(dynamics_.effect_needs());
     if (!by_position_.empty()) {
@@ -258,16 +258,17 @@ class ReducedSystem : public System,
     Energy e;
     e.kinetic = rotor_energy(kinematics_.root_rotor(), kinematics_.root());
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const ReducedSegment& segment = kinematics_.segments()[i];
+      const auto& segment = kinematics_.segments()[i];
       for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
         const Vec3<Pack> u = kinematics_.velocity(i, b);
         e.kinetic += 0.5 * sum(kinematics_.blocks()[b].mass * dot(u, u));
       }
       e.kinetic += rotor_energy(segment.rotor, kinematics_.motion(i).tip);
-      const Vec bent = K::components(q, i) - segment.rest;
-      e.potential += 0.5 * (segment.stiffness.x * bent.x * bent.x +
-                            segment.stiffness.y * bent.y * bent.y +
-                            segment.stiffness.z * bent.z * bent.z);
+      if constexpr (Kernel::functions == 2) {
+        e.kinetic += 0.5 * weighed_square(segment.inertia, K::components(v, i));
+      }
+      e.potential +=
+          0.5 * weighed_square(segment.stiffness, K::components(q, i) - segment.rest);
     }
     const Points points = placed();
     for (const auto& effect : dynamics_.effects(0)) {
@@ -282,10 +283,7 @@ class ReducedSystem : public System,
     double sum = 0;
     for (const auto& effect : dynamics_.effects(0)) sum += effect->power(t, points);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const Vec& friction = kinematics_.segments()[i].friction;
-      const Vec rate = K::components(v, i);
-      sum -= friction.x * rate.x * rate.x + friction.y * rate.y * rate.y +
-             friction.z * rate.z * rate.z;
+      sum -= weighed_square(kinematics_.segments()[i].friction, K::components(v, i));
     }
     return sum + root_power(t, q, v);
   }
@@ -305,7 +303,7 @@ class ReducedSystem : public System,
     Vec linear;
     Vec angular = rotor_momentum(kinematics_.root_rotor(), kinematics_.root());
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const ReducedSegment& segment = kinematics_.segments()[i];
+      const auto& segment = kinematics_.segments()[i];
       angular = angular + rotor_momentum(segment.rotor, kinematics_.motion(i).tip);
       for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
         const Vec3<Pack> x = Vec3<Pack>(kinematics_.start(i).x) +
@@ -367,12 +365,12 @@ class ReducedSystem : public System,
   }
   bool pull_back(double t, In q, std::span<const int> points, In f, InOut b) override {
     if (!chain_) return false;
-    TipForces<Kernel, dofs>(kinematics_, t, q).pull_back(points, f, b);
+    TipForces<Kernel, modes>(kinematics_, t, q).pull_back(points, f, b);
     return true;
   }
   bool responses(double t, In q, std::span<const int> points, Out blocks) override {
     if (!chain_ || full_in_use_ || factored_ != Status::ok) return false;
-    const TipForces<Kernel, dofs> forces(kinematics_, t, q);
+    const TipForces<Kernel, modes> forces(kinematics_, t, q);
     loads_.clear();
     for (const int point : points) loads_.push_back({point - 1, forces.units(point)});
     return mass_solver_->respond(loads_, blocks);
@@ -407,9 +405,9 @@ class ReducedSystem : public System,
   Frame to_tip_;
   K kinematics_;
   HeldContacts held_contacts_;
-  InverseDynamics<Kernel, dofs> dynamics_;
-  ExactTangent<Kernel, dofs> exact_tangent_;
-  StiffTangent<Kernel, dofs> mass_, acceleration_;
+  InverseDynamics<Kernel, modes> dynamics_;
+  ExactTangent<Kernel, modes> exact_tangent_;
+  StiffTangent<Kernel, modes> mass_, acceleration_;
   TreeTangent<Exact> full_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
@@ -421,14 +419,14 @@ class ReducedSystem : public System,
   std::vector<typename TreeSolver<Mass>::Load> loads_;  // scratch of responses()
 };
 
-/// `PlanarKernel` is the kernel for one unknown per segment.
-template <class Kernel, class PlanarKernel>
-std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int dofs) {
-  switch (dofs) {
+/// `PlanarKernel` is the kernel for one mode, `BentKernel` that for two.
+template <class Kernel, class PlanarKernel, class BentKernel = Kernel>
+std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int modes) {
+  switch (modes) {
     case 1:
       return std::make_unique<ReducedSystem<PlanarKernel, 1>>(std::move(strand));
     case 2:
-      return std::make_unique<ReducedSystem<Kernel, 2>>(std::move(strand));
+      return std::make_unique<ReducedSystem<BentKernel, 2>>(std::move(strand));
     default:
       return std::make_unique<ReducedSystem<Kernel, 3>>(std::move(strand));
   }

@@ -28,14 +28,14 @@ TreeTangent<Shape> empty_tangent(const K& kinematics) {
 /// symmetric and semidefinite so that the sum stays definite: a repulsion is stiff along
 /// its gap but has negative stiffness force/gap across it, more than mass and elasticity
 /// can balance. The dependence of loads on the strand's tangent is omitted.
-template <class Kernel, int dofs>
+template <class Kernel, int modes>
 class StiffTangent {
  public:
-  using K = Kinematics<Kernel, dofs>;
+  using K = Kinematics<Kernel, modes>;
   using In = typename K::In;
-  using Shape = MassShape<dofs, typename K::Real>;
+  using Shape = MassShapeOf<Kernel, modes>;
 
-  StiffTangent(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics)
+  StiffTangent(K& kinematics, InverseDynamics<Kernel, modes>& dynamics)
       : kinematics_(kinematics),
         dynamics_(dynamics),
         tangent_(empty_tangent<Shape>(kinematics)) {
@@ -72,7 +72,7 @@ class StiffTangent {
   }
 
   K& kinematics_;
-  InverseDynamics<Kernel, dofs>& dynamics_;
+  InverseDynamics<Kernel, modes>& dynamics_;
   TreeTangent<Shape> tangent_;
   std::vector<typename K::Real> zero_;
   std::vector<double> of_effects_;  // 9 per point

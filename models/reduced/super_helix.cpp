@@ -38,13 +38,18 @@ std::span<const Parameter> super_helix_tree_parameters() {
   return all;
 }
 
-std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters) {
+Strand described_tree(const Parameters& parameters) {
   Strand tree;
   tree.material = material(parameters);
   tree.segments = tree_segments(parameters.word("tree"));
   tree.root = root_motion(parameters);
   tree.free_root = free_root(parameters);
-  return super_helix(tree, reduced_options(parameters), strand_effects(parameters));
+  return tree;
+}
+
+std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters) {
+  return super_helix(described_tree(parameters), reduced_options(parameters),
+                     strand_effects(parameters));
 }
 
 }  // namespace tress::models

@@ -37,6 +37,7 @@ std::unique_ptr<System> make_super_helix(const Strand& strand,
 
 /// The trees of models/reduced/trees.h.
 std::span<const Parameter> super_helix_tree_parameters();
+Strand described_tree(const Parameters& parameters);
 std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters);
 
 }  // namespace tress::models

@@ -41,5 +41,18 @@ template std::unique_ptr<TreeSolver<ExactShape<2>>> make_tree_solver(
     TreeMethod, const TreeTangent<ExactShape<2>>&);
 template std::unique_ptr<TreeSolver<ExactShape<1>>> make_tree_solver(
     TreeMethod, const TreeTangent<ExactShape<1>>&);
+// Of clothoids.
+template std::unique_ptr<TreeSolver<MassShape<3, double, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<3, double, 2>>&);
+template std::unique_ptr<TreeSolver<MassShape<2, double, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<2, double, 2>>&);
+template std::unique_ptr<TreeSolver<MassShape<1, double, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<MassShape<1, double, 2>>&);
+template std::unique_ptr<TreeSolver<ExactShape<3, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<3, 2>>&);
+template std::unique_ptr<TreeSolver<ExactShape<2, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<2, 2>>&);
+template std::unique_ptr<TreeSolver<ExactShape<1, 2>>> make_tree_solver(
+    TreeMethod, const TreeTangent<ExactShape<1, 2>>&);
 
 }  // namespace tress::models

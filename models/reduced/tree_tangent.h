@@ -66,7 +66,7 @@ void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
   };
   for (int level = 0; level < levels; ++level) add(level, level);
   if constexpr (levels == 3) add(2, 1);
-  if constexpr (levels == 3 && Shape::dofs == 1) add(2, 0);
+  if constexpr (levels == 3 && size == 3) add(2, 0);  // in the plane
   multiply<1, true, rows, Shape::states, Shape::dofs>(
       m.data(), rows, segment.transfer.data() + Shape::states * Shape::states, 1,
       Shape::states, c.data() + rows * Shape::states, rows);

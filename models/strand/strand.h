@@ -19,6 +19,9 @@ struct Segment {
   CrossSection section;
   Vec natural;  // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
   Vec initial;  // twist and curvatures at t = 0, 1/m
+  // How far the two are at the tip from their means above, if they vary linearly; read by
+  // models whose elements can (LinearStrain of strain.h).
+  Vec natural_half{}, initial_half{};
 };
 
 /// The root is clamped to a prescribed motion, or free to move from an initial state.
@@ -61,10 +64,11 @@ struct Discretisation {
   double grading = 1;
 };
 
-/// A chain of segments; natural shapes are averaged over each segment (Gauss-Legendre, 8
-/// points: exact for polynomials of degree 15, 1e-9 of the amplitude for a wave as long
-/// as the segment); `initial` is the natural shape unless given. Throws InputError unless
-/// there are elements, lengths are positive and numbers finite.
+/// A chain of segments; natural shapes are averaged over each segment, and projected to
+/// linear ones (Gauss-Legendre, 8 points: exact for polynomials of degree 14, 1e-9 of the
+/// amplitude for a wave as long as the segment); `initial` is the natural shape unless
+/// given. Throws InputError unless there are elements, lengths are positive and numbers
+/// finite.
 Strand make_strand(const Material& material, const CrossSection& section,
                    const Discretisation& cut, const Shape& natural,
                    const Shape& initial = {});

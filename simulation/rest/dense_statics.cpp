@@ -1,6 +1,7 @@
 #include "simulation/rest/dense_statics.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -86,19 +87,17 @@ const MatrixXd& DenseStatics::stiffness() {
     }
     stiffness_ = dense(form->pattern(), values);
   } else {
-    constexpr double step = 1e-3;  // of the typical size: error (1e-3)^4
-    stiffness_.resize(q_.size(), q_.size());
-    const VectorXd at = q_;
+    // Not by differences: a step beyond the depths of contacts finds other ones.
+    check(system_.linearize(0, span(q_), span(zero_), span(zero_), {0, 0, 1}));
+    MatrixXd compliance(q_.size(), q_.size());
+    VectorXd force = zero_, way = zero_;
     for (Index k = 0; k < q_.size(); ++k) {
-      const double h = step * scale_[k];
-      const auto moved = [&](double by) {
-        q_[k] = at[k] + by;
-        return full_residual();
-      };
-      stiffness_.col(k) =
-          (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
-      q_[k] = at[k];
+      force[k] = 1;
+      check(system_.solve(span(force), span(way)));
+      force[k] = 0;
+      compliance.col(k) = way;
     }
+    stiffness_ = compliance.inverse();
   }
   if (basis_.size() > 0) stiffness_ = basis_.transpose() * stiffness_ * basis_;
   return stiffness_ = (0.5 * (stiffness_ + stiffness_.transpose())).eval();

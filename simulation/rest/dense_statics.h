@@ -9,7 +9,7 @@ namespace tress::simulation {
 /// A system without motion at t = 0 and q, linearised for its statics: displacements that
 /// its constraints allow, dq = Z y, and the symmetric part of the stiffness Z^T (dr/dq -
 /// d(G^T lambda)/dq) Z at the natural strains for which it is first asked. From the
-/// sparse form if there is one, else by differences.
+/// sparse form if there is one, else of the tangent, which has to be the exact one.
 /// Dense, O(n^3).
 class DenseStatics {
  public:

@@ -100,8 +100,9 @@ std::vector<double> balance(System& system, NaturalStrains& strains,
 }
 
 void invert(const Scene& scene, const Strand& strand, Effects effects, HeldShape& held) {
-  const auto system =
-      scene.model->on_strand(strand, scene.model_options, std::move(effects));
+  Parameters options = scene.model_options;
+  if (options.knows("tangent")) options.set("tangent", "exact");
+  const auto system = scene.model->on_strand(strand, options, std::move(effects));
   const std::vector<double> q = coordinates_at_start(*system);
   NaturalStrains& strains = strains_to_hold(scene, strand, *system, inverse_rest);
   const double load = DenseStatics(*system, q).residual().norm();

@@ -113,7 +113,8 @@ NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System
                   "direction in which it bends",
                   scene.model->id),
       where,
-      "use super_helix, articulated_chain, der, corde, xpbd_cosserat or dynamic_spline");
+      "use super_helix, super_clothoid, articulated_chain, der, corde, xpbd_cosserat or "
+      "dynamic_spline");
 }
 
 void check(const Scene& scene, const ScenePlaces& places) {

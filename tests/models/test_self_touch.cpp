@@ -121,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spiral{"super_helix", {{"modes", "bend"}, {"motion", "shake_rotate"}}, 10},
         Spiral{"super_helix", {{"modes", "bend_planar"}}, 10},
         Spiral{"super_helix", {{"modes", "bend_planar"}, {"motion", "shake_rotate"}}, 10},
+        Spiral{"super_clothoid", {{"motion", "shake_rotate"}}, 10},
+        Spiral{"super_clothoid", {{"modes", "bend"}, {"motion", "free"}}, 10},
         Spiral{"articulated_chain", {{"motion", "shake_rotate"}}, 10},
         Spiral{"force_transport", {{"motion", "shake_rotate"}}, 10},
         Spiral{"der", {{"motion", "shake_rotate"}}, 1e6},

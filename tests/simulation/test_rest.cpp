@@ -42,9 +42,12 @@ const char* const effects[] = {
     "[effects.wind]\nvelocity_m_s = [0.3, 1, 0]\nprofile = \"gusts\"\nlaw = "
     "\"quadratic\"\n[effects.linear_drag]\ndrag_kg_m_s = 1e-4\n",
     "[effects.tether]\ntarget_m = [0.1, 0.03, 0.05]\npull_n = 2e-6\nt_on_s = -1\n"};
-const char* const reduced[] = {
-    "id = \"super_helix\"", "id = \"super_helix\"\nmodes = \"bend\"",
-    "id = \"super_helix\"\ntangent = \"stiff\"", "id = \"articulated_chain\""};
+const char* const reduced[] = {"id = \"super_helix\"",
+                               "id = \"super_helix\"\nmodes = \"bend\"",
+                               "id = \"super_helix\"\ntangent = \"stiff\"",
+                               "id = \"articulated_chain\"",
+                               "id = \"super_clothoid\"",
+                               "id = \"super_clothoid\"\nmodes = \"bend\""};
 const char* const others[] = {"id = \"der\"",
                               "id = \"der\"\nstretch = \"inextensible\"",
                               "id = \"der\"\ntwist = \"quasi_static\"",
@@ -108,7 +111,7 @@ double drift(const Scene& scene) {
 
 TEST(AtRest, StrandsStayForTenSeconds) {
   for (const char* const shape : shapes) {
-    for (const char* const model : {reduced[0], reduced[3]}) {
+    for (const char* const model : {reduced[0], reduced[3], reduced[4]}) {
       EXPECT_LE(drift(scene_of({model, shape, effects[2]})), 1e-9) << model << shape;
     }
     for (const char* const model : {others[0], others[3]}) {
@@ -140,7 +143,8 @@ TEST(AtRest, WhatMovesIsStillWhenShapesAreHeld) {
 /// its moduli are raised by its own number over that. 24 elements: error of order 1/n^2.
 TEST(Stability, IsGreenhillsForAnUprightStrand) {
   constexpr double greenhill = 7.8373;
-  for (const char* const model : {reduced[0], reduced[3], others[0], others[3]}) {
+  for (const char* const model :
+       {reduced[0], reduced[3], reduced[4], others[0], others[3]}) {
     for (const double length : {0.05, 0.2}) {
       Setting s{model, shapes[0], "", "keep"};
       s.strand =
@@ -193,7 +197,7 @@ TEST(Stability, StiffensWhatWouldFallAndLeavesTheRest) {
   const World kept(scene_of(s));
   const HeldShape& held = stiff.held().front();
   ASSERT_GT(held.least_factor, 1);
-  // Both by bisection, to 1e-7, of stiffnesses by differences.
+  // Both by bisection, to 1e-7.
   EXPECT_NEAR(held.factor, stiffened * held.least_factor, 1e-5 * held.factor);
   EXPECT_FALSE(held.falls());
   EXPECT_TRUE(kept.held().front().falls());
@@ -209,7 +213,7 @@ TEST(Contact, SupportsWithoutBendingWhereAPenaltyBends) {
   const std::string head =
       "[effects.body]\nshape = \"sphere\"\nradius_m = 0.08\ncentre_m = [0, 0, -0.08]\n"
       "stiffness_n_m2 = 1000\n";
-  for (const char* const model : {reduced[0], reduced[3], others[0]}) {
+  for (const char* const model : {reduced[0], reduced[3], reduced[4], others[0]}) {
     Setting s{model, "shape = \"helix\"\ncurl_radius_m = 0.08\ncurl_pitch_m = 0", head};
     s.strand = "length_m = 0.1\nelements = 12\nroot_tangent = [1, 0, 0]\n";
     Scene scene = scene_of(s);
@@ -227,7 +231,7 @@ TEST(Contact, SupportsWithoutBendingWhereAPenaltyBends) {
     const HeldShape& held = world.held().front();
     EXPECT_GT(held.contacts, 0) << model;
     EXPECT_LE(held.residual, model == others[0] ? 1e-3 : rounding) << model;
-    const double per_length = model == reduced[0] ? 1 : 0.1 / 12;
+    const double per_length = model == reduced[3] ? 0.1 / 12 : 1;
     EXPECT_LT(bend(world, start), 10 * per_length) << model;
     // The penalty of the surface at the depth of a radius: the residual is its bending.
     const auto pressed = scene.model->on_strand(scene.strands.front(),

@@ -177,7 +177,9 @@ std::unique_ptr<System> strand_on_plane(const std::string& id, const Vec& gravit
                               uniform_shape({}));
   strand.free_root = root;
   const ModelEntry& model = find_model(id);
-  return model.on_strand(strand, Parameters(model.parameters, "test"),
+  Parameters options(model.parameters, "test");
+  if (id == "super_clothoid") options.set("quadrature", "4");  // as helices have
+  return model.on_strand(strand, options,
                          {std::make_shared<Gravity>(gravity), std::move(plane)});
 }
 
@@ -254,7 +256,8 @@ TEST_P(TiltedPlane, SticksByTolerance) {
     EXPECT_LT(of.moved(), 2e-3 * 0.05) << integrator;
     // A strand with more contacts than unknowns, whose forces are not unique, does not
     // come to rest by tr_bdf2 on a rigid surface: its contacts open and close.
-    const bool chatters = integrator == "tr_bdf2" && GetParam().model == "super_helix";
+    const bool chatters =
+        integrator == "tr_bdf2" && GetParam().model.starts_with("super_");
     if (!GetParam().rigid || chatters) continue;
     EXPECT_LT(Course::farthest(of.end, of.half), 1e-9) << integrator;
   }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "integrators/catalogue.h"
+#include "models/clothoid/super_clothoid.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
@@ -192,6 +193,8 @@ std::vector<BatchCase> batch_cases() {
           "_" + std::to_string(dofs) + "_modes_" + std::to_string(strands) + "_strands";
       cases.push_back(
           {"super_helix" + size, super_helix_batch, super_helix, dofs, strands});
+      cases.push_back(
+          {"super_clothoid" + size, super_clothoid_batch, super_clothoid, dofs, strands});
       cases.push_back({"articulated_chain" + size, articulated_chain_batch,
                        articulated_chain, dofs, strands});
       cases.push_back({"force_transport" + size, force_transport_batch, force_transport,

@@ -102,15 +102,16 @@ const ModelSettings soft =
 
 INSTANTIATE_TEST_SUITE_P(
     Reduced, EnergyOfARelease,
-    testing::ValuesIn(ways({{"super_helix_straight", "super_helix", ten},
-                            {"super_helix_curly_bend", "super_helix", with(curly, bend)},
-                            {"super_helix_planar", "super_helix",
-                             with(ten, {{"modes", "bend_planar"}})},
-                            {"articulated_chain_straight", "articulated_chain", ten},
-                            {"palm_tree", "super_helix_tree", {{"tree", "palm_tree"}}},
-                            {"der", "der", with(soft, {{"natural_twist_1_m", "20"}})}},
-                           {{"super_helix_curly", "super_helix", curly},
-                            {"articulated_chain_curly", "articulated_chain", curly}})),
+    testing::ValuesIn(ways(
+        {{"super_helix_straight", "super_helix", ten},
+         {"super_helix_curly_bend", "super_helix", with(curly, bend)},
+         {"super_helix_planar", "super_helix", with(ten, {{"modes", "bend_planar"}})},
+         {"articulated_chain_straight", "articulated_chain", ten},
+         {"palm_tree", "super_helix_tree", {{"tree", "palm_tree"}}},
+         {"der", "der", with(soft, {{"natural_twist_1_m", "20"}})}},
+        {{"super_helix_curly", "super_helix", curly},
+         {"super_clothoid_curly", "super_clothoid", with(curly, {{"elements", "4"}})},
+         {"articulated_chain_curly", "articulated_chain", curly}})),
     name_of);
 
 /// Distances from the start of linear and angular momentum, relative to it: the larger

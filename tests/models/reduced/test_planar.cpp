@@ -34,7 +34,7 @@ class InThePlane : public testing::TestWithParam<Plane> {
   }
 };
 
-/// Component k of `dofs` an element.
+/// Component k of `dofs`, for an element or for each function of it in turn.
 std::vector<double> component(const std::vector<double>& x, std::size_t k,
                               std::size_t dofs) {
   std::vector<double> part;
@@ -82,6 +82,11 @@ std::vector<Plane> planes() {
     all.push_back({model + "_shake", model, shake, "semi_implicit_euler", "stiff"});
     all.push_back({model + "_shake_exact", model, shake, "implicit_midpoint", "exact"});
   }
+  const ModelSettings few = {{"elements", "4"}};
+  all.push_back({"super_clothoid_release", "super_clothoid", with(release, few),
+                 "semi_implicit_euler", "stiff"});
+  all.push_back({"super_clothoid_shake_exact", "super_clothoid", with(shake, few),
+                 "implicit_midpoint", "exact"});
   return all;
 }
 

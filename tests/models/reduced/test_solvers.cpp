@@ -35,6 +35,8 @@ std::vector<StrandCase> solver_cases() {
                        with(shape, {{"modes", modes}, {"motion", root}})});
       }
     }
+    all.push_back({"super_clothoid_" + modes, "super_clothoid",
+                   with(shape, {{"modes", modes}, {"motion", "shake_rotate"}})});
     if (modes == "bend_planar") continue;
     all.push_back({"super_helix_" + modes + "_free", "super_helix",
                    with(shape, {{"modes", modes}, {"motion", "free"}})});
@@ -44,8 +46,11 @@ std::vector<StrandCase> solver_cases() {
                      {{"tree", tree}, {"modes", modes}, {"motion", "shake_rotate"}}});
     }
   }
-  all.push_back(
-      {"tree_algae_free", "super_helix_tree", {{"tree", "algae"}, {"motion", "free"}}});
+  for (const std::string model : {"super_helix", "super_clothoid"}) {
+    all.push_back({model + "_tree_algae_free",
+                   find_model(model + "_tree").id,
+                   {{"tree", "algae"}, {"motion", "free"}}});
+  }
   return all;
 }
 

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "models/reduced/reduced_strand.h"
+
+namespace tress::models {
+
+/// Values of a vector at the points of an element, four a block (or, if Real is a pack,
+/// one point of four elements), and at its tip.
+template <class Real>
+struct AlongOf {
+  static constexpr int most_blocks = most_clothoid_points * lanes<Real> / Pack::lanes;
+
+  // Only those in use are set and copied.
+  AlongOf() {}                                      // NOLINT
+  explicit AlongOf(int count) : blocks(count) {}    // NOLINT
+  AlongOf(const AlongOf& other) { *this = other; }  // NOLINT
+  AlongOf& operator=(const AlongOf& other) {        // NOLINT
+    blocks = other.blocks;
+    tip = other.tip;
+    for (int i = 0; i < 3 * blocks; ++i) entries[i] = other.entries[i];
+    return *this;
+  }
+
+  Vec3<Pack> operator[](int b) const {
+    return {entries[3 * b], entries[3 * b + 1], entries[3 * b + 2]};
+  }
+  void set(int b, const Vec3<Pack>& value) {
+    entries[3 * b] = value.x;
+    entries[3 * b + 1] = value.y;
+    entries[3 * b + 2] = value.z;
+  }
+
+  int blocks = 0;
+  Vec3<Real> tip;
+  Pack entries[3 * most_blocks];  // x, y, z a block
+};
+
+/// Gauss collocation on the points of an element that carry its mass: integrals from its
+/// start to each point, of the polynomial through the values at the points, and to its
+/// tip [Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, II.1.2]. With the
+/// Legendre polynomials P_m and x in [0, 1],
+///
+///     A_ij = b_j (x_i + sum_{m=1}^{n-1} P_m(y_j) (P_{m+1}(y_i) - P_{m-1}(y_i))/2),
+///
+/// y = 2 x - 1. Blocks may hold lanes of no weight, where integrals are interpolated.
+template <class Real>
+class Collocation {
+ public:
+  Collocation() = default;
+  /// By the points of one segment; those of others are the same but for their length.
+  Collocation(std::span<const PointBlock> points, const Real& length)
+      : blocks_(static_cast<int>(points.size())) {
+    constexpr int width = lanes<Real> == 1 ? Pack::lanes : 1;  // points in a block
+    const Pack over = Pack(1) / Pack(length);
+    std::array<double, most_clothoid_points> place{}, share{};
+    for (int b = 0; b < blocks_; ++b) {
+      const PointBlock& block = points[static_cast<std::size_t>(b)];
+      const Pack x = block.s * over;
+      weight_[b] = block.length * over;
+      place_[b] = Pack(2) * x - Pack(1);
+      for (int lane = 0; lane < width; ++lane) {
+        const auto at = static_cast<std::size_t>(width * b + lane);
+        place[at] = place_[b][lane];
+        share[at] = weight_[b][lane];
+      }
+    }
+    const auto all = static_cast<std::size_t>(width * blocks_);
+    const auto nodes = static_cast<int>(std::ranges::count_if(
+        std::span(share).first(all), [](double w) { return w > 0; }));
+    for (std::size_t i = 0; i < all; ++i) {
+      for (std::size_t j = 0; j < all; ++j) {
+        const double a = share[j] * integral(place[i], place[j], nodes);
+        if constexpr (width == 1) {
+          to_[i][j] = Pack(a);
+        } else {
+          to_[i / width][j].set(static_cast<int>(i % width), a);
+        }
+      }
+    }
+  }
+
+  int blocks() const { return blocks_; }
+  const Pack& place(int b) const { return place_[b]; }  // 2 x - 1
+
+  /// length times the integral to each point and the tip.
+  AlongOf<Real> integral(const AlongOf<Real>& f, const Real& length) const {
+    AlongOf<Real> sum(blocks_);
+    const Pack scale(length);
+    for (int b = 0; b < blocks_; ++b) {
+      Vec3<Pack> at{Pack(0), Pack(0), Pack(0)};
+      for (int j = 0; j < blocks_; ++j) {
+        const Vec3<Pack> from = f[j];
+        if constexpr (lanes<Real> == 1) {
+          for (int lane = 0; lane < Pack::lanes; ++lane) {
+            const Pack& a = to_[b][Pack::lanes * j + lane];
+            at.x += a * Pack(from.x[lane]);
+            at.y += a * Pack(from.y[lane]);
+            at.z += a * Pack(from.z[lane]);
+          }
+        } else {
+          at = at + to_[b][j] * from;
+        }
+      }
+      sum.set(b, scale * at);
+    }
+    sum.tip = to_tip(f, length);
+    return sum;
+  }
+  /// length times the integral over the whole.
+  Vec3<Real> to_tip(const AlongOf<Real>& f, const Real& length) const {
+    Vec3<Pack> sum;
+    for (int b = 0; b < blocks_; ++b) sum = sum + weight_[b] * f[b];
+    return length * sum_over<Real>(sum);
+  }
+  /// The integral of (2 x - 1) f, the same way.
+  Vec3<Real> moment(const AlongOf<Real>& f, const Real& length) const {
+    Vec3<Pack> sum;
+    for (int b = 0; b < blocks_; ++b) sum = sum + (weight_[b] * place_[b]) * f[b];
+    return length * sum_over<Real>(sum);
+  }
+
+ private:
+  /// A_ij/b_j for n nodes.
+  static double integral(double yi, double yj, int n) {
+    double before_i = 1, at_i = yi, before_j = 1, at_j = yj;  // P_{m-1} and P_m
+    double sum = (1 + yi) / 2;
+    for (int m = 1; m < n; ++m) {
+      const double next_i = ((2 * m + 1) * yi * at_i - m * before_i) / (m + 1);
+      const double next_j = ((2 * m + 1) * yj * at_j - m * before_j) / (m + 1);
+      sum += at_j * (next_i - before_i) / 2;
+      before_i = std::exchange(at_i, next_i);
+      before_j = std::exchange(at_j, next_j);
+    }
+    return sum;
+  }
+
+  static constexpr int most_blocks = AlongOf<Real>::most_blocks;
+  int blocks_ = 0;
+  std::array<Pack, most_blocks> place_, weight_;
+  std::array<std::array<Pack, most_clothoid_points>, most_blocks> to_;
+};
+
+}  // namespace tress::models

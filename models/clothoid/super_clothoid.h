@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "contract/system.h"
+#include "models/reduced/reduced_strand.h"
+
+namespace tress::models {
+
+/// Super-clothoid [Casati, Bertails-Descoubes 2013], in a discontinuous form: an
+/// inextensible Kirchhoff rod of N elements, each of a Darboux vector that is linear in
+/// arc length, with jumps between elements. Unknowns of an element are the mean of twist
+/// and curvatures (1/m) and half their difference between its ends, 6 (4, 2 by `modes`);
+/// both appear in K = l diag(GJ, EI1, EI2) and a third of it. Equations of motion, mass
+/// integrals, solvers and trees are those of super_helix. Of fourth order in the length
+/// of elements once they wind by less than some 1.5 rad.
+///
+/// Throws InputError as reduced_strand, beyond the winding that clothoid_points allows,
+/// and for `quadrature` below 4 or above most_clothoid_points, as its points also carry
+/// the integrals of the kinematics (clothoid.h).
+std::unique_ptr<System> super_clothoid(const Strand& strand,
+                                       const ReducedOptions& options, Effects effects);
+
+/// One to four strands as one system: see super_helix_batch.
+std::unique_ptr<System> super_clothoid_batch(std::span<const Strand> strands,
+                                             const ReducedOptions& options,
+                                             std::vector<Effects> effects);
+
+std::span<const Parameter> super_clothoid_parameters();
+std::unique_ptr<System> make_super_clothoid(const Strand& strand,
+                                            const Parameters& parameters,
+                                            Effects effects);
+
+/// The trees of models/reduced/trees.h.
+std::span<const Parameter> super_clothoid_tree_parameters();
+std::unique_ptr<System> make_super_clothoid_tree(const Parameters& parameters);
+
+}  // namespace tress::models

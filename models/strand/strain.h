@@ -1,0 +1,53 @@
+#pragma once
+
+#include "math/lanes.h"
+
+namespace tress::models {
+
+/// Twist and curvatures (about e0, e1, e2) of a segment that vary linearly along it, from
+/// mean - half at its start to mean + half at its tip: with x the arc length over the
+/// segment's,
+///
+///     kappa(x) = mean + (2 x - 1) half.
+///
+/// The two functions are orthogonal, of squares 1 and 1/3. An element of constant strain
+/// takes the mean.
+template <class T>
+struct LinearStrainOf {
+  Vec3<T> mean, half;
+
+  explicit operator Vec3<T>() const { return mean; }
+
+  friend LinearStrainOf operator+(const LinearStrainOf& a, const LinearStrainOf& b) {
+    return {a.mean + b.mean, a.half + b.half};
+  }
+  friend LinearStrainOf operator-(const LinearStrainOf& a, const LinearStrainOf& b) {
+    return {a.mean - b.mean, a.half - b.half};
+  }
+  friend LinearStrainOf operator*(const T& s, const LinearStrainOf& a) {
+    return {s * a.mean, s * a.half};
+  }
+  /// Over all entries.
+  friend T dot(const LinearStrainOf& a, const LinearStrainOf& b) {
+    return dot(a.mean, b.mean) + dot(a.half, b.half);
+  }
+};
+using LinearStrain = LinearStrainOf<double>;
+
+template <class T>
+void set_lane(LinearStrainOf<T>& to, int lane, const LinearStrain& x) {
+  set_lane(to.mean, lane, x.mean);
+  set_lane(to.half, lane, x.half);
+}
+
+/// sum k_i x_i^2
+template <class T>
+T weighed_square(const Vec3<T>& k, const Vec3<T>& x) {
+  return k.x * x.x * x.x + k.y * x.y * x.y + k.z * x.z * x.z;
+}
+template <class T>
+T weighed_square(const LinearStrainOf<T>& k, const LinearStrainOf<T>& x) {
+  return weighed_square(k.mean, x.mean) + weighed_square(k.half, x.half);
+}
+
+}  // namespace tress::models
