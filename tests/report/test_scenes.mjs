@@ -56,9 +56,12 @@ async function comes(condition) {
   }
   return false;
 }
+// Chromium notes that a picture of WebGL is slow to read where a processor draws it.
 const no_errors = async () =>
   assert.deepEqual(
-    (await browser.log('browser')).map((entry) => entry.message),
+    (await browser.log('browser'))
+      .map((entry) => entry.message)
+      .filter((message) => !/GL Driver Message \(OpenGL, Performance/.test(message)),
     [],
   );
 

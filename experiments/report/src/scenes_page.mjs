@@ -34,6 +34,7 @@ ${select_html(
   'Scene',
   scenes.map(({ scene, title }) => [scene, `${scene}: ${title}`]),
 )}
+${select_html('scene-beside', 'Beside it')}
 ${select_html('scene-colour', 'Colour')}
 ${select_html('scene-forces', 'Contact forces', [
   ['hidden', 'hidden'],
@@ -56,6 +57,7 @@ ${select_html('scene-strands', 'Strands', [
 </div>
 <div class="transport">
 <button type="button" id="scene-play" aria-pressed="false">Play</button>
+<label><input type="checkbox" id="scene-loop"> Loop</label>
 <input type="range" id="scene-scrub" min="0" value="0" step="1" aria-label="Frame">
 ${select_html(
   'scene-speed',

@@ -1,71 +1,22 @@
-// Strands as smooth curves, drawn from the back to the front: every curve is cut into
-// short pieces, pieces of one place in the order and one colour are stroked together.
+// Strands on a 2D canvas, drawn from the back to the front: pieces of curves of one place
+// in the order and one colour are stroked together.
 import { bins, css, mix } from './colours.mjs';
 
 const slices = 14; // of depth
 const shades = 4;
-const fine_pieces = 36; // a strand has about so many, if it has fewer segments
 
 export class Strands {
-  // `count` strands of the scene, the first ones.
-  constructor(scene, count) {
-    this.scene = scene;
-    this.count = count;
-    this.cuts = scene.strand_points
-      .slice(0, count)
-      .map((n) => Math.max(1, Math.round(fine_pieces / (n - 1))));
-    const fine = this.cuts.reduce(
-      (sum, cuts, k) => sum + cuts * (scene.strand_points[k] - 1) + 1,
-      0,
-    );
-    this.place = new Float64Array(3 * fine); // in the world
+  constructor(curves) {
+    this.curves = curves;
+    const fine = curves.size;
     this.x = new Float32Array(fine);
     this.y = new Float32Array(fine);
     this.depth = new Float32Array(fine);
     this.layer = new Uint8Array(fine);
-    this.bin = new Uint8Array(fine);
     this.shade = new Uint8Array(fine);
-    this.last = new Uint8Array(fine); // 1: the last point of its strand
     this.key = new Int32Array(fine);
     this.order = new Int32Array(fine);
     this.fine = fine;
-  }
-
-  // Catmull-Rom curves through the points `positions`; at the ends the curve goes on as
-  // mirrored. Between the points the colour of the nearer one.
-  curve(positions, colour_of) {
-    const { starts } = this.scene;
-    const at = (p, i) => positions[3 * p + i];
-    let f = 0;
-    for (let k = 0; k < this.count; ++k) {
-      const [first, end] = [starts[k], starts[k + 1]];
-      const cuts = this.cuts[k];
-      for (let p = first; p < end; ++p) {
-        const here = p === end - 1 ? 1 : cuts; // the last point has no segment
-        for (let c = 0; c < here; ++c, ++f) {
-          const t = c / cuts;
-          for (let i = 0; i < 3; ++i) {
-            const p1 = at(p, i);
-            if (c === 0) {
-              this.place[3 * f + i] = p1;
-              continue;
-            }
-            const p2 = at(p + 1, i);
-            const p0 = p > first ? at(p - 1, i) : 2 * p1 - p2;
-            const p3 = p + 2 < end ? at(p + 2, i) : 2 * p2 - p1;
-            this.place[3 * f + i] =
-              p1 +
-              0.5 *
-                t *
-                (p2 -
-                  p0 +
-                  t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)));
-          }
-          this.bin[f] = colour_of(k, t > 0.5 ? p + 1 : p);
-          this.last[f] = here === 1 && p === end - 1 ? 1 : 0;
-        }
-      }
-    }
   }
 
   // Places on the picture, the body before which each point is hidden (`bodies` from back
@@ -76,14 +27,15 @@ export class Strands {
     const from = [0, 0, 0];
     for (let f = 0; f < this.fine; ++f) {
       for (let i = 0; i < 3; ++i) {
-        point[i] = this.place[3 * f + i];
+        point[i] = this.curves.points[4 * f + i];
         from[i] = point[i] - eye[i];
       }
       const depth = from[0] * forward[0] + from[1] * forward[1] + from[2] * forward[2];
       const factor = scale / depth;
       this.depth[f] = depth;
       this.x[f] =
-        width / 2 + factor * (from[0] * right[0] + from[1] * right[1] + from[2] * right[2]);
+        width / 2 +
+        factor * (from[0] * right[0] + from[1] * right[1] + from[2] * right[2]);
       this.y[f] =
         height / 2 - factor * (from[0] * up[0] + from[1] * up[1] + from[2] * up[2]);
       const layer = bodies.findIndex((body) => body.hides(point));
@@ -96,15 +48,15 @@ export class Strands {
   // from above and beside the eye.
   light({ forward, right, up }) {
     const light = [0, 1, 2].map((i) => 0.5 * up[i] - 0.4 * right[i] - 0.77 * forward[i]);
-    const { place } = this;
+    const { points, last } = this.curves;
     for (let f = 0; f < this.fine; ++f) {
-      if (this.last[f]) {
+      if (last[f]) {
         this.shade[f] = this.shade[f - 1];
         continue;
       }
       let [along, length] = [0, 0];
       for (let i = 0; i < 3; ++i) {
-        const d = place[3 * f + 3 + i] - place[3 * f + i];
+        const d = points[4 * f + 4 + i] - points[4 * f + i];
         along += d * light[i];
         length += d * d;
       }
@@ -115,6 +67,7 @@ export class Strands {
 
   // Pieces in the order in which they are drawn: layer, slice from far to near, colour.
   sort(layers) {
+    const { points, last } = this.curves;
     let [near, far] = [Infinity, 0];
     for (let f = 0; f < this.fine; ++f) {
       near = Math.min(near, this.depth[f]);
@@ -123,12 +76,12 @@ export class Strands {
     const starts = new Int32Array(layers * slices * bins * shades + 1);
     for (let f = 0; f < this.fine; ++f) {
       this.key[f] = -1;
-      if (this.last[f] || this.depth[f] <= 0 || this.depth[f + 1] <= 0) continue;
+      if (last[f] || this.depth[f] <= 0 || this.depth[f + 1] <= 0) continue;
       const part = (far - this.depth[f]) / (far - near || 1);
       const slice = Math.min(slices - 1, Math.floor(part * slices));
       const layer = Math.min(this.layer[f], this.layer[f + 1]);
-      this.key[f] =
-        ((layer * slices + slice) * bins + this.bin[f]) * shades + this.shade[f];
+      const bin = Math.min(bins - 1, Math.floor(points[4 * f + 3] * bins));
+      this.key[f] = ((layer * slices + slice) * bins + bin) * shades + this.shade[f];
       ++starts[this.key[f] + 1];
     }
     for (let k = 1; k < starts.length; ++k) starts[k] += starts[k - 1];
@@ -152,8 +105,7 @@ export class Strands {
   }
 
   // What lies in `layer`. `colours`: rgb of each bin; strands far away fade.
-  draw(context, layer, { colours, background, width, distance, radius }) {
-    const rim = this.count <= 150 ? 1.6 : 0;
+  draw(context, layer, { colours, background, width, rim, distance, radius }) {
     context.lineCap = 'round';
     context.lineJoin = 'round';
     for (let slice = 0; slice < slices; ++slice) {
