@@ -77,7 +77,7 @@ test('Longitudinal_IsADensity', () => {
 });
 
 // Of R phi = -2 asin(h), so that N = F cos(phi / 2) / 4; of TT N = A / (2 |dphi/dh|), the
-// paper's equation (8). A bin holds more than 100 of the 20000 offsets, and the blur over one
+// paper's sum over the roots of phi(h). A bin holds more than 100 of the 20000 offsets, and the blur over one
 // bin moves a density by half its second derivative times the bin squared: together below 3 %.
 test('Azimuthal_IsThePapersSumOverRoots', () => {
   const bins = 128;

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Browser } from './browser.mjs';
+import { Browser } from '../../experiments/report/src/chromium.mjs';
 import { fixture_directory, remove, run_page } from './support.mjs';
 
 let directory, browser, url;

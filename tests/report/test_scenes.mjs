@@ -5,7 +5,7 @@ import { copyFileSync, mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
 import { after, before, test } from 'node:test';
-import { Browser } from './browser.mjs';
+import { Browser } from '../../experiments/report/src/chromium.mjs';
 import { fixture_directory, remove, report_root, run_page } from './support.mjs';
 
 let directory, browser, url;

@@ -3,11 +3,10 @@
 // the plane across the hair, positive towards its tip; phi between the directions to the
 // light and to the eye, seen along the hair; theta_d = |theta_r - theta_i| / 2.
 //
-// M is the function of [d'Eon 2011] in place of the paper's Gaussian, which does not keep
+// M is the function of [D'Eon 2011] in place of the paper's Gaussian, which does not keep
 // the energy of light that comes in obliquely; widths and tilts are the paper's. N sums the
-// paths over the offset h across the hair, as the paper's equation (8) does through the
-// roots of phi(h), and is blurred about the hair: that bounds its caustics, which the paper
-// takes out by hand. Paths of more than one inner reflection, which the paper leaves out,
+// paths over the offset h across the hair, as the paper does through the roots of phi(h), and
+// is blurred about the hair: that bounds its caustics, which the paper takes out by hand. Paths of more than one inner reflection, which the paper leaves out,
 // go evenly to all azimuths with the lobe TRT, so that no energy is lost. The hair is round:
 // glints of an elliptic one are left out.
 //
@@ -59,7 +58,7 @@ function bessel_i0_scaled(x) {
   );
 }
 
-// M of lobe p, 1/rad: the integral of M cos(theta_i) over theta_i is 1 [d'Eon 2011, eq. 7].
+// M of lobe p, 1/rad: the integral of M cos(theta_i) over theta_i is 1 [D'Eon 2011].
 export function longitudinal({ tilt, width }, p, theta_i, theta_r) {
   const variance = (2 * widths[p] * width) ** 2;
   const turned = theta_r - 2 * tilts[p] * tilt;

@@ -20,8 +20,9 @@ vec3 to_srgb(vec3 c) {
 }
 `;
 
-// Deep opacity maps [Yuksel 2008]: the light's own depth map starts the layers, so that
-// what is lit first has no shadow of itself. Coordinates of the light: 0 .. 1 over the ball
+// Deep opacity maps [Yuksel 2008], the successors on a graphics processor of the light's own
+// grid of [Bertails 2005]: the light's depth map starts the layers, so that what is lit first
+// has no shadow of itself. Coordinates of the light: 0 .. 1 over the ball
 // that holds the scene.
 const light_space = `
 uniform vec3 middle, light, light_right, light_up; // light: towards it
