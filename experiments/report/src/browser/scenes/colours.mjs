@@ -1,10 +1,8 @@
 // Colours of the 3D picture: the page's own, and the ramp of a channel.
 import { order_colours } from '../../../figures/palette.mjs';
 
-export const bins = 24;
-
 const parse = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
-export const mix = (a, b, part) => a.map((x, i) => (1 - part) * x + part * b[i]);
+const mix = (a, b, part) => a.map((x, i) => (1 - part) * x + part * b[i]);
 export const css = (rgb, part = 1) => `rgb(${rgb.map(Math.round).join(' ')} / ${part})`;
 
 // Low to high; on a dark page lighter, as thin strands need.

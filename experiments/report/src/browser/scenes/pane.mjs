@@ -1,17 +1,18 @@
 // One scene in its part of the picture, by WebGL or on the 2D canvas.
 import { contacts_at, draw_arrows, usual_force } from './arrows.mjs';
 import { bodies_at, draw_body } from './bodies.mjs';
-import { bins } from './colours.mjs';
 import { Curves } from './curves.mjs';
 import { pose_at, positions_at } from './data.mjs';
 import { Strands } from './strands.mjs';
 
 export class Pane {
-  // `painter`: of gl/painter.mjs, undefined where there is none.
-  constructor(scene, extent, painter) {
+  // `painter`: of gl/painter.mjs, undefined where there is none; `always`: whether it draws
+  // also what a software renderer would draw slowly.
+  constructor(scene, extent, { painter, always }) {
     this.scene = scene;
     this.extent = extent;
     this.painter = painter;
+    this.always = always;
     this.positions = new Float64Array(3 * scene.points);
     this.usual_force = usual_force(scene);
     this.diameter = 2 * mean(scene.radius_m ?? [0]);
@@ -59,9 +60,10 @@ export class Pane {
     context.beginPath();
     context.rect(0, 0, area.width, area.height);
     context.clip();
-    if (this.painter && !this.painter.lost)
-      this.#draw_by_webgl(context, area, camera, moment, style, look.ratio);
-    else this.#draw_on_canvas(context, view, moment, style, look.theme);
+    this.drawn_by = this.#by_webgl(style) ? 'webgl' : 'canvas';
+    if (this.drawn_by === 'webgl')
+      this.#draw_by_webgl(context, area, camera, moment, style, look);
+    else this.#draw_on_canvas(context, area, camera, moment, style, look);
     if (look.arrows)
       draw_arrows(context, contacts_at(scene, moment), {
         view,
@@ -79,32 +81,46 @@ export class Pane {
       : this.scene.channels.find(({ name }) => name === colour.name);
   }
 
-  #draw_by_webgl(context, { width, height }, camera, moment, style, ratio) {
-    const view = camera.projection(Math.round(width * ratio), Math.round(height * ratio));
+  // A processor that plays the graphics card draws faster without the detour.
+  #by_webgl({ fibres }) {
+    const { painter, always } = this;
+    return painter && !painter.lost && (fibres || always || !painter.software);
+  }
+
+  // The camera's view and the style in pixels of the canvas.
+  #in_pixels({ width, height }, camera, style, ratio) {
+    return [
+      camera.projection(Math.round(width * ratio), Math.round(height * ratio)),
+      {
+        ...style,
+        width: style.width * ratio,
+        rim: style.rim * ratio,
+        diameter: this.diameter,
+      },
+    ];
+  }
+
+  #draw_by_webgl(context, area, camera, moment, style, { ratio }) {
     const bodies = this.scene.bodies.map((body) => ({
       ...body,
       ...pose_at(body, moment),
     }));
-    this.painter.draw(this.curves, bodies, view, {
-      ...style,
-      width: style.width * ratio,
-      rim: style.rim * ratio,
-      diameter: this.diameter,
-    });
-    context.drawImage(this.painter.canvas, 0, 0, width, height);
+    this.painter.draw(
+      this.curves,
+      bodies,
+      ...this.#in_pixels(area, camera, style, ratio),
+    );
+    context.drawImage(this.painter.canvas, 0, 0, area.width, area.height);
   }
 
-  #draw_on_canvas(context, view, moment, style, theme) {
-    const { curves } = this;
-    this.strands ??= new Strands(curves);
+  #draw_on_canvas(context, area, camera, moment, style, { ratio, theme }) {
+    this.strands ??= new Strands(this.curves);
+    const view = camera.projection(area.width, area.height);
     const bodies = bodies_at(this.scene.bodies, moment, view, this.extent);
-    this.strands.see(view, bodies);
-    this.strands.sort(bodies.length + 1);
-    const colours = Array.from({ length: bins }, (_, bin) =>
-      style.ramp(bin / (bins - 1)),
-    );
+    const [pixels, scaled] = this.#in_pixels(area, camera, style, ratio);
+    this.strands.see(pixels, bodies, scaled);
     for (let layer = 0; layer <= bodies.length; ++layer) {
-      this.strands.draw(context, layer, { ...style, rim: 2 * style.rim, colours });
+      this.strands.draw(context, layer, { ...scaled, left: Math.round(area.x * ratio) });
       if (layer < bodies.length) draw_body(context, bodies[layer], theme);
     }
   }

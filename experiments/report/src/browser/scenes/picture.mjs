@@ -20,17 +20,19 @@ const length_text = (metres) => {
 };
 
 export class Picture {
-  // `scenes`: one, or two that share the camera, the scale of colours and the time.
-  constructor(canvas, scenes, painter) {
+  // `scenes`: one, or two that share the camera, the scale of colours and the time; `by`: as
+  // Pane takes it.
+  constructor(canvas, scenes, by) {
     this.canvas = canvas;
     this.scenes = scenes;
     this.extent = extent_of(scenes);
     const { middle, radius, profile } = this.extent;
     this.camera = new Camera(middle, radius, profile);
-    this.panes = scenes.map((scene) => new Pane(scene, this.extent, painter));
+    this.panes = scenes.map((scene) => new Pane(scene, this.extent, by));
     this.colour = 'strand'; // or 'hair', or a channel of the first scene
     this.usual_force = Math.max(...this.panes.map((pane) => pane.usual_force));
     this.arrows = false;
+    this.reads = by.painter === undefined || by.painter.software; // pixels back from the canvas
   }
 
   free() {
@@ -74,7 +76,7 @@ export class Picture {
     const { width, height, ratio } = this.fit();
     const theme = page_theme_colours();
     if (width === 0 || height === 0) return theme;
-    const context = this.canvas.getContext('2d');
+    const context = this.canvas.getContext('2d', { willReadFrequently: this.reads });
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     const { panes, colour, arrows, usual_force } = this;
@@ -85,6 +87,7 @@ export class Picture {
       const here = i === 0 ? moment : moment_at(pane.scene, time);
       pane.draw(context, { ...area, x: i * area.width }, this.camera, here, look);
     });
+    this.canvas.dataset.drawn = panes[0].drawn_by;
     if (panes.length > 1) this.#draw_names(context, area, theme);
     this.#draw_scale(context, this.view(), theme);
     return theme;

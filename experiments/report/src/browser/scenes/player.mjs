@@ -103,7 +103,7 @@ export class Player {
     this.picture = new Picture(
       at('canvas'),
       other === undefined ? [this.scene] : [this.scene, other],
-      painter,
+      { painter, always: this.drawn_by === 'webgl' },
     );
     if (before !== undefined) this.picture.camera.read(before);
     else this.moment = 0;
@@ -124,7 +124,6 @@ export class Player {
       .map(caption)
       .join(' Beside it: ');
     at('title').textContent = scene.title;
-    at('canvas').dataset.drawn = painter === undefined ? 'canvas' : 'webgl';
     at('canvas').dataset.seconds = scene.times_s.at(-1) - scene.times_s[0];
     at('canvas').dataset.start = scene.times_s[0];
     const beside_text = other === undefined ? '' : `, and ${other.title} beside it`;
@@ -257,7 +256,7 @@ export class Player {
     });
     if (at('beside').value !== '') address.set('beside', at('beside').value);
     if (at('loop').checked) address.set('loop', '1');
-    if (this.drawn_by === 'canvas') address.set('draw', 'canvas');
+    if (this.drawn_by !== '') address.set('draw', this.drawn_by);
     if (this.picture.arrows) address.set('forces', 'arrows');
     if (at('strands').value !== 'all') address.set('strands', at('strands').value);
     if (this.full !== '') address.set('full', this.full);
@@ -270,7 +269,8 @@ export class Player {
     const address = new URLSearchParams(hash.replace(/^#/, ''));
     const known = (key) =>
       this.texts.has(address.get(key)) ? address.get(key) : undefined;
-    this.drawn_by = address.get('draw') ?? '';
+    const draw = address.get('draw');
+    this.drawn_by = ['canvas', 'webgl'].includes(draw) ? draw : '';
     at('loop').checked = address.get('loop') === '1';
     const drawn = this.open(known('scene') ?? [...this.texts.keys()][0], known('beside'));
     if (address.has('view')) this.picture.camera.read(address.get('view'));

@@ -4,20 +4,16 @@
 import * as twgl from 'twgl.js';
 import { brown_hair, tables_of } from '../../../hair/fibre.mjs';
 import { cross } from '../camera.mjs';
+import { linear, on_hair, towards_light } from '../light.mjs';
 import { unit_ball } from './ball.mjs';
 import { Buffers } from './buffers.mjs';
 import { points_wide, programs } from './shaders.mjs';
 
 const map_size = 256; // texels of the light's map across the scene
 const layer_ends = [0.012, 0.035, 0.09, 0.25]; // parts of the scene's diameter
-const light = { sun: 8, sky: 0.3, shadow: 0.7 };
 const lift = 0.002; // of the scene's radius, by which strands are drawn out of bodies
 const grid_cells = 16; // of a plane
 const plane_reach = 1.6; // radii of the scene
-
-// Colours 0 .. 255 of sRGB as linear ones.
-const linear = (rgb) =>
-  rgb.map((c) => (c <= 10.31475 ? c / 3294.6 : ((c / 255 + 0.055) / 1.055) ** 2.4));
 
 const unit = (v) => v.map((x) => x / Math.hypot(...v));
 
@@ -40,6 +36,9 @@ export class Painter {
     this.canvas = canvas;
     this.gl = gl;
     this.lost = false;
+    const named = gl.getExtension('WEBGL_debug_renderer_info');
+    const renderer = named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : '';
+    this.software = /SwiftShader|llvmpipe|Software|Basic Render/i.test(renderer);
     canvas.addEventListener('webglcontextlost', () => (this.lost = true));
     this.programs = Object.fromEntries(
       Object.entries(programs).map(([name, texts]) => [
@@ -129,9 +128,7 @@ export class Painter {
     const size = [width, height];
     const { middle, radius } = style;
     const { right, up, forward, distance } = view;
-    const light_out = unit(
-      [0, 1, 2].map((i) => 0.5 * up[i] - 0.4 * right[i] - 0.77 * forward[i]),
-    );
+    const light_out = towards_light(view);
     const light_right = unit(cross(up, light_out));
     const [near, far] = [0.02 * distance, 20 * distance];
     const all = {
@@ -139,7 +136,7 @@ export class Painter {
       depths: [(far + near) / (far - near), (-2 * far * near) / (far - near)],
       middle, radius, light: light_out, light_right,
       light_up: cross(light_out, light_right),
-      layers: layer_ends, shadow: style.fibres ? light.shadow : 0,
+      layers: layer_ends, shadow: style.fibres ? on_hair.shadow : 0,
       first_depth: this.depth_map.attachments[0], opacity: this.layers.attachments[0],
       background: linear(style.background),
     }; // prettier-ignore
@@ -225,7 +222,7 @@ export class Painter {
     }); // prettier-ignore
     this.#use('points', buffers.points.framebuffer, [points_wide, buffers.rows], all, {
       places: buffers.places, ends: buffers.ends, ramp: this.ramp, count: curves.size,
-      fibres: style.fibres, ...this.#hair(), sun: light.sun, sky: light.sky,
+      fibres: style.fibres, ...this.#hair(), sun: on_hair.sun, sky: on_hair.sky, deep: on_hair.deep,
     }); // prettier-ignore
     this.#cover();
   }

@@ -39,8 +39,9 @@ uniform vec4 layers; // ends of the layers below the first hair, parts of the di
 uniform float shadow; // 0: none
 float reaches(vec3 p) {
   vec3 q = in_light(p);
-  ivec2 at = ivec2(q.xy * vec2(textureSize(first_depth, 0)));
-  float below = q.z - texelFetch(first_depth, at, 0).r;
+  vec2 texels = vec2(textureSize(first_depth, 0));
+  // Less a texel's depth: a slanting hair is no shadow of itself.
+  float below = q.z - texelFetch(first_depth, ivec2(q.xy * texels), 0).r - 1.0 / texels.x;
   vec4 ends = texture(opacity, q.xy);
   vec4 starts = vec4(0.0, layers.xyz);
   vec4 step_of = ends - vec4(0.0, ends.xyz);
@@ -86,7 +87,7 @@ uniform vec2 size;
 uniform float scale, distance_m;
 uniform bool fibres; // light scattered by hair, else the colours of the ramp
 uniform vec3 albedo; // of a hair in light from everywhere
-uniform float sun, sky; // irradiance of the light across it, radiance from everywhere
+uniform float sun, sky, deep; // as in light.mjs
 layout(location = 0) out vec4 seen; // x, y (pixels), depth (m), direction on the picture
 layout(location = 1) out vec4 lit;
 
@@ -127,7 +128,7 @@ void main() {
   if (fibres) {
     float part = reaches(place.xyz);
     vec3 direct = sun * part * scattered(light, -normalize(d), tangent);
-    lit = vec4(direct + sky * mix(0.3, 1.0, sqrt(part)) * albedo, 1.0);
+    lit = vec4(direct + sky * mix(deep, 1.0, sqrt(part)) * albedo, 1.0);
     return;
   }
   // Kajiya-Kay's diffuse term and mist, as the picture without WebGL has them.
