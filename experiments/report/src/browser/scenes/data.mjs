@@ -1,4 +1,4 @@
-// A scene's arrays out of their base64, and the positions of one moment.
+// A scene with its arrays, and the positions of one moment.
 import { bending_strain } from './strain.mjs';
 
 function bytes_of(base64) {
@@ -7,6 +7,16 @@ function bytes_of(base64) {
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   return bytes;
 }
+
+// A scene's arrays out of their base64.
+export const arrays_of = (scene) => ({
+  ...scene,
+  positions: words_of(scene.positions),
+  channels: scene.channels.map((channel) => ({
+    ...channel,
+    values: bytes_of(channel.values),
+  })),
+});
 
 // Uint16 in the file's byte order, little endian, whatever the machine's is.
 function words_of(base64) {
@@ -17,6 +27,7 @@ function words_of(base64) {
   return words;
 }
 
+// `scene` with arrays in place of base64.
 export function decode_scene(scene) {
   const starts = [0];
   for (const n of scene.strand_points) starts.push(starts.at(-1) + n);
@@ -25,11 +36,7 @@ export function decode_scene(scene) {
     frames: scene.times_s.length,
     starts, // of strand k the points starts[k] .. starts[k + 1]
     points: starts.at(-1),
-    positions: words_of(scene.positions),
-    channels: scene.channels.map((channel) => ({
-      ...channel,
-      values: bytes_of(channel.values),
-    })),
+    channels: [...scene.channels],
   };
   decoded.channels.push(...bending_strain(decoded));
   return decoded;

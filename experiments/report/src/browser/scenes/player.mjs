@@ -1,6 +1,8 @@
 // Plays a scene: time runs, the picture, the controls and the address follow.
 import { format_number } from '../../format.mjs';
 import { outcome_text } from '../../outcome.mjs';
+import { scene_of_bytes } from '../../packing.mjs';
+import { unpacked } from '../unpack.mjs';
 import { decode_scene, moment_at, time_at } from './data.mjs';
 import { comparable, differences } from './difference.mjs';
 import { steer } from './gestures.mjs';
@@ -43,7 +45,7 @@ export class Player {
   #painter = undefined; // null: there is no WebGL
 
   constructor(texts) {
-    this.texts = texts; // name of a scene -> its JSON, read when shown
+    this.texts = texts; // name of a scene -> it, packed, read when shown
     this.series = new Series(at('series'), (t) => this.seek(t));
     at('name').addEventListener('change', () => this.open(at('name').value));
     at('beside').replaceChildren(
@@ -78,7 +80,7 @@ export class Player {
   }
 
   #decoded(name) {
-    return decode_scene(JSON.parse(this.texts.get(name)));
+    return decode_scene(scene_of_bytes(unpacked(this.texts.get(name))));
   }
 
   // WebGL's painter, made when a scene is first drawn.
