@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "contract/open_catalogue.h"
 #include "models/clothoid/super_clothoid.h"
 #include "models/constrained/bead_on_wire.h"

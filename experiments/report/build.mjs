@@ -1,5 +1,5 @@
-// Writes dist/: report.mjs (command), render.mjs (SVG in Node), page.html (template),
-// notices. Developers who change the page run `npm ci && npm run build` and commit dist/.
+// Writes dist/: report.mjs and film.mjs (commands), render.mjs (SVG in Node), page.html
+// (template), notices. Developers who change the page run `npm ci && npm run build` and commit dist/.
 import { build } from 'esbuild';
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -28,6 +28,7 @@ const report = await build({
   external: ['./render.mjs'],
 });
 const render = await build({ ...node, entryPoints: ['src/render.mjs'] });
+const film = await build({ ...node, entryPoints: ['src/film.mjs'] });
 const page = await build({
   ...common,
   entryPoints: ['src/browser/main.mjs'],
@@ -67,7 +68,7 @@ function notices(inputs) {
     .join(`\n${'-'.repeat(72)}\n\n`);
 }
 
-const inputs = [report, render, page].flatMap(({ metafile }) =>
+const inputs = [report, render, film, page].flatMap(({ metafile }) =>
   Object.keys(metafile.inputs),
 );
 const notice = notices(inputs);
@@ -82,6 +83,7 @@ const html = readFileSync(at('src/browser/page.html'), 'utf8')
 
 mkdirSync(at('dist'), { recursive: true });
 writeFileSync(at('dist/report.mjs'), report.outputFiles[0].text);
+writeFileSync(at('dist/film.mjs'), film.outputFiles[0].text);
 writeFileSync(at('dist/render.mjs'), render.outputFiles[0].text);
 writeFileSync(at('dist/page.html'), html);
 writeFileSync(at('dist/NOTICES.txt'), notice);

@@ -62,7 +62,7 @@ const mark_count = (svg) => {
 
 test('Bundles_AreBuiltFromTheseSources', () => {
   const hash = sources_hash(report_root);
-  for (const file of ['report.mjs', 'render.mjs', 'page.html']) {
+  for (const file of ['report.mjs', 'film.mjs', 'render.mjs', 'page.html']) {
     assert.ok(
       readFileSync(join(report_root, 'dist', file), 'utf8').includes(hash),
       `dist/${file} is stale: npm ci && npm run build in experiments/report`,
@@ -80,7 +80,7 @@ test('LockFile_CarriesNoDownloadAddresses', () => {
 // Packages that vega-embed brings along inside its own file are named as well.
 test('Notices_NameWhatIsInsideOtherPackages', () => {
   const notices = readFileSync(join(report_root, 'dist/NOTICES.txt'), 'utf8');
-  for (const name of ['d3-array', 'fast-json-patch', 'semver', 'vega-embed'])
+  for (const name of ['d3-array', 'fast-json-patch', 'semver', 'twgl.js', 'vega-embed', 'webm-muxer'])
     assert.match(notices, new RegExp(`^(.*, )?${name}(,.*)?$`, 'm'), name);
   assert.doesNotMatch(notices, /^axe-core/m, 'a tool of the tests');
 });

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
 import { parse_csv } from '../../experiments/report/src/csv.mjs';
-import { Browser } from './browser.mjs';
+import { Browser } from '../../experiments/report/src/chromium.mjs';
 import { fixture_directory, remove, run_page } from './support.mjs';
 
 // What each tab draws; addresses that name a section open its tab.

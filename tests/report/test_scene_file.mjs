@@ -3,14 +3,18 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { inflateRawSync } from 'node:zlib';
 import { after, before, test } from 'node:test';
 import { bodies_at } from '../../experiments/report/src/browser/scenes/bodies.mjs';
 import { Camera, project } from '../../experiments/report/src/browser/scenes/camera.mjs';
 import {
+  arrays_of,
   decode_scene,
   pose_at,
   positions_at,
 } from '../../experiments/report/src/browser/scenes/data.mjs';
+import { packed } from '../../experiments/report/src/packed.mjs';
+import { bytes_of_scene, scene_of_bytes } from '../../experiments/report/src/packing.mjs';
 import { empty_directory, fixture_directory, remove, run_page } from './support.mjs';
 
 let directory;
@@ -114,7 +118,7 @@ test('WithoutScenes_TheTabSaysHowToMakeThem', () => {
 // Words are 16 bits of the box: half a word is the most that rounding may take, the rest is
 // double rounding. Between frames the blend of the two.
 test('Positions_AreThoseWrittenToHalfAWord', () => {
-  const scene = decode_scene(fixture('fixture_wind'));
+  const scene = decode_scene(arrays_of(fixture('fixture_wind')));
   const word = Math.max(...scene.high.map((h, i) => (h - scene.low[i]) / 65535));
   const out = new Float64Array(3 * scene.points);
   const made = (f, s) => [
@@ -133,6 +137,27 @@ test('Positions_AreThoseWrittenToHalfAWord', () => {
       });
     }
   }
+});
+
+// Every word and byte, also where differences wrap: the fixture, and noise over all words.
+test('Packing_LosesNothing', () => {
+  const head = arrays_of(fixture('fixture_head'));
+  let seed = 1;
+  const noise = () => (seed = (16807 * seed) % 2147483647) >>> 8;
+  const noisy = {
+    ...head,
+    positions: head.positions.map(noise),
+    channels: head.channels.map((channel) => ({
+      ...channel,
+      values: channel.values.map(noise),
+    })),
+  };
+  for (const scene of [head, noisy, { ...head, channels: [] }])
+    assert.deepEqual(scene_of_bytes(bytes_of_scene(scene)), scene);
+  const bytes = packed(bytes_of_scene(head));
+  assert.deepEqual(scene_of_bytes(inflateRawSync(Buffer.from(bytes, 'base64'))), head);
+  const plain = readFileSync(join(directory, 'scenes/fixture_head.json')).length;
+  assert.ok(bytes.length < 0.5 * plain, `${bytes.length} of ${plain} bytes`);
 });
 
 test('Pose_TakesTheShorterWayBetweenQuaternions', () => {

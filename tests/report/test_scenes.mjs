@@ -5,7 +5,7 @@ import { copyFileSync, mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
 import { after, before, test } from 'node:test';
-import { Browser } from './browser.mjs';
+import { Browser } from '../../experiments/report/src/chromium.mjs';
 import { fixture_directory, remove, report_root, run_page } from './support.mjs';
 
 let directory, browser, url;
@@ -56,9 +56,12 @@ async function comes(condition) {
   }
   return false;
 }
+// Chromium notes that a picture of WebGL is slow to read where a processor draws it.
 const no_errors = async () =>
   assert.deepEqual(
-    (await browser.log('browser')).map((entry) => entry.message),
+    (await browser.log('browser'))
+      .map((entry) => entry.message)
+      .filter((message) => !/GL Driver Message \(OpenGL, Performance/.test(message)),
     [],
   );
 

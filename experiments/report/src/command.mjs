@@ -8,6 +8,7 @@ import { InputError } from './input.mjs';
 import { load_results } from './load.mjs';
 import { all_objects } from './objects.mjs';
 import { body_html } from './page.mjs';
+import { packed } from './packed.mjs';
 import { load_scenes } from './scene_file.mjs';
 import { scene_data_html } from './scenes_page.mjs';
 import { Warnings } from './warnings.mjs';
@@ -57,9 +58,6 @@ function write(path, text, remedy) {
   }
 }
 
-// '<' must not end the script element that carries the data.
-const embedded_json = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
-
 const script_hash = (text) =>
   `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
 
@@ -78,8 +76,8 @@ function page_html(template, tables, objects, scenes, warnings) {
   const values = {
     POLICY: policy,
     BODY: body_html(tables, objects, scenes, warnings),
-    DATA: embedded_json(data),
-    SCENES: scene_data_html(scenes, embedded_json),
+    DATA: packed(Buffer.from(JSON.stringify(data))),
+    SCENES: scene_data_html(scenes),
   };
   return template.replace(
     /<!--TRESS_(POLICY|BODY|DATA|SCENES)-->|TRESS_(POLICY)_VALUE/g,

@@ -1,5 +1,8 @@
 // The "Scenes" tab: places and controls; src/browser/scenes/ brings them to life.
+import { arrays_of } from './browser/scenes/data.mjs';
 import { escape_html, format_number } from './format.mjs';
+import { packed } from './packed.mjs';
+import { bytes_of_scene } from './packing.mjs';
 
 const missing = `<p class="missing"><strong>No scene is there yet.</strong> Scenes are the
 files <code>results/scenes/*.json</code>, which <code>build/release/experiments/simulate</code>
@@ -34,6 +37,7 @@ ${select_html(
   'Scene',
   scenes.map(({ scene, title }) => [scene, `${scene}: ${title}`]),
 )}
+${select_html('scene-beside', 'Beside it')}
 ${select_html('scene-colour', 'Colour')}
 ${select_html('scene-forces', 'Contact forces', [
   ['hidden', 'hidden'],
@@ -56,6 +60,7 @@ ${select_html('scene-strands', 'Strands', [
 </div>
 <div class="transport">
 <button type="button" id="scene-play" aria-pressed="false">Play</button>
+<label><input type="checkbox" id="scene-loop"> Loop</label>
 <input type="range" id="scene-scrub" min="0" value="0" step="1" aria-label="Frame">
 ${select_html(
   'scene-speed',
@@ -79,11 +84,11 @@ export const scenes_html = (scenes) =>
   `<h1>Scenes</h1>\n${scenes.length === 0 ? missing : player_html(scenes)}`;
 
 // One script element for each scene, so that the page reads only those it shows.
-export const scene_data_html = (scenes, embedded_json) =>
+export const scene_data_html = (scenes) =>
   scenes
     .map(
       (scene) =>
-        `<script type="application/json" data-scene="${escape_html(scene.scene)}">` +
-        `${embedded_json(scene)}</script>`,
+        `<script type="text/plain" data-scene="${escape_html(scene.scene)}">` +
+        `${packed(bytes_of_scene(arrays_of(scene)))}</script>`,
     )
     .join('\n');

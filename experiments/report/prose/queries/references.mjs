@@ -8,7 +8,7 @@ const folders = ['math', 'contract', 'linear', 'models', 'integrators', 'simulat
 const bibliography = 'docs/templates/references.txt';
 const year = '(?:1[6-9]|20)\\d\\d';
 
-// Headers, sources and scenes, relative to the repository.
+// Headers, sources, scenes and the report's programs, relative to the repository.
 function files(root) {
   const list = (folder, ending) =>
     readdirSync(join(root, folder), { withFileTypes: true })
@@ -18,7 +18,8 @@ function files(root) {
         if (entry.isDirectory()) return entry.name === 'report' ? [] : list(path, ending);
         return ending.test(entry.name) ? [path] : [];
       });
-  return [...folders.flatMap((folder) => list(folder, /\.(h|cpp)$/)), ...list('scenes', /\.toml$/)];
+  return [...folders.flatMap((folder) => list(folder, /\.(h|cpp)$/)), ...list('scenes', /\.toml$/),
+    ...list('experiments/report/src', /\.mjs$/)];
 }
 
 // What is cited in one file: in brackets in comments, as the source of a published test or

@@ -8,8 +8,9 @@ import { describe_picture } from './described.mjs';
 import { Player } from './scenes/player.mjs';
 import { fill_table } from './table.mjs';
 import { start_tabs } from './tabs.mjs';
+import { unpacked_json } from './unpack.mjs';
 
-const tables = JSON.parse(document.getElementById('data').textContent);
+const tables = unpacked_json(document.getElementById('data').textContent);
 const objects = all_objects(tables);
 
 // Only what the row has: an adaptive run has no dt, a fixed-step run no rtol.

@@ -1,6 +1,7 @@
 // Bodies as the eye sees them: what they hide, and their outlines on the picture.
 import { pose_at } from './data.mjs';
 import { add, cross, dot, project } from './camera.mjs';
+import { css } from './colours.mjs';
 
 const turn = 2 * Math.PI;
 const corners = 96;
@@ -8,11 +9,7 @@ const corners = 96;
 // Points of the circle about `centre` with the two half axes.
 const circle = (centre, a, b, count = corners) =>
   Array.from({ length: count }, (_, k) =>
-    add(
-      add(centre, a, Math.cos((turn * k) / count)),
-      b,
-      Math.sin((turn * k) / count),
-    ),
+    add(add(centre, a, Math.cos((turn * k) / count)), b, Math.sin((turn * k) / count)),
   );
 
 const scaled = (v, s) => [v[0] * s, v[1] * s, v[2] * s];
@@ -184,7 +181,7 @@ export function bodies_at(bodies, moment, view, scene) {
 }
 
 // Draws one of them: a shaded face, faint lines that show how it turns.
-export function draw_body(context, { outline, lines, flat }, theme) {
+export function draw_body(context, { outline, lines, flat }, { body }) {
   const trace = (points) => {
     let down = false;
     for (const point of points) {
@@ -198,7 +195,7 @@ export function draw_body(context, { outline, lines, flat }, theme) {
   trace(outline);
   context.closePath();
   if (flat) {
-    context.fillStyle = theme.floor;
+    context.fillStyle = css(body.floor, body.floor_part);
   } else {
     const xs = outline.map((p) => p.x);
     const ys = outline.map((p) => p.y);
@@ -207,12 +204,12 @@ export function draw_body(context, { outline, lines, flat }, theme) {
     const size = Math.max(right - left, bottom - top);
     const [x, y] = [left + 0.35 * (right - left), top + 0.28 * (bottom - top)];
     const gradient = context.createRadialGradient(x, y, 0, x, y, 0.85 * size);
-    gradient.addColorStop(0, theme.body_light);
-    gradient.addColorStop(1, theme.body_dark);
+    gradient.addColorStop(0, css(body.light));
+    gradient.addColorStop(1, css(body.dark));
     context.fillStyle = gradient;
   }
   context.fill();
-  context.strokeStyle = theme.body_line;
+  context.strokeStyle = css(body.line, body.line_part);
   context.lineWidth = 1;
   context.beginPath();
   lines.forEach(trace);

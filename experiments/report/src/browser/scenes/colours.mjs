@@ -1,11 +1,9 @@
 // Colours of the 3D picture: the page's own, and the ramp of a channel.
 import { order_colours } from '../../../figures/palette.mjs';
 
-export const bins = 24;
-
 const parse = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
-export const mix = (a, b, part) => a.map((x, i) => (1 - part) * x + part * b[i]);
-export const css = (rgb) => `rgb(${rgb.map(Math.round).join(' ')})`;
+const mix = (a, b, part) => a.map((x, i) => (1 - part) * x + part * b[i]);
+export const css = (rgb, part = 1) => `rgb(${rgb.map(Math.round).join(' ')} / ${part})`;
 
 // Low to high; on a dark page lighter, as thin strands need.
 const stops = [...order_colours].reverse().map(parse);
@@ -31,15 +29,20 @@ export function page_theme_colours() {
   const dark = card[0] < 128;
   const [first, last] = dark ? hair.dark : hair.light;
   const channel = dark ? stops_on_dark : stops;
+  const body = {
+    light: mix(card, text, dark ? 0.38 : 0.1),
+    dark: mix(card, text, dark ? 0.12 : 0.36),
+    line: text,
+    line_part: 0.16,
+    floor: mix(card, text, 0.25),
+    floor_part: 0.45,
+  };
   return {
     background: card,
     text: css(text),
     muted: css(colour('--muted')),
     force: dark ? '#ff8f6b' : '#c2370f',
-    floor: `rgb(${mix(card, text, 0.25).map(Math.round).join(' ')} / 0.45)`,
-    body_light: css(mix(card, text, dark ? 0.38 : 0.1)),
-    body_dark: css(mix(card, text, dark ? 0.12 : 0.36)),
-    body_line: `rgb(${text.join(' ')} / 0.16)`,
+    body,
     hair: (part) => mix(first, last, part),
     channel: (part) => ramp(part, channel),
     channel_bar: `linear-gradient(to right, ${channel.map(css).join(', ')})`,

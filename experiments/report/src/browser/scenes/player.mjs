@@ -1,8 +1,12 @@
 // Plays a scene: time runs, the picture, the controls and the address follow.
 import { format_number } from '../../format.mjs';
 import { outcome_text } from '../../outcome.mjs';
-import { decode_scene } from './data.mjs';
+import { scene_of_bytes } from '../../packing.mjs';
+import { unpacked } from '../unpack.mjs';
+import { decode_scene, moment_at, time_at } from './data.mjs';
+import { comparable, differences } from './difference.mjs';
 import { steer } from './gestures.mjs';
+import { Painter } from './gl/painter.mjs';
 import { Picture } from './picture.mjs';
 import { Series } from './series.mjs';
 
@@ -16,12 +20,21 @@ function caption({ strand_points, guides, dt_s, model, integrator, source, outco
     interpolated > 0
       ? `${guides} simulated strands, ${interpolated} interpolated`
       : `${all} strand${all === 1 ? '' : 's'}`;
-  const step =
-    dt_s === null ? 'adaptive steps' : `dt = ${format_number(dt_s * 1e3)} ms`;
+  const step = dt_s === null ? 'adaptive steps' : `dt = ${format_number(dt_s * 1e3)} ms`;
   const origin = source === '' ? '' : ` Source: ${source}`;
   const run = outcome_text(outcome);
   return `${strands}, ${model}, ${integrator}, ${step}.${origin}${run === '' ? '' : ` ${run}`}`;
 }
+
+// The drop-down list of what strands may be coloured by.
+const colour_options = (channels, hair) => [
+  ...channels.map(
+    ({ name, unit }, i) =>
+      new Option(unit === '' ? name : `${name} (${unit})`, String(i)),
+  ),
+  ...(hair ? [new Option('as hair in light', 'hair')] : []),
+  new Option('one colour a strand', 'strand'),
+];
 
 export class Player {
   moment = 0; // frame number, between two frames while time runs
@@ -29,16 +42,25 @@ export class Player {
   full = '';
   #last_tick = undefined;
   #drawing = false;
+  #painter = undefined; // null: there is no WebGL
 
   constructor(texts) {
-    this.texts = texts; // name of a scene -> its JSON, read when shown
+    this.texts = texts; // name of a scene -> it, packed, read when shown
     this.series = new Series(at('series'), (t) => this.seek(t));
     at('name').addEventListener('change', () => this.open(at('name').value));
+    at('beside').replaceChildren(
+      new Option('nothing', ''),
+      ...[...texts.keys()].map((name) => new Option(name, name)),
+    );
+    at('beside').addEventListener('change', () =>
+      this.open(this.name, at('beside').value, true),
+    );
     at('colour').addEventListener('change', () => this.colour(at('colour').value));
     at('strands').addEventListener('change', () => this.show_strands());
     at('forces').addEventListener('change', () => this.show_forces(at('forces').value));
     at('scrub').addEventListener('input', () => this.go_to(Number(at('scrub').value)));
     at('play').addEventListener('click', () => this.play(!this.playing));
+    at('loop').addEventListener('change', () => this.changed());
     at('full').addEventListener('click', () => this.fill(this.full === '' ? '1' : ''));
     for (const button of document.querySelectorAll('[data-view]'))
       button.addEventListener('click', () => {
@@ -46,55 +68,91 @@ export class Player {
         this.changed();
       });
     steer(this, at('canvas'));
+    // For films: the picture of a time (s), drawn before the event returns.
+    at('canvas').addEventListener('scene-time', ({ detail }) => {
+      this.moment = moment_at(this.scene, detail);
+      this.#show();
+      this.draw();
+    });
     const redraw = () => this.draw();
     new ResizeObserver(redraw).observe(at('canvas'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
   }
 
-  open(name) {
+  #decoded(name) {
+    return decode_scene(scene_of_bytes(unpacked(this.texts.get(name))));
+  }
+
+  // WebGL's painter, made when a scene is first drawn.
+  painter(wanted = true) {
+    if (wanted && this.#painter === undefined) this.#painter = Painter.create() ?? null;
+    return (wanted && this.#painter) || undefined;
+  }
+
+  // The scene, alone or with another beside it; `stay`: at the frame and camera of now.
+  open(name, beside = '', stay = false) {
     this.play(false);
+    const before = stay ? this.picture?.camera.text() : undefined;
+    this.picture?.free();
     this.name = name;
-    this.scene = decode_scene(JSON.parse(this.texts.get(name)));
-    this.picture = new Picture(at('canvas'), this.scene);
-    this.moment = 0;
+    this.scene = this.#decoded(name);
+    const other = beside === '' ? undefined : this.#decoded(beside);
+    if (other !== undefined && comparable(this.scene, other))
+      differences(this.scene, other).forEach((channel, i) =>
+        [this.scene, other][i].channels.push(channel),
+      );
+    const painter = this.painter(this.drawn_by !== 'canvas');
+    this.picture = new Picture(
+      at('canvas'),
+      other === undefined ? [this.scene] : [this.scene, other],
+      { painter, always: this.drawn_by === 'webgl' },
+    );
+    if (before !== undefined) this.picture.camera.read(before);
+    else this.moment = 0;
     const { scene } = this;
     at('name').value = name;
+    at('beside').value = beside;
     at('scrub').max = scene.frames - 1;
     at('colour').replaceChildren(
-      ...scene.channels.map(
-        (channel, i) =>
-          new Option(
-            `${channel.name}${channel.unit === '' ? '' : ` (${channel.unit})`}`,
-            String(i),
-          ),
-      ),
-      new Option('one colour a strand', no_channel),
+      ...colour_options(scene.channels, painter !== undefined),
     );
     at('forces').parentNode.hidden = this.picture.usual_force === 0;
     at('forces').value = 'hidden';
     at('strands').value = 'all';
     at('strands').parentNode.hidden =
       (scene.guides ?? scene.strand_points.length) === scene.strand_points.length;
-    at('caption').textContent = caption(scene);
+    at('caption').textContent = [scene, other]
+      .filter((shown) => shown !== undefined)
+      .map(caption)
+      .join(' Beside it: ');
     at('title').textContent = scene.title;
-    at('canvas').setAttribute('aria-label', `${scene.title}, drawn in 3D`);
-    this.colour(scene.channels.length > 0 ? '0' : no_channel);
-    this.drawn = this.series.draw(scene, scene.times_s[0]);
+    at('canvas').dataset.seconds = scene.times_s.at(-1) - scene.times_s[0];
+    at('canvas').dataset.start = scene.times_s[0];
+    const beside_text = other === undefined ? '' : `, and ${other.title} beside it`;
+    at('canvas').setAttribute('aria-label', `${scene.title}${beside_text}, drawn in 3D`);
+    const first = scene.channels.length > 0 ? 0 : no_channel;
+    const compared = scene.channels.findIndex(
+      ({ name: title }) => title === 'difference',
+    );
+    this.colour(String(compared >= 0 ? compared : first));
+    this.drawn = this.series.draw(scene, this.time());
     return this.drawn;
   }
 
+  // 'hair', 'strand' or the number of a channel.
   colour(value) {
-    const channel = value === no_channel ? undefined : this.scene.channels[Number(value)];
-    this.picture.channel = channel;
+    const channel = this.scene.channels[value];
+    this.picture.colour = channel ?? value;
     at('colour').value = value;
     const bar = at('bar');
     bar.hidden = channel === undefined;
     if (channel !== undefined) {
       const part = (name) => bar.querySelector(`.bar-${name}`);
+      const { low, high } = this.picture.range();
       part('name').textContent =
         channel.unit === '' ? channel.name : `${channel.name} (${channel.unit})`;
-      part('low').textContent = format_number(channel.low);
-      part('high').textContent = format_number(channel.high);
+      part('low').textContent = format_number(low);
+      part('high').textContent = format_number(high);
     }
     this.changed();
   }
@@ -138,32 +196,24 @@ export class Player {
     const elapsed = Math.min(0.1, (now - (this.#last_tick ?? now)) / 1000);
     this.#last_tick = now;
     const time = this.time() + elapsed * Number(at('speed').value);
-    this.moment = this.moment_of(time);
+    this.moment = moment_at(this.scene, time);
     if (this.moment >= this.scene.frames - 1) {
-      this.play(false);
-      return;
+      if (!at('loop').checked || this.scene.frames === 1) {
+        this.play(false);
+        return;
+      }
+      this.moment = 0;
     }
     this.#show();
     requestAnimationFrame((next) => this.#tick(next));
   }
 
-  // Time of the moment, and back, between the frames' times.
   time() {
-    const { times_s: times, frames } = this.scene;
-    const i = Math.min(Math.floor(this.moment), frames - 1);
-    const next = times[Math.min(i + 1, frames - 1)];
-    return times[i] + (this.moment - i) * (next - times[i]);
-  }
-  moment_of(time) {
-    const { times_s: times, frames } = this.scene;
-    if (time <= times[0]) return 0;
-    const next = times.findIndex((t) => t > time);
-    if (next < 0) return frames - 1;
-    return next - 1 + (time - times[next - 1]) / (times[next] - times[next - 1]);
+    return time_at(this.scene, this.moment);
   }
 
   seek(time) {
-    this.go_to(Math.round(this.moment_of(time)));
+    this.go_to(Math.round(moment_at(this.scene, time)));
   }
 
   go_to(frame) {
@@ -182,7 +232,8 @@ export class Player {
     const { frames } = this.scene;
     at('scrub').value = frame;
     at('scrub').setAttribute('aria-valuetext', `${this.time().toFixed(3)} s`);
-    at('time').textContent = `${this.time().toFixed(3)} s, frame ${frame} of ${frames - 1}`;
+    at('time').textContent =
+      `${this.time().toFixed(3)} s, frame ${frame} of ${frames - 1}`;
     at('canvas').dataset.frame = frame;
     this.series.mark(this.time());
     if (this.#drawing) return;
@@ -203,8 +254,11 @@ export class Player {
       scene: this.name,
       frame: String(Math.floor(this.moment)),
       view: this.picture.camera.text(),
-      colour: this.picture.channel?.name ?? no_channel,
+      colour: this.picture.colour.name ?? this.picture.colour,
     });
+    if (at('beside').value !== '') address.set('beside', at('beside').value);
+    if (at('loop').checked) address.set('loop', '1');
+    if (this.drawn_by !== '') address.set('draw', this.drawn_by);
     if (this.picture.arrows) address.set('forces', 'arrows');
     if (at('strands').value !== 'all') address.set('strands', at('strands').value);
     if (this.full !== '') address.set('full', this.full);
@@ -215,14 +269,20 @@ export class Player {
   // Opens what an address names; what it does not name stays at its default.
   read_address(hash) {
     const address = new URLSearchParams(hash.replace(/^#/, ''));
-    const named = address.get('scene');
-    const drawn = this.open(this.texts.has(named) ? named : [...this.texts.keys()][0]);
+    const known = (key) =>
+      this.texts.has(address.get(key)) ? address.get(key) : undefined;
+    const draw = address.get('draw');
+    this.drawn_by = ['canvas', 'webgl'].includes(draw) ? draw : '';
+    at('loop').checked = address.get('loop') === '1';
+    const drawn = this.open(known('scene') ?? [...this.texts.keys()][0], known('beside'));
     if (address.has('view')) this.picture.camera.read(address.get('view'));
-    const index = this.scene.channels.findIndex(
-      ({ name }) => name === address.get('colour'),
-    );
+    const colour = address.get('colour');
+    const index = this.scene.channels.findIndex(({ name }) => name === colour);
     if (index >= 0) this.colour(String(index));
-    else if (address.get('colour') === no_channel) this.colour(no_channel);
+    else if (
+      [...at('colour').options].some(({ value }) => value === colour && !/\d/.test(value))
+    )
+      this.colour(colour);
     if (address.get('forces') === 'arrows' && !at('forces').parentNode.hidden)
       this.show_forces('arrows');
     if (address.get('strands') === 'guides' && !at('strands').parentNode.hidden) {

@@ -1,188 +1,103 @@
-// Strands as smooth curves, drawn from the back to the front: every curve is cut into
-// short pieces, pieces of one place in the order and one colour are stroked together.
-import { bins, css, mix } from './colours.mjs';
-
-const slices = 14; // of depth
-const shades = 4;
-const fine_pieces = 36; // a strand has about so many, if it has fewer segments
+// Strands on a 2D canvas as WebGL draws them (gl/shaders.mjs): the same colours, coverage and
+// order, pixel by pixel.
+import { Order } from './gl/order.mjs';
+import { linear, quarter_levels, towards_light } from './light.mjs';
+import { Pixels } from './pixels.mjs';
 
 export class Strands {
-  // `count` strands of the scene, the first ones.
-  constructor(scene, count) {
-    this.scene = scene;
-    this.count = count;
-    this.cuts = scene.strand_points
-      .slice(0, count)
-      .map((n) => Math.max(1, Math.round(fine_pieces / (n - 1))));
-    const fine = this.cuts.reduce(
-      (sum, cuts, k) => sum + cuts * (scene.strand_points[k] - 1) + 1,
-      0,
-    );
-    this.place = new Float64Array(3 * fine); // in the world
-    this.x = new Float32Array(fine);
-    this.y = new Float32Array(fine);
-    this.depth = new Float32Array(fine);
-    this.layer = new Uint8Array(fine);
-    this.bin = new Uint8Array(fine);
-    this.shade = new Uint8Array(fine);
-    this.last = new Uint8Array(fine); // 1: the last point of its strand
-    this.key = new Int32Array(fine);
-    this.order = new Int32Array(fine);
-    this.fine = fine;
+  constructor(curves) {
+    this.curves = curves;
+    this.order = new Order(curves);
+    this.seen = new Float32Array(3 * curves.size); // x, y (pixels), half the width
+    this.along = new Float32Array(2 * curves.size); // direction on the picture
+    this.lit = new Float32Array(3 * curves.size);
+    this.layer = new Uint8Array(curves.size);
   }
 
-  // Catmull-Rom curves through the points `positions`; at the ends the curve goes on as
-  // mirrored. Between the points the colour of the nearer one.
-  curve(positions, colour_of) {
-    const { starts } = this.scene;
-    const at = (p, i) => positions[3 * p + i];
-    let f = 0;
-    for (let k = 0; k < this.count; ++k) {
-      const [first, end] = [starts[k], starts[k + 1]];
-      const cuts = this.cuts[k];
-      for (let p = first; p < end; ++p) {
-        const here = p === end - 1 ? 1 : cuts; // the last point has no segment
-        for (let c = 0; c < here; ++c, ++f) {
-          const t = c / cuts;
-          for (let i = 0; i < 3; ++i) {
-            const p1 = at(p, i);
-            if (c === 0) {
-              this.place[3 * f + i] = p1;
-              continue;
-            }
-            const p2 = at(p + 1, i);
-            const p0 = p > first ? at(p - 1, i) : 2 * p1 - p2;
-            const p3 = p + 2 < end ? at(p + 2, i) : 2 * p2 - p1;
-            this.place[3 * f + i] =
-              p1 +
-              0.5 *
-                t *
-                (p2 -
-                  p0 +
-                  t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)));
-          }
-          this.bin[f] = colour_of(k, t > 0.5 ? p + 1 : p);
-          this.last[f] = here === 1 && p === end - 1 ? 1 : 0;
-        }
-      }
-    }
-  }
-
-  // Places on the picture, the body before which each point is hidden (`bodies` from back
-  // to front; their number when none hides it), and light by the direction of the strand.
-  see(view, bodies) {
+  // Where the points are on the picture, how they are lit, and the body before which each is
+  // hidden (`bodies` from back to front; their number when none hides it).
+  see(view, bodies, style) {
+    const { points, size } = this.curves;
     const { eye, forward, right, up, scale, width, height } = view;
+    const { seen, layer } = this;
+    this.count = this.order.sort(view);
+    this.width = width;
+    this.height = height;
     const point = [0, 0, 0];
-    const from = [0, 0, 0];
-    for (let f = 0; f < this.fine; ++f) {
-      for (let i = 0; i < 3; ++i) {
-        point[i] = this.place[3 * f + i];
-        from[i] = point[i] - eye[i];
-      }
-      const depth = from[0] * forward[0] + from[1] * forward[1] + from[2] * forward[2];
+    for (let f = 0; f < size; ++f) {
+      const x = (point[0] = points[4 * f]) - eye[0];
+      const y = (point[1] = points[4 * f + 1]) - eye[1];
+      const z = (point[2] = points[4 * f + 2]) - eye[2];
+      const depth = this.order.depth[f];
       const factor = scale / depth;
-      this.depth[f] = depth;
-      this.x[f] =
-        width / 2 + factor * (from[0] * right[0] + from[1] * right[1] + from[2] * right[2]);
-      this.y[f] =
-        height / 2 - factor * (from[0] * up[0] + from[1] * up[1] + from[2] * up[2]);
-      const layer = bodies.findIndex((body) => body.hides(point));
-      this.layer[f] = layer < 0 ? bodies.length : layer;
+      seen[3 * f] = width / 2 + factor * (x * right[0] + y * right[1] + z * right[2]);
+      seen[3 * f + 1] = height / 2 - factor * (x * up[0] + y * up[1] + z * up[2]);
+      seen[3 * f + 2] =
+        0.5 *
+        Math.max(
+          style.width * Math.min(2, view.distance / depth),
+          style.diameter * factor,
+        );
+      layer[f] = bodies.length;
+      for (let b = 0; b < bodies.length; ++b)
+        if (bodies[b].hides(point)) {
+          layer[f] = b;
+          break;
+        }
     }
-    this.light(view);
+    this.#direct();
+    this.#light(view, style);
+  }
+
+  #direct() {
+    const { seen, along } = this;
+    const { first, last, size } = this.curves;
+    for (let f = 0; f < size; ++f) {
+      const a = first[f] ? f : f - 1;
+      const b = last[f] ? f : f + 1;
+      along[2 * f] = seen[3 * b] - seen[3 * a];
+      along[2 * f + 1] = seen[3 * b + 1] - seen[3 * a + 1];
+    }
   }
 
   // Kajiya-Kay's diffuse term: the sine of the angle between strand and light, which comes
-  // from above and beside the eye.
-  light({ forward, right, up }) {
-    const light = [0, 1, 2].map((i) => 0.5 * up[i] - 0.4 * right[i] - 0.77 * forward[i]);
-    const { place } = this;
-    for (let f = 0; f < this.fine; ++f) {
-      if (this.last[f]) {
-        this.shade[f] = this.shade[f - 1];
-        continue;
+  // from above and beside the eye; strands far away are mixed with the background.
+  #light(view, { ramp, background, radius }) {
+    const { points, last, first, size } = this.curves;
+    const { distance } = view;
+    const [lx, ly, lz] = towards_light(view);
+    const colours = new Float32Array(3 * 256);
+    for (let i = 0; i < 256; ++i) colours.set(ramp(i / 255), 3 * i);
+    for (let f = 0; f < size; ++f) {
+      const a = first[f] ? f : f - 1;
+      const b = last[f] ? f : f + 1;
+      const x = points[4 * b] - points[4 * a];
+      const y = points[4 * b + 1] - points[4 * a + 1];
+      const z = points[4 * b + 2] - points[4 * a + 2];
+      const along = (x * lx + y * ly + z * lz) ** 2 / (x * x + y * y + z * z || 1);
+      const bright = 0.72 + 0.28 * Math.max(0, 1 - along);
+      const off = (this.order.depth[f] - distance) / radius;
+      const mist = 0.2 * Math.max(0, Math.min(2, 1 + off));
+      const at = 3 * Math.round(255 * points[4 * f + 3]);
+      for (let c = 0; c < 3; ++c) {
+        const level = (1 - mist) * bright * colours[at + c] + mist * background[c];
+        this.lit[3 * f + c] = quarter_levels[Math.round(4 * level)];
       }
-      let [along, length] = [0, 0];
-      for (let i = 0; i < 3; ++i) {
-        const d = place[3 * f + 3 + i] - place[3 * f + i];
-        along += d * light[i];
-        length += d * d;
-      }
-      const sine = Math.sqrt(Math.max(0, 1 - (along * along) / (length || 1)));
-      this.shade[f] = Math.min(shades - 1, Math.floor(sine * sine * shades));
     }
   }
 
-  // Pieces in the order in which they are drawn: layer, slice from far to near, colour.
-  sort(layers) {
-    let [near, far] = [Infinity, 0];
-    for (let f = 0; f < this.fine; ++f) {
-      near = Math.min(near, this.depth[f]);
-      far = Math.max(far, this.depth[f]);
+  // Draws what lies in `layer` over the part of the canvas whose left edge is `left` (pixels).
+  draw(context, layer, { background, rim, left }) {
+    const { width, height } = this;
+    const { segments } = this.order;
+    const image = context.getImageData(left, 0, width, height);
+    const picture = new Pixels(image.data, width, height, linear(background), rim);
+    for (let o = 0; o < this.count; ++o) {
+      const f = segments[o];
+      if (Math.min(this.layer[f], this.layer[f + 1]) === layer)
+        picture.draw(this.seen, this.along, this.lit, f);
     }
-    const starts = new Int32Array(layers * slices * bins * shades + 1);
-    for (let f = 0; f < this.fine; ++f) {
-      this.key[f] = -1;
-      if (this.last[f] || this.depth[f] <= 0 || this.depth[f + 1] <= 0) continue;
-      const part = (far - this.depth[f]) / (far - near || 1);
-      const slice = Math.min(slices - 1, Math.floor(part * slices));
-      const layer = Math.min(this.layer[f], this.layer[f + 1]);
-      this.key[f] =
-        ((layer * slices + slice) * bins + this.bin[f]) * shades + this.shade[f];
-      ++starts[this.key[f] + 1];
-    }
-    for (let k = 1; k < starts.length; ++k) starts[k] += starts[k - 1];
-    const next = starts.slice();
-    for (let f = 0; f < this.fine; ++f)
-      if (this.key[f] >= 0) this.order[next[this.key[f]]++] = f;
-    this.starts = starts;
-    this.slice_depth = (slice) => far - ((slice + 0.5) / slices) * (far - near);
-  }
-
-  trace(context, from, to) {
-    context.beginPath();
-    let previous = -2;
-    for (let o = from; o < to; ++o) {
-      const f = this.order[o];
-      if (f !== previous + 1) context.moveTo(this.x[f], this.y[f]);
-      context.lineTo(this.x[f + 1], this.y[f + 1]);
-      previous = f;
-    }
-    context.stroke();
-  }
-
-  // What lies in `layer`. `colours`: rgb of each bin; strands far away fade.
-  draw(context, layer, { colours, background, width, distance, radius }) {
-    const rim = this.count <= 150 ? 1.6 : 0;
-    context.lineCap = 'round';
-    context.lineJoin = 'round';
-    for (let slice = 0; slice < slices; ++slice) {
-      const first = (layer * slices + slice) * bins * shades;
-      const here = [first, first + bins * shades].map((key) => this.starts[key]);
-      if (here[0] === here[1]) continue;
-      const depth = this.slice_depth(slice);
-      const thick = width * Math.min(2, distance / depth);
-      const fog = 0.2 * Math.max(0, Math.min(2, 1 + (depth - distance) / radius));
-      // A rim of the background's colour shows which of two crossing strands is nearer.
-      if (rim > 0) {
-        context.lineCap = 'butt';
-        context.strokeStyle = css(background);
-        context.lineWidth = thick + rim;
-        this.trace(context, ...here);
-        context.lineCap = 'round';
-      }
-      context.lineWidth = thick;
-      for (let bin = 0; bin < bins; ++bin) {
-        for (let shade = 0; shade < shades; ++shade) {
-          const key = first + bin * shades + shade;
-          const [from, to] = [this.starts[key], this.starts[key + 1]];
-          if (from === to) continue;
-          const light = 0.72 + 0.28 * (shade / (shades - 1));
-          const lit = colours[bin].map((c) => c * light);
-          context.strokeStyle = css(mix(lit, background, fog));
-          this.trace(context, from, to);
-        }
-      }
-    }
+    picture.write();
+    context.putImageData(image, left, 0);
   }
 }

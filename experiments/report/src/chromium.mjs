@@ -40,6 +40,7 @@ export class Browser {
               '--headless=new',
               '--no-sandbox',
               '--disable-gpu',
+              '--enable-unsafe-swiftshader',
               '--disable-dev-shm-usage',
               '--disable-background-networking',
               '--disable-component-update',
