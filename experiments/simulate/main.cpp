@@ -168,7 +168,7 @@ std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
   if (has_classes(outline)) {
     if (auto no = no_classes(outline)) return no;
   }
-  return simulation::no_head(outline);
+  return simulation::no_head(outline, pack_of(a).number);
 }
 
 /// One head for each number of elements, said on standard error.

@@ -66,9 +66,7 @@ template <class T>
     const NearBody& body = block_.bodies[b];
     prepare();
     std::visit(
-        [&](const auto& shape) {
-          by(instructions_, [&] { touch(body, shape, i, e, helix, functions, rate); });
-        },
+        [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
         body.contact->body.shape());
   }
   return ready && add_up(i, helix, functions);

@@ -235,13 +235,17 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
 
 }  // namespace
 
-std::optional<NoHead> no_head(const SceneOutline& outline) {
+std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
   const Scene& scene = outline.scene;
   if (scene.strands.empty()) {
     return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
                   "use [model] id = \"super_helix\""};
   }
   if (auto no = no_model(scene)) return no;
+  if (of_springs(scene) && number != models::HeadNumber::float64) {
+    return NoHead{"springs in 32 bits, which do not resolve their strains",
+                  "give --bits 64"};
+  }
   if (auto no = no_method(scene)) return no;
   if (auto no = no_strands(scene)) return no;
   return no_effects(scene);

@@ -16,9 +16,10 @@ struct NoHead {
 };
 
 /// What speaks against running a scene as one Head (models/head/head.h); nothing if it
-/// can. Of strands it sees what their tables say: make_head() throws InputError where a
-/// strand of them does not fit.
-std::optional<NoHead> no_head(const SceneOutline& outline);
+/// can, with such numbers. Of strands it sees what their tables say: make_head() throws
+/// InputError where a strand of them does not fit.
+std::optional<NoHead> no_head(const SceneOutline& outline,
+                              models::HeadNumber number = models::HeadNumber::float64);
 
 /// What bounds the motion of a head, from its options and its strands (HeadGuard).
 struct HeadReach {
