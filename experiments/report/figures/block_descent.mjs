@@ -19,7 +19,8 @@ import { cell_fills, model_style } from './palette.mjs';
 const least = 1e-10; // distances below it are rounding
 
 // 1e8, 25
-const power = (x) => (x >= 1e4 ? x.toExponential().replace('e+', 'e') : format_number(x));
+const power = (x) =>
+  x >= 1e4 ? Number(x.toPrecision(2)).toExponential().replace('e+', 'e') : format_number(x);
 
 export const descent_rows = (tables, part) =>
   (tables.block_descent ?? []).filter((row) => row.part === part);
