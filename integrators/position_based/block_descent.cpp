@@ -9,6 +9,9 @@ namespace tress::integrators {
 namespace {
 
 constexpr int most_halvings = 8;
+/// Penalty times the square of the step where the experiment block_descent finds the
+/// middle of its window.
+constexpr double usual_penalty = 5;
 
 /// Indices of the coordinates that orient() moves.
 std::vector<int> oriented(ComplianceForm& form) {
@@ -95,18 +98,19 @@ void BlockDescent::begin(double t, In q) {
 }
 
 /// The stiffness of every row, by the size of its gradient at x.
-void BlockDescent::limit(double t, In x) {
+void BlockDescent::limit(const Step& step, In x) {
+  const double chosen = choice_.augmentation->penalty;
+  const double penalty = chosen > 0 ? chosen : usual_penalty / (step.h * step.h);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
-    look(t, k, x);
+    look(step.t, k, x);
     for (std::size_t r = 0; r < static_cast<std::size_t>(block.rows); ++r) {
       double softness = 0;  // G W G^T
       for (std::size_t i = 0; i < block.coordinates.size(); ++i) {
         const double slope = value_.gradient[r][i];
         softness += slope * slope * w_[static_cast<std::size_t>(block.coordinates[i])];
       }
-      stiffness_[k][r] =
-          std::min(1 / block.alpha[r], choice_.augmentation->penalty / softness);
+      stiffness_[k][r] = std::min(1 / block.alpha[r], penalty / softness);
     }
   }
 }
@@ -122,7 +126,7 @@ void BlockDescent::run(double t, double h, In origin, In target, InOut x, Stats&
     for (Rows& rows : lambda_) {
       for (double& lambda : rows) lambda *= choice_.augmentation->kept;
     }
-    limit(t, x);
+    limit(step, x);
   }
   const int period = choice_.augmentation ? choice_.augmentation->sweeps : choice_.sweeps;
   for (int done = 0; done < choice_.sweeps; ++done) {

@@ -20,7 +20,7 @@ enum class Curvature {
 
 /// What descent hides from the sweeps of rows that are too stiff for them.
 struct Augmentation {
-  double penalty;  // 1/s^2: largest stiffness of a row, times its G W G^T
+  double penalty;  // 1/s^2: largest stiffness of a row, times its G W G^T; 0: by the step
   double kept;     // part of the multipliers that the next step starts from
   int sweeps;      // before multipliers are improved
 };
@@ -53,8 +53,8 @@ struct DescentChoice {
 /// move is halved while the forces after it push back more than those before it drove:
 /// else blocks of several locked nodes throw each other about. Converged sweeps are
 /// backward Euler's step, G and all; before that stiff rows lock soft ones: a node can
-/// move only as far as its rows' stiffness lets it with its neighbours held, so that
-/// bending of a strand takes some EA L^2/EI sweeps to come about.
+/// move only as far as its rows' stiffness lets it with its neighbours held, so that on a
+/// hair hundreds of sweeps do not bring about a step's bending.
 ///
 /// Augmented, k is at most penalty/(G W G^T), as a spring of that stiffness would be, and
 /// the multiplier makes up for the rest,
@@ -95,7 +95,7 @@ class BlockDescent {
 
   void look(double t, std::size_t k, In x);
   Strained strained(const Step& step, std::size_t k, In x);
-  void limit(double t, In x);
+  void limit(const Step& step, In x);
   void improve(const Step& step, In x);
   void sweep(const Step& step, int number, InOut x);
   void descend(const Step& step, Window& window, InOut x);

@@ -6,11 +6,11 @@ namespace tress::integrators {
 namespace {
 
 /// Block descent on the compliant augmented Lagrangian: DescentMethod with no row stiffer
-/// than a spring that swings the row's coordinates at sqrt(penalty), whatever the step,
-/// and multipliers that carry the stress over steps. Where vbd locks for thousands of
-/// sweeps, tens reach the step, within a window of the penalty: below it multipliers take
-/// long, above it sweeps do. [Giles et al. 2025 with an infinite stiffness and a penalty
-/// that grows; Rockafellar 1976]
+/// than a spring that swings the row's coordinates at sqrt(penalty), and multipliers that
+/// carry the stress over steps. Where vbd locks for hundreds of sweeps, tens reach the
+/// step, within a window of the penalty: below it multipliers take long, above it sweeps
+/// do. The window lies near 5/h^2, a decade wide or less. [Giles et al. 2025 with an
+/// infinite stiffness and a penalty that grows; Rockafellar 1976]
 constexpr Parameter augmented_own[] = {
     sweeps_option,
     sweep_order_option,
@@ -19,9 +19,10 @@ constexpr Parameter augmented_own[] = {
     start_option,
     chebyshev_option,
     {.name = "penalty_1_s2",
-     .help = "largest stiffness of a row, times its G W G^T",
-     .number = 6e5,
-     .min = 1e-12,
+     .help = "largest stiffness of a row, times its G W G^T, 0: 5 over the square of the "
+             "step",
+     .number = 0,
+     .min = 0,
      .max = 1e30},
     {.name = "kept_multipliers",
      .help = "part of them from which the next step starts",

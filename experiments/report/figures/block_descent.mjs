@@ -19,7 +19,8 @@ import { cell_fills, model_style } from './palette.mjs';
 const least = 1e-10; // distances below it are rounding
 
 // 1e8, 25
-const power = (x) => (x >= 1e4 ? x.toExponential().replace('e+', 'e') : format_number(x));
+const power = (x) =>
+  x >= 1e4 ? Number(x.toPrecision(2)).toExponential().replace('e+', 'e') : format_number(x);
 
 export const descent_rows = (tables, part) =>
   (tables.block_descent ?? []).filter((row) => row.part === part);
@@ -61,13 +62,24 @@ export function penalty_windows(tables) {
     const good = rows
       .filter((row) => row.direct_distance_rel <= 0.01)
       .map((row) => row.penalty_1_s2);
-    return { dt_s, tried: rows.length, good };
+    const tried = descent_rows(tables, 'penalty').filter((row) => row.dt_s === dt_s).length;
+    return { dt_s, tried, good };
   });
 }
 
 // How far ways are from the direct step at `sweeps` of the springs.
 export const distances_at = (tables, sweeps) =>
   of_sweeps(tables).filter((row) => row.model === 'mass_spring' && row.sweeps === sweeps);
+
+// A node at a time and the whole, each by the time of a sweep.
+function cost_finding(rows) {
+  const of = (block) =>
+    rows.find((row) => row.integrator === 'vbd' && row.block === block && !(row.chebyshev > 0));
+  const [nodes, whole] = [of(1), of(0)];
+  if (!is_positive(nodes?.wall_s_per_sim_s) || !is_positive(whole?.wall_s_per_sim_s)) return [];
+  const time = (row) => format_time((row.wall_s_per_sim_s * row.dt_s) / row.sweeps);
+  return [`A sweep of vbd takes ${time(nodes)} node by node, ${time(whole)} over the whole strand.`];
+}
 
 export function descent_findings(tables) {
   const sweeps = 20;
@@ -79,6 +91,7 @@ export function descent_findings(tables) {
   return [
     `Distance of the tip from the direct step's at ${sweeps} sweeps of ` +
       `${format_time(rows[0].dt_s)}, over the length: ${listed}.`,
+    ...cost_finding(rows),
     ...penalty_windows(tables).map(({ dt_s, tried, good }) =>
       good.length === 0
         ? `Steps of ${format_time(dt_s)}: no penalty of ${tried} comes within 1 %.`

@@ -53,6 +53,22 @@ TEST(XpbdCosserat, ShearLowersTheTip) {
   }
 }
 
+// A hanging rod is longer by Gamma/(2 EA) of its length, the sum over edges being the
+// integral as above.
+TEST(XpbdCosserat, SoftenedItStretchesByItsWeight) {
+  constexpr double gamma = 0.1, ea = 4e6;
+  const auto lowest = [&](const char* factor) {
+    const Hung hung = hang(
+        "xpbd_cosserat",
+        with(thin_rod,
+             {{"stretch_factor", factor}, {"root_tangent", "down"}, {"elements", "5"}}),
+        gamma / line_density, at_rest);
+    return -points(hung).back();
+  };
+  const double longer = lowest("1e-5") - lowest("1");
+  EXPECT_NEAR(longer / (gamma / (2 * ea) * (1e5 - 1)), 1, 1e-3);
+}
+
 // The form that xpbd takes holds friction and a turning root, too.
 TEST(XpbdCosserat, ComplianceFormIsTheResidualWithFrictionOnATurningRoot) {
   const ModelSettings moving = {{"elements", "6"},

@@ -66,14 +66,27 @@ export const descent_locks = asserted(
     springs(tables, 'vbd', 16, 20) >= 0.1 &&
     springs(tables, 'vbd', 0, 5) <= 1e-5,
   'Node by node descent locks: springs of a hair are so stiff that bending cannot pass through held neighbours. ' +
-    'Blocks of several nodes lock as well, down to one that is nearly the strand; the whole strand is solved in a ' +
-    'few sweeps, each of which costs less than one of nodes, for its matrix is a band',
+    'Blocks of several nodes lock as well, down to one that is nearly the strand; the whole strand is solved in a few sweeps',
 );
 
+// Distances of the rows about penalties, by the penalty times the square of the step.
+const penalties = (tables, dt_s) =>
+  rows_of(tables, 'block_descent', { part: 'penalty', dt_s, primal_sweeps: 1 }).map((row) => ({
+    scaled: row.penalty_1_s2 * row.dt_s ** 2,
+    distance: succeeded(row) ? row.direct_distance_rel : Infinity,
+  }));
+
 export const multipliers_free = asserted(
-  (tables) => springs(tables, 'vbd_augmented', 1, 20) <= 0.01,
+  (tables) =>
+    springs(tables, 'vbd_augmented', 1, 20) <= 0.01 &&
+    [1 / 300, 1e-3].every((dt_s) => {
+      const rows = penalties(tables, dt_s);
+      return rows.every(({ scaled, distance }) => distance <= 0.01 === (scaled > 3 && scaled < 15));
+    }) &&
+    penalties(tables, 1 / 60).every(({ distance }) => distance > 0.01),
   'Multipliers that carry the stress from step to step free it, as long as the penalty is within its window: below it ' +
-    'multipliers take too long, above it nodes lock again',
+    'multipliers take too long, above it nodes lock again. The window follows the square of the step, and closes at ' +
+    'the longest of the three',
 );
 
 export const map_unreached = asserted(
