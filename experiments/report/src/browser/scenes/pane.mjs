@@ -40,7 +40,7 @@ export class Pane {
       body: theme.body,
       width: Math.max(1.2, 3.6 - 0.8 * Math.log10(count)),
       // Of the background's colour: shows which of two crossing strands is nearer.
-      rim: count <= 30 && colour !== 'hair' ? 0.8 : 0,
+      rim: count <= 4 && colour !== 'hair' ? 0.8 : 0,
       distance: view.distance,
       ...this.extent,
     };
