@@ -35,7 +35,8 @@ export class Pane {
     const { count } = this.curves;
     return {
       fibres: colour === 'hair',
-      ramp: colour === 'hair' || colour === 'strand' ? theme.hair : theme.channel,
+      // Also where the scene beside has a channel that this one lacks.
+      ramp: this.channel_of(colour) === undefined ? theme.hair : theme.channel,
       background: theme.background,
       body: theme.body,
       width: Math.max(1.2, 3.6 - 0.8 * Math.log10(count)),
