@@ -22,7 +22,18 @@ const film = (...argv) =>
 // The fixture's wind blows for 29/40 s: at 10 pictures a second of half its speed that are
 // floor(0.2 / 0.5 * 10) + 1 between 0.1 s and 0.3 s.
 test('Film_HasAPictureForEveryMoment', () => {
-  const range = ['--size', '160,120', '--rate', '10', '--speed', '0.5', '--from', '0.1'];
+  const range = [
+    '--size',
+    '320,240',
+    '--scale',
+    '2',
+    '--rate',
+    '10',
+    '--speed',
+    '0.5',
+    '--from',
+    '0.1',
+  ];
   const out = join(directory, 'pictures');
   const { status, stderr } = film(run, 'colour=hair', out, ...range, '--to', '0.3');
   assert.equal(status, 0, stderr);
@@ -30,7 +41,7 @@ test('Film_HasAPictureForEveryMoment', () => {
   const pictures = readdirSync(out).map((name) => readFileSync(join(out, name)));
   assert.equal(pictures.length, 5);
   for (const png of pictures)
-    assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [160, 120]);
+    assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [320, 240]);
   assert.equal(new Set(pictures.map((png) => png.toString('base64'))).size, 5);
 });
 

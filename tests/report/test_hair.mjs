@@ -128,7 +128,7 @@ test('Furnace_KeepsTheEnergyOfAHairWithoutAbsorption', (context) => {
   for (const [out, energy] of found.filter(([angle]) => angle <= 75))
     assert.ok(Math.abs(energy - 1) < 0.05, `${out} degrees: ${energy}`);
   // Over all inclinations, by what of the hair is seen.
-  const all = middles(-Math.PI / 2, Math.PI / 2, 24);
+  const all = middles(-Math.PI / 2, Math.PI / 2, 12);
   const seen = (out) => Math.cos(out) ** 2;
   const mean = sum(all, (out) => seen(out) * furnace(white, out)[0]) / sum(all, seen);
   context.diagnostic(`mean ${mean.toFixed(4)}`);

@@ -100,12 +100,13 @@ export class Browser {
     return this.command('/goog/cdp/execute', { cmd, params });
   }
 
-  // Loads `url` at a viewport of exactly `width` CSS pixels and waits until all is drawn.
-  async open(url, width = 1400, height = 1000) {
+  // Loads `url` at a viewport of exactly `width` CSS pixels, `scale` pixels of the picture
+  // each, and waits until all is drawn.
+  async open(url, width = 1400, height = 1000, scale = 1) {
     await this.devtools('Emulation.setDeviceMetricsOverride', {
       width,
       height,
-      deviceScaleFactor: 1,
+      deviceScaleFactor: scale,
       mobile: false,
     });
     // A new document, also when only the address's last part differs.

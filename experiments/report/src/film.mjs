@@ -28,6 +28,7 @@ const usage = `usage: ./tress film PAGE-OR-RUN ADDRESS OUT [options]
                 colour=hair'; '' is the first scene as it opens
   OUT           film.webm, or a new or empty folder for 00000.png, 00001.png ...
   --size W,H    pixels, even numbers for a film (default 1280,720)
+  --scale X     lines and letters X times as large, for prints (default 1)
   --rate N      pictures a second (default 25)
   --speed X     seconds of the scene in a second of the film (default 1)
   --from S, --to S   seconds of the scene (default all of it)
@@ -49,6 +50,7 @@ function options_of(argv) {
   const text = { type: 'string' };
   const options = {
     size: { ...text, default: '1280,720' },
+    scale: { ...text, default: '1' },
     rate: { ...text, default: '25' },
     speed: { ...text, default: '1' },
     from: text,
@@ -79,6 +81,7 @@ function options_of(argv) {
     throw new InputError(`--size ${values.size}: a film needs even numbers`);
   return {
     source, address, out: resolve(out), film, size, dark: values.dark,
+    scale: number(values.scale, 'scale', 1, 8),
     rate: number(values.rate, 'rate', 1, 240),
     speed: number(values.speed, 'speed', 1e-6, 1e6),
     from: values.from === undefined ? -Infinity : number(values.from, 'from', 0, 1e9),
@@ -255,7 +258,10 @@ async function film(options) {
     parts.set('full', 'picture');
     // The page knows an address of scenes by its beginning.
     const hash = `#scene=${encodeURIComponent(scene)}&${parts}`;
-    await browser.open(pathToFileURL(page) + hash, ...options.size);
+    const [width, height] = options.size.map((pixels) =>
+      Math.round(pixels / options.scale),
+    );
+    await browser.open(pathToFileURL(page) + hash, width, height, options.scale);
     await check_scene(browser, address, options.source);
     const reel = options.film ? await Film.start(browser, options) : undefined;
     if (!options.film) mkdirSync(options.out, { recursive: true });

@@ -1,4 +1,4 @@
-// What the page carries compressed: base64 of DEFLATE [RFC 1951].
+// What the page carries compressed: base64 of DEFLATE (RFC 1951).
 import { inflateSync } from 'fflate';
 
 export const unpacked = (base64) =>

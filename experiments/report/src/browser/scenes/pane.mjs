@@ -35,12 +35,13 @@ export class Pane {
     const { count } = this.curves;
     return {
       fibres: colour === 'hair',
-      ramp: colour === 'hair' || colour === 'strand' ? theme.hair : theme.channel,
+      // Also where the scene beside has a channel that this one lacks.
+      ramp: this.channel_of(colour) === undefined ? theme.hair : theme.channel,
       background: theme.background,
       body: theme.body,
       width: Math.max(1.2, 3.6 - 0.8 * Math.log10(count)),
       // Of the background's colour: shows which of two crossing strands is nearer.
-      rim: count <= 30 && colour !== 'hair' ? 0.8 : 0,
+      rim: count <= 4 && colour !== 'hair' ? 0.8 : 0,
       distance: view.distance,
       ...this.extent,
     };

@@ -82,7 +82,8 @@ export class Picture {
     const { panes, colour, arrows, usual_force } = this;
     const look = { colour, range: this.range(), theme, arrows, usual_force, ratio };
     const time = time_at(this.scenes[0], moment);
-    const area = { width: width / panes.length, height };
+    // Whole pixels of the canvas.
+    const area = { width: Math.round((width * ratio) / panes.length) / ratio, height };
     panes.forEach((pane, i) => {
       const here = i === 0 ? moment : moment_at(pane.scene, time);
       pane.draw(context, { ...area, x: i * area.width }, this.camera, here, look);

@@ -11,7 +11,6 @@ import { Picture } from './picture.mjs';
 import { Series } from './series.mjs';
 
 const at = (id) => document.getElementById(`scene-${id}`);
-const no_channel = 'strand';
 
 function caption({ strand_points, guides, dt_s, model, integrator, source, outcome }) {
   const all = strand_points.length;
@@ -26,11 +25,13 @@ function caption({ strand_points, guides, dt_s, model, integrator, source, outco
   return `${strands}, ${model}, ${integrator}, ${step}.${origin}${run === '' ? '' : ` ${run}`}`;
 }
 
-// The drop-down list of what strands may be coloured by.
+// The drop-down list of what strands may be coloured by: no channel that is 0 everywhere, but
+// that of two runs without a difference.
 const colour_options = (channels, hair) => [
-  ...channels.map(
-    ({ name, unit }, i) =>
-      new Option(unit === '' ? name : `${name} (${unit})`, String(i)),
+  ...channels.flatMap(({ name, unit, low, high }, i) =>
+    high > low || name === 'difference'
+      ? [new Option(unit === '' ? name : `${name} (${unit})`, String(i))]
+      : [],
   ),
   ...(hair ? [new Option('as hair in light', 'hair')] : []),
   new Option('one colour a strand', 'strand'),
@@ -130,11 +131,11 @@ export class Player {
     at('canvas').dataset.start = scene.times_s[0];
     const beside_text = other === undefined ? '' : `, and ${other.title} beside it`;
     at('canvas').setAttribute('aria-label', `${scene.title}${beside_text}, drawn in 3D`);
-    const first = scene.channels.length > 0 ? 0 : no_channel;
+    const offered = [...at('colour').options].map(({ value }) => value);
     const compared = scene.channels.findIndex(
       ({ name: title }) => title === 'difference',
     );
-    this.colour(String(compared >= 0 ? compared : first));
+    this.colour(compared >= 0 ? String(compared) : offered.find((v) => v !== 'hair'));
     this.drawn = this.series.draw(scene, this.time());
     return this.drawn;
   }
@@ -278,11 +279,9 @@ export class Player {
     if (address.has('view')) this.picture.camera.read(address.get('view'));
     const colour = address.get('colour');
     const index = this.scene.channels.findIndex(({ name }) => name === colour);
-    if (index >= 0) this.colour(String(index));
-    else if (
-      [...at('colour').options].some(({ value }) => value === colour && !/\d/.test(value))
-    )
-      this.colour(colour);
+    const value = index >= 0 ? String(index) : colour;
+    if ([...at('colour').options].some((option) => option.value === value))
+      this.colour(value);
     if (address.get('forces') === 'arrows' && !at('forces').parentNode.hidden)
       this.show_forces('arrows');
     if (address.get('strands') === 'guides' && !at('strands').parentNode.hidden) {

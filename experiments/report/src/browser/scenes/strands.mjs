@@ -1,7 +1,7 @@
 // Strands on a 2D canvas as WebGL draws them (gl/shaders.mjs): the same colours, coverage and
 // order, pixel by pixel.
-import { Order } from './gl/order.mjs';
 import { linear, quarter_levels, towards_light } from './light.mjs';
+import { Order } from './order.mjs';
 import { Pixels } from './pixels.mjs';
 
 export class Strands {

@@ -1,5 +1,5 @@
 import * as twgl from 'twgl.js';
-import { Order } from './order.mjs';
+import { Order } from '../order.mjs';
 import { points_wide } from './shaders.mjs';
 
 // Arrays on the graphics processor for the curves of one scene.

@@ -31,6 +31,7 @@ export class Painter {
   }
 
   #buffers = new Map(); // of curves
+  #programs = {}; // compiled when first used
 
   constructor(canvas, gl) {
     this.canvas = canvas;
@@ -40,12 +41,6 @@ export class Painter {
     const renderer = named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : '';
     this.software = /SwiftShader|llvmpipe|Software|Basic Render/i.test(renderer);
     canvas.addEventListener('webglcontextlost', () => (this.lost = true));
-    this.programs = Object.fromEntries(
-      Object.entries(programs).map(([name, texts]) => [
-        name,
-        twgl.createProgramInfo(gl, texts),
-      ]),
-    );
     const target = { internalFormat: gl.RGBA16F, minMag: gl.NEAREST };
     const depth = { internalFormat: gl.DEPTH_COMPONENT24, minMag: gl.NEAREST };
     this.picture = twgl.createFramebufferInfo(gl, [target, depth], 16, 16);
@@ -63,12 +58,6 @@ export class Painter {
       map_size,
       map_size,
     );
-    const { ball, indices } = unit_ball();
-    this.ball = twgl.createBufferInfoFromArrays(gl, {
-      ball: { numComponents: 4, data: new Float32Array(ball) },
-      indices: { numComponents: 3, data: new Uint16Array(indices) },
-    });
-    this.ball_array = twgl.createVertexArrayInfo(gl, this.programs.bodies, this.ball);
     this.nothing = gl.createVertexArray();
     this.ramp = twgl.createTexture(gl, {
       width: 256, height: 1, minMag: gl.LINEAR, wrap: gl.CLAMP_TO_EDGE, auto: false,
@@ -95,6 +84,23 @@ export class Painter {
     return this.tables;
   }
 
+  #program(name) {
+    return (this.#programs[name] ??= twgl.createProgramInfo(this.gl, programs[name]));
+  }
+
+  #ball() {
+    if (this.ball === undefined) {
+      const { gl } = this;
+      const { ball, indices } = unit_ball();
+      const arrays = twgl.createBufferInfoFromArrays(gl, {
+        ball: { numComponents: 4, data: new Float32Array(ball) },
+        indices: { numComponents: 3, data: new Uint16Array(indices) },
+      });
+      this.ball = twgl.createVertexArrayInfo(gl, this.#program('bodies'), arrays);
+    }
+    return this.ball;
+  }
+
   #of(curves) {
     if (!this.#buffers.has(curves))
       this.#buffers.set(curves, new Buffers(this.gl, curves));
@@ -111,7 +117,7 @@ export class Painter {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, ...size);
-    const program = this.programs[name];
+    const program = this.#program(name);
     gl.useProgram(program.program);
     twgl.setUniforms(program, ...uniforms);
   }
@@ -229,7 +235,8 @@ export class Painter {
 
   #bodies(bodies, all, { body }) {
     const { gl } = this;
-    gl.bindVertexArray(this.ball_array.vertexArrayObject);
+    const ball = this.#ball();
+    gl.bindVertexArray(ball.vertexArrayObject);
     for (const { shape, half_axes_m: half, centre, axes } of bodies) {
       const capsule = shape === 'capsule';
       this.#use('bodies', this.picture.framebuffer, all.size, all, {
@@ -238,7 +245,7 @@ export class Painter {
         bright: linear(body.light), dark: linear(body.dark), line: linear(body.line),
         line_part: 0.25, shown: capsule ? [0, 0, 1] : [1, 1, 1],
       }); // prettier-ignore
-      twgl.drawBufferInfo(gl, this.ball_array);
+      twgl.drawBufferInfo(gl, ball);
     }
   }
 
