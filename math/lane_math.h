@@ -120,9 +120,9 @@ class ArcTangent {
 
  public:
   static T of(const T& y, const T& x) {
-    // The same operations as above for lanes that are as near to the axis.
+    // The same operations and comparison as above for lanes that are as near to the axis.
     const T reach = T(0.41421356237309503) * x;
-    if (all_up_to(magnitude(y) - reach, Number(0))) [[likely]] {
+    if (!any_less(reach, magnitude(y))) [[likely]] {
       return small(y / x);
     }
     return T(any(y.numbers(), x.numbers()));

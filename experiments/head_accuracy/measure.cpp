@@ -64,6 +64,9 @@ Scene read_head_scene(const std::string& file) {
     outline.scene = every_strand(std::move(outline.scene), enough);
   }
   if (const auto no = no_head(outline)) throw InputError(no->reason, file, no->remedy);
+  refuse_if(given.model->id != "super_helix",
+            std::string(given.model->id) + ": work is that of super-helices", file,
+            "use [model] id = \"super_helix\"");
   return given;
 }
 

@@ -311,6 +311,8 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
   for (const Bad& bad :
        {Bad{"--scene strand.toml", "a [strand] beside hairs", "give [groom]s only"},
         Bad{"--scene der.toml", "der does not come as a head", "super_helix"},
+        Bad{"--scene springs.toml", "mass_spring: work is that of super-helices",
+            "super_helix"},
         Bad{"--scene none.toml", "none.toml", "existing"},
         Bad{"--set grooms=curly", "unknown groom 'curly'", "curly_varied_shaken"},
         Bad{"--set reference_elements=4", "a reference of 4 elements", "8 or more"},
@@ -321,6 +323,10 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
     toy.write("strand.toml", strand_scene);
     toy.write("der.toml",
               "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"der\"\n[groom]\n");
+    toy.write("springs.toml",
+              "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"mass_spring\"\n"
+              "tangent = \"filtered\"\n[integrator]\nid = \"semi_implicit_euler\"\n"
+              "dt_s = 0.003\n[groom]\n");
     const auto before = toy.files();
     const Toy::Result result = toy.run(bad.arguments);
     EXPECT_EQ(result.code, 2) << bad.arguments << result.err;
