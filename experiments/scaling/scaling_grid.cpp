@@ -60,7 +60,8 @@ std::vector<Variation> methods_of_others() {
     if (first_word(*model, "solver").empty()) {
       all.push_back({model->id, "", usual_tangent(*model), ""});
     }
-    for (const std::string_view solver : {"banded", "klu", "sweep", "composite"}) {
+    for (const std::string_view solver :
+         {"banded", "klu", "sweep", "recursive", "composite"}) {
       if (has_word(*model, "solver", solver)) {
         all.push_back({model->id, solver, usual_tangent(*model), ""});
       }

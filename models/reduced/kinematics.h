@@ -187,6 +187,7 @@ class Kinematics {
   const std::vector<Tip>& tips(double t, In q, In v) {
     static_assert(may_be_free);
     if (free_root_) free_root_->place(q.last(6));
+    if constexpr (collocated) shape(q);
     const FrameMotion root = root_motion(t, q, v, v);
     tips_.resize(segments_.size() + 1);
     tips_[0] = {root.frame, root.x, root.v, root.omega};
@@ -194,7 +195,7 @@ class Kinematics {
       const Segment& segment = segments_[i];
       const Tip& parent = tips_[static_cast<std::size_t>(segment.parent + 1)];
       const Frame start = segment.mounted ? parent.frame * segment.mount : parent.frame;
-      const Kernel kernel = bent(segment, q, i);
+      const auto& kernel = read_kernel(segment, q, i);
       const auto tip = kernel.tip();
       const Vec position = kernel.position().at(tip);
       const Frame rotation = kernel.rotation(tip);
@@ -275,6 +276,15 @@ class Kinematics {
       return Kernel(segment.held + components(q, i), segment.length, rule_);
     } else {
       return Kernel(segment.held + components(q, i), segment.length);
+    }
+  }
+
+  /// What tips() reads: shapes are kept where they are dear, for who asks at q next.
+  decltype(auto) read_kernel(const Segment& segment, In q, std::size_t i) const {
+    if constexpr (collocated) {
+      return (geometry_[i].kernel);
+    } else {
+      return bent(segment, q, i);
     }
   }
 
