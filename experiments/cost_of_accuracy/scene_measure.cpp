@@ -23,6 +23,10 @@ constexpr double long_enough = 0.01;  // s
 /// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
 
+/// By tolerance: steps of a frame beyond which a run has lost its way, as some do where
+/// the tolerance is loose and the next solution far.
+constexpr long most_steps_of_a_frame = 2000;
+
 }  // namespace
 
 WallTime wall_time(const std::vector<double>& seconds) {
@@ -35,8 +39,10 @@ WallTime wall_time(const std::vector<double>& seconds) {
 }
 
 Scene SceneMeasure::scene(const Method& method, int elements, int substeps) const {
-  return compared(trial_scene(given_, method, elements, substeps, comparison_.rate),
-                  comparison_);
+  Scene run = compared(trial_scene(given_, method, elements, substeps, comparison_.rate),
+                       comparison_);
+  if (method.by_tolerance) run.options.max_steps = most_steps_of_a_frame;
+  return run;
 }
 
 SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,

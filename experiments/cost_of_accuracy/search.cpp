@@ -221,6 +221,9 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
   const auto meets = [target](const Trial* run) {
     return run != nullptr && run->judged() <= target;
   };
+  most = std::min(
+      most, static_cast<int>(plan_.longest_run * unit(method) / std::max(1, elements)));
+  if (most < 1) return nullptr;
   // Bracket: `few` fails, `enough` succeeds.
   int few = 0, enough = std::clamp(guess, 1, most);
   const Trial* best = run(method, elements, enough);
@@ -271,10 +274,8 @@ void Search::refine(std::size_t method, double target) {
       if (best == nullptr) return;
       const double one_s =
           expected_s(method, elements, start->substeps) / start->substeps;
-      const double longest =
-          static_cast<double>(plan_.longest_run) * unit(method) / elements;
-      const int most = static_cast<int>(
-          std::min({noise * best->wall_s / one_s, 4.0 * start->substeps, longest}));
+      const int most =
+          static_cast<int>(std::min(noise * best->wall_s / one_s, 4.0 * start->substeps));
       if (most < 1) continue;
       fewest_substeps(method, elements, target, start->substeps, most);
     }

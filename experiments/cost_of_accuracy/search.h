@@ -68,7 +68,7 @@ class Search {
   /// One method for one target, from its cheapest run so far.
   void refine(std::size_t method, double target);
   /// The fewest substeps with which the method meets `target` on this many elements,
-  /// starting near `guess`. Null where `most` do not.
+  /// starting near `guess`. Null where `most`, or the longest run, do not.
   const Trial* fewest_substeps(std::size_t method, int elements, double target, int guess,
                                int most);
 
