@@ -5,8 +5,8 @@ import { basename, join } from "node:path";
 const bytes = (text) => Buffer.from(text, "base64");
 
 /// The page has positions in 16 bits of their box and channels in 8 bits of their range,
-/// radii and times in full; the series has the tip in full. `head`: what h5py read in the
-/// file of a head, every strand's own points.
+/// radii and times in full; the series has the tip, of strands the mean one, in full.
+/// `head`: what h5py read in the file of a head, every strand's own points.
 export function read_own(stem, head) {
   const page = JSON.parse(readFileSync(`${stem}.json`, "utf8"));
   const points = page.strand_points.reduce((a, b) => a + b);

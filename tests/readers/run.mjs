@@ -2,7 +2,7 @@
 //
 //   node run.mjs SIMULATE     the program that runs scenes
 //
-// Scenes of the repository, shortened: a curl, a head, a tree. Their .vtp and .pvd files are
+// Scenes of the repository, shortened: a curl, a head, strands of two radii, a tree. Their .vtp and .pvd files are
 // read by VTK, their .usda by TinyUSDZ and by the parser of three.js, the .h5 of the head by
 // h5py; .hair files, of which no reader is to be had, after their description. All must
 // have the points of the run within 1e-6 of the longest line, its times, widths and strands.
@@ -28,6 +28,14 @@ const scenes = [
       [/^duration_s = .*$/m, "duration_s = 0.035"],
       [/^count = .*$/m, "count = 2000"],
     ],
+  },
+  {
+    name: "stiff_and_soft",
+    changes: [
+      [/^duration_s = .*$/m, "duration_s = 0.02"],
+      [/^youngs_modulus_pa = .*$/m, "radius_m = 30e-6"],
+    ],
+    thin: (strand) => strand >= 50,
   },
   { name: "willow", changes: [[/^duration_s = .*$/m, "duration_s = 0.05"]] },
 ];
@@ -137,6 +145,10 @@ try {
     const since = performance.now();
     run(simulate, scene, work);
     const { complaints, readings } = read_back(scene.name, work, seconds(since));
+    const { ids, radii } = readings.own;
+    if (scene.thin && ids.some((k, line) => scene.thin(k) !== (radii[line] === 30e-6))) {
+      complaints.push(`${scene.name}: radii that the scene does not give`);
+    }
     failures.push(...complaints);
     if (scene.name !== "full_head" || complaints.length) continue;
     const began = performance.now();
