@@ -196,7 +196,7 @@ export const published_table = (tables) =>
       row.name,
       row.simulated,
       row.hardware || 'not said',
-      [row.figure, row.unit].filter(Boolean).join(' '),
+      [row.figure, row.unit].filter(Boolean).join(' ') || 'none there',
       row.measured,
       row.not_measured,
       source(row),
@@ -206,7 +206,7 @@ export const published_table = (tables) =>
 
 // No published figure is an error of a motion: it would be a row to compare with.
 export function published_errors(tables) {
-  const rows = rows_of(tables, 'peers_published');
+  const rows = rows_of(tables, 'peers_published').filter((row) => row.figure);
   must(
     rows.every((row) => !/error/.test(row.measured ?? '')),
     'none of the published figures says how wrong the motion is',
