@@ -36,6 +36,7 @@ const figures = {
   force_transport: ['off the rod / length', 'elements', 'time (s)'],
   block_descent: ['off the direct step / length', 'sweeps per step', 'vbd, whole'],
   cosserat_map: ['steps a second', 'at most 1 %', '20 sweeps'],
+  newest_methods: ['total error (%)', 'wall time per simulated second (ms)', 'vbd, whole strand'],
 };
 
 // Tags balance, attributes are quoted, no bare '&' or '<': enough to reject what a parser

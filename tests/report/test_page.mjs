@@ -30,6 +30,7 @@ const figures = [
   'force_transport',
   'block_descent',
   'cosserat_map',
+  'newest_methods',
 ];
 let directory, browser, page;
 
@@ -221,6 +222,7 @@ for (const [figure, entry] of [
   ['swing', 'implicit_midpoint'],
   ['force_transport', 'corde'],
   ['block_descent', 'xpbd'],
+  ['newest_methods', 'xpbd'],
 ]) {
   test(`LegendClick_DimsTheOthers_${figure}_${entry}`, async () => {
     await open_measurements({ changes: figure });

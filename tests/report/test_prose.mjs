@@ -50,6 +50,29 @@ test('a citation has its publication, and a publication its citation', () => {
   assert.throws(() => works('Kutta 1901\n'), /references\.txt:1: expected/);
 });
 
+test('newest methods: other simulators and flights count where the tables have them', () => {
+  const swing = { scene: 'swing', status: 'ok', block: 1 };
+  const tables = {
+    block_descent: [{ ...swing, integrator: 'vbd', model: 'mass_spring', dt_s: 1e-3, sweeps: 4,
+      error_rel: 0.04, wall_s_per_sim_s: 0.5 }],
+    validation: [],
+  };
+  const say = (query, more = {}) => answers({ ...tables, ...more }, root)(`newest.${query}`);
+  assert.match(say('total_table'), /\| vbd \| 500 ms \| 500 ms \| never \| 4 % in 500 ms/);
+  assert.match(say('peers_run'), /is not there/);
+  const peers = [
+    { peer: 'MuJoCo', method: 'ball', status: 'ok', dt_s: 1e-3, wall_s: 0.2, total_error_rel: 0.009 },
+    { peer: 'ODE', method: 'step', status: 'unstable', dt_s: 1e-2, wall_s: 0.1, total_error_rel: null },
+  ];
+  assert.match(say('total_table', { peers }), /\| MuJoCo \| 100 ms \| 100 ms \| 100 ms \| 0\.9 %/);
+  assert.doesNotMatch(say('total_table', { peers }), /ODE/);
+  assert.match(say('flight_missing'), /no flight of `xpbd`, .*`vbd`/);
+  const validation = [{ test: 'free_flight', model: 'corde', integrator: 'vbd', dt_s: 1e-3,
+    status: 'ok', energy_change_rel: -0.02, angular_error_rel: 0.01 }];
+  assert.match(say('flight_table', { validation }), /`vbd` \| `corde` \| -2 %, 1 %/);
+  assert.doesNotMatch(say('flight_missing', { validation }), /`vbd`,/);
+});
+
 test('the README fits on three screens', () => {
   const lines = readFileSync(join(root, 'README.md'), 'utf8').split('\n');
   assert.ok(lines.length <= 151, `${lines.length} lines`);

@@ -14,6 +14,7 @@ import { family } from './family.mjs';
 import { force_transport } from './force_transport.mjs';
 import { head_accuracy } from './head_accuracy.mjs';
 import { model_steps } from './model_steps.mjs';
+import { newest_methods } from './newest_methods.mjs';
 import { nodal_steps } from './nodal_steps.mjs';
 import { scaling } from './scaling.mjs';
 import { stability_limit } from './stability_limit.mjs';
@@ -45,6 +46,7 @@ export const figures = [
   force_transport,
   block_descent,
   cosserat_map,
+  newest_methods,
 ];
 
 // A Vega-Lite spec for `width` pixels, or undefined when the tables hold nothing to draw.

@@ -17,7 +17,7 @@ import {
 import { series_style } from './palette.mjs';
 
 // The runs of one series that no other run of it beats in both error and time.
-const front_of = (runs) =>
+export const front_of = (runs) =>
   runs.filter(
     (row) =>
       !runs.some(

@@ -6,6 +6,7 @@ import { descent_findings, map_findings } from '../figures/block_descent.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
+import { newest_findings } from '../figures/newest_methods.mjs';
 import { nodal_step_findings } from '../figures/nodal_steps.mjs';
 import { validation_findings } from '../figures/validation.mjs';
 import { figures, figure_spec } from '../figures/all.mjs';
@@ -83,6 +84,7 @@ const measurements = [
   },
   { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
   { figure: 'cosserat_map', findings: map_findings, tables: [] },
+  { figure: 'newest_methods', findings: newest_findings, tables: [] },
 ];
 
 // The three questions first, each a tab; then the measurements behind them.

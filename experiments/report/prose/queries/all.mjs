@@ -15,6 +15,7 @@ import * as head_accuracy from './head_accuracy.mjs';
 import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as matrices from './matrices.mjs';
+import * as newest from './newest.mjs';
 import * as references from './references.mjs';
 import * as scaling from './scaling.mjs';
 import * as stability from './stability.mjs';
@@ -37,6 +38,7 @@ export const queries = {
   heads,
   machine,
   matrices,
+  newest,
   references,
   scaling,
   stability,

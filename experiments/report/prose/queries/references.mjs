@@ -1,10 +1,12 @@
 // Sources that headers, catalogues, tests and scenes cite, gathered from their texts.
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { parse_csv } from '../../src/csv.mjs';
 import { InputError } from '../../src/input.mjs';
 import { table } from '../markdown.mjs';
 
 const folders = ['math', 'contract', 'linear', 'models', 'integrators', 'simulation', 'experiments'];
+const published = 'results/peers_published.csv'; // its column cited_as
 const bibliography = 'docs/templates/references.txt';
 const year = '(?:1[6-9]|20)\\d\\d';
 
@@ -31,6 +33,13 @@ function cited(path, text) {
   const sources = of(/\bsource = "([^"]+)"/g);
   const lines = path.endsWith('catalogue.cpp') ? of(new RegExp(`"([A-Z][^"]*\\b${year}\\b[^"]*)"`, 'g')) : [];
   return [...brackets, ...sources, ...lines].flatMap((all) => all.split(';'));
+}
+
+// What the published figures of other simulators cite.
+function cited_by_figures(root) {
+  const { columns, rows } = parse_csv(readFileSync(join(root, published), 'utf8'), published);
+  const at = columns.findIndex(({ name }) => name === 'cited_as');
+  return rows.map((row) => row[at] ?? '');
 }
 
 // "Bergou et al. 2008, 2010, eq. 3" -> two of {authors, year, place}; none where it has no
@@ -67,8 +76,12 @@ export function match(cited_keys, known) {
 
 export function list(_, root) {
   const all = new Map();
-  for (const path of files(root)) {
-    for (const text of cited(path, readFileSync(join(root, path), 'utf8'))) {
+  const places = [
+    ...files(root).map((path) => [path, cited(path, readFileSync(join(root, path), 'utf8'))]),
+    [published, cited_by_figures(root)],
+  ];
+  for (const [path, texts] of places) {
+    for (const text of texts) {
       for (const { authors, year: when } of citations(text)) {
         const key = `${surname(authors)} ${when}`;
         const entry = all.get(key) ?? { authors, when, where: new Set() };

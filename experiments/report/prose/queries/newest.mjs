@@ -1,0 +1,215 @@
+// What position-based dynamics, block descent and other simulators are worth on hair.
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { family_runs, newest } from '../../figures/newest_methods.mjs';
+import { distinct, group_by, is_number, minimum_by, succeeded } from '../../src/tables.mjs';
+import { must, number, ok_rows, percent, range, rows_of, table, time } from '../markdown.mjs';
+
+const code = (names) => names.map((name) => `\`${name}\``).join(', ');
+
+const levels = { total: [0.2, 0.05, 0.01], time: [0.01, 0.001] };
+
+// By family: the cheapest run within each error, and the least error.
+function levels_table(tables, kind) {
+  const families = [...group_by(family_runs(tables, kind), (run) => run.family)];
+  const cheapest = (runs, error) =>
+    minimum_by(
+      runs.filter((run) => run.error <= error),
+      (run) => run.wall_s,
+    );
+  const rows = families.map(([family, runs]) => {
+    const best = minimum_by(runs, (run) => run.error);
+    return [
+      family,
+      ...levels[kind].map((error) => {
+        const run = cheapest(runs, error);
+        return run === undefined ? 'never' : time(run.wall_s);
+      }),
+      runs[0].loose ? '' : `${percent(best.error)} in ${time(best.wall_s)} (${best.how})`,
+    ];
+  });
+  return table(
+    ['family', ...levels[kind].map((error) => `within ${percent(error)}`), 'least error'],
+    rows,
+  );
+}
+
+export const total_table = (tables) => levels_table(tables, 'total');
+export const time_table = (tables) => levels_table(tables, 'time');
+
+// "block_descent.csv on A, work_precision.csv on B".
+export const machines = (_, root) =>
+  ['work_precision', 'block_descent']
+    .map((name) => {
+      const text = readFileSync(join(root, 'results', `${name}.meta.json`), 'utf8');
+      return `\`${name}.csv\` on ${JSON.parse(text).machine.cpu}`;
+    })
+    .join(', ');
+
+export function peers_run({ peers }) {
+  if (peers === undefined)
+    return 'The table `results/peers.csv` of a run beside other simulators is not there; `./tress peers` makes it.';
+  const kept = peers.filter(succeeded);
+  const names = distinct(kept.map((row) => row.peer)).join(', ');
+  return `Of the ${peers.length} runs in \`results/peers.csv\`, ${kept.length} came to their end (${names}).`;
+}
+
+// Sweeps lead to the solution of the step, whose own error stays.
+export function step_is_the_limit(tables) {
+  const near = ok_rows(tables, 'block_descent', { integrator: 'vbd_augmented' }).filter(
+    (row) => row.direct_distance_rel <= 1e-3,
+  );
+  must(
+    near.length > 0 &&
+      near.every((row) => Math.abs(row.error_rel / row.direct_error_rel - 1) < 0.05),
+    'what sweeps converge to is as far off the rod as the direct step',
+  );
+  const ends = [...group_by(near, (row) => row.dt_s)]
+    .map(([dt_s, rows]) => `${percent(rows[0].direct_error_rel)} at steps of ${time(dt_s)}`)
+    .join(', ');
+  return (
+    'Sweeps buy the solution of the step, not of the rod: where `vbd_augmented` has reached the direct step of ' +
+    `backward Euler, both are off by ${ends}`
+  );
+}
+
+// ---- free flight
+
+const flights = (tables) =>
+  rows_of(tables, 'validation', { test: 'free_flight' }).filter((row) => is_number(row.dt_s));
+
+const beside = ['backward_euler', 'bdf2', 'implicit_midpoint'];
+
+// Models on which a newest method has flown, and all of its methods worth comparing.
+function compared(tables) {
+  const rows = flights(tables);
+  const models = distinct(
+    rows.filter((row) => newest.includes(row.integrator)).map((row) => row.model),
+  );
+  return rows.filter(
+    (row) => models.includes(row.model) && [...beside, ...newest].includes(row.integrator),
+  );
+}
+
+const signed = (x) => `${x > 0 ? '+' : ''}${percent(x)}`;
+
+export function flight_table(tables) {
+  const rows = compared(tables);
+  const steps = distinct(rows.map((row) => row.dt_s)).sort((a, b) => b - a);
+  const shown = (row) =>
+    row === undefined
+      ? ''
+      : succeeded(row)
+        ? `${signed(row.energy_change_rel)}, ${percent(row.angular_error_rel)}`
+        : 'comes apart';
+  const lines = [...beside, ...newest].flatMap((integrator) =>
+    [
+      ...group_by(
+        rows.filter((row) => row.integrator === integrator),
+        (row) => row.model,
+      ),
+    ].map(([model, members]) => [
+      `\`${integrator}\``,
+      `\`${model}\``,
+      ...steps.map((dt_s) => shown(members.find((row) => row.dt_s === dt_s))),
+    ]),
+  );
+  return table(['integrator', 'model', ...steps.map((dt_s) => `at ${time(dt_s)}`)], lines);
+}
+
+const listed_missing = (there, what) => {
+  const missing = newest.filter((name) => !there.includes(name));
+  return missing.length === 0 ? '' : `The table holds no ${what} of ${code(missing)} yet.`;
+};
+
+export const flight_missing = (tables) =>
+  listed_missing(distinct(flights(tables).map((row) => row.integrator)), 'flight');
+
+// The order of the step, both solved to the end.
+export function order_in_flight(tables) {
+  const rows = compared(tables).filter(succeeded);
+  const longest = Math.max(...rows.map((row) => row.dt_s));
+  const losses = (integrator) =>
+    rows
+      .filter((row) => row.integrator === integrator && row.dt_s === longest)
+      .map((row) => Math.abs(row.energy_change_rel));
+  const [first, second] = [losses('backward_euler'), losses('bdf2')];
+  must(
+    first.length > 0 &&
+      second.length > 0 &&
+      Math.min(...first) > 5 * Math.max(...second),
+    'a step of second order loses less than a fifth of the energy',
+  );
+  return (
+    `The order of the step caps what sweeps can reach: solved to the end, \`backward_euler\` loses ${range(first, percent)} of the ` +
+    `energy at ${time(longest)}, \`bdf2\` ${range(second, percent)}`
+  );
+}
+
+// ---- stable is not accurate
+
+export function map_counts(tables) {
+  const rows = rows_of(tables, 'block_descent', { part: 'rods', scene: 'swing' });
+  const stiffest = Math.max(...rows.map((row) => row.stretch_over_bending));
+  const hair = rows.filter((row) => row.stretch_over_bending === stiffest);
+  const errors = rows.filter(succeeded).map((row) => row.error_rel);
+  return (
+    `${errors.length} of the ${rows.length} runs of \`stable_cosserat_rods\` on the hair come to their end, ` +
+    `${errors.filter((error) => error <= 0.01).length} within 1 % of the rod. With the stretch of a hair ` +
+    `(${hair.length} runs) they are off by ${range(hair.filter(succeeded).map((row) => row.error_rel), percent)}`
+  );
+}
+
+// What is accurate of what is stable, at the longest step of each integrator.
+export function survived_table(tables) {
+  const rows = rows_of(tables, 'hard_cases').filter((row) => row.outcome?.startsWith('stable'));
+  const lines = [...group_by(rows, (row) => row.integrator)].map(([integrator, all]) => {
+    const longest = Math.max(...all.map((row) => row.dt_s));
+    const members = all.filter((row) => row.dt_s === longest);
+    const accurate = members.filter((row) => row.outcome === 'stable and accurate').length;
+    return [`\`${integrator}\``, time(longest), members.length, accurate, percent(accurate / members.length)];
+  });
+  return table(['integrator', 'longest step', 'stable', 'of these accurate', 'share'], lines);
+}
+
+export const survived_missing = (tables) =>
+  listed_missing(distinct(rows_of(tables, 'hard_cases').map((row) => row.integrator)), 'hard case');
+
+export const energy_cases = (tables) =>
+  String(
+    distinct(
+      rows_of(tables, 'hard_cases')
+        .filter((row) => String(row.measure_name).includes('energy'))
+        .map((row) => row.case),
+    ).length,
+  );
+
+// ---- published figures
+
+const source = ({ source: text, address, cited_as: cited }) =>
+  `[${text}](${address})${cited ? `; ${cited}` : ''}`;
+
+export const published_table = (tables) =>
+  table(
+    ['code', 'simulated', 'hardware', 'figure', 'measured', 'not measured', 'source', 'found there'],
+    rows_of(tables, 'peers_published').map((row) => [
+      row.name,
+      row.simulated,
+      row.hardware || 'not said',
+      [row.figure, row.unit].filter(Boolean).join(' ') || 'none there',
+      row.measured,
+      row.not_measured,
+      source(row),
+      row.checked,
+    ]),
+  );
+
+// No published figure is an error of a motion: it would be a row to compare with.
+export function published_errors(tables) {
+  const rows = rows_of(tables, 'peers_published').filter((row) => row.figure);
+  must(
+    rows.every((row) => !/error/.test(row.measured ?? '')),
+    'none of the published figures says how wrong the motion is',
+  );
+  return `None of these ${rows.length} figures says how wrong the motion is`;
+}
