@@ -193,10 +193,12 @@ std::optional<BestRuns> Finalists::of(double target) {
   const auto integrator = [&](const Method& method) {
     return method.integrator == won.integrator;
   };
+  const auto same = [&](const Method& method, auto... choices) {
+    return ((method.*choices == won.*choices) && ...);
+  };
   const auto control = [&](const Method& method) {
-    return method.by_tolerance == won.by_tolerance &&
-           method.extrapolated == won.extrapolated && method.refresh == won.refresh &&
-           method.cut_at_rest == won.cut_at_rest;
+    return same(method, &Method::by_tolerance, &Method::extrapolated, &Method::refresh,
+                &Method::cut_at_rest);
   };
   BestRuns best{*winner, {}, {}};
   const auto add = [&](std::string_view choice, const auto& other) {
@@ -214,33 +216,18 @@ std::optional<BestRuns> Finalists::of(double target) {
       });
     });
   }
-  const auto has = [&](const auto& other) {
-    return std::ranges::any_of(methods_, [&](const Method& method) {
-      return integrator(method) && other(method);
-    });
+  // Another value of a choice, and the winner's of those to be kept.
+  const auto replace = [&](std::string_view choice, auto changed, auto... kept) {
+    const auto other = [=](const Method& method) {
+      return integrator(method) && !same(method, changed) && same(method, kept...);
+    };
+    if (std::ranges::none_of(methods_, other)) return;
+    add(choice, [=](const Method& method) { return model(method) && other(method); });
   };
-  const auto replace = [&](std::string_view choice, const auto& other) {
-    if (!has(other)) return;
-    add(choice, [&](const Method& method) {
-      return model(method) && integrator(method) && other(method);
-    });
-  };
-  replace("tolerance", [&](const Method& method) {
-    return method.by_tolerance != won.by_tolerance &&
-           method.extrapolated == won.extrapolated;
-  });
-  replace("extrapolated", [&](const Method& method) {
-    return method.extrapolated != won.extrapolated &&
-           method.by_tolerance == won.by_tolerance;
-  });
-  replace("refresh", [&](const Method& method) {
-    return method.refresh != won.refresh && method.by_tolerance == won.by_tolerance;
-  });
-  replace("cuts", [&](const Method& method) {
-    return method.cut_at_rest != won.cut_at_rest &&
-           method.by_tolerance == won.by_tolerance &&
-           method.extrapolated == won.extrapolated;
-  });
+  replace("tolerance", &Method::by_tolerance, &Method::extrapolated);
+  replace("extrapolated", &Method::extrapolated, &Method::by_tolerance);
+  replace("refresh", &Method::refresh, &Method::by_tolerance);
+  replace("cuts", &Method::cut_at_rest, &Method::by_tolerance, &Method::extrapolated);
   best.without.emplace_back("elements", twice_the_elements(*winner, target));
   best.without.emplace_back("dt_s", half_the_step(*winner, target));
   best.runner_up = settled(target, [&](const Trial& run) {

@@ -23,10 +23,6 @@ constexpr double long_enough = 0.01;  // s
 /// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
 
-/// By tolerance: steps of a frame beyond which a run has lost its way, as some do where
-/// the tolerance is loose and the next solution far.
-constexpr long most_steps_of_a_frame = 2000;
-
 }  // namespace
 
 WallTime wall_time(const std::vector<double>& seconds) {
@@ -41,7 +37,9 @@ WallTime wall_time(const std::vector<double>& seconds) {
 Scene SceneMeasure::scene(const Method& method, int elements, int substeps) const {
   Scene run = compared(trial_scene(given_, method, elements, substeps, comparison_.rate),
                        comparison_);
-  if (method.by_tolerance) run.options.max_steps = most_steps_of_a_frame;
+  // A tolerance does not say how many steps a run takes: less_implicit tangents need
+  // short ones, and where the next solution is far some methods find no way.
+  if (method.by_tolerance) run.options.max_steps = std::max(1L, longest_run_ / elements);
   return run;
 }
 

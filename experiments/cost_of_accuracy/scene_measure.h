@@ -46,15 +46,17 @@ WallTime wall_time(const std::vector<double>& seconds);
 /// times of stepping on one thread, the least of several runs.
 ///
 /// A run is abandoned by its count of Newton iterations, so that the result does not
-/// depend on the machine, and only in an emergency after `most_s`.
+/// depend on the machine, by tolerance also by its steps of a frame, `longest_run` over
+/// its elements, and only in an emergency after `most_s`.
 class SceneMeasure {
  public:
   SceneMeasure(const Scene& given, const Comparison& comparison,
-               std::vector<double> reference, ChangedTips changed = {})
+               std::vector<double> reference, ChangedTips changed, long longest_run)
       : given_(given),
         comparison_(comparison),
         reference_(std::move(reference)),
-        changed_(std::move(changed)) {}
+        changed_(std::move(changed)),
+        longest_run_(longest_run) {}
 
   /// One run, repeated a few times if it is short. Empty where the method cannot
   /// represent the scene, fails, or is abandoned.
@@ -88,6 +90,7 @@ class SceneMeasure {
   Comparison comparison_;
   std::vector<double> reference_;
   ChangedTips changed_;
+  long longest_run_;
 };
 
 }  // namespace tress::experiments::cost_of_accuracy

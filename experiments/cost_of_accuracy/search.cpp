@@ -138,6 +138,11 @@ double Search::expected_s(std::size_t method, int elements, int substeps) const 
          (static_cast<double>(substeps) / near->substeps);
 }
 
+/// Beyond it a run is longer than the longest that is tried.
+int Search::most_substeps(std::size_t method, int elements) const {
+  return static_cast<int>(plan_.longest_run * unit(method) / elements);
+}
+
 void Search::climb(std::size_t method) {
   const auto& ladder = plan_.substeps;
   const double tightest = plan_.targets.back(), loosest = plan_.targets.front();
@@ -150,7 +155,7 @@ void Search::climb(std::size_t method) {
     std::size_t at = begin;
     for (; at < ladder.size(); ++at) {
       const int substeps = ladder[at] * unit(method);
-      if (static_cast<long>(elements) * ladder[at] > plan_.longest_run) break;
+      if (substeps > most_substeps(method, elements)) break;
       // Longer than any run that could still keep the method.
       const Trial* best = robust(tightest);
       const double most_s = best == nullptr ? never : plan_.slack * best->wall_s;
@@ -221,8 +226,7 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
   const auto meets = [target](const Trial* run) {
     return run != nullptr && run->judged() <= target;
   };
-  most = std::min(
-      most, static_cast<int>(plan_.longest_run * unit(method) / std::max(1, elements)));
+  most = std::min(most, most_substeps(method, elements));
   if (most < 1) return nullptr;
   // Bracket: `few` fails, `enough` succeeds.
   int few = 0, enough = std::clamp(guess, 1, most);

@@ -102,6 +102,7 @@ class Search {
     int elements, substeps;
     auto operator<=>(const Place&) const = default;
   };
+  int most_substeps(std::size_t method, int elements) const;
   double expected_s(std::size_t method, int elements, int substeps) const;
   double neighbour_error(const Trial& run, Neighbour which);
   bool stopped();

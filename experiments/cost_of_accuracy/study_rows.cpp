@@ -50,7 +50,8 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
 }
 
 SceneMeasure measure_of(const Study& study) {
-  return {study.given, study.comparison, study.reference.tips.tip, study.changed};
+  return {study.given, study.comparison, study.reference.tips.tip, study.changed,
+          study.plan.longest_run};
 }
 
 void add_target(const Study& study, Finalists& finalists, double target,

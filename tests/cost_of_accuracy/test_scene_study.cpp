@@ -250,7 +250,7 @@ TEST(Extrapolation, LeavesAFractionOfTheSpaceError) {
   const int fine = fineness_of(method, 1e-6);
   const Scene reference =
       compared(trial_scene(given, method, 128, fine, compare.rate), compare);
-  const SceneMeasure measure(given, compare, tip_paths(reference, 0).x);
+  const SceneMeasure measure(given, compare, tip_paths(reference, 0).x, {}, 1'000'000);
   const auto error = [&](int elements) {
     return measure.quick(method, elements, fine, 100).value().error;
   };
