@@ -12,11 +12,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/tip_track.h"
+#include "experiments/peers/continuous_rod.h"
 #include "experiments/peers/peer.h"
-#include "experiments/problems/strand_models.h"
-#include "experiments/problems/strand_reference.h"
-#include "experiments/problems/strand_scenes.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/message.h"
 #include "experiments/run/settings.h"
@@ -59,11 +56,7 @@ constexpr Parameter settings[] = {
      .choices = "all|simbody|bullet|mujoco|ode|mujoco_3"},
 };
 
-constexpr double sample = 0.02;  // s between looks at the tip, and the largest step
-constexpr int samples = 100;
 constexpr double same_scene_until = 0.5;  // s; later, small differences have grown
-
-using Track = std::vector<Vec>;  // of the tip, mm
 
 struct Run {
   Track track;
@@ -119,32 +112,8 @@ Track read_track(std::string_view text) {
   return track;
 }
 
-/// The continuous rod, by our own models.
-TipReference rod() {
-  const MakeStrand make = [](std::string_view model, int elements) {
-    const ModelEntry& entry = find_model(model);
-    Parameters p(setup_parameters(entry), fmt::format("model {}", model));
-    set_known(p, find_strand_scene("swing").settings);
-    set_known(p, {{"modes", "bend"}, {"tangent", "stiff"}});
-    p.set("elements", std::to_string(elements));
-    return entry.make(p);
-  };
-  return converged_rod(make, {samples * sample, samples, 1e-3 * Swing::length});
-}
-
-/// Of a track seen from the clamp, over the length.
-double distance_from(const TipReference& rod, const Track& track) {
-  std::vector<double> tips;  // m
-  for (std::size_t i = 0; i < track.size(); ++i) {
-    const double t = sample * static_cast<double>(i + 1);
-    const Vec tip = 1e-3 * (track[i] + Vec{0, Swing::clamp(t), 0});
-    tips.insert(tips.end(), {tip.x, tip.y, tip.z});
-  }
-  return tip_error(tips, rod.tip, 1e-3 * Swing::length);
-}
-
 void measure(const Method& method, const Swing& swing, int steps_per_sample, int repeat,
-             const TipReference& rod, Row& row) {
+             const ContinuousRod& rod, Row& row) {
   constexpr double long_run = 0.2;  // s; beyond it one interruption is a small part
   const int steps = samples * steps_per_sample;
   Run run = simulate(method, swing, steps_per_sample);
@@ -163,7 +132,7 @@ void measure(const Method& method, const Swing& swing, int steps_per_sample, int
     return;
   }
   row.set("wall_s", median(walls)).set("us_per_step", 1e6 * median(walls) / steps);
-  row.set("total_error_rel", distance_from(rod, run.track));
+  row.set("total_error_rel", rod.distance(run.track));
   row.set("tip_um", text(run.track));
 }
 
@@ -181,10 +150,10 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   std::vector<int> elements = line.elements;
   if (elements.empty()) elements = line.full ? std::vector{5, 20, 80} : std::vector{20};
-  std::shared_ptr<const TipReference> continuous;
+  std::shared_ptr<const ContinuousRod> continuous;
   if (!line.dry_run) {
     tell("peers: the continuous rod\n");
-    continuous = std::make_shared<const TipReference>(rod());
+    continuous = std::make_shared<const ContinuousRod>();
   }
   std::vector<Case> all;
   for (const Engine& engine : peers::engines()) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/compliance_form.h"
 #include "linear/skyline.h"
 
 namespace tress::integrators {

@@ -37,10 +37,8 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   };
 
   DerModel(const HeadOptions& options, const HeadUnits& units, Instructions instructions)
-      : Base(options.elements),
+      : Base(options),
         instructions_(instructions),
-        drag_(options.drag),
-        mass_damping_(options.mass_damping),
         turning_(options.rotary_inertia),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -48,23 +46,14 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   /// In the state in which models/maximal/der.cpp starts.
   void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
                 int lane, Strand& to, Element* elements, Real* q, Real* v) const {
+    Base::describe_edges(strand, centre, units, lane, to);
     const Segment& first = strand.segments.front();
-    const double l = units.length, tau = units.time, unit_mass = units.density * l;
-    const double density = strand.material.density * first.section.area();
-    set_lane(to.root.from, lane, (1 / l) * (strand.root.position - centre));
-    set_lane(to.root.frame, lane, strand.root.frame);
+    const double l = units.length, tau = units.time;
     DerMaterial<Real>& m = to.material;
-    set_lane(m.length, lane, first.length / l);
-    set_lane(m.mass, lane, density * first.length / unit_mass);
-    set_lane(m.drag, lane,
-             (drag_ + mass_damping_ * density) * first.length * tau / unit_mass);
     set_lane(m.inertia, lane,
              turning_ ? strand.material.density * first.section.polar() * first.length /
-                            (unit_mass * l * l)
+                            (units.mass() * l * l)
                       : 0);
-    set_lane(m.stretch, lane,
-             strand.material.youngs_modulus * first.section.area() / first.length * tau *
-                 tau / unit_mass);
     const double moment = units.stiffness() / l;
     set_lane(m.stiffness, lane,
              1 / (first.length * moment) * stiffness(strand.material, first.section));
@@ -128,13 +117,9 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     return kernel_.energies(strand.material, elements, clamp(strand, pose),
                             Base::root_at(strand, pose.frame), q, v);
   }
-  double mass(const Strand& strand, int lane) const {
-    return static_cast<double>(elements()) * lane_of(strand.material.mass, lane);
-  }
 
  private:
   Instructions instructions_;
-  double drag_, mass_damping_;
   bool turning_;
   Kernel kernel_;
 };

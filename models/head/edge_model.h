@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "models/head/head.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
 #include "models/motion/root_motion.h"
@@ -19,7 +20,33 @@ class EdgeModel {
   using V = Vec3<Real>;
   using Clamp = LaneClamp<Real>;
 
-  explicit EdgeModel(int edges) : n_(static_cast<std::size_t>(edges)) {}
+  explicit EdgeModel(const HeadOptions& options)
+      : n_(static_cast<std::size_t>(options.elements)),
+        drag_(options.drag),
+        mass_damping_(options.mass_damping) {}
+
+  /// A strand's root and the numbers of an edge that its Material has in any model: its
+  /// length, mass, drag on velocities, and stiffness E A/l against stretch.
+  template <class Strand>
+  void describe_edges(const models::Strand& strand, const Vec& centre,
+                      const HeadUnits& units, int lane, Strand& to) const {
+    const Segment& first = strand.segments.front();
+    const double l = units.length, tau = units.time, unit_mass = units.mass();
+    const double density = strand.material.density * first.section.area();
+    set_lane(to.root.from, lane, (1 / l) * (strand.root.position - centre));
+    set_lane(to.root.frame, lane, strand.root.frame);
+    set_lane(to.material.length, lane, first.length / l);
+    set_lane(to.material.mass, lane, density * first.length / unit_mass);
+    set_lane(to.material.drag, lane,
+             (drag_ + mass_damping_ * density) * first.length * tau / unit_mass);
+    set_lane(to.material.stretch, lane,
+             strand.material.youngs_modulus * first.section.area() / first.length * tau *
+                 tau / unit_mass);
+  }
+  template <class Strand>
+  double mass(const Strand& strand, int lane) const {
+    return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
+  }
 
   std::size_t elements() const { return n_; }
   std::size_t unknowns() const { return per_element * n_; }
@@ -74,6 +101,7 @@ class EdgeModel {
   static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
 
   std::size_t n_;
+  double drag_, mass_damping_;  // kg/(m s), 1/s
 };
 
 }  // namespace tress::models

@@ -39,29 +39,18 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
 
   SpringModel(const HeadOptions& options, const HeadUnits& units,
               Instructions instructions)
-      : Base(options.elements),
+      : Base(options),
         instructions_(instructions),
-        drag_(options.drag),
-        mass_damping_(options.mass_damping),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
 
   /// In the state in which models/maximal/mass_spring.cpp starts.
   void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
                 int lane, Strand& to, Element* elements, Real* q, Real* v) const {
+    Base::describe_edges(strand, centre, units, lane, to);
     const Segment& first = strand.segments.front();
-    const double l = units.length, tau = units.time, unit_mass = units.density * l;
-    const double density = strand.material.density * first.section.area();
-    set_lane(to.root.from, lane, (1 / l) * (strand.root.position - centre));
-    set_lane(to.root.frame, lane, strand.root.frame);
+    const double l = units.length, tau = units.time;
     SpringMaterial<Real>& m = to.material;
-    set_lane(m.length, lane, first.length / l);
-    set_lane(m.mass, lane, density * first.length / unit_mass);
-    set_lane(m.drag, lane,
-             (drag_ + mass_damping_ * density) * first.length * tau / unit_mass);
-    set_lane(m.stretch, lane,
-             strand.material.youngs_modulus * first.section.area() / first.length * tau *
-                 tau / unit_mass);
     const double moment = first.length * units.stiffness() / l;
     const Vec bending = stiffness(strand.material, first.section);
     set_lane(m.bending, lane, (bending.y + bending.z) / (2 * moment));
@@ -118,13 +107,9 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
     return kernel_.energies(strand.material, elements, clamp(strand, pose),
                             Base::root_at(strand, pose.frame), q, v);
   }
-  double mass(const Strand& strand, int lane) const {
-    return static_cast<double>(this->elements()) * lane_of(strand.material.mass, lane);
-  }
 
  private:
   Instructions instructions_;
-  double drag_, mass_damping_;
   Kernel kernel_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contract/compliance_form.h"
 #include "contract/natural_strains.h"
 #include "models/maximal/groups.h"
 #include "models/motion/root_motion.h"

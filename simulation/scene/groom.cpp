@@ -6,9 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contract/constants.h"
 #include "contract/input_error.h"
-#include "models/strand/needed_elements.h"
 #include "simulation/groom/cap.h"
 #include "simulation/groom/frames.h"
 #include "simulation/groom/random.h"
@@ -168,10 +166,7 @@ double detail(const Table& table) {
     throw InputError("guides of several numbers of elements", table.place("guides"),
                      "leave out guides, or the tolerance");
   }
-  if (table.values().number("grading") != 1) {
-    throw InputError("grading beside a tolerance", table.place("grading"),
-                     "leave out one of them");
-  }
+  refuse_grading(table, "a tolerance");
   return tolerance;
 }
 
@@ -221,13 +216,8 @@ Groom::Groom(const Table& table, const Table* own_material, const Common& common
       tolerance_(detail(table)) {}
 
 int Groom::elements(double length, const Shape& natural, const Frame& root) const {
-  const int most = table_.values().whole("elements");
-  if (tolerance_ == 0) return most;
-  const Vec stiff = models::stiffness(material_.material, material_.section);
-  return models::elements_for(
-      {length, earth_gravity * material_.material.density * material_.section.area(),
-       std::min(stiff.y, stiff.z), root.e0, natural},
-      tolerance_, most);
+  if (tolerance_ == 0) return table_.values().whole("elements");
+  return needed_elements(table_, material_, length, natural, root.e0, tolerance_);
 }
 
 Strand Groom::strand(std::size_t i, std::uint64_t stream) const {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string_view>
 
+#include "contract/constants.h"
 #include "models/strand/material.h"
 #include "simulation/scene/table.h"
 
@@ -13,6 +14,10 @@ struct StrandMaterial {
   Material material;
   CrossSection section;
   double curl_radius = 0, curl_pitch = 0;  // of the helix at rest, m; radius 0: straight
+
+  double weight() const {  // N/m
+    return earth_gravity * material.density * section.area();
+  }
 };
 
 std::span<const Parameter> material_table_parameters();

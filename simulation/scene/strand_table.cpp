@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "contract/constants.h"
 #include "contract/input_error.h"
 #include "models/cut/graded_cut.h"
 #include "models/strand/needed_elements.h"
@@ -83,6 +82,11 @@ Vec normal(const Table& table, const Vec& tangent) {
                    "give a normal in another direction");
 }
 
+/// What the table says, or `otherwise`.
+Shape initial_shape(const Table& table, const Shape& otherwise) {
+  return table.values().word("initial") == "straight" ? uniform_shape({}) : otherwise;
+}
+
 void check_winding(const Strand& strand, const Table& table) {
   for (const Segment& segment : strand.segments) {
     const Vec& darboux = segment.natural;
@@ -108,8 +112,9 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
       elements = std::min(most, elements + std::max(1, elements / 4));
       cut = graded_cut(rod, elements);
     }
-    return cut_into(rod, cut.lengths,
-                    p.word("initial") == "straight" ? uniform_shape({}) : Shape{});
+    Strand strand = cut_into(rod, cut.lengths, initial_shape(table, {}));
+    check_winding(strand, table);
+    return strand;
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
@@ -121,31 +126,23 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
 Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape& natural,
                  const Frame& frame, bool clamped) {
   const Parameters& p = table.values();
-  const double weight =
-      earth_gravity * material.material.density * material.section.area();
   const double length = p.number("length_m"), tolerance = p.number("tolerance_m");
-  const bool rest = p.word("cuts") == "rest";
-  const auto refuse_if = [&table](bool bad, const char* problem, const char* key) {
-    if (bad) throw InputError(problem, table.place(key), "leave out one of them");
-  };
-  refuse_if(rest && !clamped, "no rest of a strand that nothing holds", "cuts");
-  refuse_if(rest && p.number("grading") != 1, "grading beside cuts = \"rest\"",
-            "grading");
-  refuse_if(tolerance > 0 && p.number("grading") != 1, "grading beside a tolerance",
-            "grading");
-  if (rest) {
-    Strand strand = cut_at_rest(
-        table,
-        {material.material, material.section, length, natural, frame, {0, 0, -weight}});
-    check_winding(strand, table);
-    return strand;
+  if (p.word("cuts") == "rest") {
+    refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("cuts"),
+              "leave out one of them");
+    refuse_grading(table, "cuts = \"rest\"");
+    return cut_at_rest(table, {material.material,
+                               material.section,
+                               length,
+                               natural,
+                               frame,
+                               {0, 0, -material.weight()}});
   }
   if (tolerance == 0) return cut_strand(table, material, length, natural);
-  const Vec stiff = models::stiffness(material.material, material.section);
-  return cut_strand(table, material, length, natural, {},
-                    models::elements_for(
-                        {length, weight, std::min(stiff.y, stiff.z), frame.e0, natural},
-                        tolerance, p.whole("elements")));
+  refuse_grading(table, "a tolerance");
+  return cut_strand(
+      table, material, length, natural, {},
+      needed_elements(table, material, length, natural, frame.e0, tolerance));
 }
 
 }  // namespace
@@ -175,9 +172,8 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
   const Parameters& p = table.values();
   const Discretisation cut{elements > 0 ? elements : p.whole("elements"), length,
                            p.number("grading")};
-  const bool straight = p.word("initial") == "straight";
   Strand strand = make_strand(material.material, material.section, cut, natural,
-                              straight ? uniform_shape({}) : initial);
+                              initial_shape(table, initial));
   check_winding(strand, table);
   return strand;
 }
@@ -214,6 +210,19 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
                 frame, !common.free_root);
   set_root(strand, common.head, common.free_root, p.vec("position_m"), frame);
   return strand;
+}
+
+int needed_elements(const Table& table, const StrandMaterial& material, double length,
+                    const Shape& natural, const Vec& tangent, double tolerance) {
+  const Vec stiff = models::stiffness(material.material, material.section);
+  return models::elements_for(
+      {length, material.weight(), std::min(stiff.y, stiff.z), tangent, natural},
+      tolerance, table.values().whole("elements"));
+}
+
+void refuse_grading(const Table& table, const std::string& beside) {
+  refuse_if(table.values().number("grading") != 1, "grading beside " + beside,
+            table.place("grading"), "leave out one of them");
 }
 
 }  // namespace tress::simulation

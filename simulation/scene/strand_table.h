@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "models/strand/strand.h"
@@ -35,5 +36,13 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
 /// that initial one; empty: the natural one. `elements`: other than the table's.
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
                   const Shape& natural, const Shape& initial = {}, int elements = 0);
+
+/// As few elements of equal length, up to the table's, as the shape at rest needs to be
+/// within `tolerance` (m); `tangent`: at the root.
+int needed_elements(const Table& table, const StrandMaterial& material, double length,
+                    const Shape& natural, const Vec& tangent, double tolerance);
+
+/// Lengths by grading beside what says them too.
+void refuse_grading(const Table& table, const std::string& beside);
 
 }  // namespace tress::simulation

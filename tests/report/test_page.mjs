@@ -38,10 +38,7 @@ before(async () => {
   directory = fixture_directory();
   assert.equal(run_page(directory).status, 0);
   page = `file://${join(directory, 'report.html')}`;
-  browser = await Browser.start({
-    driver: process.env.CHROMEDRIVER,
-    binary: process.env.CHROMIUM,
-  });
+  browser = await Browser.start();
 });
 
 after(async () => {

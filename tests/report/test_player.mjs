@@ -54,10 +54,7 @@ before(async () => {
   write_scene('fibre', [line], { radius_m: [2.5e-3] });
   assert.equal(run_page(directory).status, 0);
   url = `file://${join(directory, 'report.html')}`;
-  browser = await Browser.start({
-    driver: process.env.CHROMEDRIVER,
-    binary: process.env.CHROMIUM,
-  });
+  browser = await Browser.start();
 });
 
 after(async () => {

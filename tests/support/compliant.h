@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/compliance_form.h"
 #include "integrators/integrator_options.h"
 #include "simulation/run/simulation.h"
 #include "tests/support/drive.h"

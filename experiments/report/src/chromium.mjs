@@ -19,8 +19,8 @@ const element_key = 'element-6066-11e4-a52e-4f735466cecf';
 
 export class Browser {
   static async start({
-    driver = 'chromedriver',
-    binary = '/usr/bin/chromium',
+    driver = process.env.CHROMEDRIVER ?? 'chromedriver',
+    binary = process.env.CHROMIUM ?? '/usr/bin/chromium',
     dark = false,
   } = {}) {
     const browser = new Browser();

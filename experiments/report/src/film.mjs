@@ -246,11 +246,7 @@ async function film(options) {
   let browser;
   try {
     const page = page_of(options.source, folder);
-    browser = await Browser.start({
-      driver: process.env.CHROMEDRIVER,
-      binary: process.env.CHROMIUM,
-      dark: options.dark,
-    });
+    browser = await Browser.start({ dark: options.dark });
     const address = options.address.replace(/^#/, '');
     const parts = new URLSearchParams(address);
     const scene = parts.get('scene') ?? '';
