@@ -1,0 +1,64 @@
+// What elements gain that are divided anew while a strand moves.
+import { number, percent, range, rows_of, table } from '../markdown.mjs';
+
+const worthwhile = 1.5;
+
+const rows = (tables, part) =>
+  rows_of(tables, 'regrading').filter(
+    (row) => row.part === part && row.status === 'ok',
+  );
+const shown = (tables) =>
+  rows(tables, 'elements').filter((row) => row.gain > 0);
+
+const ratio = (x) => (x > 0 ? number(x, 3) : '');
+
+export const gains = (tables) => {
+  const limits = rows(tables, 'limit').map((row) => [
+    row.scene.replaceAll('_', ' '),
+    'many elements',
+    '',
+    '',
+    ratio(row.gain),
+    ratio(row.gain_following),
+  ]);
+  const measured = shown(tables).map((row) => [
+    row.scene.replaceAll('_', ' '),
+    percent(row.target_rel),
+    number(row.elements_fixed, 3),
+    row.fixed_cuts,
+    ratio(row.gain),
+    ratio(row.gain_following),
+  ]);
+  return table(
+    ['scene', 'distance', 'fixed elements', 'their cut', 'anew', 'following'],
+    [...measured, ...limits].sort((a, b) => (a[0] < b[0] ? -1 : a[0] > b[0] ? 1 : 0)),
+  );
+};
+
+const reached = (all, column) => {
+  const many = all.filter((row) => row[column] >= worthwhile).length;
+  const most = Math.max(...all.map((row) => Number(row[column])));
+  return `${many} of ${all.length} reach ${worthwhile}; the largest is ${number(most, 3)}.`;
+};
+
+export const worth_anew = (tables) => reached(shown(tables), 'gain');
+export const worth_following = (tables) => reached(shown(tables), 'gain_following');
+const between = (tables, column) =>
+  range(shown(tables).map((row) => Number(row[column])), (x) => number(x, 3));
+export const always_anew = (tables) => between(tables, 'gain_always');
+export const always_following = (tables) => between(tables, 'gain_following_always');
+
+export const verdict = (tables) => {
+  const anew = [...shown(tables), ...rows(tables, 'limit')].filter(
+    (row) => row.gain >= worthwhile,
+  ).length;
+  const following = shown(tables).filter((row) => row.gain_following >= worthwhile).length;
+  const always = shown(tables).filter(
+    (row) => row.gain_following_always >= worthwhile,
+  ).length;
+  return (
+    `Cuts that move gain ${worthwhile} times in ${anew} cases; numbers that follow gain it in ` +
+    `${following} of ${shown(tables).length} by the error that all tables here use, the rms over a run, ` +
+    `and in ${always} where the worst instant counts`
+  );
+};
