@@ -294,7 +294,7 @@ std::vector<double> turning(const SpaceCurve& curve) {
 
 int elements_by_turning(double turning, double tolerance) {
   constexpr double most = 1e6;
-  const double n = std::ceil(turning * std::sqrt(0.02 / tolerance));
+  const double n = 1 + std::ceil(turning * std::sqrt(0.02 / tolerance));
   return n > 2 ? static_cast<int>(std::min(n, most)) : 2;
 }
 

@@ -12,8 +12,9 @@ namespace tress::simulation {
 std::vector<double> turning(const SpaceCurve& curve);
 
 /// Number of helices by which a curve of so much turning (rad) is within `tolerance` of
-/// its length: max(2, ceil(turning sqrt(0.02/tolerance))), since the distance falls as
-/// the square of the angle of an element.
+/// its length everywhere: max(2, 1 + ceil(turning sqrt(0.02/tolerance))), since the
+/// distance falls as the square of the angle of an element; one more, for the distance is
+/// largest at the two ends, beyond which nothing holds a chain.
 int elements_by_turning(double turning, double tolerance);
 
 /// Ends of n elements, n + 1 arc lengths from 0: equal shares of half the length plus
