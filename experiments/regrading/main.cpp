@@ -15,7 +15,8 @@ namespace {
 constexpr Column columns[] = {
     {"part",
      "errors (of so many elements), elements (for a distance), limit (of the gain, for "
-     "many elements)"},
+     "many elements), in_motion (tolerance_m of hairs that are let go), points (of "
+     "quadrature)"},
     {"scene", "name of the scene"},
     {"model", "of the reference"},
     {"fine_elements", "of the reference"},
@@ -35,6 +36,11 @@ constexpr Column columns[] = {
     {"elements_regraded", "with cuts anew, as many at every instant"},
     {"elements_following",
      "with cuts anew, so many that the distance is the target at each instant: mean"},
+    {"tolerance_rel", "tolerance_m of cuts = \"rest\", over the length"},
+    {"tip_error_rel",
+     "distance of tips from those of a finer cut in the half second after a hair is let "
+     "go, rms, over the length; points: from those of 96 elements"},
+    {"points_error_rel", "distance of tips from those with 32 quadrature points"},
     {"turning_rad", "of the tangent along the strand, its largest"},
     {"gain", "elements_fixed over elements_regraded"},
     {"gain_following", "elements_fixed over elements_following"},
@@ -113,9 +119,38 @@ std::vector<Row> measure(const Work& work, const Row& identity) {
   return rows;
 }
 
+void add_in_motion(std::vector<Case>& all) {
+  for (const LooseHair& hair : loose_hairs()) {
+    for (const double tolerance : {judged_tolerance, judged_tolerance / 2}) {
+      Row identity;
+      identity.set("part", "in_motion").set("scene", hair.name);
+      identity.set("model", "super_helix").set("tolerance_rel", tolerance);
+      all.push_back(
+          {identity, [hair, tolerance](Row& row, const Deadline&) {
+             const MotionError error = motion_error(hair, tolerance);
+             row.set("elements", error.elements).set("tip_error_rel", error.tip);
+           }});
+    }
+  }
+}
+
+void add_points(std::vector<Case>& all, const simulation::Scene& scene) {
+  for (const int elements : {4, 8}) {
+    Row identity;
+    identity.set("part", "points").set("scene", scene.name);
+    identity.set("model", scene.model->id).set("elements", elements);
+    all.push_back({identity, [scene, elements](Row& row, const Deadline&) {
+                     const PointsError error = points_error(scene, elements);
+                     row.set("points_error_rel", error.points);
+                     row.set("tip_error_rel", error.elements);
+                   }});
+  }
+}
+
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
   std::vector<Case> all;
+  if (settings.experiment().word("scenes") == shipped) add_in_motion(all);
   for (const simulation::Scene& scene : simulation::read_scenes(
            split(settings.experiment().word("scenes"), ',', "scenes"))) {
     if (scene.strands.size() != 1) {
@@ -129,6 +164,7 @@ std::vector<Case> cases(const CommandLine& line) {
     Row identity;
     identity.set("scene", scene.name).set("model", scene.model->id);
     identity.set("fine_elements", work.fine).set("instants", work.instants + 1);
+    if (scene.model->id == "super_helix") add_points(all, scene);
     all.push_back({identity, {}, [work](const Row& own, const Deadline&) {
                      return measure(work, own);
                    }});

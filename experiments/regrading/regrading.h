@@ -87,6 +87,34 @@ struct Needed {
 };
 Needed needed(const std::vector<Misfit>& all, double target, OverInstants over);
 
+/// A hair of the family on which tolerance_m is tested at rest
+/// (tests/simulation/test_cuts.cpp).
+struct LooseHair {
+  std::string name;
+  double length, young;  // m, Pa
+  std::string tangent, shape;
+};
+std::vector<LooseHair> loose_hairs();
+/// Over the length.
+inline constexpr double judged_tolerance = 5e-3;
+
+/// Elements that cuts = "rest" makes for a tolerance, over the length, and the distance
+/// of tips from those of a finer cut in the half second after the hair is let go: rms
+/// over the frames, over the length.
+struct MotionError {
+  int elements;
+  double tip;
+};
+MotionError motion_error(const LooseHair& hair, double tolerance);
+
+/// Distances of the tips of a scene of `elements` from those with many quadrature points,
+/// and from those of many elements: rms over its frames, over the length. Throws
+/// std::runtime_error where a run does not end.
+struct PointsError {
+  double points, elements;
+};
+PointsError points_error(const simulation::Scene& scene, int elements);
+
 /// The claims about a finished table.
 void judge(const std::vector<simulation::Row>& rows, Verdicts& verdicts);
 

@@ -62,3 +62,39 @@ export const verdict = (tables) => {
     `and in ${always} where the worst instant counts`
   );
 };
+
+// Hairs that are let go: "26 of 36 ... with half the tolerance 30".
+export const in_motion = (tables) => {
+  const all = rows(tables, 'in_motion');
+  const asked = Math.max(...all.map((row) => Number(row.tolerance_rel)));
+  const within = (rows) => rows.filter((row) => row.tip_error_rel <= asked).length;
+  const full = all.filter((row) => Number(row.tolerance_rel) === asked);
+  const half = all.filter((row) => Number(row.tolerance_rel) < asked);
+  const worst = Math.max(...half.map((row) => Number(row.tip_error_rel)));
+  return (
+    `${within(full)} of ${full.length} hairs keep a tolerance of ${percent(asked)} of their length; ` +
+    `cut for half of it, ${within(half)} do, and the worst is off by ${percent(worst)}.`
+  );
+};
+
+const with_points = (tables) =>
+  rows(tables, 'points').filter((row) => row.points_error_rel !== undefined);
+
+export const points = (tables) =>
+  table(
+    ['scene', 'elements', 'by more points', 'from a fine cut'],
+    with_points(tables).map((row) => [
+      row.scene.replaceAll('_', ' '),
+      number(row.elements),
+      percent(row.points_error_rel),
+      percent(row.tip_error_rel),
+    ]),
+  );
+
+export const points_verdict = (tables) => {
+  const shares = with_points(tables).map((row) => row.points_error_rel / row.tip_error_rel);
+  return (
+    `More points are worth ${percent(Math.max(...shares))} of the error of the elements at most: ` +
+    'points that follow the motion are not built.'
+  );
+};
