@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "models/clothoid/super_clothoid.h"
 #include "models/effects/gravity.h"
 #include "models/reduced/super_helix.h"
 #include "models/strand/geometry.h"
@@ -13,14 +14,18 @@ namespace tress::models {
 namespace {
 
 constexpr int passes = 4;
-constexpr int samples = 8;          // of an element
-constexpr double least_share = .3;  // of the mean density
+constexpr int samples = 8;                                    // of an element
+constexpr double least_share = .3, least_linear_share = .15;  // of the mean density
+constexpr int finer = 4;  // helices for an element of linear curvature
+constexpr int least_helices = 48;
+constexpr double rounding = 1e-14;
 
 /// Part of the rod: one sample of one element.
 struct Piece {
   double length;   // m
   double element;  // length of its element, m
   double rate;     // |kappa'|, 1/m^2
+  double second;   // |kappa''|, 1/m^3
   Vec moves;       // world components of kappa' x e0
 };
 
@@ -42,12 +47,24 @@ std::vector<Piece> pieces_at_rest(const LoadedRod& rod,
     for (int j = 0; j < samples; ++j) {
       const double s = start + (j + 0.5) * ds;
       const Vec natural = rod.natural(s);
-      const Vec changes = 1 / ds * (rod.natural(s + ds / 2) - rod.natural(s - ds / 2));
+      const Vec before = rod.natural(s - ds / 2), after = rod.natural(s + ds / 2);
+      const Vec changes = 1 / ds * (after - before),
+                bend = after - 2.0 * natural + before;
+      // A shape that is linear to rounding does not bend.
+      const Vec second_changes =
+          norm(bend) > rounding * norm(natural) ? 4 / (ds * ds) * bend : Vec{};
       const Frame here = frame * helix_turn(kappa, s - start);
       const Vec beyond = here.back((rod.length - s) * rod.load);
       const Vec rate = changes + times(flexible, cross(times(k, kappa - natural), kappa) +
                                                      cross(beyond, Vec{1, 0, 0}));
-      all.push_back({ds, lengths[i], norm(rate), here * cross(rate, Vec{1, 0, 0})});
+      const Vec second =
+          second_changes -
+          times(flexible,
+                cross(rate, times(k, kappa - natural)) +
+                    cross(kappa, times(k, rate - changes)) +
+                    cross(cross(kappa, beyond) + here.back(rod.load), Vec{1, 0, 0}));
+      all.push_back(
+          {ds, lengths[i], norm(rate), norm(second), here * cross(rate, Vec{1, 0, 0})});
     }
     frame = frame * helix_turn(kappa, lengths[i]);
     start += lengths[i];
@@ -55,17 +72,17 @@ std::vector<Piece> pieces_at_rest(const LoadedRod& rod,
   return all;
 }
 
-std::vector<double> shared_equally(const std::vector<Piece>& pieces, double length,
+/// `share` is a density, one value for each piece.
+std::vector<double> shared_equally(const std::vector<Piece>& pieces,
+                                   std::vector<double> share, double least, double length,
                                    int elements) {
-  std::vector<double> share;
   double mean = 0;
-  for (const Piece& piece : pieces) {
-    share.push_back(std::cbrt(piece.rate * piece.rate));
-    mean += share.back() * piece.length / length;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    mean += share[k] * pieces[k].length / length;
   }
   double all = 0;
   for (std::size_t k = 0; k < share.size(); ++k) {
-    share[k] = mean > 0 ? std::max(share[k], least_share * mean) : 1;
+    share[k] = mean > 0 ? std::max(share[k], least * mean) : 1;
     all += share[k] * pieces[k].length;
   }
   std::vector<double> ends;
@@ -86,6 +103,12 @@ std::vector<double> shared_equally(const std::vector<Piece>& pieces, double leng
   return ends;
 }
 
+std::vector<double> share_of_rates(const std::vector<Piece>& pieces) {
+  std::vector<double> share;
+  for (const Piece& piece : pieces) share.push_back(std::cbrt(piece.rate * piece.rate));
+  return share;
+}
+
 double error_of(const std::vector<Piece>& pieces) {
   Vec sum;
   double most = 0;
@@ -98,11 +121,15 @@ double error_of(const std::vector<Piece>& pieces) {
 
 }  // namespace
 
-std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load) {
+std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load,
+                                        ElementStrain strain) {
   const double line = strand.mass() / strand.length();
-  const auto system =
-      super_helix(strand, {}, Effects{std::make_shared<Gravity>((1 / line) * load)});
+  Effects weight{std::make_shared<Gravity>((1 / line) * load)};
+  const auto system = strain == ElementStrain::linear
+                          ? super_clothoid(strand, {}, std::move(weight))
+                          : super_helix(strand, {}, std::move(weight));
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  const std::size_t each = n / strand.segments.size();
   std::vector<double> q(n), zero(n), r(n), moved(n), q_typ(n), v_typ(n);
   system->initial_state(q, zero);
   system->scale(q_typ, v_typ);
@@ -113,7 +140,7 @@ std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load) {
   constexpr int most = 1000;
   constexpr double near = 1e-5;  // rad: there energies differ by less than rounding
   // rad over the whole strand; many elements may turn further altogether.
-  const double longest = std::max(1.0, 0.2 * static_cast<double>(n / 3));
+  const double longest = std::max(1.0, 0.2 * static_cast<double>(n / each));
   constexpr double close = 1e-6;
   const double heaviest = 1e12 * inertia;
   for (int i = 0; i < most; ++i) {
@@ -124,7 +151,7 @@ std::vector<double> coordinates_at_rest(const Strand& strand, const Vec& load) {
     if (s == Status::ok) {
       double turn = 0;
       for (std::size_t k = 0; k < n; ++k) {
-        turn += std::abs(r[k]) * strand.segments[k / 3].length;
+        turn += std::abs(r[k]) * strand.segments[k / each].length;
       }
       const double part = std::min(1.0, longest / turn);
       for (std::size_t k = 0; k < n; ++k) moved[k] = q[k] - part * r[k];
@@ -169,7 +196,8 @@ GradedCut graded_cut(const LoadedRod& rod, int elements) {
   cut.lengths.assign(static_cast<std::size_t>(elements), rod.length / elements);
   std::vector<Piece> pieces = pieces_at_rest(rod, cut.lengths);
   for (int pass = 0; pass < passes; ++pass) {
-    const std::vector<double> next = shared_equally(pieces, rod.length, elements);
+    const std::vector<double> next =
+        shared_equally(pieces, share_of_rates(pieces), least_share, rod.length, elements);
     // Halfway: where elements are few, whole passes swing about the answer.
     const double part = pass == 0 ? 1 : 0.5;
     for (std::size_t i = 0; i < next.size(); ++i) {
@@ -179,6 +207,15 @@ GradedCut graded_cut(const LoadedRod& rod, int elements) {
   }
   cut.error = error_of(pieces);
   return cut;
+}
+
+std::vector<double> linear_cut(const LoadedRod& rod, int elements) {
+  const GradedCut fine = graded_cut(rod, std::max(least_helices, finer * elements));
+  const std::vector<Piece> pieces = pieces_at_rest(rod, fine.lengths);
+  std::vector<double> share;
+  share.reserve(pieces.size());
+  for (const Piece& piece : pieces) share.push_back(std::pow(piece.second, 0.4));
+  return shared_equally(pieces, share, least_linear_share, rod.length, elements);
 }
 
 }  // namespace tress::models

@@ -12,7 +12,6 @@
 namespace tress::simulation {
 namespace {
 
-constexpr double jump_weight = 2e-6, twist_weight = 1e-6;
 constexpr int most_fit_steps = 12;
 constexpr double enough_gain = 1e-3;  // of the sum of squares in a step
 
@@ -111,8 +110,12 @@ class Normal {
 /// the root in space (rad), then the angles l kappa of each element (rad).
 class HelixFitting {
  public:
-  HelixFitting(const SpaceCurve& curve, std::span<const double> joints)
-      : n_(joints.size() - 1), length_(curve.length()), normal_(3 + 3 * n_) {
+  HelixFitting(const SpaceCurve& curve, std::span<const double> joints,
+               const FitWeights& weights)
+      : n_(joints.size() - 1),
+        weights_(weights),
+        length_(curve.length()),
+        normal_(3 + 3 * n_) {
     for (std::size_t i = 0; i < n_; ++i) {
       lengths_.push_back(joints[i + 1] - joints[i]);
       for (const double at : gauss_at) {
@@ -136,10 +139,10 @@ class HelixFitting {
       x = x + frame * tip.place();
       frame = frame * tip.frame();
       const double tau = l * chain.darboux[i].x;
-      sum += twist_weight * tau * tau;
+      sum += weights_.twist * tau * tau;
       if (i + 1 == n_) continue;
       const Vec jump = mean_length(i) * (chain.darboux[i + 1] - chain.darboux[i]);
-      sum += jump_weight * dot(jump, jump);
+      sum += weights_.jump * dot(jump, jump);
     }
     return sum;
   }
@@ -222,7 +225,7 @@ class HelixFitting {
   void add_weights(const HelixChain& chain, std::size_t i, std::vector<double>& rows) {
     const std::size_t own = 3 + 3 * i, used = std::min(own + 6, 3 + 3 * n_);
     std::fill_n(rows.begin(), used, 0.0);
-    const double twist = std::sqrt(twist_weight), jump = std::sqrt(jump_weight);
+    const double twist = std::sqrt(weights_.twist), jump = std::sqrt(weights_.jump);
     rows[own] = twist;
     normal_.add(&rows[0], own + 1, twist * lengths_[i] * chain.darboux[i].x);
     rows[own] = 0;
@@ -240,6 +243,7 @@ class HelixFitting {
   }
 
   std::size_t n_;
+  FitWeights weights_;
   double length_;
   std::vector<double> lengths_, change_;
   std::vector<Vec> targets_;
@@ -290,7 +294,7 @@ std::vector<double> turning(const SpaceCurve& curve) {
 
 int elements_by_turning(double turning, double tolerance) {
   constexpr double most = 1e6;
-  const double n = std::ceil(turning * std::sqrt(0.02 / tolerance));
+  const double n = 1 + std::ceil(turning * std::sqrt(0.02 / tolerance));
   return n > 2 ? static_cast<int>(std::min(n, most)) : 2;
 }
 
@@ -320,9 +324,10 @@ std::vector<double> cut_equally(double length, int n) {
   return joints;
 }
 
-HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints) {
+HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints,
+                       const FitWeights& weights) {
   HelixChain chain = along(curve, joints);
-  HelixFitting fitting(curve, joints);
+  HelixFitting fitting(curve, joints, weights);
   double now = fitting.squares(chain), damping = 1e-3;
   for (int k = 0; k < most_fit_steps && fitting.step(chain, now, damping); ++k) {
   }
@@ -330,7 +335,7 @@ HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints) 
 }
 
 double misfit(const SpaceCurve& curve, const HelixChain& chain) {
-  return HelixFitting(curve, chain.joint).squares(chain);
+  return HelixFitting(curve, chain.joint, {}).squares(chain);
 }
 
 std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs) {

@@ -12,8 +12,9 @@ namespace tress::simulation {
 std::vector<double> turning(const SpaceCurve& curve);
 
 /// Number of helices by which a curve of so much turning (rad) is within `tolerance` of
-/// its length: max(2, ceil(turning sqrt(0.02/tolerance))), since the distance falls as
-/// the square of the angle of an element.
+/// its length everywhere: max(2, 1 + ceil(turning sqrt(0.02/tolerance))), since the
+/// distance falls as the square of the angle of an element; one more, for the distance is
+/// largest at the two ends, beyond which nothing holds a chain.
 int elements_by_turning(double turning, double tolerance);
 
 /// Ends of n elements, n + 1 arc lengths from 0: equal shares of half the length plus
@@ -32,6 +33,12 @@ struct HelixChain {
   std::vector<Vec> darboux;   // twist and curvatures in the frame, 1/m
 };
 
+/// What a fit gives up of its distance for strains that vary little: weights of squares
+/// of angles (rad^-2), relative to squares of distances over the length.
+struct FitWeights {
+  double jump = 2e-6, twist = 1e-6;
+};
+
 /// The chain next to a curve, with joints at these arc lengths: least
 ///
 ///     1/L^3 int |x(s) - c(s)|^2 ds + w1 sum |l (k_{i+1} - k_i)|^2 + w2 sum |l_i tau_i|^2
@@ -43,7 +50,8 @@ struct HelixChain {
 /// along the strand. The two small weights hold what the curve leaves open: the twist of
 /// a straight part, and strains that oscillate from element to element. O(n^3) for each
 /// of a dozen steps at most.
-HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints);
+HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints,
+                       const FitWeights& weights = {});
 
 /// That sum, of a chain.
 double misfit(const SpaceCurve& curve, const HelixChain& chain);

@@ -114,8 +114,9 @@ Scene with_elements(Scene scene, int elements) {
 }
 
 Scene with_elements_at_rest(Scene scene, int elements) {
-  return cut_anew(std::move(scene), [elements](const StrandTables& tables) {
-    return with_cuts(with_elements(tables, elements), "rest");
+  const bool linear = scene.model->id == "super_clothoid";
+  return cut_anew(std::move(scene), [&](const StrandTables& tables) {
+    return with_cuts(with_elements(tables, elements), linear ? "rest_linear" : "rest");
   });
 }
 
@@ -126,7 +127,7 @@ bool may_cut_at_rest(const Scene& scene) {
          std::ranges::all_of(scene.tables->sources, [](const StrandSource& source) {
            const Parameters& p = source.table.values();
            return !source.groom && p.numbers("points").empty() &&
-                  p.number("grading") == 1 && p.word("cuts") != "rest";
+                  p.number("grading") == 1 && p.word("cuts") == "grading";
          });
 }
 

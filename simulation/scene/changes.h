@@ -30,8 +30,9 @@ Scene with_method(Scene scene, const Method& method);
 /// The same strands with `elements` elements each. Throws InputError as read_scene does,
 /// and std::logic_error if the scene's tables no longer describe its strands.
 Scene with_elements(Scene scene, int elements);
-/// As above, elements that share what bends a strand at rest: cuts = "rest". Only of
-/// [strand] tables, without points.
+/// As above, elements that share what bends a strand at rest: cuts = "rest", or
+/// "rest_linear" where the scene's model is super_clothoid. Only of [strand] tables,
+/// without points.
 Scene with_elements_at_rest(Scene scene, int elements);
 bool may_cut_at_rest(const Scene& scene);
 /// As above, every strand with twice its elements.

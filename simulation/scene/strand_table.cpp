@@ -55,8 +55,9 @@ constexpr Parameter own_parameters[] = {
      .choices = "points|straight"},
     {.name = "cuts",
      .help = "where elements end: as grading says, or such that they share what bends "
-             "the strand at rest, clamped and under its weight",
-     .choices = "grading|rest"},
+             "the strand at rest, clamped and under its weight; rest_linear: for "
+             "curvature that is linear in an element (super_clothoid)",
+     .choices = "grading|rest|rest_linear"},
     {.name = "tolerance_m",
      .help = "as few elements as its shape at rest needs to be within this distance, up "
              "to `elements` (m); 0: `elements`",
@@ -105,7 +106,15 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
   const Parameters& p = table.values();
   const double tolerance = p.number("tolerance_m");
   const int most = p.whole("elements");
+  const bool linear = p.word("cuts") == "rest_linear";
+  refuse_if(linear && tolerance > 0, "a tolerance beside cuts = \"rest_linear\"",
+            table.place("tolerance_m"), "give elements, or cuts = \"rest\"");
   try {
+    if (linear) {
+      Strand strand = cut_into(rod, linear_cut(rod, most), initial_shape(table, {}));
+      check_winding(strand, table);
+      return strand;
+    }
     int elements = tolerance > 0 ? std::min(2, most) : most;
     GradedCut cut = graded_cut(rod, elements);
     while (elements < most && cut.error > tolerance) {
@@ -127,10 +136,10 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
                  const Frame& frame, bool clamped) {
   const Parameters& p = table.values();
   const double length = p.number("length_m"), tolerance = p.number("tolerance_m");
-  if (p.word("cuts") == "rest") {
+  if (p.word("cuts") != "grading") {
     refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("cuts"),
               "leave out one of them");
-    refuse_grading(table, "cuts = \"rest\"");
+    refuse_grading(table, "cuts at rest");
     return cut_at_rest(table, {material.material,
                                material.section,
                                length,

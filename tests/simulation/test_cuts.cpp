@@ -142,6 +142,27 @@ TEST(Cuts, OtherNumbersOfElementsKeepTheCut) {
   EXPECT_EQ(with_elements(scene, 5).strands.front().segments.size(), 5U);
 }
 
+TEST(Cuts, ClothoidsAreCutByWhatTheyNeed) {
+  const Hair hair{0.1, 40e-6, 1e7, "[1, 0, 0]", "shape = \"straight\"\n"};
+  const Strand linear = hair.cut("elements = 6\ncuts = \"rest_linear\"\n");
+  const Scene scene = parse_scene(
+      "title = \"t\"\nduration_s = 0.1\n[model]\nid = "
+      "\"super_clothoid\"\n[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.001\n"
+      "[material]\nradius_m = 40e-6\nyoungs_modulus_pa = 1e7\nellipticity = "
+      "1\ndensity_kg_m3 = 1300\n[effects.gravity]\n[strand]\nlength_m = 0.1\n"
+      "root_tangent = [1, 0, 0]\n",
+      "t.toml");
+  ASSERT_TRUE(may_cut_at_rest(scene));
+  const Strand of_model = with_elements_at_rest(scene, 6).strands.front();
+  const Strand helices = hair.cut("elements = 6\ncuts = \"rest\"\n");
+  ASSERT_EQ(of_model.segments.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(of_model.segments[i].length, linear.segments[i].length);
+  }
+  EXPECT_NE(helices.segments[0].length, linear.segments[0].length);
+  EXPECT_THROW(hair.cut("tolerance_m = 0.001\ncuts = \"rest_linear\"\n"), InputError);
+}
+
 TEST(Cuts, WhatMakesNoSenseIsRefused) {
   const Hair hair{0.1, 40e-6, 1e9, "[1, 0, 0]", ""};
   EXPECT_THROW(hair.cut("cuts = \"rest\"\ngrading = 2\n"), InputError);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "models/clothoid/super_clothoid.h"
 #include "models/cut/graded_cut.h"
 #include "models/strand/geometry.h"
 
@@ -111,6 +112,45 @@ TEST(GradedCut, LeavesEqualWhatVariesNowhere) {
   const GradedCut cut = graded_cut(rod, 7);
   for (const double length : cut.lengths) EXPECT_NEAR(length, 0.1 / 7, 1e-12);
   EXPECT_LE(cut.error, 1e-12);
+}
+
+double clothoid_error(double gamma, const std::vector<double>& lengths) {
+  const LoadedRod rod = cantilever(gamma);
+  const Strand strand = cut_into(rod, lengths);
+  const std::vector<double> q =
+      coordinates_at_rest(strand, rod.load, ElementStrain::linear);
+  const auto system = super_clothoid(strand, {}, {});
+  MaterialPoints& points = *system->material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+  points.positions(0, q, x);
+  const Vec tip = load3(&x[x.size() - 3]);
+  return std::abs(-tip.z / tip.x / height_over_width(gamma) - 1);
+}
+
+/// Fewer clothoids than helices do, if they are where curvature bends; equal ones waste
+/// all but one of theirs on the part that hangs.
+TEST(LinearCut, NeedsFewClothoidsOfAHeavyCantilever) {
+  for (const int n : {4, 6, 8}) {
+    const double equal = clothoid_error(
+                     1000, std::vector<double>(static_cast<std::size_t>(n), 0.1 / n)),
+                 graded = clothoid_error(1000, linear_cut(cantilever(1000), n)),
+                 helices =
+                     cantilever_error(1000, graded_cut(cantilever(1000), 2 * n).lengths);
+    RecordProperty("equal_" + std::to_string(n), std::to_string(equal));
+    RecordProperty("graded_" + std::to_string(n), std::to_string(graded));
+    RecordProperty("helices_" + std::to_string(2 * n), std::to_string(helices));
+    EXPECT_LT(10 * graded, equal) << n;
+    // As many unknowns; with fewer the fourth order has not set in.
+    if (n == 8) {
+      EXPECT_LT(2 * graded, helices);
+    }
+  }
+}
+
+TEST(LinearCut, LeavesEqualWhatBendsNowhere) {
+  LoadedRod rod = cantilever(0);
+  rod.natural = [](double s) { return Vec{0, 300 * s, 0}; };
+  for (const double length : linear_cut(rod, 5)) EXPECT_NEAR(length, 0.02, 1e-9);
 }
 
 }  // namespace tress::test_graded_cut

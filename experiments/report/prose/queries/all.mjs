@@ -17,6 +17,7 @@ import * as machine from './machine.mjs';
 import * as matrices from './matrices.mjs';
 import * as newest from './newest.mjs';
 import * as references from './references.mjs';
+import * as regrading from './regrading.mjs';
 import * as scaling from './scaling.mjs';
 import * as stability from './stability.mjs';
 import * as swing from './swing.mjs';
@@ -40,6 +41,7 @@ export const queries = {
   matrices,
   newest,
   references,
+  regrading,
   scaling,
   stability,
   swing,

@@ -1,0 +1,200 @@
+// Would elements that are divided anew while a strand moves need fewer of them?
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "contract/input_error.h"
+#include "experiments/regrading/regrading.h"
+#include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/parse.h"
+
+namespace tress::experiments::regrading {
+namespace {
+
+constexpr Column columns[] = {
+    {"part",
+     "errors (of so many elements), elements (for a distance), limit (of the gain, for "
+     "many elements), in_motion (tolerance_m of hairs that are let go), points (of "
+     "quadrature)"},
+    {"scene", "name of the scene"},
+    {"model", "of the reference"},
+    {"fine_elements", "of the reference"},
+    {"instants", "at which shapes are compared"},
+    {"elements", "helices"},
+    {"cuts",
+     "equal; start: as the shape at rest or at t = 0 asks; mean and largest: as all "
+     "shapes of the run ask, |kappa'|^(2/3) averaged or its largest; anew: as each shape "
+     "asks"},
+    {"misfit_rms_rel",
+     "distance of the nearest chain of helices, rms over strand and instants, over the "
+     "length"},
+    {"misfit_largest_rel", "the same, of the instant where it is largest"},
+    {"target_rel", "misfit_rms_rel that is asked for"},
+    {"elements_fixed", "that need no more than the target with the best fixed cut"},
+    {"fixed_cuts", "which that is"},
+    {"elements_regraded", "with cuts anew, as many at every instant"},
+    {"elements_following",
+     "with cuts anew, so many that the distance is the target at each instant: mean"},
+    {"tolerance_rel", "tolerance_m of cuts = \"rest\", over the length"},
+    {"tip_error_rel",
+     "distance of tips from those of a finer cut in the half second after a hair is let "
+     "go, rms, over the length; points: from those of 96 elements"},
+    {"points_error_rel", "distance of tips from those with 32 quadrature points"},
+    {"turning_rad", "of the tangent along the strand, its largest"},
+    {"gain", "elements_fixed over elements_regraded"},
+    {"gain_following", "elements_fixed over elements_following"},
+    {"gain_always", "gain, where misfit_largest_rel is asked for"},
+    {"gain_following_always", "gain_following, where misfit_largest_rel is asked for"},
+};
+
+constexpr std::string_view shipped =
+    "experiments/regrading/edge.toml,experiments/regrading/long_curl.toml,"
+    "scenes/accuracy/fall_on_sphere.toml,scenes/accuracy/release.toml,"
+    "scenes/accuracy/shaken_friction.toml,scenes/accuracy/side_wind.toml,"
+    "scenes/accuracy/swing.toml,scenes/accuracy/whip.toml,scenes/knot_tightened.toml,"
+    "scenes/plectoneme.toml";
+
+constexpr Parameter own_settings[] = {
+    {.name = "scenes",
+     .help = "scene files of one strand, as in scenes/a.toml,scenes/b.toml",
+     .text = true,
+     .fallback = shipped},
+};
+
+constexpr OwnOption command_options[] = {
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+};
+
+constexpr double targets[] = {1e-2, 1e-3};
+constexpr int least_fine = 144;  // a whole number of joints for each of the cells
+
+struct Work {
+  simulation::Scene scene;
+  int fine, instants;
+  std::vector<int> elements;
+};
+
+std::vector<Row> measure(const Work& work, const Row& identity) {
+  std::vector<Row> rows;
+  try {
+    const Shapes shapes = shapes_of(work.scene, work.fine, work.instants);
+    const Limit limit = limit_of(shapes);
+    Row most = identity;
+    most.set("part", "limit").set("turning_rad", turning_of(shapes));
+    most.set("gain", limit.regraded).set("gain_following", limit.following);
+    rows.push_back(most);
+    // Helices that wind by more are not found by the fit.
+    if (turning_of(shapes) > work.elements.back()) return rows;
+    const std::vector<Misfit> all =
+        misfits(shapes, density_at_rest(work.scene, shapes), work.elements);
+    for (const double target : targets) {
+      const Needed found = needed(all, target, root_mean_square);
+      Row row = identity;
+      row.set("part", "elements").set("target_rel", target);
+      row.set("elements_fixed", found.fixed).set("fixed_cuts", name(found.best));
+      row.set("elements_regraded", found.regraded);
+      row.set("elements_following", found.following);
+      row.set("gain", found.fixed / found.regraded);
+      row.set("gain_following", found.fixed / found.following);
+      const Needed always = needed(all, target, largest);
+      row.set("gain_always", always.fixed / always.regraded);
+      row.set("gain_following_always", always.fixed / always.following);
+      rows.push_back(row);
+    }
+    for (const Misfit& one : all) {
+      Row row = identity;
+      row.set("part", "errors").set("elements", one.elements).set("cuts", name(one.cuts));
+      row.set("misfit_rms_rel", root_mean_square(one.at));
+      row.set("misfit_largest_rel", largest(one.at));
+      rows.push_back(row);
+    }
+  } catch (const InputError& refused) {
+    rows.assign(1, identity);
+    rows.front().failed("refused", refused.what());
+  } catch (const std::runtime_error& failure) {
+    rows.assign(1, identity);
+    rows.front().failed("diverged", failure.what());
+  }
+  return rows;
+}
+
+void add_in_motion(std::vector<Case>& all) {
+  for (const LooseHair& hair : loose_hairs()) {
+    for (const double tolerance : {judged_tolerance, judged_tolerance / 2}) {
+      Row identity;
+      identity.set("part", "in_motion").set("scene", hair.name);
+      identity.set("model", "super_helix").set("tolerance_rel", tolerance);
+      all.push_back(
+          {identity, [hair, tolerance](Row& row, const Deadline&) {
+             const MotionError error = motion_error(hair, tolerance);
+             row.set("elements", error.elements).set("tip_error_rel", error.tip);
+           }});
+    }
+  }
+}
+
+void add_points(std::vector<Case>& all, const simulation::Scene& scene) {
+  for (const int elements : {4, 8}) {
+    Row identity;
+    identity.set("part", "points").set("scene", scene.name);
+    identity.set("model", scene.model->id).set("elements", elements);
+    all.push_back({identity, [scene, elements](Row& row, const Deadline&) {
+                     const PointsError error = points_error(scene, elements);
+                     row.set("points_error_rel", error.points);
+                     row.set("tip_error_rel", error.elements);
+                   }});
+  }
+}
+
+std::vector<Case> cases(const CommandLine& line) {
+  const Settings settings(line, own_settings);
+  std::vector<Case> all;
+  if (settings.experiment().word("scenes") == shipped) add_in_motion(all);
+  for (const simulation::Scene& scene : simulation::read_scenes(
+           split(settings.experiment().word("scenes"), ',', "scenes"))) {
+    if (scene.strands.size() != 1) {
+      throw InputError("not one strand but " + std::to_string(scene.strands.size()),
+                       "scene " + scene.name, "give scenes of one strand");
+    }
+    const int given = static_cast<int>(scene.strands.front().segments.size());
+    Work work{scene, std::max(least_fine, given), line.quick ? 10 : 48, {}};
+    work.elements = line.quick ? std::vector{1, 2, 3, 4, 6, 8, 12, 16, 24, 32}
+                               : std::vector{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+    Row identity;
+    identity.set("scene", scene.name).set("model", scene.model->id);
+    identity.set("fine_elements", work.fine).set("instants", work.instants + 1);
+    if (scene.model->id == "super_helix") add_points(all, scene);
+    all.push_back({identity, {}, [work](const Row& own, const Deadline&) {
+                     return measure(work, own);
+                   }});
+  }
+  return all;
+}
+
+constexpr Unused unused[] = {{"models", "the scenes say theirs"},
+                             {"integrators", "the scenes say theirs"},
+                             {"elements", "the study tries many"},
+                             not_random,
+                             not_repeated};
+
+}  // namespace
+}  // namespace tress::experiments::regrading
+
+int main(int argc, char** argv) {
+  using namespace tress::experiments;
+  using namespace tress::experiments::regrading;
+  const Experiment experiment{
+      .name = "regrading",
+      .question =
+          "would elements that are divided anew while a strand moves need fewer of them?",
+      .example = "--set scenes=scenes/accuracy/whip.toml --quick",
+      .timed = false,
+      .columns = columns,
+      .settings = own_settings,
+      .options = command_options,
+      .unused = unused,
+      .cases = cases,
+      .checks = judge};
+  return run_experiment(experiment, argc, argv);
+}
