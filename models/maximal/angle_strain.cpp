@@ -2,14 +2,14 @@
 
 namespace tress::models {
 
-double Angle::gradient(const Vec* e, Vec* g) const {
+double BendAngle::gradient(const Vec* e, Vec* g) const {
   const double h = Hinge{}.gradient(e, g);
   const double slope = 1 / (1 + h * h / 4);
   for (int k = 0; k < 2; ++k) g[k] = slope * g[k];
   return 2 * std::atan2(h, 2.0);
 }
 
-void Angle::hessian(const Vec* e, EdgeMatrix<2>& of_angle) const {
+void BendAngle::hessian(const Vec* e, EdgeMatrix<2>& of_angle) const {
   Vec g[2];
   EdgeMatrix<2> of_hinge;
   const double h = Hinge{}.gradient(e, g);

@@ -7,7 +7,7 @@ namespace tress::models {
 
 /// Angle between two edges (rad), 2 atan(h/2) of Hinge's h: rounded off where it is
 /// straight, not defined for antiparallel edges.
-struct Angle {
+struct BendAngle {
   static constexpr int edges = 2;
 
   template <class T>

@@ -51,7 +51,7 @@ void SpringBuilder::add_bending(Bending bending) {
     if (bending == Bending::angular) {
       add<Hinge>({{}, i, stiffness, j.friction.y, rest});
     } else {
-      add<Angle>({{}, i, stiffness, j.friction.y, 2 * std::atan(rest / 2)});
+      add<BendAngle>({{}, i, stiffness, j.friction.y, 2 * std::atan(rest / 2)});
     }
   }
 }

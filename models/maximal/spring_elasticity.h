@@ -25,7 +25,7 @@ using Springs =
     std::tuple<std::vector<Spring<Chord<1>>>, std::vector<Spring<Chord<2>>>,
                std::vector<Spring<Hinge>>, std::vector<Spring<Altitude>>,
                std::vector<Spring<WallBend>>, std::vector<Spring<WallAltitude>>,
-               std::vector<Spring<Angle>>, std::vector<Spring<Dihedral>>,
+               std::vector<Spring<BendAngle>>, std::vector<Spring<Dihedral>>,
                std::vector<Spring<WallDihedral>>>;
 
 /// The terms included in df/dz. With g the gradient of s,

@@ -46,7 +46,7 @@ WallDihedral example() {
 }
 
 using Strains = ::testing::Types<Chord<1>, Chord<2>, Hinge, Altitude, WallAltitude,
-                                 WallBend, Angle, Dihedral, WallDihedral>;
+                                 WallBend, BendAngle, Dihedral, WallDihedral>;
 TYPED_TEST_SUITE(SpringStrain, Strains);
 
 /// Edges of a bent strand; `bent` = 0: straight.
