@@ -27,7 +27,10 @@ namespace {
 ///
 /// As with mass_spring's altitudes torsion of the centre line stands for twist, so the
 /// section cannot roll, and a joint that is straight at rest has no torsion: the limit of
-/// small l is Kirchhoff's rod for a straight rest shape only.
+/// small l is Kirchhoff's rod for a straight rest shape only; a curly hair under its
+/// weight rests 5.3 % of L beside it (tests/models/maximal/test_spring_statics.cpp). A
+/// joint that is pulled straight loses its torsion, and one that bends the other way has
+/// it half a turn off: a strand much softer than its load has no smooth motion there.
 std::span<const Parameter> lifted_curls_parameters() {
   static constexpr std::array all{
       Parameter{.name = "tangent",
