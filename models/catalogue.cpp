@@ -29,6 +29,7 @@ ModelEntry dynamic_spline_entry();
 ModelEntry kirchhoff_nodal_entry();
 ModelEntry mass_spring_entry();
 ModelEntry inextensible_strand_entry();
+ModelEntry lifted_curls_entry();
 
 namespace {
 
@@ -71,6 +72,7 @@ std::vector<ModelEntry> built_in_models() {
       kirchhoff_nodal_entry(),
       mass_spring_entry(),
       inextensible_strand_entry(),
+      lifted_curls_entry(),
   };
 }
 // clang-format on

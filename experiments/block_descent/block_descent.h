@@ -19,7 +19,7 @@ inline constexpr int tried_sweeps = 20;
 
 /// One strand by one method with the options that are its own.
 struct Trial {
-  std::string part;  // "sweeps", "penalty", "rods"
+  std::string part;  // "sweeps", "order", "penalty", "rods"
   std::string scene;
   std::string model, integrator;
   std::vector<std::pair<std::string, std::string>> model_settings, options;
@@ -27,8 +27,8 @@ struct Trial {
   double dt = substep;
 };
 
-/// Error against sweeps and the size of blocks, and the window of penalties, on the
-/// swinging strand.
+/// Error against sweeps and the size of blocks, order 1 beside order 2, and the window of
+/// penalties, on the swinging strand.
 std::vector<Trial> descent_trials(const CommandLine& line);
 /// Stable Cosserat rods on the swinging strand, as it is and softened, and on the
 /// cantilever of their authors.

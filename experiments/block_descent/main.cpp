@@ -7,8 +7,8 @@ namespace {
 
 constexpr Column columns[] = {
     {"part",
-     "sweeps (error against sweeps and blocks), penalty (its window) or rods (the map of "
-     "stable_cosserat_rods)"},
+     "sweeps (error against sweeps and blocks), order (1 beside 2), penalty (its window) "
+     "or rods (the map of stable_cosserat_rods)"},
     {"scene", "swing, or the cantilever of the published example"},
     {"model", "catalogue id"},
     {"integrator", "method"},

@@ -72,6 +72,20 @@ std::vector<Trial> descent_trials(const CommandLine& line) {
   };
   add_ways("mass_spring", of_springs);
   add_ways("xpbd_cosserat", of_rods);
+  // The order of the step where sweeps are few.
+  for (const double dt : levels<double>(line, {substep, 1.0 / 1500}, 1)) {
+    for (const char* sweeps : {"4", "20"}) {
+      for (const char* integrator : {"xpbd", "xpbd_bdf2"}) {
+        add({.part = "order",
+             .scene = "swing",
+             .model = "mass_spring",
+             .integrator = integrator,
+             .model_settings = {},
+             .options = {{"sweeps", sweeps}},
+             .dt = dt});
+      }
+    }
+  }
   // Over the square of the step: the window follows it.
   for (const double dt : {substep, 1e-3, 1.0 / 60}) {
     for (const char* primal : levels<const char*>(line, {"1", "4"}, 1)) {

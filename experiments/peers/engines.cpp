@@ -22,6 +22,9 @@ std::span<const Engine> engines() {
 #ifdef TRESS_PEERS_MUJOCO_3
       {"mujoco_3", TRESS_PEERS_MUJOCO_3, mujoco_3_methods(), {}},
 #endif
+#ifdef TRESS_PEERS_JOLT
+      {"jolt", TRESS_PEERS_JOLT, jolt_methods(), {}},
+#endif
   };
   return found;
 }
@@ -42,6 +45,9 @@ std::span<const std::string_view> missing() {
 #endif
 #ifndef TRESS_PEERS_MUJOCO_3
       "@mujoco/mujoco (npm)",
+#endif
+#ifndef TRESS_PEERS_JOLT
+      "jolt-physics (npm)",
 #endif
   };
   return packages;

@@ -72,10 +72,13 @@ class Peer {
   virtual Motion motion() = 0;
 };
 
+enum class Precision { as_double, single };
+
 struct Method {
   std::string_view name;  // joints and integrator or solver
   int order;              // of the integrator; the reference of a higher one is coarser
   std::unique_ptr<Peer> (*make)(const Swing& swing, double dt);
+  Precision precision = Precision::as_double;
 };
 
 /// One library: what it is called, which version is linked, what it can step with.
@@ -96,5 +99,6 @@ std::span<const Method> bullet_methods();
 std::span<const Method> mujoco_methods();
 std::span<const Method> ode_methods();
 std::span<const Method> mujoco_3_methods();
+std::span<const Method> jolt_methods();
 
 }  // namespace tress::experiments::peers

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tress::integrators {
 namespace {
@@ -46,13 +47,18 @@ PositionSweeps::PositionSweeps(System& system, const Parameters& chosen)
 
 void PositionSweeps::run(double t, double h, In origin, InOut x, Stats& stats) {
   for (Rows& lambda : lambda_of_) lambda.fill(0);
+  double move = 0, before = 0;  // of the last two sweeps
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
-    if (sweep + 1 == sweeps_) std::ranges::copy(x, last_.begin());
+    const bool late = sweep + 2 >= sweeps_;
+    if (late) std::ranges::copy(x, last_.begin());
     for (const std::size_t k : order_) correct(t, h, k, origin, x);
     ++stats.sweeps;
+    if (late) before = std::exchange(move, weighed(last_, x));
   }
+  const double rate =
+      sweeps_ == 1 ? unknown : (move < slowest * before ? move / before : slowest);
   const double moved = weighed(origin, x);
-  unsettled_ = moved > 0 ? weighed(last_, x) / moved : 0;
+  unsettled_ = moved > 0 ? rate / (1 - rate) * move / moved : 0;
 }
 
 double PositionSweeps::weighed(In from, In to) const {

@@ -45,8 +45,11 @@ class PositionSweeps {
 
   /// Of equations at time t; x is the guess, then the solution. Counts into `stats`.
   void run(double t, double h, In origin, InOut x, Stats& stats);
-  /// By how much the last of them moved x, over how far x is from its origin (root of the
-  /// sums of squares by the diagonal of the mass).
+  /// What the sweeps of the last run leave undone, over how far x is from its origin, by
+  /// the root of the sum of squares weighed by the diagonal of the mass: the rest of a
+  /// geometric series of the moves of the last two sweeps, r m/(1 - r) with r =
+  /// m/m_before (at most `slowest`), m the last. A single sweep does not tell its r:
+  /// `unknown`.
   double unsettled() const { return unsettled_; }
 
  private:
@@ -59,6 +62,8 @@ class PositionSweeps {
   void correct(double t, double h, std::size_t k, In origin, InOut x);
   static void solve(Square& a, Rows& b, std::size_t rows);
   double weighed(In from, In to) const;
+
+  static constexpr double slowest = 0.999, unknown = 0.9;
 
   int sweeps_;
   ComplianceForm& form_;

@@ -1,10 +1,7 @@
-#include <cmath>
-
 #include "models/entry.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/nodal_strand.h"
-#include "models/maximal/rod_joint.h"
-#include "models/maximal/spring_elasticity.h"
+#include "models/maximal/spring_builder.h"
 
 namespace tress::models {
 namespace {
@@ -49,114 +46,12 @@ namespace {
 /// straight strand to form tetrahedra; the single fixed altitude, its stiffness and the
 /// wall's are our reconstruction.
 struct MassSpringOptions {
-  enum class Bending { angular, second_neighbour };
   Bending bending = Bending::angular;
   bool altitude = false;      // torsion springs
   bool inextensible = false;  // |e| = l by constraints with multipliers
   bool stretch = true;        // springs along edges, also allowed with constraints
   SpringTangent tangent = SpringTangent::exact;
   LinearKind solver = LinearKind::automatic;
-};
-
-using Bending = MassSpringOptions::Bending;
-
-// Threshold for the slope of an altitude over the dihedral angle and an edge: below it
-// the rest shape is too straight for a tetrahedron.
-constexpr double flat = 1e-3;
-
-/// Springs of one strand at its rest shape.
-class Builder {
- public:
-  Builder(const Strand& strand, const NodalStrand& nodal)
-      : strand_(strand), clamped_(nodal.parts.clamped), clamp_(nodal.root.place.frame) {
-    for (std::size_t i = 0; i < strand.segments.size(); ++i) {
-      rest_.push_back(strand.segments[i].length * nodal.natural[i].e0);
-    }
-  }
-
-  void add_stretch() {
-    for (std::size_t i = 0; i < rest_.size(); ++i) {
-      const Segment& segment = strand_.segments[i];
-      const double k =
-          strand_.material.youngs_modulus * segment.section.area() / segment.length;
-      add<Chord<1>>({{}, i, k, 0, segment.length});
-    }
-  }
-
-  void add_bending(Bending bending) {
-    if (clamped_) add_wall();
-    for (std::size_t i = 0; i + 1 < rest_.size(); ++i) {
-      const RodJoint j =
-          rod_joint(strand_.material, &strand_.segments[i], strand_.segments[i + 1], {});
-      const double stiffness = (j.stiffness.y + j.stiffness.z) / 2;
-      const Vec* e = &rest_[i];
-      if (bending == Bending::angular) {
-        const double curved = Hinge{}.value(e);
-        const double rest =
-            std::sqrt(std::max(0.0, curved * curved - Hinge::delta * Hinge::delta));
-        add<Hinge>({{}, i, stiffness, j.friction.y, rest});
-      } else {
-        const double chord = Chord<2>{}.value(e);
-        const double arm = std::sqrt(dot(e[0], e[0]) * dot(e[1], e[1])) / chord;
-        add<Chord<2>>(
-            {{}, i, stiffness / (arm * arm), j.friction.y / (arm * arm), chord});
-      }
-    }
-  }
-
-  void add_altitudes() {
-    if (clamped_ && rest_.size() >= 2) {
-      WallAltitude wall{floor_at(0), strand_.segments[0].length, {}};
-      wall.place(clamp_);
-      add_altitude(wall, 0, 0);
-    }
-    for (std::size_t i = 0; i + 2 < rest_.size(); ++i) {
-      add_altitude(Altitude{floor_at(i + 1)}, i, i + 1);
-    }
-  }
-
-  Springs springs;
-
- private:
-  template <class Strain>
-  void add(Spring<Strain> spring) {
-    std::get<std::vector<Spring<Strain>>>(springs).push_back(std::move(spring));
-  }
-
-  void add_wall() {
-    const RodJoint j = rod_joint(strand_.material, nullptr, strand_.segments[0], {});
-    const double stiffness = (j.stiffness.y + j.stiffness.z) / 2;
-    for (const WallBend::About about : {WallBend::About::e1, WallBend::About::e2}) {
-      WallBend strain{about, {}, {}};
-      strain.place(clamp_);
-      add<WallBend>({strain, 0, stiffness, j.friction.y, strain.value(rest_.data())});
-    }
-  }
-
-  double floor_at(std::size_t edge) const {
-    return std::pow(Hinge::delta * dot(rest_[edge], rest_[edge]), 2);
-  }
-
-  /// `middle`: the edge about which the dihedral angle is measured.
-  template <class Strain>
-  void add_altitude(const Strain& strain, std::size_t first, std::size_t middle) {
-    Vec slope[Strain::edges];
-    const double rest = strain.gradient(&rest_[first], slope);
-    const Segment& segment = strand_.segments[middle];
-    // The last edge turns about the middle one.
-    const Vec axis = (1 / segment.length) * rest_[middle];
-    const double by_angle = dot(slope[Strain::edges - 1], cross(axis, rest_[middle + 1]));
-    if (std::abs(by_angle) < flat * segment.length) return;
-    const double scale = 1 / (segment.length * by_angle * by_angle);
-    add<Strain>({strain, first,
-                 strand_.material.shear_modulus * segment.section.torsion() * scale,
-                 strand_.material.internal_friction * scale, rest});
-  }
-
-  const Strand& strand_;
-  bool clamped_;
-  Frame clamp_;
-  std::vector<Vec> rest_;  // edges
 };
 
 constexpr Parameter torsion_parameter{.name = "torsion",
@@ -168,7 +63,7 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
                                     const MassSpringOptions& options, Effects effects) {
   NodalStrand nodal(strand, model, 0);
   MaximalStrand& parts = nodal.parts;
-  Builder builder(strand, nodal);
+  SpringBuilder builder(strand, nodal);
   if (options.inextensible) parts.constraints = inextensible(parts, strand);
   if (options.stretch) builder.add_stretch();
   builder.add_bending(options.bending);

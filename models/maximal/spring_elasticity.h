@@ -3,6 +3,7 @@
 #include <tuple>
 #include <vector>
 
+#include "models/maximal/angle_strain.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/spring_strain.h"
 
@@ -23,7 +24,9 @@ struct Spring {
 using Springs =
     std::tuple<std::vector<Spring<Chord<1>>>, std::vector<Spring<Chord<2>>>,
                std::vector<Spring<Hinge>>, std::vector<Spring<Altitude>>,
-               std::vector<Spring<WallBend>>, std::vector<Spring<WallAltitude>>>;
+               std::vector<Spring<WallBend>>, std::vector<Spring<WallAltitude>>,
+               std::vector<Spring<BendAngle>>, std::vector<Spring<Dihedral>>,
+               std::vector<Spring<WallDihedral>>>;
 
 /// The terms included in df/dz. With g the gradient of s,
 ///

@@ -39,7 +39,8 @@ std::unique_ptr<System> strand(std::string_view model) {
   if (p.knows("elements")) {
     p.set("elements", model == "super_clothoid" ? "1" : "3");  // waves as slow
     p.set("radius_m", "1e-3");
-    p.set("natural_curvature_1_m", "8");
+    // Joints that stay bent where their dihedral angles jump if they are straightened.
+    p.set("natural_curvature_1_m", model == "lifted_curls" ? "25" : "8");
     p.set("natural_curvature2_1_m", "5");
     p.set("youngs_modulus_pa", "1e6");
   } else {  // the palm tree is of wood: softened until it sways like the strand

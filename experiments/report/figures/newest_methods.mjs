@@ -48,10 +48,12 @@ function sweeps(tables) {
     }));
 }
 
-// Of ./tress peers, where it has been run.
+// Of ./tress peers, where it has been run. What is in single precision has no fine run of its
+// own to be compared with.
 const measured = (tables, column) =>
   (tables.peers ?? [])
     .filter(succeeded)
+    .filter((row) => column === 'total_error_rel' || row.precision !== 'single')
     .map((row) => ({
       family: row.peer,
       how: `${row.method}, steps of ${format_time(row.dt_s)}`,

@@ -6,6 +6,7 @@ export const allowed = [
   { text: /\bDebian 12\b/g, why: 'the platform' },
   { text: /\bC\+\+20\b/g, why: 'the language' },
   { text: /\b3D\b/g, why: 'three dimensions' },
+  { text: /\bSE\(3\)/g, why: 'the group of rigid motions' },
   { text: /\b(GPL-3\+|LGPL-2\.1\+|BSD 3-Clause)/g, why: 'names of licences' },
   { text: /\bHyndman & Fan, type 7\b/g, why: 'a citation' },
   { text: /\b10 cm\b/g, why: 'the length of the usual hair' },

@@ -84,6 +84,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(StrandCase{"angular", "mass_spring", curls},
                     StrandCase{"second_neighbour", "mass_spring",
                                with(curls, {{"bending", "second_neighbour"}})},
+                    StrandCase{"lifted_curls",
+                               "lifted_curls",
+                               {{"elements", "8"},
+                                {"natural_curvature_1_m", "40"},
+                                {"natural_twist_1_m", "20"}}},
                     StrandCase{"inextensible", "inextensible_strand", curls}),
     [](const auto& tested) { return tested.param.name; });
 

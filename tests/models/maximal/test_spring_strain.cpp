@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
-#include "models/maximal/spring_strain.h"
+#include "models/maximal/angle_strain.h"
 #include "tests/support/variable.h"
 
 namespace tress::test_spring_strain {
@@ -35,8 +36,17 @@ WallBend example() {
   return strain;
 }
 
-using Strains =
-    ::testing::Types<Chord<1>, Chord<2>, Hinge, Altitude, WallAltitude, WallBend>;
+template <>
+Dihedral example() {
+  return {0.4, 3e-3, 2e-3};
+}
+template <>
+WallDihedral example() {
+  return {{-0.3, 0.1, 2e-3}, 0, {0.9, -0.3, 0.1}};
+}
+
+using Strains = ::testing::Types<Chord<1>, Chord<2>, Hinge, Altitude, WallAltitude,
+                                 WallBend, BendAngle, Dihedral, WallDihedral>;
 TYPED_TEST_SUITE(SpringStrain, Strains);
 
 /// Edges of a bent strand; `bent` = 0: straight.
@@ -63,9 +73,14 @@ TYPED_TEST(SpringStrain, HasTheDerivativesOfItsValue) {
               variable2<n>(e[k].z, 3 * k + 2)};
     }
     const Dual2<n> exact = strain.value(y);
+    double steepest = 0;
+    for (const auto& part : exact.part) {
+      for (const double x : part.part) steepest = std::max(steepest, std::abs(x));
+    }
     // Rounding of sums of ten terms of order one; a hinge divides by its bend, for second
-    // derivatives twice.
-    const double rounding = 1e-14 / bent, second = 1e-14 / (bent * bent);
+    // derivatives twice. Those that are larger round as their size.
+    const double rounding = 1e-14 / bent;
+    const double second = 1e-14 * std::max(1 / (bent * bent), steepest);
     EXPECT_NEAR(strain.gradient(e, slope), exact.value.value, rounding);
     EdgeMatrix<TypeParam::edges> h;
     strain.hessian(e, h);
@@ -127,6 +142,31 @@ TEST(Altitude, IsTheDistanceOfTheDiagonals) {
   // angles in the planes z = 0 and z = 2.
   const Vec e[3] = {{0, 1, 2}, {1, 0, -2}, {0, -1, 2}};
   EXPECT_NEAR(std::abs(Altitude{1e-20}.value(e)), 2, 1e-14);
+}
+
+// The third edge turned about the second, out of the plane of the first two.
+TEST(Dihedral, IsTheAngleAboutTheMiddleEdgeFromItsRest) {
+  for (const double turned : {-3.0, -1.0, 0.0, 0.5, 2.5}) {
+    const double rest = 0.3;
+    const Vec e[3] = {
+        {1, 0.5, 0}, {2, 0, 0}, {1, -0.5 * std::cos(turned), -0.5 * std::sin(turned)}};
+    EXPECT_NEAR((Dihedral{rest, 0, 0}.value(e)),
+                std::remainder(turned - rest, 2 * std::numbers::pi), 1e-14);
+  }
+}
+
+// Two edges in line: the angle is not defined, its part in the energy and forces is none.
+TEST(Dihedral, FadesWhereEdgesAreParallel) {
+  const Dihedral strain{0.4, 1e-8, 1e-8};
+  const Vec e[3] = {{1, 0, 0}, {2, 0, 0}, {1, 0.5, 0.3}};
+  Vec g[3];
+  EdgeMatrix<3> h;
+  EXPECT_EQ(strain.gradient(e, g), 0);
+  strain.hessian(e, h);
+  for (const Vec& slope : g) EXPECT_EQ(norm(slope), 0);
+  for (const auto& row : h.m) {
+    for (const double x : row) EXPECT_TRUE(std::isfinite(x));
+  }
 }
 
 }  // namespace tress::test_spring_strain

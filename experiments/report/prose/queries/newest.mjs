@@ -46,12 +46,96 @@ export const machines = (_, root) =>
     })
     .join(', ');
 
-export function peers_run({ peers }) {
-  if (peers === undefined)
-    return 'The table `results/peers.csv` of a run beside other simulators is not there; `./tress peers` makes it.';
-  const kept = peers.filter(succeeded);
-  const names = distinct(kept.map((row) => row.peer)).join(', ');
-  return `Of the ${peers.length} runs in \`results/peers.csv\`, ${kept.length} came to their end (${names}).`;
+const no_peers =
+  'The table `results/peers.csv` of a run beside other simulators is not there; `./tress peers` makes it.';
+
+// By engine and method: what it pays for an error against the continuous rod.
+export function peers_table({ peers }) {
+  if (peers === undefined) return no_peers;
+  const bounds = [0.05, 0.02, 0.01];
+  const methods = group_by(
+    peers.filter((row) => row.elements === 20),
+    (row) => `${row.peer} ${row.version}, ${row.method}`,
+  );
+  const lines = [...methods].map(([method, rows]) => {
+    const kept = rows.filter(succeeded);
+    const cheapest = (error) =>
+      minimum_by(
+        kept.filter((row) => row.total_error_rel <= error),
+        (row) => row.wall_s,
+      );
+    const best = minimum_by(kept, (row) => row.total_error_rel);
+    return [
+      method,
+      ...bounds.map((error) => {
+        const row = cheapest(error);
+        return row === undefined ? 'never' : `${time(row.wall_s / 2)} (${time(row.dt_s)})`;
+      }),
+      best === undefined ? 'comes apart' : percent(best.total_error_rel),
+    ];
+  });
+  return table(
+    ['engine, method', ...bounds.map((error) => `within ${percent(error)}`), 'least error'],
+    lines,
+  );
+}
+
+// Links of other engines are a rod of ours cut as finely: their error of space.
+export function peers_confirm({ peers }) {
+  if (peers === undefined) return '';
+  const finest = [
+    ...group_by(
+      peers.filter((row) => row.elements === 20 && row.precision !== 'single' && succeeded(row)),
+      (row) => row.peer + row.method,
+    ).values(),
+  ].map((rows) => minimum_by(rows, (row) => row.dt_s));
+  const errors = finest.map((row) => row.total_error_rel);
+  must(Math.max(...errors) < 0.02, 'finest runs of all engines are within 2 % of our rod');
+  const mujoco = finest.filter((row) => row.peer === 'mujoco_3').map((row) => row.total_error_rel);
+  return (
+    `At their shortest steps all engines in double precision, cut into 20 links, are ${range(errors, percent)} off our ` +
+    `continuous rod, which none of them had a part in` +
+    (mujoco.length > 0 ? `; MuJoCo 3 ${range(mujoco, percent)}.` : '.')
+  );
+}
+
+// Order 2 beside order 1 of position-based steps, where sweeps are few.
+export function order_two(tables) {
+  const rows = rows_of(tables, 'block_descent', { part: 'order' }).filter(succeeded);
+  const pairs = [...group_by(rows, (row) => `${row.dt_s} ${row.sweeps}`).values()].map((both) => [
+    both.find((row) => row.integrator === 'xpbd'),
+    both.find((row) => row.integrator === 'xpbd_bdf2'),
+  ]);
+  if (pairs.length === 0) return 'The table holds no `xpbd_bdf2` beside `xpbd` yet';
+  must(
+    pairs.every(([first, second]) => second.error_rel < first.error_rel),
+    'order 2 is the less wrong at every step and number of sweeps',
+  );
+  return (
+    'Position-based dynamics gain more from order 2 than from sweeps. `xpbd` and `xpbd_bdf2`: ' +
+    pairs
+      .map(
+        ([first, second]) =>
+          `${percent(first.error_rel)} and ${percent(second.error_rel)} off the rod at steps of ${time(first.dt_s)} and ` +
+          `${first.sweeps} sweeps (time ${number(second.wall_s_per_sim_s / first.wall_s_per_sim_s, 2)} times)`,
+      )
+      .join('; ')
+  );
+}
+
+// The model that the chain of Zhao et al. would be, beside the one that they compare with.
+export function chain_beside_helix(tables) {
+  const at_20 = family_runs(tables, 'total').filter((run) => run.how.endsWith(' 20 elements'));
+  const least = (model) =>
+    minimum_by(
+      at_20.filter((run) => run.how.startsWith(`${model},`)),
+      (run) => run.error,
+    );
+  const [chain, helix] = [least('articulated_chain'), least('super_helix')];
+  return (
+    `with 20 elements \`articulated_chain\` comes within ${percent(chain.error)} of the swinging rod, ` +
+    `\`super_helix\` within ${percent(helix.error)}`
+  );
 }
 
 // Sweeps lead to the solution of the step, whose own error stays.
