@@ -122,9 +122,9 @@ async function report({ directory, out, figures, levels }, { template, render, s
     throw new InputError(`${directory}: nothing to draw: no file in it could be used`);
   const objects = all_objects(tables);
   const html = page_html(template(), { tables, objects, scenes, levels }, warnings);
+  write(out, html, 'choose another place with --out');
   const drawn = figures ? await render(objects, warnings) : [];
   const written = write_figures(directory, drawn, warn);
-  write(out, html, 'choose another place with --out');
   say(
     `${out}: ${count} tables, ${written} figures, ${scenes.length} scenes` +
       (warnings.list.length > 0 ? `, ${warnings.list.length} warnings` : ''),
