@@ -1,8 +1,10 @@
 // Writes dist/: report.mjs and film.mjs (commands), render.mjs (SVG in Node), page.html
 // (template), notices. Developers who change the page run `npm ci && npm run build` and commit dist/.
 import { build } from 'esbuild';
+import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { packed } from './src/packed.mjs';
 import { sources_hash } from './src/sources_hash.mjs';
 
 const base = fileURLToPath(new URL('.', import.meta.url));
@@ -29,13 +31,9 @@ const report = await build({
 });
 const render = await build({ ...node, entryPoints: ['src/render.mjs'] });
 const film = await build({ ...node, entryPoints: ['src/film.mjs'] });
-const page = await build({
-  ...common,
-  entryPoints: ['src/browser/main.mjs'],
-  platform: 'browser',
-  target: 'es2022',
-  format: 'iife',
-});
+const browser = { ...common, platform: 'browser', target: 'es2022', format: 'iife' };
+const page = await build({ ...browser, entryPoints: ['src/browser/main.mjs'] });
+const start = await build({ ...browser, entryPoints: ['src/browser/start.mjs'] });
 
 // The package that a file belongs to, undefined for our own.
 const package_of = (path) =>
@@ -68,15 +66,24 @@ function notices(inputs) {
     .join(`\n${'-'.repeat(72)}\n\n`);
 }
 
-const inputs = [report, render, film, page].flatMap(({ metafile }) =>
+const inputs = [report, render, film, page, start].flatMap(({ metafile }) =>
   Object.keys(metafile.inputs),
 );
 const notice = notices(inputs);
-const script = page.outputFiles[0].text.replaceAll('</script', '<\\/script');
+const [program, starting] = [page, start].map(({ outputFiles }) =>
+  outputFiles[0].text.trim(),
+);
+const hash_of = (text) =>
+  `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+const policy =
+  "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; " +
+  `style-src 'unsafe-inline'; script-src ${hash_of(starting)} ${hash_of(program)}`;
 const html = readFileSync(at('src/browser/page.html'), 'utf8')
   .replace('TRESS_SOURCES_VALUE', () => hash)
   .replace('/*TRESS_STYLE*/', () => readFileSync(at('src/browser/style.css'), 'utf8'))
-  .replace('/*TRESS_PROGRAM*/', () => script)
+  .replace('TRESS_POLICY_VALUE', () => policy)
+  .replace('/*TRESS_PROGRAM*/', () => packed(Buffer.from(program)))
+  .replace('/*TRESS_START*/', () => starting)
   .replace('TRESS_NOTICES_VALUE', () =>
     notice.replaceAll('<', '&lt;').replaceAll('--', '- -'),
   );

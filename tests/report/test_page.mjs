@@ -67,9 +67,9 @@ async function click_legend(figure, text) {
 }
 
 const settle = async (ready) => {
-  for (let attempt = 0; attempt < 200; ++attempt) {
+  for (let attempt = 0; attempt < 500; ++attempt) {
     if (await ready()) return true;
-    await pause(50);
+    await pause(20);
   }
   return false;
 };
@@ -304,23 +304,29 @@ test('UnknownTable_IsShownAsText', async () => {
   );
 });
 
-for (const width of [390, 768, 1400]) {
-  test(`Page_HasNoHorizontalScroll_${width}`, async () => {
-    await open_measurements({ width });
-    await browser.run(
-      `for (const d of document.querySelectorAll('details')) d.open = true`,
-    );
-    const [content, view] = await browser.run(
-      'return [document.documentElement.scrollWidth, window.innerWidth]',
-    );
-    assert.equal(view, width);
-    assert.ok(content <= width, `${content} px wide`);
-    // Nor may a figure hide anything behind its own scroll bar.
-    const cut = await browser.run(`return [...document.querySelectorAll('.plot')]
-      .filter((p) => p.scrollWidth > p.clientWidth + 1).map((p) => p.id)`);
-    assert.deepEqual(cut, []);
-  });
-}
+test('Composite_IsDrawnOnTheLineOfRecursive', async () => {
+  await open_measurements();
+  const [composite, recursive] = await browser.run(`
+    const places = (colour) =>
+      [...document.querySelectorAll('#plot-stability_limit path[aria-roledescription="point"]')]
+        .filter((p) => ['stroke', 'fill'].some(
+          (name) => p.getAttribute(name)?.toUpperCase() === colour))
+        .map((p) => p.getAttribute('transform'))
+        .sort();
+    return ['#E69F00', '#1F7FC2'].map(places);`);
+  assert.ok(composite.length > 80, `${composite.length} marks`);
+  assert.deepEqual(composite, recursive);
+});
+
+test('Figures_HaveDescriptions', async () => {
+  await open_measurements();
+  for (const figure of figures) {
+    const label = await browser.run(`
+      const svg = document.querySelector('#plot-${figure} svg[role="img"]');
+      return svg.getAttribute('aria-label')`);
+    assert.ok(label.length > 40, `${figure}: ${label}`);
+  }
+});
 
 // Boxes of the texts of a figure that are hidden by none and overlap another.
 const overlapping_texts = (figure) =>
@@ -337,27 +343,55 @@ const overlapping_texts = (figure) =>
     .filter(([other, at]) => other !== text && !apart(box, at))
     .map(([other]) => text + ' / ' + other));`);
 
-for (const width of [390, 1240]) {
-  test(`StrandFigures_KeepTheirLabelsApart_${width}`, async () => {
-    await open_measurements({ width });
-    for (const figure of ['stability_limit', 'scaling', 'swing', 'work_precision']) {
-      assert.deepEqual(await overlapping_texts(figure), [], figure);
-    }
-  });
+// Widths one after the other, that each is drawn once.
+const page_widths = [1400, 768, 390];
+const label_widths = [390, 1240];
+for (const width of [1400, 1240, 768, 390]) {
+  if (page_widths.includes(width))
+    test(`Page_HasNoHorizontalScroll_${width}`, async () => {
+      await open_measurements({ width });
+      await browser.run(
+        `for (const d of document.querySelectorAll('details')) d.open = true`,
+      );
+      const [content, view] = await browser.run(
+        'return [document.documentElement.scrollWidth, window.innerWidth]',
+      );
+      assert.equal(view, width);
+      assert.ok(content <= width, `${content} px wide`);
+      // Nor may a figure hide anything behind its own scroll bar.
+      const cut = await browser.run(`return [...document.querySelectorAll('.plot')]
+        .filter((p) => p.scrollWidth > p.clientWidth + 1).map((p) => p.id)`);
+      assert.deepEqual(cut, []);
+    });
+  if (label_widths.includes(width))
+    test(`StrandFigures_KeepTheirLabelsApart_${width}`, async () => {
+      await open_measurements({ width });
+      for (const figure of ['stability_limit', 'scaling', 'swing', 'work_precision']) {
+        assert.deepEqual(await overlapping_texts(figure), [], figure);
+      }
+    });
 }
 
-test('Composite_IsDrawnOnTheLineOfRecursive', async () => {
-  await open_measurements();
-  const [composite, recursive] = await browser.run(`
-    const places = (colour) =>
-      [...document.querySelectorAll('#plot-stability_limit path[aria-roledescription="point"]')]
-        .filter((p) => ['stroke', 'fill'].some(
-          (name) => p.getAttribute(name)?.toUpperCase() === colour))
-        .map((p) => p.getAttribute('transform'))
-        .sort();
-    return ['#E69F00', '#1F7FC2'].map(places);`);
-  assert.ok(composite.length > 80, `${composite.length} marks`);
-  assert.deepEqual(composite, recursive);
+test('Table_IsSavedAsTheCsvItCameFrom', async () => {
+  await open_measurements({ width: 390 }); // as the tests before left it
+  await browser.run(`document.querySelector('[data-table="family"]').open = true`);
+  const button = '[data-table="family"] .table-tools button';
+  assert.ok(await settle(() => browser.run(`return !!document.querySelector('${button}')`)));
+  const [name, text] = await browser.run(`
+    const saved = new Promise((done) => {
+      URL.createObjectURL = (blob) => (blob.text().then((text) => done(text)), 'about:blank');
+    });
+    let name;
+    HTMLAnchorElement.prototype.click = function () { name = this.download; };
+    document.querySelector('${button}').click();
+    return saved.then((text) => [name, text]);`);
+  shown.width = undefined; // the page is not what it was
+  assert.equal(name, 'family.csv');
+  const file = join(directory, 'family.csv');
+  assert.deepEqual(
+    parse_csv(text, 'saved'),
+    parse_csv(readFileSync(file, 'utf8'), 'written'),
+  );
 });
 
 const keys = { right: '\uE014', left: '\uE012', end: '\uE010', home: '\uE011' };
@@ -402,34 +436,3 @@ test('EveryTab_HasOneHeadingInMain', async () => {
   assert.equal(await browser.run("return document.querySelectorAll('main').length"), 1);
 });
 
-test('Table_IsSavedAsTheCsvItCameFrom', async () => {
-  await open_measurements();
-  await browser.run(`document.querySelector('[data-table="family"]').open = true`);
-  const button = '[data-table="family"] .table-tools button';
-  assert.ok(await settle(() => browser.run(`return !!document.querySelector('${button}')`)));
-  const [name, text] = await browser.run(`
-    const saved = new Promise((done) => {
-      URL.createObjectURL = (blob) => (blob.text().then((text) => done(text)), 'about:blank');
-    });
-    let name;
-    HTMLAnchorElement.prototype.click = function () { name = this.download; };
-    document.querySelector('${button}').click();
-    return saved.then((text) => [name, text]);`);
-  shown.width = undefined; // the page is not what it was
-  assert.equal(name, 'family.csv');
-  const file = join(directory, 'family.csv');
-  assert.deepEqual(
-    parse_csv(text, 'saved'),
-    parse_csv(readFileSync(file, 'utf8'), 'written'),
-  );
-});
-
-test('Figures_HaveDescriptions', async () => {
-  await open_measurements();
-  for (const figure of figures) {
-    const label = await browser.run(`
-      const svg = document.querySelector('#plot-${figure} svg[role="img"]');
-      return svg.getAttribute('aria-label')`);
-    assert.ok(label.length > 40, `${figure}: ${label}`);
-  }
-});

@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { inflateRawSync } from 'node:zlib';
 import { after, before, test } from 'node:test';
+import { inflateRawSync } from 'node:zlib';
 import { bodies_at } from '../../experiments/report/src/browser/scenes/bodies.mjs';
 import { Camera, project } from '../../experiments/report/src/browser/scenes/camera.mjs';
 import {
@@ -14,7 +14,17 @@ import {
   positions_at,
 } from '../../experiments/report/src/browser/scenes/data.mjs';
 import { packed } from '../../experiments/report/src/packed.mjs';
-import { bytes_of_scene, scene_of_bytes } from '../../experiments/report/src/packing.mjs';
+import { bytes_of_letters } from '../../experiments/report/src/letters.mjs';
+import {
+  bytes_of_contacts,
+  contacts_of_bytes,
+} from '../../experiments/report/src/contact_packing.mjs';
+import {
+  bytes_of_scene,
+  most_levels,
+  page_levels,
+  scene_of_bytes,
+} from '../../experiments/report/src/packing.mjs';
 import { empty_directory, fixture_directory, remove, run_page } from './support.mjs';
 
 let directory;
@@ -139,8 +149,9 @@ test('Positions_AreThoseWrittenToHalfAWord', () => {
   }
 });
 
-// Every word and byte, also where differences wrap: the fixture, and noise over all words.
-test('Packing_LosesNothing', () => {
+// Half a step of the grid, and half a word of the box for each of the two roundings; channels
+// half a level of 63. Also where differences wrap: noise over all words.
+test('Packing_KeepsWhatAPictureShows', () => {
   const head = arrays_of(fixture('fixture_head'));
   let seed = 1;
   const noise = () => (seed = (16807 * seed) % 2147483647) >>> 8;
@@ -152,12 +163,76 @@ test('Packing_LosesNothing', () => {
       values: channel.values.map(noise),
     })),
   };
+  const sides = head.high.map((x, i) => x - head.low[i]);
+  const longest = Math.max(...sides);
   for (const scene of [head, noisy, { ...head, channels: [] }])
-    assert.deepEqual(scene_of_bytes(bytes_of_scene(scene)), scene);
-  const bytes = packed(bytes_of_scene(head));
-  assert.deepEqual(scene_of_bytes(inflateRawSync(Buffer.from(bytes, 'base64'))), head);
+    for (const levels of [page_levels, most_levels]) {
+      const { positions, channels, contacts, series, usual_force_n, ...rest } =
+        scene_of_bytes(bytes_of_scene(scene, levels));
+      for (const key of Object.keys(rest)) assert.deepEqual(rest[key], scene[key], key);
+      positions.forEach((word, i) => {
+        const side = sides[i % 3];
+        const off = (Math.abs(word - scene.positions[i]) / 65535) * side;
+        const allowed = (0.5 / levels) * longest + (0.5 / 65535) * side;
+        assert.ok(off <= allowed * (1 + 1e-9), `${levels} ${i}: ${off}, ${allowed}`);
+      });
+      assert.equal(channels.length, scene.channels.length);
+      channels.forEach(({ values, ...channel }, k) => {
+        const { values: wanted, ...others } = scene.channels[k];
+        assert.deepEqual(channel, others);
+        values.forEach((v, i) => assert.ok(Math.abs(v - wanted[i]) <= 3, `${k} ${i}`));
+      });
+      assert.equal(contacts.length, scene.contacts.length);
+      assert.deepEqual(series.columns, scene.series.columns);
+      series.columns.forEach((name, c) => {
+        const column = scene.series.rows.map((row) => row[c]);
+        const known = column.filter((value) => value !== null);
+        const range = Math.max(...known) - Math.min(...known);
+        series.rows.forEach((row, r) => {
+          if (column[r] === null) assert.equal(row[c], null);
+          else assert.ok(Math.abs(row[c] - column[r]) <= range / 8192, `${name} ${r}`);
+        });
+      });
+    }
+  const text = packed(bytes_of_scene(head));
+  assert.deepEqual(
+    new Uint8Array(inflateRawSync(bytes_of_letters(text))),
+    bytes_of_scene(head),
+  );
   const plain = readFileSync(join(directory, 'scenes/fixture_head.json')).length;
-  assert.ok(bytes.length < 0.5 * plain, `${bytes.length} of ${plain} bytes`);
+  assert.ok(text.length < 0.35 * plain, `${text.length} of ${plain} bytes`);
+});
+
+// A force of half of a 128th of the usual one, or less in each direction, is left out.
+test('Contacts_KeepPlaceAndForceOfEveryArrow', () => {
+  const box = { low: [-1, 0, 0], high: [1, 0.5, 0] };
+  const large = Array.from({ length: 40 }, (_, i) => [
+    ...[Math.sin(i), 0.25 + 0.2 * Math.cos(3 * i), 0],
+    ...[1e-5 * Math.cos(i), -2e-5, 1e-6 * i],
+  ]);
+  const small = [0.5, 0.1, 0, 1e-9, 0, 0];
+  const frames = [large.flat(), [], [...small, ...large[7]]];
+  const { header, bytes } = bytes_of_contacts(frames, box);
+  const { contacts, usual_force_n: usual } = contacts_of_bytes(bytes, header, box);
+  const sizes = [...large, small, large[7]].map((c) => Math.hypot(...c.slice(3)));
+  assert.equal(usual, sizes.sort((a, b) => a - b)[Math.floor(0.95 * 41)]);
+  assert.deepEqual(contacts.map(({ length }) => length / 6), [40, 0, 1]);
+  const split = (flat) =>
+    Array.from({ length: flat.length / 6 }, (_, i) => flat.slice(6 * i, 6 * i + 6));
+  for (const [found, wanted] of [
+    [split(contacts[0]), large],
+    [split(contacts[2]), [large[7]]],
+  ])
+    for (const contact of wanted)
+      assert.ok(
+        found.some((other) =>
+          other.every((x, c) =>
+            Math.abs(x - contact[c]) <= (c < 3 ? 1.001 / 1024 : 0.501 * (usual / 128)),
+          ),
+        ),
+        `${contact}`,
+      );
+  assert.equal(bytes_of_contacts(undefined, box), undefined);
 });
 
 test('Pose_TakesTheShorterWayBetweenQuaternions', () => {

@@ -22,7 +22,9 @@ after(async () => {
   remove(directory);
 });
 
-const open = (hash = '', ...size) => browser.open(url + hash, ...size);
+// No larger a window than the controls need: a processor draws it.
+const open = (hash = '', width = 900, height = 1000) =>
+  browser.open(url + hash, width, height);
 
 const keys = { right: '\uE014', left: '\uE012', end: '\uE010', home: '\uE011', escape: '\uE00C' };
 const frame = async () =>
@@ -47,9 +49,9 @@ const choose = (id, value) =>
   );
 // Whether a condition comes true within 10 s; the pictures are not timed.
 async function comes(condition) {
-  for (let attempt = 0; attempt < 100; ++attempt) {
+  for (let attempt = 0; attempt < 500; ++attempt) {
     if (await condition()) return true;
-    await pause(100);
+    await pause(20);
   }
   return false;
 }

@@ -66,13 +66,13 @@ export class Browser {
   }
 
   async wait_for_driver() {
-    for (let attempt = 0; attempt < 100; ++attempt) {
+    for (let attempt = 0; attempt < 500; ++attempt) {
       const ready = await fetch(`${this.root}/status`).then(
         (r) => r.json(),
         () => undefined,
       );
       if (ready?.value?.ready) return;
-      await pause(100);
+      await pause(20);
     }
     throw new Error('chromedriver did not start');
   }
@@ -112,10 +112,10 @@ export class Browser {
     // A new document, also when only the address's last part differs.
     await this.command('/url', { url: 'about:blank' });
     await this.command('/url', { url });
-    for (let attempt = 0; attempt < 200; ++attempt) {
+    for (let attempt = 0; attempt < 1000; ++attempt) {
       if (await this.run("return document.documentElement.dataset.ready === 'yes'"))
         return;
-      await pause(100);
+      await pause(20);
     }
     throw new Error(`${url}: the page was not ready after 20 s`);
   }

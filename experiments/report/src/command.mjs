@@ -1,7 +1,6 @@
 // report.mjs RESULTS [--out FILE] [--no-figures]: one self-contained page, one SVG per
 // figure beside the CSVs. A file that cannot be used is a warning on stderr and a gap on
 // the page.
-import { createHash } from 'node:crypto';
 import { existsSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { InputError } from './input.mjs';
@@ -9,30 +8,49 @@ import { load_results } from './load.mjs';
 import { all_objects } from './objects.mjs';
 import { body_html } from './page.mjs';
 import { packed } from './packed.mjs';
+import { most_levels, page_levels } from './packing.mjs';
 import { load_scenes } from './scene_file.mjs';
 import { scene_data_html } from './scenes_page.mjs';
 import { Warnings } from './warnings.mjs';
 
-const usage = `usage: node report.mjs RESULTS [--out FILE] [--no-figures]
+const usage = `usage: node report.mjs RESULTS [--out FILE] [--no-figures] [--levels N]
   RESULTS       directory that holds the CSV files; the SVG figures are written there
   --out FILE    the page (default RESULTS/report.html)
   --no-figures  the page alone, which draws its own figures: no SVG
+  --levels N    positions of scenes to 1/N of the longest side of their box; ${page_levels},
+                up to ${most_levels}
 A file that cannot be read is a warning, and named on the page in its place.
 exit code: 0 the page was written, 2 a bad argument, or files and none of them usable
 example: node experiments/report/dist/report.mjs results/ --out results/report.html`;
 
+function levels_of(text) {
+  const levels = Number(text);
+  if (!Number.isInteger(levels) || levels < 256 || levels > most_levels)
+    throw new InputError(
+      `--levels ${text}: must be a whole number from 256 to ${most_levels}`,
+    );
+  return levels;
+}
+
 function options_of(argv) {
-  const options = { directory: undefined, out: undefined, figures: true };
+  const options = {
+    directory: undefined,
+    out: undefined,
+    figures: true,
+    levels: page_levels,
+  };
   for (let i = 0; i < argv.length; ++i) {
     if (argv[i] === '--help' || argv[i] === '-h') return { help: true };
     if (argv[i] === '--out') {
       if (argv[i + 1] === undefined) throw new InputError('--out: no file given');
       options.out = argv[++i];
+    } else if (argv[i] === '--levels') {
+      options.levels = levels_of(argv[++i]);
     } else if (argv[i] === '--no-figures') {
       options.figures = false;
     } else if (argv[i].startsWith('-')) {
       throw new InputError(
-        `${argv[i]}: unknown option; known are --out, --no-figures and --help`,
+        `${argv[i]}: unknown option; known are --out, --no-figures, --levels and --help`,
       );
     } else if (options.directory === undefined) {
       options.directory = argv[i];
@@ -58,31 +76,21 @@ function write(path, text, remedy) {
   }
 }
 
-const script_hash = (text) =>
-  `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
-
-// The page: the template with policy, text and data filled in.
-function page_html(template, tables, objects, scenes, warnings) {
-  const script = /<script id="program">([\s\S]*?)<\/script>/.exec(template)[1];
-  const policy =
-    "default-src 'none'; base-uri 'none'; form-action 'none'; " +
-    `img-src data:; style-src 'unsafe-inline'; script-src ${script_hash(script)}`;
+// The page: the template with text and data filled in. Values of one column lie together:
+// they compress better.
+function page_html(template, { tables, objects, scenes, levels }, warnings) {
   const data = Object.fromEntries(
     Object.entries(tables).map(([name, { columns, rows, glossary }]) => [
       name,
-      { columns, rows, glossary },
+      { columns, glossary, values: columns.map((_, c) => rows.map((row) => row[c])) },
     ]),
   );
   const values = {
-    POLICY: policy,
     BODY: body_html(tables, objects, scenes, warnings),
     DATA: packed(Buffer.from(JSON.stringify(data))),
-    SCENES: scene_data_html(scenes),
+    SCENES: scene_data_html(scenes, levels),
   };
-  return template.replace(
-    /<!--TRESS_(POLICY|BODY|DATA|SCENES)-->|TRESS_(POLICY)_VALUE/g,
-    (_, slot, attribute) => values[slot ?? attribute],
-  );
+  return template.replace(/<!--TRESS_(BODY|DATA|SCENES)-->/g, (_, slot) => values[slot]);
 }
 
 // Writes one SVG for each; returns how many. What cannot be written is one warning.
@@ -104,7 +112,7 @@ function write_figures(directory, drawn, warn) {
   return drawn.length - failed.length;
 }
 
-async function report({ directory, out, figures }, { template, render, say }) {
+async function report({ directory, out, figures, levels }, { template, render, say }) {
   const warnings = new Warnings(directory, say);
   const warn = (text, table) => warnings.add(text, table);
   const tables = load_results(directory, warn);
@@ -113,10 +121,10 @@ async function report({ directory, out, figures }, { template, render, say }) {
   if (warnings.list.length > 0 && count + scenes.length === 0)
     throw new InputError(`${directory}: nothing to draw: no file in it could be used`);
   const objects = all_objects(tables);
-  const html = page_html(template(), tables, objects, scenes, warnings);
+  const html = page_html(template(), { tables, objects, scenes, levels }, warnings);
+  write(out, html, 'choose another place with --out');
   const drawn = figures ? await render(objects, warnings) : [];
   const written = write_figures(directory, drawn, warn);
-  write(out, html, 'choose another place with --out');
   say(
     `${out}: ${count} tables, ${written} figures, ${scenes.length} scenes` +
       (warnings.list.length > 0 ? `, ${warnings.list.length} warnings` : ''),

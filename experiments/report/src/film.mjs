@@ -18,6 +18,7 @@ import { parseArgs } from 'node:util';
 import { ArrayBufferTarget, Muxer } from 'webm-muxer';
 import { Browser } from './chromium.mjs';
 import { InputError } from './input.mjs';
+import { most_levels } from './packing.mjs';
 
 export const sources = TRESS_SOURCES;
 
@@ -114,7 +115,7 @@ function page_of(source, folder) {
   const command = fileURLToPath(new URL('./report.mjs', import.meta.url));
   const { status, stderr } = spawnSync(
     process.execPath,
-    [command, folder, '--no-figures'],
+    [command, folder, '--no-figures', '--levels', String(most_levels)],
     { encoding: 'utf8' },
   );
   if (status !== 0)

@@ -1,4 +1,5 @@
-// Bytes as the page carries them: base64 of DEFLATE, which cannot end a script element.
+// Bytes as the page carries them: letters of DEFLATE, which cannot end a script element.
 import { deflateRawSync } from 'node:zlib';
+import { letters_of } from './letters.mjs';
 
-export const packed = (bytes) => deflateRawSync(bytes, { level: 9 }).toString('base64');
+export const packed = (bytes) => letters_of(deflateRawSync(bytes, { level: 9 }));

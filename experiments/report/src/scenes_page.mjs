@@ -84,11 +84,11 @@ export const scenes_html = (scenes) =>
   `<h1>Scenes</h1>\n${scenes.length === 0 ? missing : player_html(scenes)}`;
 
 // One script element for each scene, so that the page reads only those it shows.
-export const scene_data_html = (scenes) =>
+export const scene_data_html = (scenes, levels) =>
   scenes
     .map(
       (scene) =>
         `<script type="text/plain" data-scene="${escape_html(scene.scene)}">` +
-        `${packed(bytes_of_scene(arrays_of(scene)))}</script>`,
+        `${packed(bytes_of_scene(arrays_of(scene), levels))}</script>`,
     )
     .join('\n');

@@ -10,7 +10,14 @@ import { fill_table } from './table.mjs';
 import { start_tabs } from './tabs.mjs';
 import { unpacked_json } from './unpack.mjs';
 
-const tables = unpacked_json(document.getElementById('data').textContent);
+const tables = Object.fromEntries(
+  Object.entries(unpacked_json(document.getElementById('data').textContent)).map(
+    ([name, { values, ...table }]) => [
+      name,
+      { ...table, rows: (values[0] ?? []).map((_, r) => values.map((column) => column[r])) },
+    ],
+  ),
+);
 const objects = all_objects(tables);
 
 // Only what the row has: an adaptive run has no dt, a fixed-step run no rtol.

@@ -1,8 +1,7 @@
-// What the page carries compressed: base64 of DEFLATE (RFC 1951).
+// What the page carries compressed: letters of DEFLATE (RFC 1951).
 import { inflateSync } from 'fflate';
+import { bytes_of_letters } from '../letters.mjs';
 
-export const unpacked = (base64) =>
-  inflateSync(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)));
+export const unpacked = (text) => inflateSync(bytes_of_letters(text));
 
-export const unpacked_json = (base64) =>
-  JSON.parse(new TextDecoder().decode(unpacked(base64)));
+export const unpacked_json = (text) => JSON.parse(new TextDecoder().decode(unpacked(text)));

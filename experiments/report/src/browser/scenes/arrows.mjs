@@ -3,7 +3,6 @@ import { format_number } from '../../format.mjs';
 import { add, project } from './camera.mjs';
 
 const numbers = 6; // of a contact: place and force
-const usual_part = 0.95; // of all forces of a scene are not larger than the usual one
 const usual_reach = 0.16; // of the radius of the scene, of an arrow of the usual force
 const most_reach = 3; // times that
 
@@ -16,16 +15,6 @@ export function contacts_at({ contacts, frames }, moment) {
     place: flat.slice(numbers * i, numbers * i + 3),
     force: flat.slice(numbers * i + 3, numbers * (i + 1)),
   }));
-}
-
-// The force (N) that few of a scene exceed.
-export function usual_force(scene) {
-  const sizes = Array.from({ length: scene.frames }, (_, frame) =>
-    contacts_at(scene, frame).map(({ force }) => size(force)),
-  )
-    .flat()
-    .sort((a, b) => a - b);
-  return sizes[Math.floor(usual_part * (sizes.length - 1))] ?? 0;
 }
 
 function trace_arrow(context, from, to) {

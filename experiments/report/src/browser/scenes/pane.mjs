@@ -1,5 +1,5 @@
 // One scene in its part of the picture, by WebGL or on the 2D canvas.
-import { contacts_at, draw_arrows, usual_force } from './arrows.mjs';
+import { contacts_at, draw_arrows } from './arrows.mjs';
 import { bodies_at, draw_body } from './bodies.mjs';
 import { Curves } from './curves.mjs';
 import { pose_at, positions_at } from './data.mjs';
@@ -14,7 +14,7 @@ export class Pane {
     this.painter = painter;
     this.always = always;
     this.positions = new Float64Array(3 * scene.points);
-    this.usual_force = usual_force(scene);
+    this.usual_force = scene.usual_force_n ?? 0;
     this.diameter = 2 * mean(scene.radius_m ?? [0]);
     this.show_strands(false);
   }
