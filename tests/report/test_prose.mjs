@@ -59,13 +59,18 @@ test('newest methods: other simulators and flights count where the tables have t
   };
   const say = (query, more = {}) => answers({ ...tables, ...more }, root)(`newest.${query}`);
   assert.match(say('total_table'), /\| vbd \| 500 ms \| 500 ms \| never \| 4 % in 500 ms/);
-  assert.match(say('peers_run'), /is not there/);
+  assert.match(say('peers_table'), /is not there/);
   const peers = [
     { peer: 'MuJoCo', method: 'ball', status: 'ok', dt_s: 1e-3, wall_s: 0.2, total_error_rel: 0.009 },
     { peer: 'ODE', method: 'step', status: 'unstable', dt_s: 1e-2, wall_s: 0.1, total_error_rel: null },
   ];
   assert.match(say('total_table', { peers }), /\| MuJoCo \| 100 ms \| 100 ms \| 100 ms \| 0\.9 %/);
   assert.doesNotMatch(say('total_table', { peers }), /ODE/);
+  const links = peers.map((row) => ({ ...row, version: '1', elements: 20 }));
+  assert.match(
+    say('peers_table', { peers: links }),
+    /\| MuJoCo 1, ball \| 100 ms \(1 ms\) \| .* \| 0\.9 % \|\n\| ODE 1, step \| never .* comes apart/,
+  );
   assert.match(say('flight_missing'), /no flight of `xpbd`, .*`vbd`/);
   const validation = [{ test: 'free_flight', model: 'corde', integrator: 'vbd', dt_s: 1e-3,
     status: 'ok', energy_change_rel: -0.02, angular_error_rel: 0.01 }];
