@@ -358,7 +358,7 @@ test('Csv_ReadsQuotesAndSpecialNumbers', () => {
 });
 
 test('Manifest_ThatIsNoJsonIsLeftOut', () => {
-  const apart = tables_apart(['family', 'constraint_drift']);
+  const apart = tables_apart(['family', 'scaling']);
   const path = join(apart, 'family.meta.json');
   writeFileSync(path, '{');
   const { status, stderr } = run_page(apart);

@@ -10,6 +10,11 @@
 // go evenly to all azimuths with the lobe TRT, so that no energy is lost. The hair is round:
 // glints of an elliptic one are left out.
 //
+// theta_d is not one angle where light leaves obliquely through a wide lobe: R, reflected
+// there more and more, takes up the light of other theta_d than TT gives up, and the sum
+// of the lobes is off what came in. M is divided by that sum for a hair without absorption,
+// as M of [D'Eon 2011] is by its own; the scale is that of theta_r alone.
+//
 // The tables below are all that the shader has: `scattered` reads them as it does.
 
 const degree = Math.PI / 180;
@@ -143,6 +148,48 @@ export function azimuthal(hair, theta_d, bins = sizes.azimuths, offsets = offset
   };
 }
 
+// Parts of the light that the lobes R, TT and TRT (and what comes later) of a hair without
+// absorption carry; their sum is 1.
+function shares(hair, theta_d, offsets = 100) {
+  const white = { ...hair, absorption: [0] };
+  const sums = [0, 0, 0];
+  for (let i = 0; i < offsets; ++i) {
+    const h = (i + 0.5) / offsets;
+    for (let p = 0; p < 3; ++p) sums[p] += path(white, p, theta_d, h).parts[0] / offsets;
+    sums[2] += later_paths(white, theta_d, h)[0] / offsets;
+  }
+  return sums;
+}
+
+// M of the three lobes at `thetas` inclinations of light and eye, over what a hair without
+// absorption would send out to that eye.
+function longitudinal_tables(hair) {
+  const { thetas } = sizes;
+  const along = new Float32Array(4 * thetas * thetas);
+  const theta = (i) => ((i + 0.5) / thetas - 0.5) * Math.PI;
+  // theta_d is half of a number of places.
+  const carried = Array.from({ length: thetas }, (_, i) =>
+    shares(hair, ((i / thetas) * Math.PI) / 2),
+  );
+  for (let row = 0; row < thetas; ++row) {
+    const lobes = Array.from({ length: thetas }, (_, k) =>
+      [0, 1, 2].map((p) => longitudinal(hair, p, theta(k), theta(row))),
+    );
+    const sent = lobes.reduce((sum, lobe, k) => {
+      const parts = carried[Math.abs(row - k)];
+      return sum + Math.cos(theta(k)) * lobe.reduce((s, m, p) => s + m * parts[p], 0);
+    }, 0);
+    const scale = thetas / (Math.PI * sent);
+    lobes.forEach((lobe, k) =>
+      along.set(
+        lobe.map((m) => scale * m),
+        4 * (row * thetas + k),
+      ),
+    );
+  }
+  return along;
+}
+
 // The tables as pictures of four numbers a place, row after row. `through`: TT and R over
 // phi (columns) and theta_d in 0 .. pi / 2 (rows); `back`: TRT; `along`: M of R, TT, TRT over
 // theta_i (columns) and theta_r (rows) in -pi / 2 .. pi / 2. Values at the middles of places.
@@ -164,18 +211,10 @@ export function tables_of(hair) {
   const albedo = [0, 1, 2].map((c) =>
     side.r.reduce((sum, r, k) => sum + 2 * bin * (r + side.tt[c][k] + side.trt[c][k]), 0),
   );
-  const along = new Float32Array(4 * thetas * thetas);
-  const theta = (i) => ((i + 0.5) / thetas - 0.5) * Math.PI;
-  for (let row = 0; row < thetas; ++row)
-    for (let k = 0; k < thetas; ++k)
-      along.set(
-        [0, 1, 2].map((p) => longitudinal(hair, p, theta(k), theta(row))),
-        4 * (row * thetas + k),
-      );
   return {
     through: { width: azimuths, height: inclinations, data: through },
     back: { width: azimuths, height: inclinations, data: back },
-    along: { width: thetas, height: thetas, data: along },
+    along: { width: thetas, height: thetas, data: longitudinal_tables(hair) },
     albedo,
   };
 }
