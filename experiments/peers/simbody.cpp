@@ -90,7 +90,16 @@ class Simbody : public Peer {
   }
 
   Motion motion() override {
-    if (gave_up_) return {.tip = {SimTK::NaN, 0, 0}};
+    try {
+      if (!gave_up_) return reading();
+    } catch (const SimTK::Exception::Base&) {
+      gave_up_ = true;
+    }
+    return {.tip = {SimTK::NaN, 0, 0}};
+  }
+
+ private:
+  Motion reading() const {
     const SimTK::State& state = integrator_->getState();
     system_.realize(state, SimTK::Stage::Velocity);
     const SimTK::Vec3 tip =
@@ -100,7 +109,6 @@ class Simbody : public Peer {
     return {{tip[0], tip[1], tip[2]}, system_.calcKineticEnergy(state)};
   }
 
- private:
   std::unique_ptr<SimTK::Integrator> make_integrator(double dt) const {
     if constexpr (std::is_constructible_v<Integrator, const SimTK::System&, double>) {
       return std::make_unique<Integrator>(system_, dt);

@@ -136,6 +136,7 @@ test('MissingTables_SayHowToProduceThem', () => {
     'stability_limit',
     'scaling',
     'force_transport',
+    'damping',
     'block_descent',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);

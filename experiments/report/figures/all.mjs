@@ -7,6 +7,7 @@ import { validation_orders } from './validation_orders.mjs';
 import { validation_tests } from './validation_tests.mjs';
 import { bdf_order } from './bdf_order.mjs';
 import { block_descent, cosserat_map } from './block_descent.mjs';
+import { damping } from './damping.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
@@ -44,6 +45,7 @@ export const figures = [
   head_accuracy,
   swing,
   force_transport,
+  damping,
   block_descent,
   cosserat_map,
   newest_methods,

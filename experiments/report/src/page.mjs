@@ -82,6 +82,7 @@ const measurements = [
     findings: transport_findings,
     tables: ['force_transport'],
   },
+  { figure: 'damping', findings: () => [], tables: ['damping'] },
   { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
   { figure: 'cosserat_map', findings: map_findings, tables: [] },
   { figure: 'newest_methods', findings: newest_findings, tables: [] },

@@ -242,6 +242,13 @@ export const known_tables = {
     command: './tress run',
     program: 'force_transport',
   },
+  damping: {
+    title: 'Energy that a method takes',
+    required: ['model', 'integrator', 'elements', 'dt_s', 'energy_lost_rel', 'status'],
+    numeric: ['elements', 'dt_s', 'energy_lost_rel', 'steps'],
+    command: './tress run',
+    program: 'damping',
+  },
   block_descent: {
     title: 'Sweeps of block descent',
     required: ['part', 'scene', 'model', 'integrator', 'dt_s', 'sweeps', 'status'],

@@ -3,6 +3,7 @@
 import * as catalogue from './catalogue.mjs';
 import * as claims from './claims.mjs';
 import * as cost from './cost.mjs';
+import * as damping from './damping.mjs';
 import * as drift from './drift.mjs';
 import * as effects from './effects.mjs';
 import * as equal from './equal.mjs';
@@ -27,6 +28,7 @@ export const queries = {
   catalogue,
   claims,
   cost,
+  damping,
   drift,
   effects,
   equal,
