@@ -10,8 +10,8 @@
 namespace tress::experiments::damping {
 namespace {
 
-constexpr double t_end = 1;                                // s
-constexpr double steps[] = {1. / 60, 1. / 240, 1. / 960};  // s
+constexpr double t_end = 1;                                      // s
+constexpr double usual_steps[] = {1. / 60, 1. / 240, 1. / 960};  // s
 constexpr std::string_view usual_models[] = {"super_helix", "der"};
 constexpr std::string_view usual_methods[] = {
     "semi_implicit_euler", "backward_euler", "bdf2",
@@ -30,8 +30,14 @@ constexpr Column columns[] = {
 
 void measure(const Parameters& p, const Options& options, Row& row) {
   const auto system = find_model(row.text("model")).make(p);
+  const std::string_view method = row.text("integrator");
+  const std::string no = refusal(find_integrator(method), *system, options.formulation);
+  if (!no.empty()) {
+    row.failed("refused", no);
+    return;
+  }
   const State start = initial_state(*system);
-  const Simulation run = simulate(row.text("integrator"), *system, options, start, t_end);
+  const Simulation run = simulate(method, *system, options, start, t_end);
   row.set("steps", run.stats.steps);
   const auto energy = [&](double t, const State& s) {
     return system->energetics()->energy(t, s.q, s.v).total();
@@ -51,16 +57,15 @@ void measure(const Parameters& p, const Options& options, Row& row) {
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, {});
   const auto asked = [](const auto& chosen, const auto& usual, auto id) {
-    return std::ranges::find(chosen, id) != chosen.end() ||
-           (chosen.empty() && std::ranges::find(usual, id) != std::end(usual));
+    return chosen.empty() ? std::ranges::find(usual, id) != std::end(usual)
+                          : wanted(chosen, id);
   };
   std::vector<Case> all;
   const auto add = [&](const ModelEntry& model, std::string_view method, int elements,
                        double step) {
     Parameters p = settings.parameters(model);
     set_known(p, find_strand_scene("release").settings);
-    set_known(
-        p, {{"elements", std::to_string(elements)}, {"internal_friction_kg_m3_s", "0"}});
+    set_known(p, {{"elements", std::to_string(elements)}});
     Options options = settings.options();
     options.step = step;
     Row row;
@@ -68,6 +73,8 @@ std::vector<Case> cases(const CommandLine& line) {
     row.set("elements", elements).set("dt_s", step);
     all.push_back({row, [=](Row& r, const Deadline&) { measure(p, options, r); }});
   };
+  std::vector<double> steps(std::begin(usual_steps), std::end(usual_steps));
+  if (settings.chosen("step")) steps = {settings.options().step};
   std::vector<int> sizes = line.elements;
   if (sizes.empty()) sizes = {10};
   for (const ModelEntry* model : strand_models()) {
@@ -82,8 +89,11 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// A method that diverges is a result.
-bool finding(const Row& row) { return !row.ok(); }
+/// A method that diverges is a result, and so is one that a model refuses.
+bool finding(const Row& row) {
+  return row.status() == "diverged" || row.status() == "unstable" ||
+         row.status() == "refused";
+}
 
 constexpr Unused unused[] = {not_random, not_repeated};
 

@@ -73,8 +73,7 @@ export function contacts_of_bytes(bytes, { usual_n, counts }, box) {
         const value = before + unfolded(bytes[k] | (bytes[numbers * count + k] << 8));
         ++k;
         if (c === 0) before = value;
-        flat[at] =
-          c < 3 ? box.low[c] + step * value : (usual_n / force_levels) * value;
+        flat[at] = c < 3 ? box.low[c] + step * value : (usual_n / force_levels) * value;
       }
     }
   return { contacts, usual_force_n: usual_n };

@@ -30,7 +30,8 @@ function predicted(grid, { frames, strand_points, width, time, along }, each) {
       const before = orders[Math.min(time, frame)];
       const by_time = (at) => {
         let sum = 0;
-        for (let j = 0; j < before.length; ++j) sum += before[j] * grid[at - (j + 1) * frame_size];
+        for (let j = 0; j < before.length; ++j)
+          sum += before[j] * grid[at - (j + 1) * frame_size];
         return sum;
       };
       let i = c;
@@ -75,7 +76,8 @@ function rounded_series({ columns, rows }) {
   const values = columns.map((_, c) => {
     const column = rows.map((row) => row[c]);
     const known = column.filter((value) => value !== null);
-    const range = known.reduce((a, b) => Math.max(a, b), -Infinity) -
+    const range =
+      known.reduce((a, b) => Math.max(a, b), -Infinity) -
       known.reduce((a, b) => Math.min(a, b), Infinity);
     const unit = range > 0 ? 10 ** Math.ceil(Math.log10(series_levels / range)) : 0;
     const exact = unit === 0 || !Number.isFinite(unit);
@@ -91,7 +93,10 @@ const rows_of_series = ({ columns, values }) => ({
 });
 
 // `scene`: as data.mjs decodes it, positions and values as arrays.
-export function bytes_of_scene({ positions, channels, contacts, series, ...rest }, levels = page_levels) {
+export function bytes_of_scene(
+  { positions, channels, contacts, series, ...rest },
+  levels = page_levels,
+) {
   const shape = { frames: rest.times_s.length, strand_points: rest.strand_points };
   const factors = factors_of(rest, levels);
   const grid = Int32Array.from(positions, (word, i) => Math.round(word * factors[i % 3]));
@@ -140,18 +145,30 @@ export function bytes_of_scene({ positions, channels, contacts, series, ...rest 
 export function scene_of_bytes(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const low = header_bytes + view.getUint32(0, true);
-  const { levels, orders: by, contacts, series, channels, ...rest } = JSON.parse(
-    new TextDecoder().decode(bytes.subarray(header_bytes, low)),
-  );
+  const {
+    levels,
+    orders: by,
+    contacts,
+    series,
+    channels,
+    ...rest
+  } = JSON.parse(new TextDecoder().decode(bytes.subarray(header_bytes, low)));
   const shape = { frames: rest.times_s.length, strand_points: rest.strand_points };
   const points = rest.strand_points.reduce((sum, n) => sum + n, 0) * shape.frames;
   // Differences wrap at 16 bits: so do the numbers of the grid, which are all positive.
   const grid = new Uint16Array(3 * points);
-  predicted(grid, { ...shape, width: 3, time: by[0], along: by[1] }, (at, expected, k) => {
-    grid[at] = expected + unfolded(bytes[low + k] | (bytes[low + grid.length + k] << 8));
-  });
+  predicted(
+    grid,
+    { ...shape, width: 3, time: by[0], along: by[1] },
+    (at, expected, k) => {
+      grid[at] =
+        expected + unfolded(bytes[low + k] | (bytes[low + grid.length + k] << 8));
+    },
+  );
   const factors = factors_of(rest, levels);
-  const positions = grid.map((n, i) => (factors[i % 3] > 0 ? Math.min(65535, Math.round(n / factors[i % 3])) : 0));
+  const positions = grid.map((n, i) =>
+    factors[i % 3] > 0 ? Math.min(65535, Math.round(n / factors[i % 3])) : 0,
+  );
   let start = low + 2 * grid.length;
   const decoded = channels.map(({ orders: [time, along], ...channel }) => {
     const one = new Uint8Array(points);
@@ -162,5 +179,11 @@ export function scene_of_bytes(bytes) {
     return { ...channel, values: one.map((n) => Math.round((n * 255) / channel_levels)) };
   });
   const seen = contacts && contacts_of_bytes(bytes.subarray(start), contacts, rest);
-  return { ...rest, ...seen, series: rows_of_series(series), positions, channels: decoded };
+  return {
+    ...rest,
+    ...seen,
+    series: rows_of_series(series),
+    positions,
+    channels: decoded,
+  };
 }

@@ -12,8 +12,14 @@ export const losses = (tables) => {
     runs.map((run) => [
       ...run.split(' '),
       ...steps.map((step) => {
-        const row = rows.find((r) => `${r.model} ${r.integrator}` === run && r.dt_s === step);
-        return row === undefined ? '' : succeeded(row) ? percent(row.energy_lost_rel) : row.status;
+        const row = rows.find(
+          (r) => `${r.model} ${r.integrator}` === run && r.dt_s === step,
+        );
+        return row === undefined
+          ? ''
+          : succeeded(row)
+            ? percent(row.energy_lost_rel)
+            : row.status;
       }),
     ]),
   );
