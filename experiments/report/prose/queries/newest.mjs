@@ -1,5 +1,5 @@
 // What position-based dynamics, block descent and other simulators are worth on hair.
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { family_runs, newest } from '../../figures/newest_methods.mjs';
 import { distinct, group_by, is_number, minimum_by, succeeded } from '../../src/tables.mjs';
@@ -37,12 +37,14 @@ function levels_table(tables, kind) {
 export const total_table = (tables) => levels_table(tables, 'total');
 export const time_table = (tables) => levels_table(tables, 'time');
 
-// "block_descent.csv on A, work_precision.csv on B".
+// "block_descent.csv on A, work_precision.csv on B", of the tables that are there.
 export const machines = (_, root) =>
-  ['work_precision', 'block_descent']
-    .map((name) => {
-      const text = readFileSync(join(root, 'results', `${name}.meta.json`), 'utf8');
-      return `\`${name}.csv\` on ${JSON.parse(text).machine.cpu}`;
+  ['work_precision', 'block_descent', 'peers']
+    .map((name) => [name, join(root, 'results', `${name}.meta.json`)])
+    .filter(([, file]) => existsSync(file))
+    .map(([name, file]) => {
+      const { machine } = JSON.parse(readFileSync(file, 'utf8'));
+      return `\`${name}.csv\` on ${machine.cpu}`;
     })
     .join(', ');
 
