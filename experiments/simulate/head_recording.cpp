@@ -34,32 +34,34 @@ std::string line_of(const std::vector<std::string>& columns,
 }  // namespace
 
 HeadRecording::HeadRecording(std::string stem, RunKey key, const Scene& scene,
-                             HeadRun& run, StoredFrames stored, bool resume)
+                             const HeadRun& run, StoredFrames stored, bool resume)
     : stem_(checked(std::move(stem))),
       key_(std::move(key)),
       columns_(stored.columns),
+      head_{run.strands(), run.head().numbers() / 3},
+      kept_(run.head().kept()),
       lock_(stem_ + ".frames", "this scene") {
   try {
-    open(scene, run, std::move(stored), resume);
+    open(scene, std::move(stored), resume);
   } catch (...) {
     if (lock_.read().empty()) lock_.remove();  // not frames that other runs have left
     throw;
   }
 }
 
-void HeadRecording::open(const Scene& scene, HeadRun& run, StoredFrames stored,
-                         bool resume) {
+void HeadRecording::open(const Scene& scene, StoredFrames stored, bool resume) {
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {
-    progress_ = load_head(state, key_, run.change());
-    frames_.emplace(stem_, run.head(), std::move(stored), progress_.sums);
+    saved_ = std::make_unique<HeadToResume>(state, key_, head_.strands, kept_);
+    progress_ = saved_->progress();
+    frames_.emplace(stem_, head_, std::move(stored), progress_.sums);
   } else {
     if (std::filesystem::remove(state, error); error) {
       throw InputError("cannot remove: " + error.message(), state,
                        "choose another --out");
     }
-    frames_.emplace(stem_, scene, run.head(), std::move(stored));
+    frames_.emplace(stem_, scene, head_, std::move(stored));
   }
   std::string table = csv_line(columns_);
   for (std::size_t frame = 0; frame < frames_->size(); ++frame) {
@@ -92,11 +94,12 @@ void HeadRecording::add(const std::vector<double>& series) {
   progress_.sums = frames_->sums();
 }
 
-void HeadRecording::save(const Head& head, std::size_t step, double speed) {
+std::unique_ptr<SavedHead> HeadRecording::saving(std::size_t step, double speed) {
   frames_->sync();
   progress_.step = step;
   progress_.speed = speed;
-  save_head(stem_ + ".state", key_, head, progress_);
+  return std::make_unique<SavedHead>(stem_ + ".state", key_, head_.strands, kept_,
+                                     progress_);
 }
 
 void HeadRecording::close() {

@@ -21,38 +21,34 @@ const std::vector<Reading>& head_series() {
   return all;
 }
 
-std::vector<double> head_series_row(double t, const models::Head& head,
-                                    std::span<const models::HeadEnergy> each) {
-  std::size_t lost = 0;
-  Vec tip;
-  double kinetic = 0, elastic = 0, gravity = 0, most_kinetic = 0, most_elastic = 0,
-         fastest = 0;
-  for (std::size_t k = 0; k < each.size(); ++k) {
-    if (head.lost(k)) {
-      ++lost;
-      continue;
-    }
-    const models::HeadEnergy& one = each[k];
-    tip = tip + one.tip;
-    kinetic += one.kinetic;
-    elastic += one.elastic;
-    gravity += one.gravity;
-    most_kinetic = std::max(most_kinetic, one.kinetic);
-    most_elastic = std::max(most_elastic, one.elastic);
-    fastest = std::max(fastest, one.fastest);
+void HeadSeriesRow::add(const models::HeadEnergy& one, bool lost) {
+  ++strands_;
+  if (lost) {
+    ++lost_;
+    return;
   }
-  tip = 1 / static_cast<double>(each.size() - lost) * tip;
+  tip_ = tip_ + one.tip;
+  kinetic_ += one.kinetic;
+  elastic_ += one.elastic;
+  gravity_ += one.gravity;
+  most_kinetic_ = std::max(most_kinetic_, one.kinetic);
+  most_elastic_ = std::max(most_elastic_, one.elastic);
+  fastest_ = std::max(fastest_, one.fastest);
+}
+
+std::vector<double> HeadSeriesRow::at(double t) const {
+  const Vec tip = 1 / static_cast<double>(strands_ - lost_) * tip_;
   return {t,
           tip.x,
           tip.y,
           tip.z,
-          kinetic,
-          elastic,
-          gravity,
-          most_kinetic,
-          most_elastic,
-          fastest,
-          static_cast<double>(lost)};
+          kinetic_,
+          elastic_,
+          gravity_,
+          most_kinetic_,
+          most_elastic_,
+          fastest_,
+          static_cast<double>(lost_)};
 }
 
 }  // namespace tress::experiments::scene_runs

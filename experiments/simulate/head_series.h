@@ -1,19 +1,31 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "simulation/run/head_run.h"
+#include "models/head/head.h"
 #include "simulation/run/readout.h"
 
 namespace tress::experiments::scene_runs {
 
 using namespace simulation;
 
-/// The time series of a head: its columns, and a row of them from the energies of all
-/// strands, which are summed in the order of the strands, without those that are lost.
+/// The columns of the time series of a head.
 const std::vector<Reading>& head_series();
-std::vector<double> head_series_row(double t, const models::Head& head,
-                                    std::span<const models::HeadEnergy> each);
+
+/// A row of them, from the energies of all strands, which are summed in the order of the
+/// strands, without those that are lost.
+class HeadSeriesRow {
+ public:
+  /// The next strand; `lost`: whether it is.
+  void add(const models::HeadEnergy& one, bool lost);
+  /// Of all so far, at t.
+  std::vector<double> at(double t) const;
+
+ private:
+  std::size_t strands_ = 0, lost_ = 0;
+  Vec tip_;
+  double kinetic_ = 0, elastic_ = 0, gravity_ = 0, most_kinetic_ = 0, most_elastic_ = 0,
+         fastest_ = 0;
+};
 
 }  // namespace tress::experiments::scene_runs

@@ -56,6 +56,14 @@ constexpr Column columns_of_outcome[] = {
     {"lanes", "strands of a head computed side by side"},
     {"device", "that took a head's steps: cpu, or the name of a GPU"},
     {"ranks", "processes that shared a head"},
+    {"rank_strands", "of these the one with most: its strands"},
+    {"peak_memory_mb", "the same: memory of the whole program when it was largest", true},
+    {"ghosts_per_step", "the same: strands of other ranks that may touch its own"},
+    {"sent_per_step", "the same: strands that it sends to others, once for each"},
+    {"claims_per_step",
+     "how often ghosts were looked for, over the steps since the strands were divided"},
+    {"claim_s", "the same: time of a step to find them", true},
+    {"exchange_s", "the same: to send and receive, waiting included", true},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
     {"state",
      "of a head: checksum of all states at the end, the same for any number of ranks, "
@@ -114,6 +122,14 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("strands", head.strands).set("lost_strands", head.lost);
     row.set("bits", head.pack.number == models::HeadNumber::float64 ? 64 : 32);
     row.set("device", head.device).set("ranks", head.ranks);
+    row.set("rank_strands", head.rank_strands);
+    row.set("peak_memory_mb", head.peak_memory_mb);
+    if (head.claims_per_step > 0) {
+      row.set("ghosts_per_step", head.ghosts_per_step);
+      row.set("sent_per_step", head.sent_per_step);
+      row.set("claims_per_step", head.claims_per_step);
+      row.set("claim_s", head.claim_s).set("exchange_s", head.exchange_s);
+    }
     row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
     row.set("state", head.state).set("build_s", head.build_s);
     row.set("step_s", head.step_s).set("read_s", head.read_s);

@@ -37,6 +37,11 @@ struct HeadOutcome {
   models::HeadPack pack;
   std::string device = "cpu";  // that took its steps, or the name of another one
   int ranks = 1;
+  // Of the rank that has most: strands, memory at its largest.
+  std::size_t rank_strands = 0;
+  double peak_memory_mb = 0, ghosts_per_step = 0, sent_per_step = 0, claims_per_step = 0;
+  // Of a step, s, the same.
+  double claim_s = 0, exchange_s = 0;
   std::size_t strands, lost;
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end

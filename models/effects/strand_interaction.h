@@ -56,6 +56,7 @@ class StrandInteraction {
                    const Loop& loop = in_turn);
   /// Longest distance (m) at which strands feel each other.
   double reach() const { return law_.reach(); }
+  const ContactLaw& law() const { return law_; }
 
   // Readouts of the strands where the last call put them, too costly for every step.
   // Strands are sampled at most one inner radius apart (up to 64 samples a segment).

@@ -28,6 +28,7 @@ struct HeadOptions {
   double drag = 0;             // LinearDrag: force per length and velocity, kg/(m s)
   double mass_damping = 0;     // force per mass and velocity, 1/s
   double longest = 0.2;        // m: sets the units of computation, any order of magnitude
+  double line_density = 0;     // kg/m: the same; 0: that of the first strand
   RootMotion motion = {};      // of the head, `position` any point of it, at rest
   HeadMethod method = HeadMethod::semi_implicit_euler;
   // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
@@ -164,12 +165,19 @@ class Head {
   /// The same with their velocities (m/s).
   virtual void motion(std::size_t block, double t, std::span<double> x,
                       std::span<double> v) const = 0;
+  /// Where the step from t to t + h looks for what touches the strands, beyond which it
+  /// does not: the same points when coordinates have gone on by h times their rates, and
+  /// of each strand how far points between them are from the straight lines that join
+  /// them at most (m).
+  virtual void ahead(std::size_t block, double t, double h, std::span<double> x,
+                     std::span<double> bulge) const = 0;
   /// Coordinates and their rates of a strand, in the order of its elements: see the
   /// functions below.
   virtual void state(std::size_t strand, std::span<double> q,
                      std::span<double> v) const = 0;
-  /// Of the bits of all strands' states, in their order; equal for all numbers of lanes.
-  virtual std::size_t hash() const = 0;
+  /// Of the bits of all strands' states, in their order (StateHash); equal for all
+  /// numbers of lanes.
+  std::size_t hash() const;
 
   /// Of each strand of a block: as Energetics of the strand by itself. O(elements
   /// points).
@@ -180,6 +188,8 @@ class Head {
   /// the head's own. A head of the same strands that recalls them goes on with the same
   /// bits, for any number of lanes.
   virtual std::size_t kept() const = 0;
+  /// So many of these, the first, are its coordinates and rates.
+  virtual std::size_t kept_of_state() const = 0;
   virtual void keep(std::size_t block, std::span<double> x) const = 0;
   virtual void recall(std::size_t block, std::span<const double> x) = 0;
 

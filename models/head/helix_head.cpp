@@ -56,7 +56,9 @@ class HelixHead final : public Head, public HelixSource {
     const Segment& first = strand.segments.front();
     const CrossSection& section = first.section;
     const double density = strand.material.density * section.area();
-    if (units_.density == 0) units_.density = density;
+    if (units_.density == 0) {
+      units_.density = options_.line_density > 0 ? options_.line_density : density;
+    }
     const bool opens = lost_.size() % width == 0;
     if (opens) {
       roots_.emplace_back();
@@ -169,6 +171,31 @@ class HelixHead final : public Head, public HelixSource {
               std::span<double> v) const override {
     places(block, t).write(strands_of(block), x, v);
   }
+  /// Of an arc of length l over a chord c no point is farther from the chord than
+  /// sqrt(l^2 - c^2)/2; l allows for what chords are rounded by.
+  void ahead(std::size_t block, double t, double h, std::span<double> x,
+             std::span<double> bulge) const override {
+    constexpr double rounding = 1 + (sizeof(typename T::Scalar) == 8 ? 1e-12 : 1e-5);
+    std::vector<Vec3<T>> q(n_);
+    const T step(h / units_.time);
+    for (std::size_t i = 0; i < n_; ++i) {
+      q[i] = q_[n_ * block + i] + step * v_[n_ * block + i];
+    }
+    HelixPlaces<T> next = places(block, t + h);
+    next.q = q.data();
+    next.write(strands_of(block), x, {});
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const double length = rounding * units_.length *
+                            lane_of(materials_[block].length, static_cast<int>(k));
+      double square = 0;
+      for (std::size_t i = 0; i < n_; ++i) {
+        const double* const from = &x[3 * (k * (n_ + 1) + i)];
+        const Vec chord = load3(from + 3) - load3(from);
+        square = std::max(square, length * length - dot(chord, chord));
+      }
+      bulge[k] = 0.5 * std::sqrt(square);
+    }
+  }
   void state(std::size_t strand, std::span<double> q,
              std::span<double> v) const override {
     const auto lane = static_cast<int>(strand % width);
@@ -177,20 +204,6 @@ class HelixHead final : public Head, public HelixSource {
       store3((1 / units_.length) * lane_of(q_[at], lane), &q[3 * i]);
       store3(1 / (units_.length * units_.time) * lane_of(v_[at], lane), &v[3 * i]);
     }
-  }
-
-  std::size_t hash() const override {
-    StateHash all;
-    for (std::size_t k = 0; k < strands(); ++k) {
-      const auto lane = static_cast<int>(k % width);
-      for (std::size_t i = 0; i < n_; ++i) {
-        for (const auto* state : {&q_, &v_}) {
-          const Vec x = lane_of((*state)[n_ * (k / width) + i], lane);
-          for (const double entry : {x.x, x.y, x.z}) all.add(entry);
-        }
-      }
-    }
-    return all.value();
   }
 
   void energies(std::size_t block, double t, std::span<HeadEnergy> each) const override {
@@ -248,6 +261,7 @@ class HelixHead final : public Head, public HelixSource {
   double time_unit() const override { return units_.time; }
 
   std::size_t kept() const override { return 6 * n_ + 1; }
+  std::size_t kept_of_state() const override { return 6 * n_; }
   void keep(std::size_t block, std::span<double> x) const override {
     double* to = x.data();
     for (std::size_t k = 0; k < strands_of(block); ++k) {

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -80,18 +78,6 @@ class HeadLosses {
  private:
   mutable std::mutex guard_;
   std::vector<HeadLoss> all_;
-};
-
-/// FNV-1a, by numbers.
-class StateHash {
- public:
-  void add(double entry) {
-    all_ = (all_ ^ std::bit_cast<std::uint64_t>(entry)) * 1099511628211U;
-  }
-  std::size_t value() const { return all_; }
-
- private:
-  std::size_t all_ = 1469598103934665603U;
 };
 
 /// The Head of this pack: made<T>(instructions) for the type T of the pack's numbers.

@@ -81,7 +81,10 @@ class SteppingHead final : public Head {
     refuse_if(!own.empty(), own.empty() ? "" : on_this_model(*own.front()), place_of_head,
               use_others);
     if (units_.density == 0) {
-      units_.density = strand.material.density * strand.segments.front().section.area();
+      units_.density =
+          options_.line_density > 0
+              ? options_.line_density
+              : strand.material.density * strand.segments.front().section.area();
     }
     if constexpr (Model::takes_bodies) {
       radius_ = std::max(radius_, norm(strand.root.position - options_.motion.position) +
@@ -151,15 +154,16 @@ class SteppingHead final : public Head {
     return std::min(width, lost_.size() - width * block);
   }
   void positions(std::size_t block, double t, std::span<double> x) const override {
-    const RootPose of_head = options_.motion.at(t);
-    model_.positions(strands_[block], of_head.frame, &state_[of_state_ * block],
-                     [&](std::size_t i, const Vec3<T>& at) {
-                       for (std::size_t k = 0; k < strands_of(block); ++k) {
-                         store3(
-                             of_head.x + units_.length * lane_of(at, static_cast<int>(k)),
-                             &x[3 * (k * (n_ + 1) + i)]);
-                       }
-                     });
+    place(block, t, &state_[of_state_ * block], x);
+  }
+  void ahead(std::size_t block, double t, double h, std::span<double> x,
+             std::span<double> bulge) const override {
+    std::vector<T> next(size_);
+    const T* const q = &state_[of_state_ * block];
+    model_.predict(strands_[block], pose(t), pose(t + h), h / units_.time, q, q + size_,
+                   next.data());
+    place(block, t + h, next.data(), x);
+    std::ranges::fill(bulge, 0);  // edges are straight
   }
   void motion(std::size_t block, double t, std::span<double> x,
               std::span<double> v) const override {
@@ -198,6 +202,7 @@ class SteppingHead final : public Head {
 
   // Of a strand: its numbers of state, reference frames, and whether it is lost.
   std::size_t kept() const override { return of_state_ + Model::Element::kept * n_ + 1; }
+  std::size_t kept_of_state() const override { return 2 * size_; }
   void keep(std::size_t block, std::span<double> x) const override {
     double* to = x.data();
     for (std::size_t k = 0; k < strands_of(block); ++k) {
@@ -225,16 +230,6 @@ class SteppingHead final : public Head {
       }
       lost_[width * block + k] = *from++ != 0 ? 1 : 0;
     }
-  }
-  std::size_t hash() const override {
-    StateHash all;
-    for (std::size_t k = 0; k < strands(); ++k) {
-      const T* const from = &state_[of_state_ * (k / width)];
-      for (std::size_t i = 0; i < 2 * size_; ++i) {
-        all.add(lane_of(from[i], static_cast<int>(k % width)));
-      }
-    }
-    return all.value();
   }
 
  private:
@@ -274,6 +269,17 @@ class SteppingHead final : public Head {
     bodies_near<T>(own.around, unit * model_.root_at(strands_[block], own.to.frame),
                    longest * model_.length(strands_[block]), own.near);
     return own.near;
+  }
+
+  void place(std::size_t block, double t, const T* q, std::span<double> x) const {
+    const RootPose of_head = options_.motion.at(t);
+    model_.positions(
+        strands_[block], of_head.frame, q, [&](std::size_t i, const Vec3<T>& at) {
+          for (std::size_t k = 0; k < strands_of(block); ++k) {
+            store3(of_head.x + units_.length * lane_of(at, static_cast<int>(k)),
+                   &x[3 * (k * (n_ + 1) + i)]);
+          }
+        });
   }
 
   T* q_of(std::size_t block) { return &state_[of_state_ * block]; }

@@ -119,7 +119,7 @@ class HeadOfHair {
     run_->energies(0, energies_);
     if (scene_->guard && made.reach) {
       guard_.emplace(std::move(*made.reach));
-      guard_->start(energies_);
+      guard_->start(fastest(energies_));
     }
   }
 

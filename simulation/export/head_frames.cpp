@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 #include "contract/input_error.h"
@@ -21,6 +22,8 @@ namespace {
 constexpr std::size_t most_strands_of_chunk = 2048;
 // Of zlib: higher ones take several times as long and save a few percent of positions.
 constexpr int zlib_level = 1;
+constexpr std::size_t no_memory =
+    std::numeric_limits<std::size_t>::max();  // size of none
 
 constexpr const char* series_name = "series";
 constexpr const char* shown_positions = "shown/positions";
@@ -52,12 +55,12 @@ std::string HeadFrames::dataset(std::size_t frame) {
   return fmt::format("positions/{:06}", frame);
 }
 
-HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+HeadFrames::HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
                        Hdf5File::Mode mode)
     : stem_(stem),
       stored_(std::move(stored)),
-      strands_(head.strands()),
-      points_(head.numbers() / 3),
+      strands_(head.strands),
+      points_(head.points),
       each_(std::min(most_strands_of_chunk, strands_)),
       file_(stem + ".h5", mode),
       chunks_((strands_ + each_ - 1) / each_),
@@ -65,7 +68,7 @@ HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames s
       chunk_sums_(chunks_.size()),
       shown_(3 * points_ * stored_.shown.size()) {}
 
-HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, const Head& head,
+HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, StrandCount head,
                        StoredFrames stored)
     : HeadFrames(stem, head, std::move(stored), Hdf5File::Mode::create) {
   file_.set("scene", scene.name);
@@ -94,7 +97,7 @@ HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, const Head& 
   }
 }
 
-HeadFrames::HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+HeadFrames::HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
                        std::vector<std::uint64_t> sums)
     : HeadFrames(stem, head, std::move(stored), Hdf5File::Mode::extend) {
   const auto damaged = [&] {
@@ -141,58 +144,48 @@ std::vector<std::size_t> HeadFrames::place_of(std::size_t chunk) const {
   return {chunk * each_ * points_, 0};
 }
 
-void HeadFrames::read(HeadRun& run, double t) {
-  const Head& head = run.head();
-  const std::size_t workers = run.crew().workers();
+std::size_t HeadFrames::at_once(std::size_t workers) {
+  return most_strands_of_chunk * workers;
+}
+
+void HeadFrames::take(Crew& crew, std::size_t first, std::span<const double> x) {
+  const std::size_t workers = crew.workers(), numbers = 3 * points_;
   own_.resize(workers);
   for (Own& own : own_) {
-    own.x.resize(head.numbers() * head.strands_of(0));
-    own.raw.resize(3 * each_ * points_ * static_cast<std::size_t>(stored_.bits) / 8);
+    own.raw.resize(numbers * each_ * static_cast<std::size_t>(stored_.bits) / 8);
     own.shuffled.resize(own.raw.size());
   }
-  for (std::vector<char>& chunk : chunks_) {
-    chunk.resize(::compressBound(own_.front().raw.size()));
-  }
-  run.crew().run(chunks_.size(),
-                 [&](std::size_t c) { read_chunk(head, c, t, own_[c % workers]); });
-  if (std::ranges::count(sizes_, std::size_t{0}) > 0) {
+  const std::size_t begin = first / each_, chunk = numbers * each_;
+  crew.run((x.size() + chunk - 1) / chunk, [&](std::size_t c) {
+    take_chunk(begin + c, x.subspan(c * chunk, std::min(chunk, x.size() - c * chunk)),
+               own_[c % workers]);
+  });
+  if (std::ranges::count(sizes_, no_memory) > 0) {
     throw InputError("cannot compress a frame", stem_ + ".h5", "free memory");
   }
 }
 
 /// A chunk ends with zeros where there are no more strands.
-void HeadFrames::read_chunk(const Head& head, std::size_t chunk, double t, Own& own) {
-  const std::size_t begin = chunk * each_, end = std::min(begin + each_, strands_);
-  const std::size_t lanes = head.strands_of(0), numbers = head.numbers();
+void HeadFrames::take_chunk(std::size_t chunk, std::span<const double> x, Own& own) {
   const std::size_t size = static_cast<std::size_t>(stored_.bits) / 8;
-  if (end < begin + each_) std::ranges::fill(own.raw, '\0');
-  auto next = std::ranges::lower_bound(stored_.shown, begin);
-  for (std::size_t first = begin; first < end; first += lanes) {
-    const std::size_t count = head.strands_of(first / lanes);
-    const bool shows = next != stored_.shown.end() && *next < first + count;
-    if (size == 0 && !shows) continue;
-    const std::span<double> x = std::span(own.x).first(numbers * count);
-    head.positions(first / lanes, t, x);
-    char* const to = own.raw.data() + (first - begin) * numbers * size;
-    if (size == 8) put<double>(x, to);
-    if (size == 4) put<float>(x, to);
-    for (; next != stored_.shown.end() && *next < first + count; ++next) {
-      const auto place = static_cast<std::size_t>(next - stored_.shown.begin());
-      for (std::size_t i = 0; i < numbers; ++i) {
-        shown_[numbers * place + i] =
-            static_cast<float>(x[numbers * (*next - first) + i]);
-      }
-    }
-  }
-  sizes_[chunk] = 1;
-  if (size == 0) return;
+  std::ranges::fill(std::span(own.raw).subspan(size * x.size()), '\0');
+  if (size == 8) put<double>(x, own.raw.data());
+  if (size == 4) put<float>(x, own.raw.data());
   shuffle(own.raw, size, own.shuffled);
-  uLongf used = chunks_[chunk].size();
-  const int result = ::compress2(reinterpret_cast<Bytef*>(chunks_[chunk].data()), &used,
+  std::vector<char>& to = chunks_[chunk];
+  to.resize(::compressBound(own.raw.size()));
+  uLongf used = to.size();
+  const int result = ::compress2(reinterpret_cast<Bytef*>(to.data()), &used,
                                  reinterpret_cast<const Bytef*>(own.shuffled.data()),
                                  own.shuffled.size(), zlib_level);
-  sizes_[chunk] = result == Z_OK ? used : 0;
-  chunk_sums_[chunk] = Checksum().add({chunks_[chunk].data(), sizes_[chunk]}).value();
+  sizes_[chunk] = result == Z_OK ? used : no_memory;
+  chunk_sums_[chunk] =
+      Checksum().add({to.data(), result == Z_OK ? sizes_[chunk] : 0}).value();
+}
+
+void HeadFrames::take_shown(std::span<const double> x) {
+  std::ranges::transform(x, shown_.begin(),
+                         [](double entry) { return static_cast<float>(entry); });
 }
 
 std::uint64_t HeadFrames::sum(std::span<const double> series) const {

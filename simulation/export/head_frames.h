@@ -6,10 +6,15 @@
 #include <vector>
 
 #include "simulation/export/hdf5_file.h"
-#include "simulation/run/head_run.h"
 #include "simulation/scene/scene.h"
+#include "simulation/threads/crew.h"
 
 namespace tress::simulation {
+
+/// Of a head.
+struct StrandCount {
+  std::size_t strands, points;  // points: of a strand
+};
 
 /// What is stored of every frame of a head.
 struct StoredFrames {
@@ -25,23 +30,28 @@ struct StoredFrames {
 ///     shown/positions (frames, shown points, 3), shown/strands
 ///
 /// and how ParaView reads them as polylines, <stem>.xdmf: its readers of XDMF 2 and 3
-/// agree on whole datasets only, so that each frame is one. Strands are read,
-/// shuffled and compressed by the crew of the head, a thousand or two as one chunk; a
-/// frame is in the file once written. Memory: one compressed frame. A killed run leaves
-/// the frames before the one that it was writing.
+/// agree on whole datasets only, so that each frame is one. Strands are shuffled and
+/// compressed by a crew, a thousand or two as one chunk; a frame is in the file once
+/// written. Memory: one compressed frame. A killed run leaves the frames before the one
+/// that it was writing.
 class HeadFrames {
  public:
   /// A new file.
-  HeadFrames(const std::string& stem, const Scene& scene, const Head& head,
+  HeadFrames(const std::string& stem, const Scene& scene, StrandCount head,
              StoredFrames stored);
   /// The file of an interrupted run whose first frames have these checksums; others are
   /// dropped. Throws InputError if they are damaged, or of another head.
-  HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+  HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
              std::vector<std::uint64_t> sums);
 
-  /// Reads and compresses all strands at the present state.
-  void read(HeadRun& run, double t);
-  /// Adds what was read, and its series.
+  /// So many strands at a time are taken by so many workers.
+  static std::size_t at_once(std::size_t workers);
+  /// Compresses the root and tips (m) of strands from `first` on, a multiple of that
+  /// many; not called where frames have no bits.
+  void take(Crew& crew, std::size_t first, std::span<const double> x);
+  /// Of the strands for pictures.
+  void take_shown(std::span<const double> x);
+  /// Adds what was taken, and its series.
   void write(std::span<const double> series);
   /// All frames so far are on disk, and the .xdmf with them.
   void sync();
@@ -58,12 +68,11 @@ class HeadFrames {
  private:
   /// Of a worker.
   struct Own {
-    std::vector<double> x;  // of a block
     std::vector<char> raw, shuffled;
   };
-  HeadFrames(const std::string& stem, const Head& head, StoredFrames stored,
+  HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
              Hdf5File::Mode mode);
-  void read_chunk(const Head& head, std::size_t chunk, double t, Own& own);
+  void take_chunk(std::size_t chunk, std::span<const double> x, Own& own);
   std::vector<std::size_t> place_of(std::size_t chunk) const;
   std::uint64_t sum(std::span<const double> series) const;
   std::string xdmf() const;
@@ -74,7 +83,7 @@ class HeadFrames {
   std::size_t each_;              // strands of a chunk
   Hdf5File file_;
   std::vector<std::uint64_t> sums_;  // of frames
-  // The frame that was read.
+  // The frame that was taken.
   std::vector<std::vector<char>> chunks_;
   std::vector<std::size_t> sizes_;         // used bytes of chunks
   std::vector<std::uint64_t> chunk_sums_;  // of these

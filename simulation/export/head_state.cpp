@@ -4,92 +4,22 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
-#include "simulation/files/checksum.h"
-#include "simulation/files/files.h"
 
 namespace tress::simulation {
 namespace {
 
 constexpr const char* begin_again = "leave out --resume to begin again";
 
-/// A sealed text that is written piece by piece.
-class SealedFile {
- public:
-  explicit SealedFile(const std::string& file) : replacement_(file) {
-    replacement_.write(seal());
-  }
-  void put(std::string_view bytes) {
-    sum_.add(bytes);
-    replacement_.write(bytes);
-  }
-  template <class T>
-  void put(const std::vector<T>& x) {
-    put(std::string_view(reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size()));
-  }
-  void keep() {
-    replacement_.write_over(seal());
-    replacement_.keep();
-  }
-
- private:
-  std::string seal() const { return sum_.text() + ' '; }
-
-  Replacement replacement_;
-  Checksum sum_;
-};
-
-class StateReader {
- public:
-  explicit StateReader(std::string_view text) : text_(text) {}
-
-  template <class T>
-  std::vector<T> take(std::size_t count) {
-    if (count > text_.size() / sizeof(T)) throw std::runtime_error("it ends too early");
-    std::vector<T> x(count);
-    if (count > 0) std::memcpy(x.data(), text_.data(), sizeof(T) * count);
-    text_.remove_prefix(sizeof(T) * count);
-    return x;
-  }
-
- private:
-  std::string_view text_;
-};
-
-HeadProgress parse(std::string_view text, const RunKey& key, const std::string& file,
-                   models::Head& head) {
-  const std::string_view content = unsealed(text);
-  const std::string_view first = content.substr(0, content.find('\n'));
-  key.check(first, file);
-  StateReader bytes(content.substr(first.size() + 1));
-  const auto sizes = bytes.take<std::uint64_t>(5);
-  if (sizes[0] != head.strands() || sizes[1] != head.kept()) {
-    throw InputError("the saved state is of other strands", file, begin_again);
-  }
-  HeadProgress progress;
-  progress.step = sizes[2];
-  progress.sums = bytes.take<std::uint64_t>(sizes[3]);
-  const auto which = bytes.take<std::uint64_t>(sizes[4]);
-  const auto when = bytes.take<double>(sizes[4]);
-  const auto fast = bytes.take<char>(sizes[4]);
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    progress.lost.push_back({which[i], when[i], fast[i] != 0});
-  }
-  progress.speed = bytes.take<double>(1).front();
-  for (std::size_t b = 0; b < head.blocks(); ++b) {
-    head.recall(b, bytes.take<double>(head.kept() * head.strands_of(b)));
-  }
-  return progress;
-}
-
 }  // namespace
 
-void save_head(const std::string& file, const RunKey& key, const models::Head& head,
-               const HeadProgress& progress) {
-  SealedFile out(file);
-  out.put(key.line() + '\n');
-  out.put(std::vector<std::uint64_t>{head.strands(), head.kept(), progress.step,
-                                     progress.sums.size(), progress.lost.size()});
-  out.put(progress.sums);
+SavedHead::SavedHead(const std::string& file, const RunKey& key, std::size_t strands,
+                     std::size_t kept, const HeadProgress& progress)
+    : replacement_(file) {
+  replacement_.write(seal());
+  put_bytes(key.line() + '\n');
+  put_numbers(std::vector<std::uint64_t>{strands, kept, progress.step,
+                                         progress.sums.size(), progress.lost.size()});
+  put_numbers(progress.sums);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
   std::vector<char> fast;
@@ -98,28 +28,79 @@ void save_head(const std::string& file, const RunKey& key, const models::Head& h
     when.push_back(lost.t);
     fast.push_back(lost.fast ? 1 : 0);
   }
-  out.put(which);
-  out.put(when);
-  out.put(fast);
-  out.put(std::vector{progress.speed});
-  std::vector<double> kept;
-  for (std::size_t b = 0; b < head.blocks(); ++b) {
-    kept.resize(head.kept() * head.strands_of(b));
-    head.keep(b, kept);
-    out.put(kept);
-  }
-  out.keep();
+  put_numbers(which);
+  put_numbers(when);
+  put_numbers(fast);
+  put_numbers(std::vector{progress.speed});
 }
 
-HeadProgress load_head(const std::string& file, const RunKey& key, models::Head& head) {
+void SavedHead::put(const std::vector<double>& kept) { put_numbers(kept); }
+
+void SavedHead::finish() {
+  replacement_.write_over(seal());
+  replacement_.keep();
+}
+
+template <class T>
+void SavedHead::put_numbers(const std::vector<T>& x) {
+  put_bytes(
+      std::string_view(reinterpret_cast<const char*>(x.data()), sizeof(T) * x.size()));
+}
+
+void SavedHead::put_bytes(std::string_view bytes) {
+  sum_.add(bytes);
+  replacement_.write(bytes);
+}
+
+HeadToResume::HeadToResume(const std::string& file, const RunKey& key,
+                           std::size_t strands, std::size_t kept)
+    : kept_(kept) {
   try {
-    return parse(read_file(file), key, file, head);
+    text_ = read_file(file);
+    parse(key, file, strands);
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& error) {
     throw InputError(std::string("the saved state is damaged: ") + error.what(), file,
                      begin_again);
   }
+}
+
+void HeadToResume::parse(const RunKey& key, const std::string& file,
+                         std::size_t strands) {
+  rest_ = unsealed(text_);
+  const std::string_view first = rest_.substr(0, rest_.find('\n'));
+  key.check(first, file);
+  rest_.remove_prefix(first.size() + 1);
+  const auto sizes = numbers<std::uint64_t>(5);
+  if (sizes[0] != strands || sizes[1] != kept_) {
+    throw InputError("the saved state is of other strands", file, begin_again);
+  }
+  progress_.step = sizes[2];
+  progress_.sums = numbers<std::uint64_t>(sizes[3]);
+  const auto which = numbers<std::uint64_t>(sizes[4]);
+  const auto when = numbers<double>(sizes[4]);
+  const auto fast = numbers<char>(sizes[4]);
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    progress_.lost.push_back({which[i], when[i], fast[i] != 0});
+  }
+  progress_.speed = numbers<double>(1).front();
+  if (rest_.size() / sizeof(double) < kept_ * strands) {
+    throw std::runtime_error("it ends too early");
+  }
+}
+
+std::vector<double> HeadToResume::take(std::size_t strands) {
+  return numbers<double>(kept_ * strands);
+}
+
+template <class T>
+std::vector<T> HeadToResume::numbers(std::size_t count) {
+  if (count > rest_.size() / sizeof(T)) throw std::runtime_error("it ends too early");
+  std::vector<T> x(count);
+  if (count > 0) std::memcpy(x.data(), rest_.data(), sizeof(T) * count);
+  rest_.remove_prefix(sizeof(T) * count);
+  return x;
 }
 
 }  // namespace tress::simulation

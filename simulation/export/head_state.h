@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "models/head/head.h"
+#include "simulation/files/checksum.h"
+#include "simulation/files/files.h"
 #include "simulation/files/run_key.h"
 
 namespace tress::simulation {
@@ -24,13 +26,47 @@ struct HeadProgress {
   double speed = 0;                 // m/s, what HeadGuard has gathered
 };
 
-/// Writes the state of all strands beside the file, with its checksum, block after block,
-/// then renames it over the file.
-void save_head(const std::string& file, const RunKey& key, const models::Head& head,
-               const HeadProgress& progress);
+/// The state of all strands on disk, with its checksum. It is written beside the file and
+/// takes its place in the end.
+class SavedHead {
+ public:
+  SavedHead(const std::string& file, const RunKey& key, std::size_t strands,
+            std::size_t kept, const HeadProgress& progress);
+  /// What the head keeps of the next strands.
+  void put(const std::vector<double>& kept);
+  /// After all strands.
+  void finish();
 
-/// Sets the state of a head of the same strands. Throws InputError when the file is
-/// damaged, or of another run.
-HeadProgress load_head(const std::string& file, const RunKey& key, models::Head& head);
+ private:
+  template <class T>
+  void put_numbers(const std::vector<T>& x);
+  void put_bytes(std::string_view bytes);
+  std::string seal() const { return sum_.text() + ' '; }
+
+  Replacement replacement_;
+  Checksum sum_;
+};
+
+/// Reads it.
+class HeadToResume {
+ public:
+  /// Throws InputError when the file is damaged, or of another run or other strands.
+  HeadToResume(const std::string& file, const RunKey& key, std::size_t strands,
+               std::size_t kept);
+
+  const HeadProgress& progress() const { return progress_; }
+  /// What the head kept of so many of the next strands.
+  std::vector<double> take(std::size_t strands);
+
+ private:
+  void parse(const RunKey& key, const std::string& file, std::size_t strands);
+  template <class T>
+  std::vector<T> numbers(std::size_t count);
+
+  std::string text_;
+  std::string_view rest_;
+  std::size_t kept_;
+  HeadProgress progress_;
+};
 
 }  // namespace tress::simulation

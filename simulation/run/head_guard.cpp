@@ -15,6 +15,12 @@ double specific_speed(const models::HeadEnergy& one) {
 
 }  // namespace
 
+double fastest(std::span<const models::HeadEnergy> each) {
+  double most = 0;
+  for (const models::HeadEnergy& one : each) most = std::max(most, specific_speed(one));
+  return most;
+}
+
 HeadGuard::HeadGuard(HeadReach reach, double speed)
     : reach_(std::move(reach)), speed_(speed) {}
 
@@ -26,13 +32,7 @@ HeadGuard::Bound HeadGuard::at(double t) const {
                      reach_.drag * speed};
 }
 
-void HeadGuard::start(std::span<const models::HeadEnergy> each) {
-  double fastest = 0;
-  for (const models::HeadEnergy& one : each) {
-    fastest = std::max(fastest, specific_speed(one));
-  }
-  speed_ = fastest + at(0).speed;
-}
+void HeadGuard::start(double fastest) { speed_ = fastest + at(0).speed; }
 
 void HeadGuard::step(double t, double h) {
   speed_ += h * std::max(at(t).growth, at(t + h).growth);

@@ -8,6 +8,10 @@
 
 namespace tress::simulation {
 
+/// Speed (m/s) in which a strand's kinetic and elastic energies would be those of its
+/// mass, the largest of some strands'.
+double fastest(std::span<const models::HeadEnergy> each);
+
 /// Finds strands of a head that do what physics rules out: numbers that are finite, but
 /// wrong, where steps are too long. As Guard it looks from a frame that moves with the
 /// clamps, which do no work there. With u the velocity of a point in it, w that of the
@@ -25,8 +29,8 @@ class HeadGuard {
   /// `speed`: what a run that is continued had gathered.
   explicit HeadGuard(HeadReach reach, double speed = 0);
 
-  /// The strands at t = 0.
-  void start(std::span<const models::HeadEnergy> each);
+  /// fastest() of all strands at t = 0.
+  void start(double fastest);
   /// A step from t to t + h has been taken.
   void step(double t, double h);
   /// m/s, gathered so far.

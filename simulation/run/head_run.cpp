@@ -1,11 +1,11 @@
 #include "simulation/run/head_run.h"
 
 #include <algorithm>
-#include <span>
-#include <type_traits>
+#include <numeric>
 #include <utility>
 
 #include "contract/input_error.h"
+#include "models/head/state_hash.h"
 #include "simulation/run/timing.h"
 
 namespace tress::simulation {
@@ -14,141 +14,227 @@ namespace {
 // Of each worker, so that one that is held up does not hold up all; of so many blocks at
 // least that lanes without strands at the end of a part cost a few per cent.
 constexpr std::size_t parts_of_worker = 32, blocks_of_part = 12;
+constexpr std::size_t hashed_at_once = 4096;
 
 }  // namespace
 
 HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
                  std::unique_ptr<models::StrandInteraction> interaction)
-    : interaction_(std::move(interaction)),
-      head_(std::move(head)),
-      ranks_(nullptr),
-      begins_{0, head_->blocks()},
+    : HeadRun(SceneHead{.interaction = std::move(interaction),
+                        .head = std::move(head),
+                        .reach = {},
+                        .division = {},
+                        .halo = {}},
+              threads, alone_) {}
+
+HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
+    : ranks_(&ranks),
+      division_(made.division ? std::move(made.division)
+                              : std::make_shared<HeadDivision>(made.head->strands())),
+      interaction_(std::move(made.interaction)),
+      halo_(std::move(made.halo)),
+      head_(std::move(made.head)),
       crew_(threads) {
-  ready_scratch();
+  const std::span<const std::size_t> by_number = division_->by_number();
+  order_.resize(by_number.size());
+  for (std::size_t i = 0; i < by_number.size(); ++i) order_[by_number[i]] = i;
+  all_ = pieces([](std::size_t) { return true; });
+  inner_ = all_;
+  for (std::size_t w = 0; w < crew_.workers(); ++w) {
+    scratch_.push_back(head_->scratch());
+  }
 }
 
-HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
-                 std::unique_ptr<models::StrandInteraction> interaction, Ranks& ranks)
-    : HeadRun(std::move(head), threads, std::move(interaction)) {
-  if (ranks.size() == 1) return;
-  ranks_ = &ranks;
-  rank_ = static_cast<std::size_t>(ranks.rank());
-  const auto size = static_cast<std::size_t>(ranks.size());
-  begins_.resize(size + 1);
-  for (std::size_t r = 0; r <= size; ++r) begins_[r] = head_->blocks() * r / size;
-}
-
-void HeadRun::ready_scratch() {
+std::vector<HeadRun::Blocks> HeadRun::pieces(
+    const std::function<bool(std::size_t)>& wanted) const {
   const std::size_t blocks = head_->blocks(), workers = crew_.workers();
   const std::size_t parts = std::max(
       std::min(blocks, workers), std::min((blocks + blocks_of_part - 1) / blocks_of_part,
                                           parts_of_worker * workers));
-  scratch_.reserve(parts);
-  for (std::size_t p = 0; p < parts; ++p) scratch_.push_back(head_->scratch());
+  std::vector<Blocks> all;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (!wanted(b)) continue;
+    const bool goes_on = !all.empty() && all.back().end == b &&
+                         (all.back().end - all.back().begin) * parts < blocks;
+    if (!goes_on) all.push_back({b, b});
+    ++all.back().end;
+  }
+  return all;
 }
 
 template <class Use>
-void HeadRun::share(Use use) {
-  const std::size_t blocks = end() - begin(), parts = scratch_.size();
-  crew_.run(parts, [&](std::size_t p) {
-    use(begin() + blocks * p / parts, begin() + blocks * (p + 1) / parts, *scratch_[p]);
+void HeadRun::share(const std::vector<Blocks>& among, Use use) {
+  crew_.run(among.size(), [&](std::size_t i) {
+    use(among[i], *scratch_[i % crew_.workers()]);  // as Crew shares
   });
 }
 
 template <class Use>
 void HeadRun::each_block(Use use) {
-  share([&](std::size_t first, std::size_t last, Head::Scratch&) {
-    for (std::size_t b = first; b < last; ++b) use(b, strands_before(b));
+  share(all_, [&](const Blocks& blocks, Head::Scratch&) {
+    for (std::size_t b = blocks.begin; b < blocks.end; ++b) use(b, first_of(b));
   });
 }
 
 /// All blocks but the last are full.
-std::size_t HeadRun::strands_before(std::size_t block) const {
-  return std::min(block * head_->strands_of(0), head_->strands());
+std::size_t HeadRun::first_of(std::size_t block) const {
+  return block * head_->strands_of(0);
 }
 
-void HeadRun::share_numbers(std::span<double> x, std::size_t each) {
-  if (ranks_ == nullptr) return;
-  std::vector<std::size_t> sizes(begins_.size() - 1);
-  for (std::size_t r = 0; r < sizes.size(); ++r) {
-    sizes[r] = each * (strands_before(begins_[r + 1]) - strands_before(begins_[r]));
+models::Loop HeadRun::loop() {
+  return [this](std::size_t count, const std::function<void(std::size_t)>& work) {
+    crew_.run(count, work);
+  };
+}
+
+void HeadRun::own_blocks_of(
+    Numbers strands,
+    const std::function<void(std::size_t, std::span<const HeadDivision::Listed>)>& use) {
+  if (head_->blocks() == 0) return;
+  const std::vector<HeadDivision::Listed> own = division_->own_among(strands);
+  const std::size_t lanes = head_->strands_of(0);
+  std::vector<std::span<const HeadDivision::Listed>> blocks;
+  for (std::size_t i = 0, begin = 0; i < own.size(); ++i) {
+    const bool last =
+        i + 1 == own.size() || own[i + 1].place / lanes != own[i].place / lanes;
+    if (!last) continue;
+    blocks.push_back(std::span(own).subspan(begin, i + 1 - begin));
+    begin = i + 1;
   }
-  ranks_->share(x, sizes);
+  crew_.run(blocks.size(),
+            [&](std::size_t i) { use(blocks[i].front().place / lanes, blocks[i]); });
 }
 
-void HeadRun::gather() {
-  if (ranks_ == nullptr) return;
+void HeadRun::collect(Numbers strands, std::size_t each, const Read& read,
+                      std::vector<double>& all) {
+  const std::vector<std::size_t> counts = division_->counts(strands);
+  std::vector<double> own(each * counts[static_cast<std::size_t>(ranks_->rank())]);
+  own_blocks_of(strands,
+                [&](std::size_t block, std::span<const HeadDivision::Listed> some) {
+                  std::vector<double> of_block(each * head_->strands_of(block));
+                  read(block, of_block);
+                  for (const HeadDivision::Listed& one : some) {
+                    std::copy_n(&of_block[each * (one.place - first_of(block))], each,
+                                &own[each * one.index]);
+                  }
+                });
+  if (ranks_->size() == 1) {
+    all = std::move(own);
+    return;
+  }
+  std::vector<std::size_t> sizes(counts);
+  for (std::size_t& size : sizes) size *= each;
+  std::vector<double> by_ranks(ranks_->first() ? each * strands.size() : 0);
+  ranks_->to_first(std::span(own), std::span(by_ranks), sizes);
+  all.resize(by_ranks.size());
+  if (!ranks_->first()) return;
+  std::vector<std::size_t> next(counts.size());
+  std::exclusive_scan(sizes.begin(), sizes.end(), next.begin(), std::size_t{0});
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    std::size_t& from = next[static_cast<std::size_t>(division_->owner(strands[i]))];
+    std::copy_n(&by_ranks[from], each, &all[each * i]);
+    from += each;
+  }
+}
+
+void HeadRun::positions(double t, Numbers strands, std::vector<double>& x) {
+  collect(
+      strands, head_->numbers(),
+      [&](std::size_t block, std::span<double> to) { head_->positions(block, t, to); },
+      x);
+}
+
+void HeadRun::keep(Numbers strands, std::vector<double>& kept) {
+  collect(
+      strands, head_->kept(),
+      [&](std::size_t block, std::span<double> to) { head_->keep(block, to); }, kept);
+}
+
+void HeadRun::recall(Numbers strands, std::vector<double>& kept) {
   const std::size_t each = head_->kept();
-  std::vector<double> kept(each * head_->strands());
-  each_block([&](std::size_t block, std::size_t first) {
-    head_->keep(block,
-                std::span(kept).subspan(each * first, each * head_->strands_of(block)));
+  const std::vector<std::size_t> counts = division_->counts(strands);
+  std::vector<double> own(each * counts[static_cast<std::size_t>(ranks_->rank())]),
+      by_ranks(kept.size());
+  std::vector<std::size_t> sizes(counts), next(counts.size());
+  for (std::size_t& size : sizes) size *= each;
+  std::exclusive_scan(sizes.begin(), sizes.end(), next.begin(), std::size_t{0});
+  for (std::size_t i = 0; ranks_->first() && i < strands.size(); ++i) {
+    std::size_t& to = next[static_cast<std::size_t>(division_->owner(strands[i]))];
+    std::copy_n(&kept[each * i], each, &by_ranks[to]);
+    to += each;
+  }
+  ranks_->from_first(std::span(by_ranks), sizes, std::span(own));
+  own_blocks_of(strands,
+                [&](std::size_t block, std::span<const HeadDivision::Listed> some) {
+                  std::vector<double> of_block(each * head_->strands_of(block));
+                  head_->keep(block, of_block);
+                  for (const HeadDivision::Listed& one : some) {
+                    std::copy_n(&own[each * one.index], each,
+                                &of_block[each * (one.place - first_of(block))]);
+                  }
+                  head_->recall(block, of_block);
+                });
+}
+
+void HeadRun::by_chunks(std::size_t chunk,
+                        const std::function<void(Numbers)>& use) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t begin = 0; begin < strands(); begin += chunk) {
+    numbers.resize(std::min(chunk, strands() - begin));
+    std::iota(numbers.begin(), numbers.end(), begin);
+    use(numbers);
+  }
+}
+
+std::size_t HeadRun::hash() {
+  models::StateHash all;
+  std::vector<double> kept;
+  by_chunks(hashed_at_once, [&](Numbers strands) {
+    keep(strands, kept);
+    all.add(*head_, kept);
   });
-  share_numbers(kept, each);
-  recall(kept);
-  balance();
+  return all.value();
 }
 
-void HeadRun::follow_first() {
-  if (ranks_ == nullptr) return;
-  const std::size_t each = head_->kept();
-  std::vector<double> kept(each * head_->strands());
-  for (std::size_t b = 0; b < head_->blocks(); ++b) {
-    head_->keep(b, std::span(kept).subspan(each * strands_before(b),
-                                           each * head_->strands_of(b)));
-  }
-  std::vector<std::size_t> sizes(begins_.size() - 1, 0);
-  sizes.front() = kept.size();
-  ranks_->share(kept, sizes);
-  recall(kept);
-}
-
-void HeadRun::recall(std::span<const double> kept) {
-  const std::size_t each = head_->kept();
-  for (std::size_t b = 0; b < head_->blocks(); ++b) {
-    head_->recall(b, kept.subspan(each * strands_before(b), each * head_->strands_of(b)));
-  }
-}
-
-void HeadRun::balance() {
-  const std::size_t size = begins_.size() - 1;
-  std::vector<double> seconds(size);
-  seconds[rank_] = stepping_s_;
-  ranks_->share(seconds, std::vector<std::size_t>(size, 1));
-  stepping_s_ = 0;
-  double all = 0;
-  for (const double one : seconds) all += one;
-  if (std::ranges::any_of(seconds, [](double s) { return !(s > 0); })) return;
-  // Blocks of a range cost the same.
-  const std::vector<std::size_t> before = begins_;
-  double passed = 0;
-  std::size_t r = 0;
-  for (std::size_t next = 1; next < size; ++next) {
-    const double wanted = all * static_cast<double>(next) / static_cast<double>(size);
-    while (r + 1 < size && passed + seconds[r] < wanted) passed += seconds[r++];
-    const double share_of_range = std::clamp((wanted - passed) / seconds[r], 0.0, 1.0);
-    begins_[next] =
-        before[r] + static_cast<std::size_t>(
-                        share_of_range * static_cast<double>(before[r + 1] - before[r]));
-  }
-}
-
-void HeadRun::exchange(double t) {
+void HeadRun::look(double t, double h) {
   if (!interaction_) return;
   const std::size_t each = head_->numbers();
   x_.resize(each * head_->strands());
   v_.resize(x_.size());
+  if (halo_) {
+    ahead_.resize(x_.size());
+    bulge_.resize(head_->strands());
+  }
   each_block([&](std::size_t block, std::size_t first) {
-    const std::size_t size = each * head_->strands_of(block);
-    head_->motion(block, t, std::span(x_).subspan(each * first, size),
-                  std::span(v_).subspan(each * first, size));
+    const std::size_t count = head_->strands_of(block);
+    std::vector<double> of_block(each * count), more(of_block.size());
+    const auto put = [&](const std::vector<double>& from, std::vector<double>& to) {
+      for (std::size_t k = 0; k < count; ++k) {
+        std::copy_n(&from[each * k], each, &to[each * order_[first + k]]);
+      }
+    };
+    head_->motion(block, t, of_block, more);
+    put(of_block, x_);
+    put(more, v_);
+    if (!halo_) return;
+    std::vector<double> bulge(count);
+    head_->ahead(block, t, h, of_block, bulge);
+    put(of_block, ahead_);
+    for (std::size_t k = 0; k < count; ++k) bulge_[order_[first + k]] = bulge[k];
   });
-  share_numbers(x_, each);
-  share_numbers(v_, each);
-  interaction_->update(
-      x_, v_, [this](std::size_t count, const std::function<void(std::size_t)>& work) {
-        crew_.run(count, work);
-      });
+  if (halo_) {
+    if (halo_->look(t, {x_, ahead_, bulge_}, loop())) {
+      const std::size_t lanes = head_->strands_of(0);
+      std::vector<char> touched(head_->blocks());
+      for (const std::size_t i : halo_->touched()) {
+        touched[division_->by_number()[i] / lanes] = 1;
+      }
+      inner_ = pieces([&](std::size_t b) { return touched[b] == 0; });
+      outer_ = pieces([&](std::size_t b) { return touched[b] != 0; });
+    }
+    halo_->send(x_, v_);
+  }
+  interaction_->update(x_, v_, loop());
 }
 
 const std::string& HeadRun::move_to_device() {
@@ -161,10 +247,15 @@ const std::string& HeadRun::move_to_device() {
 
 void HeadRun::fetch() {
   if (!device_) return;
-  lost_ = device_->fetch(
-      [this](std::size_t count, const std::function<void(std::size_t)>& work) {
-        crew_.run(count, work);
-      });
+  lost_ = device_->fetch(loop());
+}
+
+void HeadRun::take_steps(const std::vector<Blocks>& of, double t, double h) {
+  stepping_s_ += seconds_of([&] {
+    share(of, [&](const Blocks& blocks, Head::Scratch& scratch) {
+      head_->step(blocks.begin, blocks.end, t, h, scratch);
+    });
+  });
 }
 
 void HeadRun::step(double t, double h) {
@@ -172,14 +263,15 @@ void HeadRun::step(double t, double h) {
     lost_.clear();
     return device_->step(t, h);
   }
-  exchange(t);
-  stepping_s_ += seconds_of([&] {
-    share([&](std::size_t first, std::size_t last, Head::Scratch& scratch) {
-      head_->step(first, last, t, h, scratch);
-    });
-  });
+  look(t, h);
+  take_steps(inner_, t, h);
+  if (halo_) {
+    halo_->receive(x_, v_, loop());
+    take_steps(outer_, t, h);
+  }
   lost_ = head_->losses(losses_);
   losses_ += lost_.size();
+  for (models::HeadLoss& loss : lost_) loss.strand = division_->own()[loss.strand];
 }
 
 void HeadRun::positions(double t, std::vector<double>& x) {
@@ -189,7 +281,6 @@ void HeadRun::positions(double t, std::vector<double>& x) {
     head_->positions(block, t,
                      std::span(x).subspan(each * first, each * head_->strands_of(block)));
   });
-  share_numbers(x, each);
 }
 
 void HeadRun::energies(double t, std::vector<models::HeadEnergy>& each) {
@@ -197,11 +288,9 @@ void HeadRun::energies(double t, std::vector<models::HeadEnergy>& each) {
   each_block([&](std::size_t block, std::size_t first) {
     head_->energies(block, t, std::span(each).subspan(first, head_->strands_of(block)));
   });
-  constexpr std::size_t numbers = sizeof(models::HeadEnergy) / sizeof(double);
-  static_assert(std::is_trivially_copyable_v<models::HeadEnergy> &&
-                sizeof(models::HeadEnergy) % sizeof(double) == 0);
-  share_numbers({reinterpret_cast<double*>(each.data()), numbers * each.size()}, numbers);
 }
+
+double HeadRun::stepping_s() { return std::exchange(stepping_s_, 0); }
 
 HeadWork HeadRun::work() const {
   HeadWork all;

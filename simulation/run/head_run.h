@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -7,24 +8,27 @@
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/device/device_head.h"
+#include "simulation/run/halo.h"
+#include "simulation/run/head_division.h"
 #include "simulation/run/ranks.h"
+#include "simulation/run/scene_head.h"
 #include "simulation/threads/crew.h"
 
 namespace tress::simulation {
 
 /// A head that is advanced and read by a crew, each worker with its share of the blocks,
-/// or advanced by a device. Of several ranks each has the whole head and a range of its
-/// blocks, in the order of the strands: it steps these alone, and what all ranks share is
-/// the same bits on all, whatever their number. Ranges follow the time that steps took,
-/// from gather() on.
+/// or advanced by a device. Of several ranks each holds its own strands (HeadDivision),
+/// and no others but those that may touch them (Halo); numbers of all strands reach the
+/// first rank as many at a time as it asks for. All are the same bits for any number of
+/// ranks, threads and lanes.
 class HeadRun {
  public:
-  /// With the interaction whose effects the head's strands have, if there is one.
+  /// By this process alone, with the interaction whose effects the head's strands have,
+  /// if there is one.
   HeadRun(std::unique_ptr<Head> head, int threads,
           std::unique_ptr<models::StrandInteraction> interaction = {});
-  /// By ranks, which must outlive it.
-  HeadRun(std::unique_ptr<Head> head, int threads,
-          std::unique_ptr<models::StrandInteraction> interaction, Ranks& ranks);
+  /// By the ranks that it was made for, which must outlive it.
+  HeadRun(SceneHead made, int threads, Ranks& ranks);
 
   /// Steps are taken on the first device from now on; its name. Throws InputError if the
   /// head is refused, DeviceFailure if there is no device for it.
@@ -37,60 +41,88 @@ class HeadRun {
   /// On a device steps may wait: strands are where all of them have brought them, and
   /// lost() tells of all since the last call. Throws DeviceFailure.
   void fetch();
-  /// All ranks get the state of all strands, each from who steps it; it is what else
-  /// reads or changes the head between steps.
-  void gather();
-  /// All ranks get the state of the first.
-  void follow_first();
-  /// Strands that the last step lost, in their order; of this rank's blocks.
+  /// Own strands that the last step lost, by their numbers in the whole head.
   const std::vector<models::HeadLoss>& lost() const { return lost_; }
-  /// Root and tips of elements (m) of every strand, strand after strand.
-  void positions(double t, std::vector<double>& x);
-  /// Of every strand, on all ranks.
-  void energies(double t, std::vector<models::HeadEnergy>& each);
+
+  // Of this rank's own strands, by their places: see HeadDivision.
+  const HeadDivision& division() const { return *division_; }
   const Head& head() const { return *head_; }
   /// For whoever changes its state.
   Head& change() {
     if (device_) device_->renew();
     return *head_;
   }
+  /// Root and tips of elements (m), strand after strand.
+  void positions(double t, std::vector<double>& x);
+  void energies(double t, std::vector<models::HeadEnergy>& each);
+
+  // Of strands of all ranks; all call these with the same strands, ascending numbers.
+  using Numbers = std::span<const std::size_t>;
+  std::size_t strands() const { return division_->strands(); }
+  /// Reads `each` numbers of every strand of an own block.
+  using Read = std::function<void(std::size_t block, std::span<double> to)>;
+  /// What is read of these strands, one after the other; on the first rank, others get
+  /// nothing.
+  void collect(Numbers strands, std::size_t each, const Read& read,
+               std::vector<double>& all);
+  void positions(double t, Numbers strands, std::vector<double>& x);
+  /// Head::keep() and Head::recall(); what is recalled is the first rank's.
+  void keep(Numbers strands, std::vector<double>& kept);
+  void recall(Numbers strands, std::vector<double>& kept);
+  /// Calls use(strands) for all, so many at a time.
+  void by_chunks(std::size_t chunk, const std::function<void(Numbers)>& use) const;
+  /// As Head::hash() of all strands, on the first rank.
+  std::size_t hash();
+
   /// Newton's iterations of all steps so far, of this rank.
   HeadWork work() const;
+  /// Wall time of this rank's steps since the last call, without waiting for others.
+  double stepping_s();
+  /// What other ranks' strands have cost; null: none touch its own.
+  const Halo* halo() const { return halo_.get(); }
   Crew& crew() { return crew_; }
 
  private:
-  void ready_scratch();
-  /// use(first, last, scratch) for this rank's blocks of each part.
+  struct Blocks {
+    std::size_t begin, end;
+  };
+
+  /// Pieces of consecutive blocks for which `wanted` holds, for the crew.
+  std::vector<Blocks> pieces(const std::function<bool(std::size_t)>& wanted) const;
+  /// use(blocks, scratch) for each piece.
   template <class Use>
-  void share(Use use);
-  /// use(block, its first strand), of this rank's.
+  void share(const std::vector<Blocks>& among, Use use);
+  /// use(block, its first place), of all own blocks.
   template <class Use>
   void each_block(Use use);
+  std::size_t first_of(std::size_t block) const;
+  void take_steps(const std::vector<Blocks>& of, double t, double h);
 
-  /// Strands see each other where they are at t.
-  void exchange(double t);
+  /// Strands see each other where they are at t, for a step of h.
+  void look(double t, double h);
+  models::Loop loop();
+  /// Of a list of strands, own ones by blocks: use(block, listed ones).
+  void own_blocks_of(
+      Numbers strands,
+      const std::function<void(std::size_t, std::span<const HeadDivision::Listed>)>& use);
 
-  /// Ranges of equal cost by the time that the last steps took.
-  void balance();
-  std::size_t begin() const { return begins_[rank_]; }
-  std::size_t end() const { return begins_[rank_ + 1]; }
-  std::size_t strands_before(std::size_t block) const;
-  /// All ranks get what each knows of its strands, `each` numbers of one.
-  void share_numbers(std::span<double> x, std::size_t each);
-  void recall(std::span<const double> kept);
-
-  std::unique_ptr<models::StrandInteraction> interaction_;
+  OneRank alone_;
+  Ranks* ranks_;
+  std::shared_ptr<const HeadDivision> division_;
+  std::unique_ptr<models::StrandInteraction> interaction_;  // of own strands, by numbers
+  std::unique_ptr<Halo> halo_;                              // or null
   std::unique_ptr<Head> head_;
   std::unique_ptr<DeviceHead> device_;  // or null
-  std::vector<double> x_, v_;           // of exchange()
-  Ranks* ranks_;                        // null: this process alone
-  std::size_t rank_ = 0;                // of this process
-  std::vector<std::size_t> begins_;     // of the ranks' ranges of blocks, and the end
-  double stepping_s_ = 0;               // since balance()
+  // By numbers, of look(): positions, velocities, and what Head::ahead() says.
+  std::vector<double> x_, v_, ahead_, bulge_;
+  std::vector<std::size_t> order_;  // of each place, its own strand's by numbers
   Crew crew_;
-  std::vector<std::unique_ptr<Head::Scratch>> scratch_;  // of parts of the head
+  std::vector<Blocks> all_;            // pieces for the crew
+  std::vector<Blocks> inner_, outer_;  // of strands that other ranks' cannot, may touch
+  std::vector<std::unique_ptr<Head::Scratch>> scratch_;  // of workers
   std::vector<models::HeadLoss> lost_;
   std::size_t losses_ = 0;  // of all steps
+  double stepping_s_ = 0;
 };
 
 }  // namespace tress::simulation

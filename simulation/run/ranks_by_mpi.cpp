@@ -1,5 +1,6 @@
 #include <mpi.h>
 
+#include <cstdint>
 #include <exception>
 #include <limits>
 #include <numeric>
@@ -11,6 +12,24 @@
 namespace tress::simulation {
 namespace {
 
+/// MPI counts by int.
+int counted(std::size_t bytes) {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (bytes > most) throw std::length_error("more bytes than MPI counts at once");
+  return static_cast<int>(bytes);
+}
+
+/// Parts one after the other.
+struct Parts {
+  explicit Parts(std::span<const std::size_t> sizes) : starts(sizes.size()) {
+    static_cast<void>(
+        counted(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0})));
+    counts.assign(sizes.begin(), sizes.end());
+    std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+  }
+  std::vector<int> counts, starts;
+};
+
 /// Errors of MPI end the program, as MPI does where nobody says otherwise.
 class MpiRanks final : public Ranks {
  public:
@@ -19,6 +38,11 @@ class MpiRanks final : public Ranks {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm here;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL,
+                        &here);
+    MPI_Comm_size(here, &on_this_machine_);
+    MPI_Comm_free(&here);
   }
   /// A rank that fails does not wait for the others, which mpirun then ends.
   ~MpiRanks() override {
@@ -29,23 +53,57 @@ class MpiRanks final : public Ranks {
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
+  int on_this_machine() const override { return on_this_machine_; }
 
-  void share(std::span<double> x, std::span<const std::size_t> sizes) override {
-    constexpr std::size_t most = std::numeric_limits<int>::max();
-    if (x.size() > most) throw std::length_error("more numbers than MPI counts at once");
-    const std::vector<int> counts(sizes.begin(), sizes.end());
-    std::vector<int> starts(counts.size());
-    std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x.data(), counts.data(),
-                   starts.data(), MPI_DOUBLE, MPI_COMM_WORLD);
-  }
   double largest(double x) override {
     MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     return x;
   }
+  std::vector<std::size_t> swapped(Sizes counts) override {
+    const std::vector<std::uint64_t> own(counts.begin(), counts.end());
+    std::vector<std::uint64_t> others(own.size());
+    MPI_Alltoall(own.data(), 1, MPI_UINT64_T, others.data(), 1, MPI_UINT64_T,
+                 MPI_COMM_WORLD);
+    return {others.begin(), others.end()};
+  }
+
+  void begin(std::span<const Message> to, std::span<const Message> from) override {
+    for (const Message& message : from) {
+      MPI_Irecv(message.bytes.data(), counted(message.bytes.size()), MPI_BYTE,
+                message.rank, 0, MPI_COMM_WORLD, &requests_.emplace_back());
+    }
+    for (const Message& message : to) {
+      MPI_Isend(message.bytes.data(), counted(message.bytes.size()), MPI_BYTE,
+                message.rank, 0, MPI_COMM_WORLD, &requests_.emplace_back());
+    }
+  }
+  void finish() override {
+    MPI_Waitall(counted(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+    requests_.clear();
+  }
+
+ protected:
+  void share_bytes(std::span<std::byte> x, Sizes sizes) override {
+    const Parts parts(sizes);
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x.data(), parts.counts.data(),
+                   parts.starts.data(), MPI_BYTE, MPI_COMM_WORLD);
+  }
+  void bytes_to_first(std::span<std::byte> own, std::span<std::byte> all,
+                      Sizes sizes) override {
+    const Parts parts(sizes);
+    MPI_Gatherv(own.data(), counted(own.size()), MPI_BYTE, all.data(),
+                parts.counts.data(), parts.starts.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
+  }
+  void bytes_from_first(std::span<std::byte> all, Sizes sizes,
+                        std::span<std::byte> own) override {
+    const Parts parts(sizes);
+    MPI_Scatterv(all.data(), parts.counts.data(), parts.starts.data(), MPI_BYTE,
+                 own.data(), counted(own.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
+  }
 
  private:
-  int rank_ = 0, size_ = 1;
+  int rank_ = 0, size_ = 1, on_this_machine_ = 1;
+  std::vector<MPI_Request> requests_;  // since begin()
 };
 
 }  // namespace

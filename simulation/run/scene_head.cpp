@@ -15,6 +15,8 @@ namespace {
 
 using models::HeadOptions;
 
+constexpr std::size_t parts = 64;  // of strands that are made at the same time
+
 bool of_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
 
 /// An option of the model that heads do not have.
@@ -191,40 +193,93 @@ struct Extent {
   }
 };
 
+/// What has to be known of all strands of a scene before any is made into a head's; each
+/// rank looks at its share of them.
+template <class Strands>
+Extent extent_of(const Strands& series, const HeadOptions& options, Crew& crew,
+                 Ranks& ranks, std::span<Vec> roots) {
+  const auto rank = static_cast<std::size_t>(ranks.rank()),
+             size = static_cast<std::size_t>(ranks.size());
+  const auto first = [&](std::size_t r) { return series.size() * r / size; };
+  std::vector<Extent> extents(parts);
+  in_parts(crew, first(rank), first(rank + 1), parts,
+           [&](std::size_t k, std::size_t part) {
+             const Strand strand = series.strand(k);
+             extents[part].include(strand, options);
+             if (!roots.empty()) roots[k] = strand.root.position;
+           });
+  Extent all;
+  for (const Extent& extent : extents) all.include(extent);
+  if (!roots.empty()) {
+    std::vector<std::size_t> counts(size);
+    for (std::size_t r = 0; r < size; ++r) counts[r] = first(r + 1) - first(r);
+    ranks.share(roots, counts);
+  }
+  return {ranks.largest(all.length), ranks.largest(all.radius),
+          ranks.largest(all.winding), ranks.largest(all.lightest)};
+}
+
 /// make_head() for a StrandSeries, or for Held strands.
 template <class Strands>
 SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pack,
-                  int threads) {
+                  int threads, Ranks& ranks, std::span<const double> cost) {
   Crew crew(threads);
   HeadOptions options = options_of(scene);
-  constexpr std::size_t parts = 64;
-  std::vector<Extent> extents(parts);
-  in_parts(crew, 0, series.size(), parts, [&](std::size_t k, std::size_t part) {
-    extents[part].include(series.strand(k), options);
-  });
-  Extent all;
-  for (const Extent& extent : extents) all.include(extent);
+  const bool divided = ranks.size() > 1;
+  if (divided && series.size() < static_cast<std::size_t>(ranks.size())) {
+    throw InputError(fmt::format("{} strands for {} ranks", series.size(), ranks.size()),
+                     scene.name, "give fewer ranks");
+  }
+  std::vector<Vec> roots(divided ? series.size() : 0);
+  const Extent all = extent_of(series, options, crew, ranks, std::span(roots));
   options.longest = all.length;
   if (options.points == 0) options.points = models::quadrature_points(all.winding);
+  const Strand strand_0 = series.strand(0);
+  options.line_density =
+      strand_0.material.density * strand_0.segments.front().section.area();
+  const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
   SceneHead made_head;
+  made_head.division = divided ? std::make_shared<HeadDivision>(
+                                     roots, cost.empty() ? std::span(equal) : cost,
+                                     ranks.size(), ranks.rank())
+                               : std::make_shared<HeadDivision>(series.size());
+  const HeadDivision& division = *made_head.division;
+  const std::size_t own = division.own().size();
   if (const Parameters* between = scene.interaction()) {
     made_head.interaction = std::make_unique<models::StrandInteraction>(
-        *between, std::vector<int>(series.size(), options.elements + 1));
+        *between, std::vector<int>(own, options.elements + 1));
   }
+  std::vector<std::size_t> order(own);  // of places, by numbers
+  for (std::size_t i = 0; i < own; ++i) order[division.by_number()[i]] = i;
+  std::vector<std::shared_ptr<ChosenEffect>> chosen;
   made_head.head = empty_head(scene, options, pack);
   Head* const head = made_head.head.get();
-  head->reserve(series.size());
+  head->reserve(own);
   constexpr std::size_t at_once = 1024;
-  std::vector<Strand> made(std::min(at_once, series.size()));
-  for (std::size_t begin = 0; begin < series.size(); begin += at_once) {
-    const std::size_t end = std::min(begin + at_once, series.size());
-    in_parts(crew, begin, end, parts,
-             [&](std::size_t k, std::size_t) { made[k - begin] = series.strand(k); });
+  std::vector<Strand> made(std::min(at_once, own));
+  for (std::size_t begin = 0; begin < own; begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, own);
+    in_parts(crew, begin, end, parts, [&](std::size_t k, std::size_t) {
+      made[k - begin] = series.strand(division.own()[k]);
+    });
     for (std::size_t k = begin; k < end; ++k) {
-      models::Effects own;
-      if (made_head.interaction) own.push_back(made_head.interaction->effect(k));
-      head->add(made[k - begin], std::move(own));
+      models::Effects effects;
+      if (made_head.interaction) {
+        auto effect = made_head.interaction->effect(order[k]);
+        if (divided) {
+          chosen.push_back(std::make_shared<ChosenEffect>(std::move(effect)));
+          effects.push_back(chosen.back());
+        } else {
+          effects.push_back(std::move(effect));
+        }
+      }
+      head->add(made[k - begin], std::move(effects));
     }
+  }
+  if (!chosen.empty()) {
+    made_head.halo = std::make_unique<Halo>(
+        ranks, made_head.division, options.motion, *made_head.interaction,
+        std::move(chosen), static_cast<std::size_t>(options.elements + 1));
   }
   if (at_rest_in_head(scene)) {
     made_head.reach = {options.motion, options.gravity, all.radius,
@@ -252,28 +307,35 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
 }
 
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
-  return head_of(outline.scene, *outline.series, pack, threads);
+  OneRank alone;
+  return make_head(outline, pack, threads, alone);
 }
 
 SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads) {
-  return head_of(scene, Held{scene.strands}, pack, threads);
+  OneRank alone;
+  return head_of(scene, Held{scene.strands}, pack, threads, alone, {});
 }
 
-std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack) {
+SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads,
+                    Ranks& ranks, std::span<const double> cost) {
+  return head_of(outline.scene, *outline.series, pack, threads, ranks, cost);
+}
+
+std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
+                       std::size_t strands) {
   HeadOptions options = options_of(outline.scene);
   options.longest = 1;
   if (options.points == 0) options.points = 8;
   const std::unique_ptr<Head> block = empty_head(outline.scene, options, pack);
   const auto lanes = static_cast<std::size_t>(pack.lanes);
   for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
-  const std::size_t blocks = (outline.series->size() + lanes - 1) / lanes;
+  const std::size_t blocks = (strands + lanes - 1) / lanes;
   std::size_t bytes = block->bytes() * blocks;
   if (outline.scene.interaction() != nullptr) {
     // Places and velocities of the points, and what StrandPartners keeps of them with as
     // many candidates as hairs of a dense head have.
     constexpr std::size_t kept_of_point = 500;
-    bytes += outline.series->size() *
-             (16 * block->numbers() + kept_of_point * block->numbers() / 3);
+    bytes += strands * (16 * block->numbers() + kept_of_point * block->numbers() / 3);
   }
   return bytes;
 }

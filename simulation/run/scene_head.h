@@ -2,10 +2,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
+#include "simulation/run/halo.h"
+#include "simulation/run/head_division.h"
+#include "simulation/run/ranks.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
@@ -29,20 +33,28 @@ struct HeadReach {
   double drag = 0;    // 1/s, largest force of the air over mass and velocity
 };
 
-/// All strands of a scene that no_head() has nothing against, at t = 0: the largest
-/// number of quadrature points that any strand needs, if the scene does not say how many.
-/// Two passes over the strands by so many threads, a thousand at a time.
+/// The strands of a rank, of a scene that no_head() has nothing against, at t = 0: the
+/// largest number of quadrature points that any strand of the scene needs, if the scene
+/// does not say how many. Two passes over strands by so many threads, a thousand at a
+/// time.
 struct SceneHead {
   std::unique_ptr<models::StrandInteraction> interaction;  // or null; outlives the head
   std::unique_ptr<Head> head;
-  std::optional<HeadReach> reach;  // none: more acts than the bound knows
+  std::optional<HeadReach> reach;                // none: more acts than the bound knows
+  std::shared_ptr<const HeadDivision> division;  // null: all strands, in their order
+  std::unique_ptr<Halo> halo;  // null: no other rank's strands may touch these
 };
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
 /// The same of the strands that a scene holds: the guides of a groom, or those left by
 /// only(). no_head() is asked of the scene that they come from.
 SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads);
+/// By ranks, each with strands of about equal sums of `cost`; empty: equally many. Throws
+/// InputError if there are fewer strands than ranks.
+SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads,
+                    Ranks& ranks, std::span<const double> cost = {});
 
-/// Bytes that a head of the scene takes, known before it is made.
-std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack);
+/// Bytes that so many strands of a head take, known before it is made.
+std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
+                       std::size_t strands);
 
 }  // namespace tress::simulation

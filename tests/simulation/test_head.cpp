@@ -568,7 +568,7 @@ TEST(HeadGuard, AllowsWhatGravityAndTheHeadCanGive) {
     return one;
   };
   HeadGuard guard(reach);
-  guard.start(std::vector{moving(0)});
+  guard.start(fastest(std::vector{moving(0)}));
   for (int i = 0; i < 100; ++i) guard.step(0.01 * i, 0.01);
   EXPECT_NEAR(guard.speed(), 10, 1e-12);
   EXPECT_FALSE(guard.breached(1, moving(10)));

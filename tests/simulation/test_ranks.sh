@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # test_ranks.sh SIMULATE SUPPORT: a head with a body and hairs that touch, by mpirun: the same
 # results for any number of ranks and threads, also after a rank was killed and other ranks
-# went on. Ends with 77, and says why, where there is no MPI.
+# went on; a rank has its share of the strands. Ends with 77, and says why, where there is no MPI.
 set -euo pipefail
 simulate=$1
 # shellcheck source=tests/support/expect.sh
@@ -74,6 +74,11 @@ for case in '2' '4' '2 --threads 2'; do
   same "r${words[0]}"
 done
 grep -q '"ranks": 2' r2/head.meta.json || fail "the outcome does not name the ranks"
+# number OUT COLUMN: rounded.
+number() { printf '%.0f' "$(sed -n "s/.*\"$2\": *\([0-9][0-9.e+-]*\).*/\1/p" "$1/head.meta.json")"; }
+[[ $(number r2 rank_strands) == 35 && $(number r4 rank_strands) == 18 ]] ||
+  fail "a rank of two has $(number r2 rank_strands) strands, of four $(number r4 rank_strands)"
+(($(number r4 ghosts_per_step) > 0)) || fail "no strand of another rank may touch"
 
 # Longer, so that a rank can be killed under way; the same again by one process.
 sed -i 's/^duration_s = 1/duration_s = 6/' head.toml
@@ -93,3 +98,5 @@ same killed
 
 expect 2 'strands that run one by one are not shared by ranks' \
   mpirun -n 2 "$simulate" head.toml --as strands --out no
+sed -i 's/^count = .*/count = 3/' head.toml
+expect 2 '3 strands for 4 ranks' mpirun -n 4 "$simulate" head.toml --as head --out no

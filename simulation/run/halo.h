@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "contract/system.h"
+#include "models/contact/box_pairs.h"
+#include "models/effects/strand_interaction.h"
+#include "models/motion/root_motion.h"
+#include "simulation/run/chosen_effect.h"
+#include "simulation/run/head_division.h"
+#include "simulation/run/ranks.h"
+
+namespace tress::simulation {
+
+/// Cells of space that something lies in, as far as a box of them reaches. All such sets
+/// of one corner and size of cells have the same cells.
+class CellSet {
+ public:
+  CellSet() = default;
+  /// `all`: what it may hold.
+  CellSet(const Vec& corner, double size, const models::Box& all);
+
+  /// Safe for several threads at once.
+  void mark(const models::Box& box);
+  bool holds_some(const models::Box& box) const;
+
+  std::vector<char>& marks() { return marks_; }
+
+ private:
+  struct Range {
+    std::array<long, 3> from, to;
+  };
+  Range cells(const models::Box& box) const;
+
+  Vec corner_;
+  double size_ = 1;
+  Range all_{{0, 0, 0}, {-1, -1, -1}};
+  std::vector<char> marks_;
+};
+
+/// The strands of other ranks that may touch those of this one, its ghosts, and what they
+/// do to them:
+///
+///     look() -> send() ... strands that no ghost can touch ... receive() -> the others
+///
+/// Every point of a strand claims what lies within its room, the distance it may go in a
+/// few steps, seen from the head. Two strands can touch in a step only if what one claims
+/// comes within reach of what the other claims, for as long as no point has left its
+/// room; then claims are made anew, by all ranks. The rank of each strand finds to whom
+/// it has to be sent, from the cells in which other ranks' claims lie. Own strands that
+/// are sent are those that may touch ghosts: they meet, in an interaction of their own,
+/// the ghosts and the own strands near them, in the order of the whole head, so that
+/// forces are the same bits as on one rank. Steps take O(strands sent), claims O(points).
+class Halo {
+ public:
+  /// `interaction` of own strands; `effects` by their places, which use it.
+  Halo(Ranks& ranks, std::shared_ptr<const HeadDivision> division,
+       models::RootMotion motion, const models::StrandInteraction& interaction,
+       std::vector<std::shared_ptr<ChosenEffect>> effects, std::size_t points);
+
+  /// By the numbers of own strands: root and tips at t, what Head::ahead() says.
+  struct Places {
+    In x, ahead, bulge;
+  };
+  /// Makes ready for a step from t; whether claims were made anew.
+  bool look(double t, const Places& places, const models::Loop& loop);
+  /// Own strands' root and tips and their velocities, by numbers, to who needs them.
+  void send(In x, In v);
+  /// Waits for ghosts; strands that may touch them see them.
+  void receive(In x, In v, const models::Loop& loop);
+  /// Own strands that may touch ghosts, by the order of their numbers.
+  const std::vector<std::size_t>& touched() const { return touched_; }
+
+  /// Since the run began, on this rank.
+  struct Work {
+    long steps = 0, claims = 0;          // claims: how often they were made
+    double sent = 0, ghosts = 0;         // strands, all steps
+    double claim_s = 0, exchange_s = 0;  // exchange_s: packing, waiting, unpacking
+  };
+  const Work& work() const { return work_; }
+
+ private:
+  struct Neighbour {
+    int rank;
+    std::vector<std::size_t> sent;    // own strands, by the order of numbers
+    std::vector<std::size_t> ghosts;  // their numbers
+    std::vector<double> out, in;      // x and v of one strand after the other
+  };
+  /// A strand that others meet, ascending numbers.
+  struct Met {
+    std::size_t number;
+    const Neighbour* from;  // null: an own one
+    std::size_t index;      // among what comes from there, or own ones
+  };
+
+  std::size_t own() const { return division_->own().size(); }
+  bool left_room(const Places& places, const models::RootPose& pose,
+                 const models::Loop& loop) const;
+  void claim(const Places& places, const models::RootPose& pose,
+             const models::Loop& loop);
+  /// Calls use(box, room) for the pieces of a strand's polyline where claims were made.
+  template <class Use>
+  void each_piece(std::size_t strand, Use use) const;
+  void find_neighbours(const models::Loop& loop);
+  void find_met(const models::Loop& loop);
+  std::vector<std::size_t> near(const CellSet& cells, const models::Loop& loop) const;
+
+  Ranks& ranks_;
+  std::shared_ptr<const HeadDivision> division_;
+  models::RootMotion motion_;
+  const models::StrandInteraction& interaction_;
+  std::vector<std::shared_ptr<ChosenEffect>> effects_;
+  std::size_t points_;  // of a strand
+  bool claimed_ = false;
+  // Of own points where claims were made, seen from the head, m.
+  std::vector<Vec> at_;
+  std::vector<double> room_;
+  Vec corner_;           // of cells
+  double size_ = 1;      // of a cell
+  double rounding_ = 0;  // of places, m
+  models::Box claims_;
+  std::vector<Neighbour> neighbours_;
+  std::vector<std::size_t> touched_;
+  std::vector<Met> met_;
+  std::unique_ptr<models::StrandInteraction> between_;  // of met_
+  std::vector<double> x_, v_;                           // of met_
+  Work work_;
+};
+
+}  // namespace tress::simulation
