@@ -11,6 +11,7 @@ work=$(mktemp -d /tmp/tress-cluster-XXXXXX)
 trap 'stop_slurm; [[ ${KEEP:-} ]] || rm -rf "$work"' EXIT
 cd "$repository"
 
+commands_of_page() { node tests/commands/page_commands.mjs . docs/cluster.md "$1"; }
 cluster() { node experiments/cluster/cluster.mjs "$@"; }
 fail() { echo "FAILED: $*"; exit 1; }
 
@@ -117,9 +118,9 @@ sed 's/^duration_s.*/duration_s = 0.1/; s/^count.*/count = 300/' scenes/full_hea
   echo 'export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1'
   echo 'export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none'
   # The line of docs/cluster.md, with a smaller scene.
-  sed -n "/^mpirun/{s|scenes/full_head.toml|$work/head.toml|;s|\$| --progress none --out $work/mpi|;p}" docs/cluster.md
+  commands_of_page '^mpirun' |
+    sed "s|scenes/full_head.toml|$work/head.toml|; s|\$| --progress none --out $work/mpi|"
 } >"$work/mpi.sh"
-grep -q '^mpirun' "$work/mpi.sh" || fail "docs/cluster.md has no line with mpirun"
 "$simulate" "$work/head.toml" --as head --progress none --out "$work/whole" 2>"$work/out"
 sbatch -W -n "$(nproc)" -o "$work/mpi.log" "$work/mpi.sh" >"$work/out" 2>&1 ||
   { cat "$work/out" "$work/mpi.log"; fail "mpirun inside a job"; }
@@ -134,7 +135,7 @@ while IFS= read -r line; do
   read -ra words <<<"$line"
   expect 0 '.' cluster "${words[@]:2}"
   until_true 120 idle
-done < <(sed -n '/^\.\/tress cluster/p' docs/cluster.md)
+done < <(commands_of_page '^./tress cluster')
 for folder in springs snake; do
   [[ $folder == snake ]] && ! command -v snakemake >/dev/null && continue
   [[ -s results/cluster/$folder/stability_limit.csv ]] || fail "no table in $folder"

@@ -16,8 +16,8 @@ ln -s "$repository/tests" "$work/tests"
 cd "$work"
 
 # --- the page's own commands, as they stand ------------------------------------------------
-mapfile -t commands < <(awk '/^```/ { inside = !inside; next }
-  inside && /^(build\/|cmake -S|cmake --build)/ { print }' "$repository/docs/plugins.md")
+mapfile -t commands < <(node "$repository/tests/commands/page_commands.mjs" "$repository" \
+  docs/plugins.md '^(build/|cmake -S|cmake --build)')
 ((${#commands[@]} >= 8)) || { echo "docs/plugins.md has lost its commands"; exit 1; }
 for command in "${commands[@]}"; do
   more=()
