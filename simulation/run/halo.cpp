@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 #include "simulation/run/timing.h"
@@ -14,9 +15,11 @@ namespace {
 using models::Box;
 using models::Loop;
 
-// Steps for which a point has room if it goes on as in the first, and what it has at
-// least, over the reach.
-constexpr double steps_of_room = 4, least_room = 0.25;
+// Steps for which a point has room if it goes on as in the first, seen from the head, and
+// what it has at least, over the reach. Strands that may touch ghosts look for all their
+// neighbours anew when claims are made, which takes as long as to step some 24 times
+// (StrandPartners), against few ghosts more.
+constexpr double steps_of_room = 16, least_room = 0.25;
 constexpr double most_cells = 128;  // along a side of the head
 // Of places, in 32 bits, over the size of the head.
 constexpr double place_rounding = 2e-6;
@@ -39,7 +42,7 @@ void each_strand(std::size_t count, const Loop& loop,
 }  // namespace
 
 CellSet::CellSet(const Vec& corner, double size, const Box& all)
-    : corner_(corner), size_(size) {
+    : corner_(corner), size_(size), box_(all) {
   if (all.empty()) return;
   all_ = cells(all);
   std::size_t count = 1;
@@ -114,25 +117,26 @@ Halo::Halo(Ranks& ranks, std::shared_ptr<const HeadDivision> division,
       effects_(std::move(effects)),
       points_(points),
       at_(points * own()),
-      room_(points * own()) {
+      room_(points * own()),
+      boxes_(own()) {
   motion_.frame = {};
 }
 
-bool Halo::look(double t, const Places& places, const Loop& loop) {
+bool Halo::look(double t, double h, const Places& places, const Loop& loop) {
   ++work_.steps;
-  bool anew = false;
+  const models::RootPose pose = motion_.at(t);
+  bool left = true, anew = false;
+  work_.claim_s += seconds_of([&] { left = !claimed_ || left_room(places, pose, loop); });
+  work_.exchange_s += seconds_of([&] { anew = ranks_.largest(left ? 1 : 0) > 0; });
+  if (!anew) return false;
   work_.claim_s += seconds_of([&] {
-    const models::RootPose pose = motion_.at(t);
-    const bool left = !claimed_ || left_room(places, pose, loop);
-    anew = ranks_.largest(left ? 1 : 0) > 0;
-    if (!anew) return;
     claimed_ = true;
     ++work_.claims;
-    claim(places, pose, loop);
+    claim(places, pose, motion_.at(t + h), loop);
     find_neighbours(loop);
     find_met(loop);
   });
-  return anew;
+  return true;
 }
 
 /// A point of an element between two tips is within its bulge of where the same share of
@@ -155,33 +159,38 @@ bool Halo::left_room(const Places& places, const models::RootPose& pose,
   return left;
 }
 
-void Halo::claim(const Places& places, const models::RootPose& pose, const Loop& loop) {
+void Halo::claim(const Places& places, const models::RootPose& now,
+                 const models::RootPose& next, const Loop& loop) {
   const double reach = interaction_.reach();
   each_strand(own(), loop, [&](std::size_t k) {
+    boxes_[k] = Box::none();
     for (std::size_t i = points_ * k; i < points_ * (k + 1); ++i) {
-      at_[i] = in_head(pose, &places.x[3 * i]);
-      const Vec ahead = in_head(pose, &places.ahead[3 * i]);
-      const double moves = is_place(ahead) && is_place(at_[i]) ? norm(ahead - at_[i]) : 0;
-      room_[i] = least_room * reach + places.bulge[k] + steps_of_room * moves;
+      at_[i] = in_head(now, &places.x[3 * i]);
+      // In the step it meets others where they are now, later where they are with it.
+      const Vec in_step = in_head(now, &places.ahead[3 * i]),
+                later = in_head(next, &places.ahead[3 * i]);
+      const bool known = is_place(in_step) && is_place(later) && is_place(at_[i]);
+      room_[i] =
+          least_room * reach + places.bulge[k] +
+          (known ? norm(in_step - at_[i]) + steps_of_room * norm(later - at_[i]) : 0);
+      if (!is_place(at_[i])) continue;
+      Box box{at_[i], at_[i]};
+      box.grow(room_[i]);
+      boxes_[k].include(box);
     }
   });
   claims_ = Box::none();
-  double rooms = 0;
-  for (std::size_t i = 0; i < at_.size(); ++i) {
-    if (!is_place(at_[i])) continue;
-    Box box{at_[i], at_[i]};
-    box.grow(room_[i]);
-    claims_.include(box);
-    rooms += room_[i] / static_cast<double>(at_.size());
-  }
-  // The same cells on all ranks: as large as what is looked for, but not too many.
+  for (const Box& box : boxes_) claims_.include(box);
+  // The same cells on all ranks, not many for a claim.
+  const double rooms = std::accumulate(room_.begin(), room_.end(), 0.0) /
+                       static_cast<double>(room_.size());
   const auto least = [&](double x) { return -ranks_.largest(-x); };
   corner_ = {least(claims_.least.x), least(claims_.least.y), least(claims_.least.z)};
   const double side = std::max({ranks_.largest(claims_.most.x) - corner_.x,
                                 ranks_.largest(claims_.most.y) - corner_.y,
                                 ranks_.largest(claims_.most.z) - corner_.z});
   rounding_ = place_rounding * side;
-  size_ = std::max({reach, ranks_.largest(rooms), side / most_cells});
+  size_ = std::max({reach, 0.5 * ranks_.largest(rooms), side / most_cells});
 }
 
 template <class Use>
@@ -191,7 +200,8 @@ void Halo::each_piece(std::size_t strand, Use use) const {
     if (!is_place(a) || !is_place(b)) continue;
     const double length = norm(b - a),
                  room = std::max(room_[i], room_[i + 1]) + rounding_;
-    const double count = std::clamp(std::ceil(length / size_), 1.0, 2 * most_cells);
+    const double count =
+        std::clamp(std::ceil(length / std::max(size_, room)), 1.0, 2 * most_cells);
     for (double k = 0; k < count; ++k) {
       Box box{a + (k / count) * (b - a), a + (k / count) * (b - a)};
       box.include(a + ((k + 1) / count) * (b - a));
@@ -204,6 +214,9 @@ void Halo::each_piece(std::size_t strand, Use use) const {
 std::vector<std::size_t> Halo::near(const CellSet& cells, const Loop& loop) const {
   std::vector<char> is_near(own());
   each_strand(own(), loop, [&](std::size_t i) {
+    Box all = boxes_[i];
+    all.grow(interaction_.reach() + rounding_);
+    if (all.empty() || apart(all, cells.all())) return;
     each_piece(i, [&](Box box, double room) {
       if (is_near[i] != 0) return;
       box.grow(room + interaction_.reach());

@@ -27,6 +27,7 @@ class CellSet {
   void mark(const models::Box& box);
   bool holds_some(const models::Box& box) const;
 
+  const models::Box& all() const { return box_; }
   std::vector<char>& marks() { return marks_; }
 
  private:
@@ -37,6 +38,7 @@ class CellSet {
 
   Vec corner_;
   double size_ = 1;
+  models::Box box_ = models::Box::none();
   Range all_{{0, 0, 0}, {-1, -1, -1}};
   std::vector<char> marks_;
 };
@@ -65,8 +67,8 @@ class Halo {
   struct Places {
     In x, ahead, bulge;
   };
-  /// Makes ready for a step from t; whether claims were made anew.
-  bool look(double t, const Places& places, const models::Loop& loop);
+  /// Makes ready for a step from t to t + h; whether claims were made anew.
+  bool look(double t, double h, const Places& places, const models::Loop& loop);
   /// Own strands' root and tips and their velocities, by numbers, to who needs them.
   void send(In x, In v);
   /// Waits for ghosts; strands that may touch them see them.
@@ -99,8 +101,8 @@ class Halo {
   std::size_t own() const { return division_->own().size(); }
   bool left_room(const Places& places, const models::RootPose& pose,
                  const models::Loop& loop) const;
-  void claim(const Places& places, const models::RootPose& pose,
-             const models::Loop& loop);
+  void claim(const Places& places, const models::RootPose& now,
+             const models::RootPose& next, const models::Loop& loop);
   /// Calls use(box, room) for the pieces of a strand's polyline where claims were made.
   template <class Use>
   void each_piece(std::size_t strand, Use use) const;
@@ -118,9 +120,10 @@ class Halo {
   // Of own points where claims were made, seen from the head, m.
   std::vector<Vec> at_;
   std::vector<double> room_;
-  Vec corner_;           // of cells
-  double size_ = 1;      // of a cell
-  double rounding_ = 0;  // of places, m
+  std::vector<models::Box> boxes_;  // of own strands' claims
+  Vec corner_;                      // of cells
+  double size_ = 1;                 // of a cell
+  double rounding_ = 0;             // of places, m
   models::Box claims_;
   std::vector<Neighbour> neighbours_;
   std::vector<std::size_t> touched_;

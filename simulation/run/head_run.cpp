@@ -223,7 +223,7 @@ void HeadRun::look(double t, double h) {
     for (std::size_t k = 0; k < count; ++k) bulge_[order_[first + k]] = bulge[k];
   });
   if (halo_) {
-    if (halo_->look(t, {x_, ahead_, bulge_}, loop())) {
+    if (halo_->look(t, h, {x_, ahead_, bulge_}, loop())) {
       const std::size_t lanes = head_->strands_of(0);
       std::vector<char> touched(head_->blocks());
       for (const std::size_t i : halo_->touched()) {

@@ -1,10 +1,12 @@
 #include <mpi.h>
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "simulation/run/ranks.h"
@@ -44,9 +46,14 @@ class MpiRanks final : public Ranks {
     MPI_Comm_size(here, &on_this_machine_);
     MPI_Comm_free(&here);
   }
-  /// A rank that fails does not wait for the others, which mpirun then ends.
+  /// A rank that fails does not wait for the others, which mpirun then ends. Where all
+  /// fail alike the first alone says why, and has time to say so before it is ended.
   ~MpiRanks() override {
-    if (std::uncaught_exceptions() == 0) MPI_Finalize();
+    if (std::uncaught_exceptions() == 0) {
+      MPI_Finalize();
+    } else if (!first()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    }
   }
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
