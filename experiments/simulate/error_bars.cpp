@@ -125,6 +125,8 @@ class Comparison {
   void look(double t) {
     double largest = 0, squares = 0;
     std::size_t points = 0;
+    std::vector<float>& of_points =
+        bar.points.emplace_back(given_.first.back(), static_cast<float>(parted_from));
     for (std::size_t k = 0; k < bar.strands.size(); ++k) {
       StrandError& strand = bar.strands[k];
       if (strand.parts) continue;
@@ -136,6 +138,9 @@ class Comparison {
       if (factor_ * now.largest > strand.error.largest) {
         strand.error.largest = factor_ * now.largest;
         strand.largest_at = t;
+      }
+      for (std::size_t i = 0; i < now.of_points.size(); ++i) {
+        of_points[given_.first[k] + i] = static_cast<float>(factor_ * now.of_points[i]);
       }
       squares_[k] += now.squares;
       counts_[k] += samples_[k].size();
@@ -152,6 +157,7 @@ class Comparison {
  private:
   struct Distances {
     double largest = 0, squares = 0;  // over the length
+    std::vector<double> of_points;
   };
 
   Distances distances(std::size_t k) {
@@ -165,7 +171,8 @@ class Comparison {
       }
       square /= lengths_[k] * lengths_[k];
       found.squares += square;
-      found.largest = std::max(found.largest, std::sqrt(square));
+      found.of_points.push_back(std::sqrt(square));
+      found.largest = std::max(found.largest, found.of_points.back());
     }
     return found;
   }
@@ -198,7 +205,9 @@ ErrorBar compared(const Scene& scene, Run& given, Run& finer, Comparison compari
     comparison.look(t);
     if (comparison.done()) break;
   }
-  return std::move(comparison.bar);
+  ErrorBar& bar = comparison.bar;
+  bar.points.resize(scene.last_frame() + 1, bar.points.back());
+  return std::move(bar);
 }
 
 ErrorBar missing(std::string why) {
@@ -207,15 +216,10 @@ ErrorBar missing(std::string why) {
   return bar;
 }
 
-/// Driven by tolerances: without an error of its own beside that of the given scene.
-bool by_tolerance(const Scene& scene) {
-  return scene.options.tolerance > 0 || find_integrator(scene.integrator).adaptive;
-}
-
 Scene finer_in_time(Scene scene) {
-  const double part = by_tolerance(scene) ? 10 : 2;
+  const double part = scene.chooses_steps() ? 10 : 2;
   Options& options = scene.options;
-  if (by_tolerance(scene)) {
+  if (scene.chooses_steps()) {
     for (double* const value :
          {&options.tolerance, &options.rtol, &options.atol, &options.min_step}) {
       *value /= part;
@@ -226,7 +230,8 @@ Scene finer_in_time(Scene scene) {
 }
 
 double time_factor(const Scene& scene) {
-  if (by_tolerance(scene)) return 1;
+  // The finer run is without an error of its own beside that of the given scene.
+  if (scene.chooses_steps()) return 1;
   const IntegratorEntry& method = find_integrator(scene.integrator);
   const double ratio = std::pow(2, *method.order(scene.options.formulation));
   return ratio / (ratio - 1);

@@ -33,6 +33,9 @@ struct ErrorBar {
   std::vector<StrandError> strands;
   /// Over all strands that have not parted, at every frame until all have.
   std::vector<PointErrors> frames;
+  /// Of every material point at every frame of the scene, over the length of its strand;
+  /// `parted_from` of strands that have parted. Empty: there is no estimate.
+  std::vector<std::vector<float>> points;
   std::string missing;      // why there is no estimate; empty: there is
   bool unfinished = false;  // for a run did not come to its end
 

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "contract/input_error.h"
 #include "experiments/run/exit_code.h"
@@ -69,9 +71,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
   app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
   app.add_flag("--hair", a.hair, "also .hair files, one a frame, for renderers");
-  app.add_option("--export", a.exports, "the same by name: vtk,usd,hair")
+  app.add_option("--export", a.exports,
+                 "the same by name, or gltf, a .glb file for viewers: vtk,usd,hair,gltf")
       ->delimiter(',')
-      ->check(CLI::IsMember({"vtk", "usd", "hair"}));
+      ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
   app.add_option("--as", a.as,
                  "strands: one by one; head: all side by side, up to a million; auto: a "
                  "head, where the scene can be one and has 1000 strands (default auto)")
@@ -124,20 +127,38 @@ const Experiment experiment{.name = "simulate",
                             .columns = outcome_columns(),
                             .cases = {}};
 
-/// Tells the errors and writes those over time; false: a run did not come to its end.
-bool estimate_errors(const Scene& scene, const Arguments& a, const std::string& stem,
-                     Row& row) {
-  const auto found = [&](std::string_view part, const ErrorBar& bar) {
-    tell("simulate: {}: {}\n", scene.name, in_words(part, bar, scene));
-    set_errors(part, bar, row);
-    return bar;
-  };
-  const ErrorBar time = found("time", time_error(scene, a.threads));
-  if (!a.error_bars) return !time.unfinished;
-  const ErrorBar space = found("space", space_error(scene, a.threads));
-  replace_file(stem + ".errors.csv", errors_csv(scene, time, space));
-  return !time.unfinished && !space.unfinished;
-}
+/// What was asked for of the errors of a run.
+struct Errors {
+  std::optional<ErrorBar> time, space;
+
+  /// Also as channels for pictures, where there is an estimate.
+  std::vector<FurtherChannel> estimate(const Scene& scene, const Arguments& a) {
+    time = time_error(scene, a.threads);
+    if (a.error_bars) space = space_error(scene, a.threads);
+    std::vector<FurtherChannel> channels;
+    for (const auto& [part, bar] :
+         {std::pair{"time", &time}, std::pair{"space", &space}}) {
+      if (!*bar || (*bar)->points.empty()) continue;
+      channels.push_back(
+          {{fmt::format("error in {}", part), "of the length"}, (*bar)->points});
+    }
+    return channels;
+  }
+
+  /// Tells them and writes those over time; false: a run did not come to its end.
+  bool report(const Scene& scene, const std::string& stem, Row& row) const {
+    bool finished = true;
+    for (const auto& [part, bar] :
+         {std::pair{"time", &time}, std::pair{"space", &space}}) {
+      if (!*bar) continue;
+      tell("simulate: {}: {}\n", scene.name, in_words(part, **bar, scene));
+      set_errors(part, **bar, row);
+      finished = finished && !(*bar)->unfinished;
+    }
+    if (space) replace_file(stem + ".errors.csv", errors_csv(scene, *time, *space));
+    return finished;
+  }
+};
 
 /// One scene and what it runs as.
 struct Job {
@@ -246,6 +267,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   options.vtk = exports(a.vtk, "vtk");
   options.usd = exports(a.usd, "usd");
   options.hair = exports(a.hair, "hair");
+  options.gltf = exports(false, "gltf");
   options.progress = line.progress;
   options.pack = pack_of(a);
   options.device = a.device == "cpu"   ? DeviceChoice::cpu
@@ -261,6 +283,10 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   }
   if (!job.head) {
     scene = without_falling(std::move(scene), options.stem + ".rest.csv", a.threads);
+  }
+  Errors errors;
+  if (a.verify || a.error_bars) {
+    options.further = [&] { return errors.estimate(scene, a); };
   }
   RunKey key;
   key.add("scene", contents_checksum({file}));
@@ -278,9 +304,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
        scene.name, run.frames, run.simulated_s, run.wall_s, control_in_words(scene, run),
        complete ? "" : "; ", run.reason, options.stem);
-  if (complete && (a.verify || a.error_bars)) {
-    complete = estimate_errors(scene, a, options.stem, row);
-  }
+  if (complete) complete = errors.report(scene, options.stem, row);
   manifest.set_outcome(row);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   if (run.indicator > unresolved) {

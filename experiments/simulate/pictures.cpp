@@ -32,14 +32,35 @@ Pictures::Pictures(const Scene& scene, const World& world, const Readout& readou
       hair_(scene, readout.lines(), options.hairs),
       lines_(hair_.drawn(drawn_lines(scene, world, readout.lines()))) {}
 
-void Pictures::write(const std::vector<Frame3d>& frames) const {
+std::vector<Frame3d> Pictures::with(const std::vector<FurtherChannel>& further,
+                                    std::vector<Frame3d> frames) const {
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    std::vector<float>& channels = frames[f].channels;
+    for (const FurtherChannel& channel : further) {
+      const std::vector<float> values = readout_.at_drawn(channel.frames[f]);
+      channels.insert(channels.end(), values.begin(), values.end());
+    }
+  }
+  return frames;
+}
+
+void Pictures::write(const std::vector<Frame3d>& frames,
+                     const std::vector<FurtherChannel>& further) const {
+  if (further.empty()) return write(frames, readout_.channels());
+  std::vector<Reading> channels = readout_.channels();
+  for (const FurtherChannel& channel : further) channels.push_back(channel.reading);
+  write(with(further, frames), channels);
+}
+
+void Pictures::write(const std::vector<Frame3d>& frames,
+                     const std::vector<Reading>& channels) const {
   std::vector<Frame3d> grown;
   if (hair_.hairs() > 0) grown = hair_.frames(frames);
   const std::vector<Frame3d>& drawn = hair_.hairs() > 0 ? grown : frames;
   const SmoothLines curves(hair_.lines(readout_.lines()), drawn);
   const Animation animation{scene_,
                             readout_.series(),
-                            readout_.channels(),
+                            channels,
                             lines_,
                             drawn,
                             curves,
@@ -60,6 +81,7 @@ void write_pictures(const Animation& animation, const SceneRunOptions& options) 
   }
   if (options.hair) write_frames(animation, options.stem, "hair", hair_name, hair);
   if (options.usd) replace_file(options.stem + ".usda", usda(animation));
+  if (options.gltf) replace_file(options.stem + ".glb", glb(animation));
 }
 
 }  // namespace tress::experiments::scene_runs

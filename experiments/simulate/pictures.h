@@ -8,19 +8,24 @@
 
 namespace tress::experiments::scene_runs {
 
-/// <stem>.json, and on request <stem>_vtk/ and <stem>.usda.
+/// <stem>.json, and what is asked for of files for other programs.
 void write_pictures(const Animation& animation, const SceneRunOptions& options);
 
-/// Drawn output of a run for the report page and other programs: <stem>.json, and on
-/// request <stem>_vtk/ and <stem>.usda, all with the same lines.
+/// Drawn output of a run for the report page and other programs, all with the same lines.
 class Pictures {
  public:
   /// Throws InputError where hairs cannot be interpolated between the scene's strands.
   Pictures(const Scene& scene, const World& world, const Readout& readout,
            const SceneRunOptions& options);
-  void write(const std::vector<Frame3d>& frames) const;
+  void write(const std::vector<Frame3d>& frames,
+             const std::vector<FurtherChannel>& further) const;
 
  private:
+  std::vector<Frame3d> with(const std::vector<FurtherChannel>& further,
+                            std::vector<Frame3d> frames) const;
+  void write(const std::vector<Frame3d>& frames,
+             const std::vector<Reading>& channels) const;
+
   const Scene& scene_;
   const Readout& readout_;
   const SceneRunOptions& options_;

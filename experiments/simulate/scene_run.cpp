@@ -99,7 +99,9 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   }
   run.simulated_s = world->time();
   run.wall_s = seconds_since(begin);
-  pictures.write(recording.frames());
+  pictures.write(recording.frames(), options.further && run.end == SceneRun::End::complete
+                                         ? options.further()
+                                         : std::vector<FurtherChannel>{});
   const auto whole = interruption.hold();
   latest.reset();
   recording.close();

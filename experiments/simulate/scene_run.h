@@ -1,13 +1,16 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/run/command_line.h"
 #include "experiments/run/interruption.h"
 #include "models/head/head.h"
 #include "simulation/files/run_key.h"
 #include "simulation/run/ranks.h"
+#include "simulation/run/readout.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 
@@ -15,6 +18,12 @@ namespace tress::experiments::scene_runs {
 
 /// What takes the steps of a head: `automatic` is a GPU where there is one for it.
 enum class DeviceChoice { cpu, gpu, automatic };
+
+/// A channel that is not read from the run itself.
+struct FurtherChannel {
+  Reading reading;
+  std::vector<std::vector<float>> frames;  // of each the material points
+};
 
 struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
@@ -24,7 +33,10 @@ struct SceneRunOptions {
   bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
   bool usd = false;       // <stem>.usda
   bool hair = false;      // <stem>_hair/: .hair for every frame
+  bool gltf = false;      // <stem>.glb
   ProgressMode progress = ProgressMode::automatic;
+  /// Asked once the run has come to its end, before pictures are written.
+  std::function<std::vector<FurtherChannel>()> further;
   // Of a head.
   models::HeadPack pack = {};
   DeviceChoice device = DeviceChoice::cpu;

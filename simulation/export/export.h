@@ -52,4 +52,12 @@ std::string usda(const Animation& animation);
 std::string hair(const Animation& animation, const Frame3d& frame);
 std::string hair_name(const std::string& stem, std::size_t frame);
 
+/// For viewers, engines and Blender: binary glTF 2.0 [Khronos] of one mesh of lines,
+/// whose points' _STRAND tells the strands apart: a primitive for each would need
+/// accessors for each strand of each frame. Every frame but the first is a morph target,
+/// of places and channels, and the animation blends them at their times. _RADIUS is the
+/// radius; what channels are called and their units is in the mesh's extras. Throws
+/// InputError on what such a file cannot hold.
+std::string glb(const Animation& animation);
+
 }  // namespace tress::simulation

@@ -66,6 +66,11 @@ Readout::Readout(const Scene& scene, const World& world)
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
 
+  if (scene.chooses_steps()) {
+    step_channel_ = channels_.size();
+    channels_.push_back({"step", "s"});
+  }
+  // The last one.
   if (scene.friction() != nullptr) channels_.push_back({"friction used (1: slides)", ""});
 
   for (const Strand& strand : scene.strands) {
@@ -115,10 +120,35 @@ Frame3d Readout::read(World& world) {
   row.push_back(steps > 0 ? interval * static_cast<double>(world.systems()) / steps
                           : std::nan(""));
   row.push_back(iterations / steps);
+  read_steps(world, interval, frame);
   row.push_back(static_cast<double>(now.rejected - before_.rejected));
   if (world.friction() != nullptr) row.push_back(world.friction()->deepest());
   before_ = now;
   return frame;
+}
+
+/// The mean step of each strand since the last frame, at all its points; 0 in the first.
+void Readout::read_steps(const World& world, double interval, Frame3d& frame) {
+  if (!step_channel_) return;
+  std::vector<long> steps = world.steps();
+  steps_before_.resize(steps.size());
+  std::vector<float> of_points;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const long taken = steps[k] - steps_before_[k];
+    const double step = taken > 0 ? interval / static_cast<double>(taken) : 0;
+    of_points.insert(of_points.end(), static_cast<std::size_t>(world.points()[k]),
+                     static_cast<float>(step));
+  }
+  steps_before_ = std::move(steps);
+  std::ranges::copy(at_drawn(of_points),
+                    frame.channels.begin() +
+                        static_cast<std::ptrdiff_t>(*step_channel_ * drawn_.size()));
+}
+
+std::vector<float> Readout::at_drawn(const std::vector<float>& of_points) const {
+  std::vector<float> drawn;
+  for (const std::size_t i : drawn_) drawn.push_back(of_points[i]);
+  return drawn;
 }
 
 void Readout::find_lines(const World& world) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,11 +37,17 @@ class Readout {
   const std::vector<Reading>& channels() const { return channels_; }
   Frame3d read(World& world);
   /// The next World counts its steps from 0.
-  void restart() { before_ = {}; }
+  void restart() {
+    before_ = {};
+    steps_before_.clear();
+  }
+  /// Numbers of all material points as those of the points that are drawn.
+  std::vector<float> at_drawn(const std::vector<float>& of_points) const;
 
  private:
   void find_lines(const World& world);
   void read_points(World& world, Frame3d& frame);
+  void read_steps(const World& world, double interval, Frame3d& frame);
   void read_loads(World& world, std::size_t k, std::size_t first,
                   std::span<const ContactForce> contacts, Frame3d& frame);
 
@@ -51,7 +58,10 @@ class Readout {
   Effects effects_;
   std::vector<Lumps> lumps_;  // of each strand
   std::vector<double> tangent_;
+  std::optional<std::size_t> step_channel_;
+  // At the last frame.
   Stats before_;
+  std::vector<long> steps_before_;
 };
 
 }  // namespace tress::simulation

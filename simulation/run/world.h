@@ -85,6 +85,8 @@ class World {
   /// Work of all strands since restore(), and its cost as defined by total_work().
   Stats stats() const;
   double work() const;
+  /// Steps of each strand since restore(); strands of one system share theirs.
+  std::vector<long> steps() const;
   /// Since restore(); none where exchanges follow the step.
   const Exchanges& exchanges() const { return exchanges_; }
 

@@ -198,6 +198,14 @@ Stats World::stats() const {
   return sum;
 }
 
+std::vector<long> World::steps() const {
+  std::vector<long> of_strands;
+  for (const Body& body : bodies_) {
+    of_strands.insert(of_strands.end(), body.coordinates.size(), body.stats().steps);
+  }
+  return of_strands;
+}
+
 double World::work() const {
   double sum = 0;
   for (const Body& body : bodies_) {

@@ -323,6 +323,10 @@ std::size_t Scene::last_frame() const {
   return static_cast<std::size_t>(std::ceil(duration * frame_rate - 1e-9));
 }
 
+bool Scene::chooses_steps() const {
+  return options.tolerance > 0 || find_integrator(integrator).adaptive;
+}
+
 Scene read_scene(const std::string& file) {
   return parse_scene(read_file(file, most_toml_bytes), file);
 }

@@ -73,6 +73,9 @@ struct Scene {
     return interaction() != nullptr || friction() != nullptr || mesh() != nullptr;
   }
 
+  /// Steps are chosen by error control, for each system of strands by itself.
+  bool chooses_steps() const;
+
   /// The first frame is 0, at t = 0; the last is at the end, which may cut the last
   /// interval short.
   std::size_t last_frame() const;

@@ -38,11 +38,11 @@ function of_vtk({ pvd, read }) {
 
 /// Complaints about the readings of a run, and figures: the largest distance over the
 /// longest line between readers, from the run's own points, and from the page's.
-export function check({ own, vtk, usd, hair }) {
+export function check({ own, vtk, usd, hair, gltf }) {
   const complaints = [];
   const say = (file, what) => complaints.push(`${file}: ${what}`);
   const figures = { readers: 0, own: 0, page: 0 };
-  for (const part of [vtk.read, usd, hair]) if (part.error) complaints.push(part.error);
+  for (const part of [vtk.read, usd, hair, gltf]) if (part.error) complaints.push(part.error);
   if (complaints.length) return { complaints, figures };
 
   const scale = longest(own.counts, own.frames[0]);
@@ -169,6 +169,28 @@ export function check({ own, vtk, usd, hair }) {
       });
       const near = (a, b) => Math.abs(a - b) <= tolerance * scale;
       expect(`${file}, frame ${f}`, "extent", extent, box, near);
+    }
+  }
+  for (const reading of gltf) {
+    const file = `${reading.file} by ${reading.reader}`;
+    // Its times are floats.
+    expect(file, "times", reading.times, own.times.map(Math.fround), exactly);
+    expect(file, "points of lines", reading.counts, own.counts, exactly);
+    if (own.radii) {
+      expect(file, "radius", reading.radius, each(radii), close);
+      expect(file, "strand", reading.strand, each(own.ids), exactly);
+    }
+    for (const [f, { points }] of reading.frames.slice(0, own.times.length).entries()) {
+      check_points(`${file}, frame ${f}`, f, points);
+    }
+    if (!reading.channels) continue;
+    for (const { name, unit, frames, quantum } of own.channels) {
+      // The page's step, and the rounding of differences of floats.
+      const near = (a, b) => Math.abs(a - b) <= quantum * (0.5 + 1e-4);
+      for (const [f, values] of frames.entries()) {
+        const found = reading.channels[`${name} [${unit}]`]?.[f];
+        expect(`${file}, frame ${f}`, name, found, values, near);
+      }
     }
   }
   return { complaints, figures };

@@ -3,8 +3,8 @@
 //   node run.mjs SIMULATE     the program that runs scenes
 //
 // Scenes of the repository, shortened: a curl, a head, strands of two radii, a tree. Their .vtp and .pvd files are
-// read by VTK, their .usda by TinyUSDZ and by the parser of three.js, the .h5 of the head by
-// h5py; .hair files, of which no reader is to be had, after their description. All must
+// read by VTK, their .usda by TinyUSDZ and by the parser of three.js, their .glb by Khronos'
+// validator, three.js and glTF-Transform, the .h5 of the head by h5py; .hair files, of which no reader is to be had, after their description. All must
 // have the points of the run within 1e-6 of the longest line, its times, widths and strands.
 // Then one number of one file is spoilt at a time: is it found? Exit codes: 0 all is well,
 // 2 usage, 3 something differs.
@@ -15,6 +15,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { check, longest } from "./check.mjs";
 import { read_hair, read_own } from "./own.mjs";
+import { read_gltf } from "./read_gltf.mjs";
 import { read_usd } from "./read_usd.mjs";
 import { spoils } from "./spoils.mjs";
 
@@ -48,7 +49,7 @@ function run(simulate, { name, changes }, work) {
   }
   const file = join(work, `${name}.toml`);
   fs.writeFileSync(file, scene);
-  const flags = ["--out", work, "--export", "vtk,usd,hair", "--progress", "none"];
+  const flags = ["--out", work, "--export", "vtk,usd,hair,gltf", "--progress", "none"];
   execFileSync(simulate, [file, ...flags], { stdio: ["ignore", "ignore", "pipe"] });
 }
 
@@ -62,11 +63,12 @@ function read_vtk(files) {
     .map((line) => JSON.parse(line));
 }
 
+const told = (error) => ({ error: error.message });
 const attempt = (read) => {
   try {
     return read();
   } catch (error) {
-    return { error: error.message };
+    return told(error);
   }
 };
 const seconds = (since) => ((performance.now() - since) / 1000).toFixed(2);
@@ -78,7 +80,7 @@ function size(path) {
 }
 
 /// Complaints about the files of one scene, and what was read.
-function read_back(name, work, simulated) {
+async function read_back(name, work, simulated) {
   const since = performance.now();
   const stem = join(work, name);
   const pvd = `${name}.pvd`;
@@ -90,12 +92,14 @@ function read_back(name, work, simulated) {
     vtk: { pvd, read: vtk },
     usd: attempt(() => read_usd(`${stem}.usda`)),
     hair: attempt(() => read_hair(`${stem}_hair`)),
+    gltf: await read_gltf(`${stem}.glb`).catch(told),
   };
   const { complaints, figures } = check(readings);
   const kB = (path) => `${(size(path) / 1000).toFixed(0)} kB`;
   console.log(
     `${name}: ${readings.own.times.length} frames of ${readings.own.counts.length} lines; ` +
-      `.vtp ${kB(`${stem}_vtk`)}, .usda ${kB(`${stem}.usda`)}, .hair ${kB(`${stem}_hair`)}; ` +
+      `.vtp ${kB(`${stem}_vtk`)}, .usda ${kB(`${stem}.usda`)}, .hair ${kB(`${stem}_hair`)}, ` +
+      `.glb ${kB(`${stem}.glb`)}; ` +
       `off the run's own ${digits(figures.own)}, between readers ${digits(figures.readers)} ` +
       `of the longest line, off the page's ${figures.page.toFixed(3)} of its steps; ` +
       `simulated in ${simulated} s, read in ${seconds(since)} s`,
@@ -104,14 +108,15 @@ function read_back(name, work, simulated) {
 }
 
 /// Spoils that are not found.
-function spoil(name, readings, work) {
+async function spoil(name, readings, work) {
   const scale = longest(readings.own.counts, readings.own.frames[0]);
   const all = spoils(name, 2e-6 * scale);
   const spoilt = all.map(({ kind, file, change }, i) => {
     const folder = join(work, `spoilt_${i}`);
-    const from = kind === "usd" ? work : join(work, `${name}_${kind}`);
+    const alone = kind === "usd" || kind === "gltf"; // one file of all frames
+    const from = alone ? work : join(work, `${name}_${kind}`);
     fs.mkdirSync(folder);
-    if (kind === "usd") fs.cpSync(join(from, file), join(folder, file));
+    if (alone) fs.cpSync(join(from, file), join(folder, file));
     else fs.cpSync(from, folder, { recursive: true });
     fs.writeFileSync(join(folder, file), change(fs.readFileSync(join(from, file))));
     return folder;
@@ -119,18 +124,21 @@ function spoil(name, readings, work) {
   const pvd = `${name}.pvd`;
   const vtk = all.flatMap(({ kind }, i) => (kind === "vtk" ? [join(spoilt[i], pvd)] : []));
   const read = read_vtk(vtk);
-  return all.flatMap(({ what, kind, file, said }, i) => {
+  const missed = [];
+  for (const [i, { what, kind, file, said }] of all.entries()) {
     const by_kind = {
       vtk: () => ({ pvd, read: read.shift() }),
       usd: () => attempt(() => read_usd(join(spoilt[i], file))),
       hair: () => attempt(() => read_hair(spoilt[i])),
+      gltf: () => read_gltf(join(spoilt[i], file)).catch(told),
     };
-    const { complaints } = check({ ...readings, [kind]: by_kind[kind]() });
-    if (complaints.some((complaint) => said.test(complaint))) return [];
-    return [
+    const { complaints } = check({ ...readings, [kind]: await by_kind[kind]() });
+    if (complaints.some((complaint) => said.test(complaint))) continue;
+    missed.push(
       `${file}: ${what} was spoilt, which is not found (${complaints.join("; ") || "nothing said"})`,
-    ];
-  });
+    );
+  }
+  return missed;
 }
 
 const simulate = resolve(process.argv[2] ?? "");
@@ -144,7 +152,7 @@ try {
   for (const scene of scenes) {
     const since = performance.now();
     run(simulate, scene, work);
-    const { complaints, readings } = read_back(scene.name, work, seconds(since));
+    const { complaints, readings } = await read_back(scene.name, work, seconds(since));
     const { ids, radii } = readings.own;
     if (scene.thin && ids.some((k, line) => scene.thin(k) !== (radii[line] === 30e-6))) {
       complaints.push(`${scene.name}: radii that the scene does not give`);
@@ -152,7 +160,7 @@ try {
     failures.push(...complaints);
     if (scene.name !== "full_head" || complaints.length) continue;
     const began = performance.now();
-    const missed = spoil(scene.name, readings, work);
+    const missed = await spoil(scene.name, readings, work);
     const count = spoils(scene.name, 0).length;
     console.log(`spoilt files: ${count - missed.length} of ${count} found in ${seconds(began)} s`);
     failures.push(...missed);

@@ -52,6 +52,26 @@ before(async () => {
   write_scene('thin', [line, ...specks]);
   write_scene('thick', [line, ...specks], { radius_m: Array(1000).fill(2.5e-3) });
   write_scene('fibre', [line], { radius_m: [2.5e-3] });
+  const channel = (name, unit, high, values) => ({
+    name,
+    unit,
+    low: 0,
+    high,
+    values: base64(new Uint8Array(values)),
+  });
+  write_scene('own_steps', [line], {
+    radius_m: [2.5e-3],
+    channels: [
+      channel('step', 's', 0.01, Array(9).fill(255)),
+      channel(
+        'error in time',
+        'of the length',
+        2e-3,
+        line.map((_, i) => (i < 4 ? 255 : 0)),
+      ),
+      channel('error in space', 'of the length', 0, Array(9).fill(0)),
+    ],
+  });
   assert.equal(run_page(directory).status, 0);
   url = `file://${join(directory, 'report.html')}`;
   browser = await Browser.start();
@@ -167,6 +187,30 @@ test('WithoutWebgl_TheCanvasDraws', async () => {
   ]);
   assert.match(await address(), /colour=curvature&draw=webgl/);
   await browser.devtools('Page.removeScriptToEvaluateOnNewDocument', { identifier });
+});
+
+// Errors and steps are channels of the recording, offered where it has them.
+test('StrandErrorsAndSteps_AreColoursOfRunsThatHaveThem', async () => {
+  await open('#scene=own_steps&view=-90,0,1&colour=error+in+time&full=picture');
+  assert.deepEqual(await colours_offered(), [
+    'step (s)',
+    'error in time (of the length)',
+    'as hair in light',
+    'one colour a strand',
+  ]);
+  const bar = () =>
+    browser.run(
+      "return document.getElementById('scene-bar').innerText.split(/\\s*\\n\\s*/)",
+    );
+  assert.deepEqual(await bar(), ['error in time (of the length)', '0', '0.002']);
+  const darkest = async (from, to) =>
+    Math.min(...(await middle_rows(from, to)).map((row) => Math.min(...row)));
+  // The line's upper half has no error, its lower half the largest, which is more red.
+  const [none, most] = [await darkest(0.3, 0.4), await darkest(0.6, 0.7)];
+  assert.ok(most > none + 0.3, `${none}, ${most}`);
+  await open('#scene=thick&colour=error+in+time');
+  assert.ok((await colours_offered()).every((name) => !/error|step/.test(name)));
+  assert.match(await address(), /colour=(?!error)/);
 });
 
 test('Picture_FollowsTheDifferenceOfTwoRuns', async () => {

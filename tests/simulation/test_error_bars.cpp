@@ -65,6 +65,16 @@ TEST_P(InTime, TheEstimateOfAFixedStepIsTheError) {
   EXPECT_NEAR(bar.strands[0].error.largest, found, (1. / 16 + 0.1) * found);
   EXPECT_FALSE(bar.strands[0].parts);
   EXPECT_LE(bar.strands[0].error.rms, bar.strands[0].error.largest);
+
+  // Of every point at every frame, the root's being held.
+  ASSERT_EQ(bar.points.size(), scene.last_frame() + 1);
+  float largest = 0;
+  for (const std::vector<float>& points : bar.points) {
+    ASSERT_EQ(points.size(), 9U);
+    EXPECT_EQ(points[0], 0.F);
+    largest = std::max(largest, std::ranges::max(points));
+  }
+  EXPECT_EQ(largest, static_cast<float>(bar.strands[0].error.largest));
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, InTime,
@@ -134,6 +144,11 @@ TEST(ErrorBars, NothingIsEstimatedAfterTheRunsPart) {
     EXPECT_LE(frame.rms, frame.largest);
   }
   EXPECT_NE(in_words("time", bar, scene).find("until"), std::string::npos);
+  ASSERT_EQ(bar.points.size(), scene.last_frame() + 1);
+  for (std::size_t frame = 0; frame < bar.points.size(); ++frame) {
+    const bool together = frame < bar.frames.size();
+    EXPECT_EQ(bar.points[frame][0], together ? 0.F : static_cast<float>(parted_from));
+  }
 }
 
 TEST(ErrorBars, AStrandIsTheWorstByItsHorizonThenByItsError) {

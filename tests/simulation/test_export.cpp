@@ -4,12 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
 #include "simulation/export/smooth_lines.h"
+#include "simulation/run/readout.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_export {
@@ -134,6 +138,139 @@ TEST(Pictures, WithHairsKeepTheTimeAndHaveEveryLineWithRadiusAndStrand) {
   EXPECT_THAT(vtp, HasSubstr("Name=\"strand\""));
   EXPECT_THAT(toy.read("out/curls_vtk/curls.pvd"),
               HasSubstr("timestep=\"1.48\" file=\"curls_00037.vtp\""));
+}
+
+/// A word of a binary file.
+std::uint32_t word(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// A .glb file's description, and the floats of its accessors.
+struct Glb {
+  explicit Glb(const std::string& bytes) : text(bytes) {
+    EXPECT_EQ(text.substr(0, 4), "glTF");
+    EXPECT_EQ(word(text, 8), text.size());
+    file = nlohmann::json::parse(text.substr(20, word(text, 12)));
+    arrays = 28 + word(text, 12);
+    EXPECT_EQ(arrays + file["buffers"][0]["byteLength"].get<std::size_t>(), text.size());
+  }
+  template <class T>
+  std::vector<T> numbers(const nlohmann::json& accessor) const {
+    const auto& described = file["accessors"][accessor.get<int>()];
+    const auto& view = file["bufferViews"][described["bufferView"].get<int>()];
+    std::vector<T> x(view["byteLength"].get<std::size_t>() / sizeof(T));
+    std::memcpy(x.data(), text.data() + arrays + view["byteOffset"].get<std::size_t>(),
+                sizeof(T) * x.size());
+    return x;
+  }
+  std::vector<float> floats(const nlohmann::json& accessor) const {
+    return numbers<float>(accessor);
+  }
+  std::string text;
+  nlohmann::json file;
+  std::size_t arrays = 0;
+};
+
+TEST(Pictures, OfGltfAreOneMeshWhoseTargetsAreTheLaterFrames) {
+  Toy toy;
+  toy.write("curls.toml", curls());
+  const std::string flags = "curls.toml --out out --progress none --export gltf,vtk";
+  ASSERT_EQ(toy.run(flags).code, 0);
+  const Glb glb(toy.read("out/curls.glb"));
+  const auto& lines = glb.file["meshes"][0]["primitives"][0];
+  const auto& sampler = glb.file["animations"][0]["samplers"][0];
+  const std::vector<float> times = glb.floats(sampler["input"]);
+  ASSERT_EQ(times.size(), 76U);
+  EXPECT_EQ(times[74], 1.48F);
+  ASSERT_EQ(lines["targets"].size(), 75U);
+  const auto weights = glb.numbers<std::uint8_t>(sampler["output"]);
+  ASSERT_EQ(weights.size(), 75U * 76U);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    EXPECT_EQ(weights[i], i / 75 == i % 75 + 1 ? 255 : 0);
+  }
+
+  // The numbers of a .vtp begin where its points do: the last arrays but two.
+  const std::string vtp = toy.read("out/curls_vtk/curls_00074.vtp");
+  const std::vector<float> first = glb.floats(lines["attributes"]["POSITION"]);
+  const std::vector<float> moved = glb.floats(lines["targets"][73]["POSITION"]);
+  const std::string start = "<AppendedData encoding=\"raw\">\n_";
+  const std::string places = "NumberOfComponents=\"3\" format=\"appended\" offset=\"";
+  const std::size_t offset = std::stoul(vtp.substr(vtp.find(places) + places.size()));
+  const std::size_t at = vtp.find(start) + start.size() + offset;
+  ASSERT_EQ(word(vtp, at), sizeof(float) * first.size());
+  std::vector<float> x(first.size());
+  std::memcpy(x.data(), vtp.data() + at + 4, sizeof(float) * x.size());
+  // Each of the two roundings is half an ulp of 0.125 m at most.
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(first[i] + moved[i]), static_cast<double>(x[i]), 2e-8)
+        << i;
+  }
+  const std::vector<float> strand = glb.floats(lines["attributes"]["_STRAND"]);
+  EXPECT_EQ(strand.size(), first.size() / 3);
+  EXPECT_EQ(strand.back(), 3.F);
+  EXPECT_TRUE(lines["targets"][73].contains("_LOAD_GRAVITY"));
+  EXPECT_EQ(glb.file["meshes"][0]["extras"]["attributes"]["_LOAD_GRAVITY"],
+            "load gravity [N/m]");
+}
+
+/// A short strand beside a long one: each of its own steps, as their mean in the series
+/// says; a fixed step is no channel.
+TEST(Pictures, HaveTheStepsThatEachStrandChose) {
+  const auto scene = [](const std::string& steps) {
+    std::string text =
+        "title = \"two\"\nduration_s = 0.1\nframes_1_s = 20\n[integrator]\nid = "
+        "\"tr_bdf2\"\n" +
+        steps + "\n[effects.gravity]\n";
+    for (const char* strand : {"length_m = 0.05\nelements = 5", "elements = 6"}) {
+      text += fmt::format("[[strand]]\nroot_tangent = [1, 0, 0]\n{}\n", strand);
+    }
+    return parse_scene(text, "two.toml");
+  };
+  const Scene chosen = scene("tolerance = 1e-3");
+  World world(chosen);
+  Readout readout(chosen, world);
+  const auto channel = std::ranges::find(readout.channels(), "step", &Reading::name);
+  ASSERT_NE(channel, readout.channels().end());
+  const auto c = static_cast<std::size_t>(channel - readout.channels().begin());
+  const auto column = std::ranges::find(readout.series(), "dt_s", &Reading::name);
+  for (std::size_t frame = 0; frame <= 2; ++frame) {
+    if (frame > 0) {
+      ASSERT_EQ(world.advance(chosen.time_of(frame)), Status::ok);
+    }
+    const Frame3d read = readout.read(world);
+    const std::span<const float> steps =
+        std::span(read.channels).subspan(c * readout.points(), readout.points());
+    EXPECT_EQ(steps[0], steps[5]);
+    EXPECT_EQ(steps[6], steps[12]);
+    if (frame == 0) {
+      EXPECT_EQ(steps[0], 0.F);
+      continue;
+    }
+    EXPECT_NE(steps[0], steps[6]);
+    const auto mean =
+        2 / (1 / static_cast<double>(steps[0]) + 1 / static_cast<double>(steps[6]));
+    EXPECT_NEAR(mean,
+                read.series[static_cast<std::size_t>(column - readout.series().begin())],
+                1e-6 * mean);
+  }
+  const Scene fixed = scene("dt_s = 0.01");
+  const World other(fixed);
+  const Readout without(fixed, other);
+  EXPECT_EQ(std::ranges::count(without.channels(), "step", &Reading::name), 0);
+}
+
+TEST(Pictures, HaveTheErrorsThatAreEstimated) {
+  Toy toy;
+  toy.write("curls.toml", curls());
+  ASSERT_EQ(toy.run("curls.toml --out out --progress none --error-bars").code, 0);
+  const auto page = nlohmann::json::parse(toy.read("out/curls.json"));
+  std::vector<std::string> names;
+  for (const auto& channel : page["channels"]) names.push_back(channel["name"]);
+  EXPECT_THAT(names, testing::IsSupersetOf({"error in time", "error in space"}));
+  ASSERT_EQ(toy.run("curls.toml --out out --progress none").code, 0);
+  EXPECT_THAT(toy.read("out/curls.json"), testing::Not(HasSubstr("error in")));
 }
 
 TEST(Pictures, RefuseHairsBeforeTheRun) {
