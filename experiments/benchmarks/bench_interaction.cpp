@@ -117,19 +117,6 @@ class Hanging {
   std::vector<double> x_, v_;
 };
 
-/// Time of an element's step of the reference kernel, s.
-double reference_time() {
-  constexpr int strands = 64, steps = 40;
-  ReferenceStrands kernel(strands);
-  std::vector<double> times;
-  for (int k = 0; k < 15; ++k) {
-    times.push_back(seconds_of([&] {
-      for (int s = 0; s < steps; ++s) kernel.step();
-    }));
-  }
-  return median(times) / (steps * strands * reference_elements);
-}
-
 struct Line {
   std::size_t strands;
   double near, swing;  // m/s

@@ -8,6 +8,7 @@
 #include "experiments/benchmarks/reference_kernel.h"
 #include "math/instructions.h"
 #include "models/strand/strand.h"
+#include "simulation/run/timing.h"
 
 /// The strands that the reference kernel advances, so that every program measures with
 /// the same stick: hairs of 10 elements that fall from rest.
@@ -84,5 +85,18 @@ class ReferenceStrands {
   std::vector<reference::State> state_;
   std::vector<reference::Record> scratch_;
 };
+
+/// Time of an element's step of the reference kernel, s.
+inline double reference_time() {
+  constexpr int strands = 64, steps = 40;
+  ReferenceStrands kernel(strands);
+  std::vector<double> times;
+  for (int k = 0; k < 15; ++k) {
+    times.push_back(simulation::seconds_of([&] {
+      for (int s = 0; s < steps; ++s) kernel.step();
+    }));
+  }
+  return simulation::median(times) / (steps * strands * reference_elements);
+}
 
 }  // namespace tress::experiments::benchmarks

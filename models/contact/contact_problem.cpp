@@ -31,7 +31,7 @@ constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}
 // The contacts about the worst one, unless they are more than these, are solved at once
 // after so many sweeps; then after so many more where that solved them, else after twice
 // as many as before.
-constexpr int first_joint = 3, next_joint = 10, joint_steps = 6;
+constexpr int first_joint = 2, next_joint = 10, joint_steps = 6;
 constexpr std::size_t most_joint = 32;
 
 Pack packed(const Vec& x) { return {x.x, x.y, x.z, 0}; }
