@@ -4,6 +4,7 @@ import * as catalogue from './catalogue.mjs';
 import * as claims from './claims.mjs';
 import * as cost from './cost.mjs';
 import * as damping from './damping.mjs';
+import * as divided_heads from './divided_heads.mjs';
 import * as drift from './drift.mjs';
 import * as effects from './effects.mjs';
 import * as equal from './equal.mjs';
@@ -29,6 +30,7 @@ export const queries = {
   claims,
   cost,
   damping,
+  divided_heads,
   drift,
   effects,
   equal,
