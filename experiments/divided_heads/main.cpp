@@ -138,68 +138,76 @@ std::vector<Case> cases(const CommandLine& line) {
 
 /// Wall time of a step of n hairs of e elements on R ranks,
 ///
-///     T(n, R) = (n e/R) (k + c n + b g(R)) + l log2 R,
+///     T(n, R) = (n e/R) (k + c n) (1 + b g(R)) + l log2 R,
 ///
-/// k: kernel; c n: contacts, as the hairs within reach of one are as many as hairs are
-/// dense; g(R): ghosts of an own strand, b: what one costs to send, receive, hold and
-/// list; l: latency of the collective calls of a step. Ghosts lie along the border of a
-/// rank's region, over its area: g(R) = g(2) sqrt(R/2), but no more than there are.
+/// k: a hair alone; c n: its contacts, as the hairs within reach of one are as many as
+/// hairs are dense; g(R): ghosts of an own strand, b: what one costs over a hair, to
+/// send, receive, hold and list; l: latency of the collective calls of a step. Ghosts lie
+/// along the border of a rank's region, over its area: g(R) = g(2) sqrt(R/2), but no more
+/// than there are.
 struct Model {
   double kernel = 0, contacts = 0, ghost = 0, ghosts_of_two = 0, latency = 0;
 
+  /// Of the hairs of a rank, ghosts left out.
+  double own_cost(double strands, double ranks) const {
+    return strands * elements / ranks * (kernel + contacts * strands);
+  }
   double cost(double strands, double ranks) const {
     const double ghosts =
         ranks > 1 ? std::min(ghosts_of_two * std::sqrt(ranks / 2), ranks - 1) : 0;
-    return strands * elements / ranks * (kernel + contacts * strands + ghost * ghosts) +
-           latency * std::log2(ranks);
+    return own_cost(strands, ranks) * (1 + ghost * ghosts) + latency * std::log2(ranks);
   }
 };
 
-/// Slope and offset of the line through the points of the two numbers of strands.
-struct Line {
-  double slope, offset;
-};
-template <class Value>
-std::optional<Line> line_of(const std::vector<Row>& rows, std::string_view effects,
-                            int ranks, Value value) {
-  std::vector<double> x, y;
+/// The measured rows that set the model's numbers; empty if some are missing.
+std::vector<const Row*> fitted(const std::vector<Row>& rows, std::string_view effects,
+                               int ranks) {
+  std::vector<const Row*> found;
   for (const Row& row : rows) {
-    if (!row.ok() || row.text("kind") != "measured" || row.text("effects") != effects ||
-        row.number("ranks") != ranks ||
-        std::ranges::find(fitted_strands, static_cast<int>(row.number("strands"))) ==
+    if (row.ok() && row.text("kind") == "measured" && row.text("effects") == effects &&
+        row.number("ranks") == ranks &&
+        std::ranges::find(fitted_strands, static_cast<int>(row.number("strands"))) !=
             std::end(fitted_strands)) {
-      continue;
+      found.push_back(&row);
     }
-    x.push_back(row.number("strands"));
-    y.push_back(value(row));
   }
-  if (x.size() != 2) return {};
-  const double slope = (y[1] - y[0]) / (x[1] - x[0]);
-  return Line{slope, y[0] - slope * x[0]};
+  if (found.size() != std::size(fitted_strands)) found.clear();
+  return found;
 }
 
-std::optional<Model> model_of(const std::vector<Row>& rows, std::string_view effects) {
-  Model model;
-  const auto per_element = line_of(rows, effects, 1, [](const Row& row) {
-    return row.number("cost_per_step_s") / (row.number("strands") * elements);
-  });
-  if (!per_element) return {};
-  model.kernel = per_element->offset;
-  model.contacts = per_element->slope;
-  // What two ranks take longer than half of one: by the strands, and in any case.
-  const auto longer = line_of(rows, effects, 2, [&](const Row& row) {
-    return row.number("cost_per_step_s") - model.cost(row.number("strands"), 2);
-  });
-  const auto ghosts = line_of(rows, effects, 2, [](const Row& row) {
-    return row.has("ghosts_per_strand") ? row.number("ghosts_per_strand") : 0;
-  });
-  if (!longer || !ghosts) return {};
-  model.latency = std::max(longer->offset, 0.0);
-  model.ghosts_of_two =
-      ghosts->offset + ghosts->slope * (fitted_strands[0] + fitted_strands[1]) / 2;
-  if (model.ghosts_of_two > 0) {
-    model.ghost = 2 * longer->slope / (elements * model.ghosts_of_two);
+/// The line through two points.
+struct Line {
+  double slope, offset;
+  static Line through(const std::vector<const Row*>& two, const auto& x, const auto& y) {
+    const double slope = (y(*two[1]) - y(*two[0])) / (x(*two[1]) - x(*two[0]));
+    return {slope, y(*two[0]) - slope * x(*two[0])};
   }
+};
+
+std::optional<Model> model_of(const std::vector<Row>& rows, std::string_view effects) {
+  const auto one = fitted(rows, effects, 1), two = fitted(rows, effects, 2);
+  if (one.empty() || two.empty()) return {};
+  const auto strands = [](const Row& row) { return row.number("strands"); };
+  const auto per_element = [](const Row& row) {
+    return row.number("cost_per_step_s") / (row.number("strands") * elements);
+  };
+  Model model;
+  if (effects == "interaction") {
+    const Line line = Line::through(one, strands, per_element);
+    model.kernel = line.offset;
+    model.contacts = line.slope;
+    for (const Row* row : two) {
+      model.ghosts_of_two += row->number("ghosts_per_strand") / std::size(fitted_strands);
+    }
+  } else {
+    model.kernel = (per_element(*one[0]) + per_element(*one[1])) / 2;
+  }
+  // What two ranks take: by their own hairs, and in any case.
+  const Line line = Line::through(
+      two, [&](const Row& row) { return model.own_cost(row.number("strands"), 2); },
+      [](const Row& row) { return row.number("cost_per_step_s"); });
+  model.latency = std::max(line.offset, 0.0);
+  if (model.ghosts_of_two > 0) model.ghost = (line.slope - 1) / model.ghosts_of_two;
   return model;
 }
 

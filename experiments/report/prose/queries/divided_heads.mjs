@@ -43,7 +43,7 @@ export function predicted_table(tables) {
   const ranks = distinct(rows.map((row) => row.ranks)).sort((a, b) => a - b);
   const runs = distinct(rows.map((row) => `${row.effects} ${row.strands}`));
   return table(
-    ['beside gravity', 'hairs', ...ranks.map((count) => `${count} processes`)],
+    ['beside gravity', 'hairs', ...ranks.map((count) => `R = ${count}`)],
     runs.map((run) => {
       const own = rows.filter((row) => `${row.effects} ${row.strands}` === run);
       return [
