@@ -137,6 +137,7 @@ test('MissingTables_SayHowToProduceThem', () => {
     'scaling',
     'force_transport',
     'damping',
+    'divided_heads',
     'block_descent',
   ]) {
     assert.ok(page.includes(`${name}.csv is not there yet`), name);

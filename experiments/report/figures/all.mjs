@@ -8,6 +8,7 @@ import { validation_tests } from './validation_tests.mjs';
 import { bdf_order } from './bdf_order.mjs';
 import { block_descent, cosserat_map } from './block_descent.mjs';
 import { damping } from './damping.mjs';
+import { divided_heads } from './divided_heads.mjs';
 import { drift_cost } from './drift_cost.mjs';
 import { drift_heatmap } from './drift_heatmap.mjs';
 import { drift_recovery } from './drift_recovery.mjs';
@@ -46,6 +47,7 @@ export const figures = [
   swing,
   force_transport,
   damping,
+  divided_heads,
   block_descent,
   cosserat_map,
   newest_methods,

@@ -83,6 +83,7 @@ const measurements = [
     tables: ['force_transport'],
   },
   { figure: 'damping', findings: () => [], tables: ['damping'] },
+  { figure: 'divided_heads', findings: () => [], tables: ['divided_heads'] },
   { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
   { figure: 'cosserat_map', findings: map_findings, tables: [] },
   { figure: 'newest_methods', findings: newest_findings, tables: [] },

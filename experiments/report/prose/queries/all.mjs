@@ -5,6 +5,7 @@ import * as claims from './claims.mjs';
 import * as columns from './columns.mjs';
 import * as cost from './cost.mjs';
 import * as damping from './damping.mjs';
+import * as divided_heads from './divided_heads.mjs';
 import * as drift from './drift.mjs';
 import * as effects from './effects.mjs';
 import * as equal from './equal.mjs';
@@ -31,6 +32,7 @@ export const queries = {
   columns,
   cost,
   damping,
+  divided_heads,
   drift,
   effects,
   equal,

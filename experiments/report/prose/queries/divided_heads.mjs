@@ -1,0 +1,77 @@
+// What a head costs when processes divide it.
+import { distinct, is_number, is_positive, succeeded } from '../../src/tables.mjs';
+import { number, percent, rows_of, table } from '../markdown.mjs';
+
+const all = (tables) => rows_of(tables, 'divided_heads').filter(succeeded);
+const measured = (tables) => all(tables).filter((row) => row.kind === 'measured');
+const predicted = (tables) => all(tables).filter((row) => row.kind === 'predicted');
+const milli = (seconds) => (is_positive(seconds) ? number(1e3 * seconds) : '');
+const micro = (seconds) => (is_positive(seconds) ? number(1e6 * seconds) : '');
+
+export const measured_table = (tables) =>
+  table(
+    [
+      'hairs',
+      'beside gravity',
+      'processes',
+      'a step, ms',
+      'by the model',
+      'off',
+      'ghosts of a hair',
+      'to find them, of an element, µs',
+      'to exchange them',
+      'memory of a process, MB',
+      'checksum of the states',
+    ],
+    measured(tables).map((row) => [
+      row.strands,
+      row.effects,
+      row.ranks,
+      milli(row.cost_per_step_s),
+      milli(row.model_cost_per_step_s),
+      percent(row.model_off_rel),
+      number(row.ghosts_per_strand),
+      micro(row.claim_per_element_s),
+      micro(row.exchange_per_element_s),
+      number(row.memory_mb),
+      String(row.state).slice(0, 8),
+    ]),
+  );
+
+export function predicted_table(tables) {
+  const rows = predicted(tables);
+  const ranks = distinct(rows.map((row) => row.ranks)).sort((a, b) => a - b);
+  const runs = distinct(rows.map((row) => `${row.effects} ${row.strands}`));
+  return table(
+    ['beside gravity', 'hairs', ...ranks.map((count) => `R = ${count}`)],
+    runs.map((run) => {
+      const own = rows.filter((row) => `${row.effects} ${row.strands}` === run);
+      return [
+        ...run.split(' '),
+        ...ranks.map((count) => {
+          const row = own.find((one) => one.ranks === count);
+          if (row === undefined || !is_positive(row.model_cost_per_step_s)) return '';
+          return `${milli(row.model_cost_per_step_s)} (${percent(row.efficiency)})`;
+        }),
+      ];
+    }),
+  );
+}
+
+// Of one and two processes, which have a core each.
+export const off = (tables) =>
+  percent(
+    Math.max(
+      ...measured(tables)
+        .filter((row) => row.ranks <= 2 && is_number(row.model_off_rel))
+        .map((row) => Math.abs(row.model_off_rel)),
+    ),
+  );
+export const exchange = (tables) =>
+  micro(
+    Math.max(
+      ...measured(tables)
+        .filter((row) => row.ranks === 2 && is_number(row.exchange_per_element_s))
+        .map((row) => row.exchange_per_element_s),
+    ),
+  );
