@@ -151,8 +151,8 @@ export const rules = [
   },
   {
     page: 'experiments/heads/README.md',
-    command: `${experiment('heads')} --strands 50000,1000000`,
-    instead: `${experiment('heads')} --strands 32,64`,
+    command: `${experiment('heads')} --strands 50000,1000000 --elements 5,20`,
+    instead: `${experiment('heads')} --strands 32,64 --elements 5`,
     more: '--quick',
     exits: [3],
     why: 'minutes and gigabytes; claims are of more hairs than that',

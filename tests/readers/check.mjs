@@ -36,6 +36,31 @@ function of_vtk({ pvd, read }) {
   };
 }
 
+/// Complaints about what Blender found, beside another reading of the same file. It keeps
+/// times as frames of its own rate, in floats, and neither radii nor strands of points.
+export function check_drawn(found, other, own) {
+  const complaints = [];
+  const scale = longest(own.counts, own.frames[0]);
+  const say = (what) => complaints.push(`${found.file} by Blender: ${what}`);
+  if (String(found.counts) !== String(own.counts)) say("points of lines");
+  const float = 2 ** -23;
+  if (
+    found.times.length !== own.times.length ||
+    found.times.some((t, f) => !(Math.abs(t - own.times[f]) <= 2 * float * own.times.at(-1)))
+  ) {
+    say(`times ${found.times}`);
+  }
+  let off = 0;
+  found.frames.forEach(({ points }, f) => {
+    const wanted = other.frames[f].points;
+    if (points.length !== wanted.length) return say(`frame ${f}: ${points.length / 3} points`);
+    points.forEach((x, i) => (off = Math.max(off, Math.abs(x - wanted[i]) / scale)));
+  });
+  if (!(off <= tolerance)) say(`a point is ${off} of the length off ${other.reader}'s`);
+  if (!(found.covered > 1e-3 && found.covered < 0.9)) say("its picture shows no lines");
+  return { complaints, figures: { off } };
+}
+
 /// Complaints about the readings of a run, and figures: the largest distance over the
 /// longest line between readers, from the run's own points, and from the page's.
 export function check({ own, vtk, usd, hair, gltf }) {

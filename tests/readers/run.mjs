@@ -2,10 +2,12 @@
 //
 //   node run.mjs SIMULATE     the program that runs scenes
 //
-// Scenes of the repository, shortened: a curl, a head, strands of two radii, a tree. Their .vtp and .pvd files are
-// read by VTK, their .usda by TinyUSDZ and by the parser of three.js, their .glb by Khronos'
-// validator, three.js and glTF-Transform, the .h5 of the head by h5py; .hair files, of which no reader is to be had, after their description. All must
-// have the points of the run within 1e-6 of the longest line, its times, widths and strands.
+// Scenes of the repository, shortened: a curl, a head, strands of two radii, a tree. Their
+// .vtp and .pvd files are read by VTK, their .usda by TinyUSDZ and by the parser of three.js,
+// their .glb by Khronos' validator, three.js and glTF-Transform, and by Blender where that is
+// installed, which draws one; the .h5 of the head by h5py; .hair files, of which no reader is
+// to be had, after their description. All must have the points of the run within 1e-6 of the
+// longest line, its times, widths and strands.
 // Then one number of one file is spoilt at a time: is it found? Exit codes: 0 all is well,
 // 2 usage, 3 something differs.
 import { execFileSync, spawnSync } from "node:child_process";
@@ -13,7 +15,7 @@ import * as fs from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
-import { check, longest } from "./check.mjs";
+import { check, check_drawn, longest } from "./check.mjs";
 import { read_hair, read_own } from "./own.mjs";
 import { read_gltf } from "./read_gltf.mjs";
 import { read_usd } from "./read_usd.mjs";
@@ -37,6 +39,7 @@ const scenes = [
       [/^youngs_modulus_pa = .*$/m, "radius_m = 30e-6"],
     ],
     thin: (strand) => strand >= 50,
+    blender: true,
   },
   { name: "willow", changes: [[/^duration_s = .*$/m, "duration_s = 0.05"]] },
 ];
@@ -64,6 +67,22 @@ function read_vtk(files) {
 }
 
 const told = (error) => ({ error: error.message });
+/// Where Blender is installed: what it finds in a .glb, and whether its picture shows it.
+function read_blender(name, work, radius) {
+  const script = join(here, "read_blender.py");
+  const files = [join(work, `${name}.glb`), String(radius), join(work, `${name}.png`)];
+  const flags = ["--background", "--factory-startup", "--python-exit-code", "1"];
+  const options = { encoding: "utf8", maxBuffer: 1 << 30 };
+  const made = spawnSync("blender", [...flags, "--python", script, "--", ...files], options);
+  if (made.error?.code === "ENOENT") return undefined;
+  const said = (what) => new RegExp(`^${what} (.*)$`, "m").exec(made.stdout)?.[1];
+  if (made.status !== 0 || said("covered") === undefined) {
+    throw new Error(`read_blender.py: ${made.error ?? made.stderr}`);
+  }
+  const covered = Number(said("covered"));
+  return { file: `${name}.glb`, covered, ...JSON.parse(said("found")) };
+}
+
 const attempt = (read) => {
   try {
     return read();
@@ -105,6 +124,24 @@ async function read_back(name, work, simulated) {
       `simulated in ${simulated} s, read in ${seconds(since)} s`,
   );
   return { complaints, readings };
+}
+
+/// Complaints about what Blender finds and draws; none where it is not installed.
+function drawn_by_blender(name, work, readings) {
+  const since = performance.now();
+  const width = 2e-3; // of the longest line: a tube is seen
+  const radius = width * longest(readings.own.counts, readings.own.frames[0]);
+  const found = read_blender(name, work, radius);
+  if (found === undefined) {
+    console.log("Blender is not installed: its test is left out");
+    return [];
+  }
+  const { complaints, figures } = check_drawn(found, readings.gltf[0], readings.own);
+  console.log(
+    `Blender: ${found.counts.length} lines, off three.js ${digits(figures.off)} of the longest, ` +
+      `${(100 * found.covered).toFixed(2)} % of its picture covered, in ${seconds(since)} s`,
+  );
+  return complaints;
 }
 
 /// Spoils that are not found.
@@ -157,6 +194,7 @@ try {
     if (scene.thin && ids.some((k, line) => scene.thin(k) !== (radii[line] === 30e-6))) {
       complaints.push(`${scene.name}: radii that the scene does not give`);
     }
+    if (scene.blender) complaints.push(...drawn_by_blender(scene.name, work, readings));
     failures.push(...complaints);
     if (scene.name !== "full_head" || complaints.length) continue;
     const began = performance.now();

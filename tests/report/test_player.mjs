@@ -189,6 +189,40 @@ test('WithoutWebgl_TheCanvasDraws', async () => {
   await browser.devtools('Page.removeScriptToEvaluateOnNewDocument', { identifier });
 });
 
+// How long a picture takes, without a bound: that is the machine's. Pixels are read back, so
+// that every picture is done.
+test('Frames_OfTwoThousandHairsAreTimed', async (t) => {
+  const hair = (k) => {
+    const [x, y] = [0.08 * Math.cos(2.4 * k), 0.08 * Math.sin(2.4 * k)];
+    return Array.from({ length: 20 }, (_, i) => [x, y, 0.09 - 0.009 * i]);
+  };
+  write_scene(
+    'many',
+    Array.from({ length: 2000 }, (_, k) => hair(k)),
+  );
+  assert.equal(run_page(directory).status, 0);
+  for (const by of ['webgl', 'canvas']) {
+    await browser.open(
+      `${url}#scene=many&colour=strand&full=picture&draw=${by}`,
+      800,
+      600,
+    );
+    assert.equal(await drawn_by(), by);
+    const ms = await browser.run(`
+      const canvas = document.getElementById('scene-canvas');
+      const pictures = 10;
+      const begin = performance.now();
+      for (let i = 0; i < pictures; ++i) {
+        canvas.dispatchEvent(new CustomEvent('scene-time', { detail: 0 }));
+        canvas.getContext('2d').getImageData(0, 0, 1, 1);
+      }
+      return (performance.now() - begin) / pictures;`);
+    t.diagnostic(
+      `2 000 hairs of 20 points at 800 x 600 by ${by}: ${ms.toFixed(1)} ms a picture`,
+    );
+  }
+});
+
 // Errors and steps are channels of the recording, offered where it has them.
 test('StrandErrorsAndSteps_AreColoursOfRunsThatHaveThem', async () => {
   await open('#scene=own_steps&view=-90,0,1&colour=error+in+time&full=picture');

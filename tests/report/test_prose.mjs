@@ -9,6 +9,8 @@ import { fileURLToPath } from 'node:url';
 import { must, number, percent, range, row_of, table, time } from '../../experiments/report/prose/markdown.mjs';
 import { answers, written_pages } from '../../experiments/report/prose/pages.mjs';
 import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
+import { unit_of, units } from '../../experiments/report/prose/queries/columns.mjs';
+import { names_of } from '../../experiments/report/prose/queries/python.mjs';
 import { citations, match, works } from '../../experiments/report/prose/queries/references.mjs';
 import { fill, untraced_numbers } from '../../experiments/report/prose/template.mjs';
 
@@ -107,6 +109,30 @@ test('an unknown query and a broken one name file and line', () => {
   const answer = answers({}, root);
   assert.throws(() => fill('\n{{ hard.nothing }}', 'a.md', answer), /a\.md:2: .*no such query/);
   assert.throws(() => fill('{{ hard.cases }}', 'a.md', answer), /a\.md:1: .*hard_cases\.csv/);
+});
+
+test('a unit stands at the end of a column\'s name, as the Python module has it', () => {
+  const found = ['dt_s', 'drag_kg_m_s', 'fastest_m_s', 'natural_1_m', 'steps', 's'];
+  assert.deepEqual(found.map(unit_of), ['s', 'kg/(m s)', 'm/s', '1/m', '', '']);
+  const python = readFileSync(join(root, 'python/tress/tables.py'), 'utf8');
+  const known = /_UNITS = \{([\s\S]*?)\}/.exec(python)[1].matchAll(/"(\w+)": "/g);
+  assert.deepEqual([...known].map(([, end]) => end).sort(), Object.keys(units).sort());
+});
+
+test('names of Python are found with what is said of them', () => {
+  const source = [
+    'def _own():', '    """None of yours."""', 'def far(', '    a,', '    b=1,', '):',
+    '    """Says', '', '      more."""', 'class Thing(Base):', '    """A thing."""', '',
+    '    def __init__(self):', '        pass', '    @property', '    def size(self):',
+    '        """m."""', '    def grow(self, by):', '        return by', '', 'def last():',
+  ]; // prettier-ignore
+  assert.deepEqual(names_of(source.join('\n')), [
+    { name: 'far', signature: 'far(a, b=1)', text: 'Says\n\n  more.', owner: undefined },
+    { name: 'Thing', signature: 'Thing', text: 'A thing.', owner: undefined },
+    { name: 'size', signature: 'size', text: 'm.', owner: 'Thing' },
+    { name: 'grow', signature: 'grow(by)', text: '', owner: 'Thing' },
+    { name: 'last', signature: 'last()', text: '', owner: undefined },
+  ]);
 });
 
 test('a sentence whose condition failed is not printed', () => {

@@ -19,6 +19,7 @@ import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as matrices from './matrices.mjs';
 import * as newest from './newest.mjs';
+import * as python from './python.mjs';
 import * as references from './references.mjs';
 import * as regrading from './regrading.mjs';
 import * as scaling from './scaling.mjs';
@@ -46,6 +47,7 @@ export const queries = {
   machine,
   matrices,
   newest,
+  python,
   references,
   regrading,
   scaling,

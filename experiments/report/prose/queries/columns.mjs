@@ -68,7 +68,7 @@ const by_hand = {
 const like = { solve_ivp: 'work_precision' };
 
 // Ends of names that are units, as python/tress/tables.py has them.
-const units = {
+export const units = {
   s: 's', m: 'm', j: 'J', n: 'N', pa: 'Pa', kg: 'kg', hz: '1/s', rad: 'rad', rel: '1',
   m_s: 'm/s', rad_s: 'rad/s', '1_m': '1/m', '1_s': '1/s', kg_m3: 'kg/m³', kg_m_s: 'kg/(m s)',
   kg_m3_s: 'kg m³/s', m_s2: 'm/s²', n_m: 'N m', bytes: 'B',
@@ -127,7 +127,10 @@ export const series = (_, root) => {
     'experiments/simulate/head_series.cpp',
     /\{"(\w+)",\s*"([^"]+)"\}/g,
   ).filter(([column]) => !strands.some(([known]) => known.split(', ').includes(column)));
-  const rows = [...strands, ...heads.map(([column, what]) => [column, `of a head: ${what}`])];
+  const rows = [
+    ...strands,
+    ...heads.map(([column, what]) => [column, `of a head: ${what}`]),
+  ];
   return table(
     ['column', 'unit', ''],
     rows.map(([column, what]) => [`\`${column}\``, unit_of(column.split(', ')[0]), what]),
