@@ -38,37 +38,18 @@ class FixedEsdirk final : public FixedStep {
   EsdirkStages stages_;
 };
 
+/// Newton's tolerance over that of the run. Stages enter the estimate with weights of
+/// order one, so that a hundredth of the tolerance is not seen in it.
+constexpr double newton_part = 1e-2;
 /// A jump of velocities below this part of what the tolerance sees needs no step of its
 /// own.
 constexpr double unseen_part = 0.1;
 /// Newton's tolerance has this margin already.
 constexpr double whole_newton_part = 1;
 
-/// Newton's tolerance over that of the run, and the largest one: a loose tolerance must
-/// not let it find another solution.
-struct NewtonPart {
-  double part, most;
-};
-
-/// Reduced coordinates have a stiff part that is linear in them and is in the matrix:
-/// what an iteration leaves is slow motion, which one step passes on to the next one
-/// unchanged. One matrix serves a step. Chosen on
-/// scenes/accuracy (super_helix, articulated_chain, super_clothoid), where it takes 15 to
-/// 35 % less work at the same error than a hundredth of the tolerance.
-constexpr NewtonPart reduced_part{.part = 0.2, .most = 1e-2};
-/// Coordinates of constant mass are those of points. Their stiff forces turn with the
-/// strand, so that a matrix is out of date after one iteration, and what old matrices
-/// leave is stretch, which drives the next step: new matrices converge quadratically.
-/// Chosen on the same scenes (der, mass_spring, corde, xpbd_cosserat, dynamic_spline, an
-/// error of 1e-3), where it takes 18 to 42 % less work than one matrix a step;
-/// kirchhoff_nodal takes 14 % more.
-constexpr NewtonPart maximal_part{.part = 0.1, .most = 1e-3};
-
-Options with_control(const System& system, Options options) {
-  const bool maximal = system.traits().constant_mass;
-  const NewtonPart newton = maximal ? maximal_part : reduced_part;
-  options.newton_tolerance = std::min(newton.part * options.tolerance, newton.most);
-  options.refresh = maximal ? Refresh::every_iteration : Refresh::every_step;
+Options with_control(Options options) {
+  options.newton_tolerance = newton_part * options.tolerance;
+  options.refresh = Refresh::every_step;
   return options;
 }
 
@@ -77,7 +58,7 @@ class ControlledEsdirk final : public ErrorControlled {
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         table.share * std::pow(options.tolerance, table.power)),
-        stages_(dynamics(), with_control(system, options), table, whole_newton_part) {}
+        stages_(dynamics(), with_control(options), table, whole_newton_part) {}
 
  private:
   Status try_step(const State& from, double h, Effort effort, State& to, Out error_q,

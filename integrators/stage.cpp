@@ -172,11 +172,6 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
   return s;
 }
 
-/// Where the tangent is exact, rates grow with the corrections.
-double Stage::expected_rate(double correction) const noexcept {
-  return contraction_ * std::max(1.0, correction / contracted_);
-}
-
 Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
                      Matrix matrix, InOut a, InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
@@ -189,23 +184,15 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
   const bool shared =
       refresh == Refresh::every_step && shares_ && matrix == Matrix::shared;
   bool linearize = !usable || !(refresh == Refresh::when_slow || shared);
-  if (!shared) contraction_ = 0;
   for (int i = 0; i < iterations_; ++i) {
-    if (linearize) contraction_ = 0;
     double correction = 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
-    // this one.
-    const double expected = i > 0 ? rate : expected_rate(correction);
-    const double error_left = expected > 0 && expected < 1
-                                  ? correction * expected / (1 - expected)
-                                  : correction;
-    if (i > 0 && !linearize) {
-      contraction_ = rate;
-      contracted_ = previous;
-    }
+    // this one. The first correction has no rate yet.
+    const double error_left =
+        i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
     if (correction <= tolerance_ || error_left <= remaining_) return Status::ok;
     if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;

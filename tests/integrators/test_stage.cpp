@@ -140,32 +140,6 @@ Solved solved(const ScalarData& data, double q_bar, double v_bar, double a) {
   return {s, stage.q()[0]};
 }
 
-// With the derivative of force taken 10 % too small every correction is 0.053 of the one
-// before: |1 - 2/1.9|.
-TEST(StageRate, OfTheStageBeforeEndsTheNextAfterOneCorrection) {
-  Scalar system({[](double) { return 1.0; }, none, [](double q) { return -q; },
-                 [](double) { return -0.9; }});
-  Options options;
-  options.newton_tolerance = 1e-3;
-  options.refresh = Refresh::every_step;
-  Dynamics dynamics(system, options);
-  Stage stage(dynamics, options, 1);
-  const std::vector<double> v{0};
-  std::vector<double> a{0}, lambda;
-  const auto corrections = [&](double q_bar, Stage::Matrix matrix) {
-    const long before = dynamics.stats.newton_iterations;
-    const std::vector<double> bar{q_bar};
-    EXPECT_EQ(stage.solve(0, bar, v, {1, 1, 1}, a, lambda, matrix), Status::ok);
-    EXPECT_NEAR(a[0], -q_bar / 2, options.newton_tolerance);
-    return dynamics.stats.newton_iterations - before;
-  };
-  EXPECT_GT(corrections(1, Stage::Matrix::own), 1);
-  // A first correction of 5e-3 leaves 2.8e-4, and one of 0.5 leaves 0.03.
-  EXPECT_EQ(corrections(1.01, Stage::Matrix::shared), 1);
-  EXPECT_GT(corrections(2, Stage::Matrix::shared), 1);
-  EXPECT_GT(corrections(2.01, Stage::Matrix::own), 1);  // of a new matrix none is known
-}
-
 // Newton's method on atan diverges from |q| > 1.392.
 TEST(StageDamping, ConvergesWhereFullStepsOvershoot) {
   const ScalarData arctangent{none, none, [](double q) { return std::atan(q); },
