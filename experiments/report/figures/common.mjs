@@ -1,6 +1,7 @@
 // Parts every figure shares: theme, log axes, panels laid out for the width at hand,
 // legends.
 import { is_positive } from '../src/tables.mjs';
+import { series_style } from './palette.mjs';
 
 // Of a figure as a file, in pixels.
 export const paper_width = 1000;
@@ -251,4 +252,40 @@ export function marked_line(rows, { x, y, series, opacity, tooltip }) {
       encoding: { x, y, ...series, strokeDash: undefined, opacity, tooltip },
     },
   ];
+}
+
+// Panels of `groups` ([title, rows] each) with a marked line for each series of a panel, all
+// on the same axes, whose legend picks series. `series`: the field and what it is called;
+// x, y: field, title.
+export function line_panels(groups, { id, width, series, x, y, tooltip }) {
+  const rows = groups.flatMap(([, members]) => members);
+  const [field, name] = series;
+  const style = series_style(rows.map((row) => row[field]));
+  const { columns, panel_width, legend } = layout(width, groups.length, {
+    columns_max: 2,
+    labels: style.domain,
+    above: true,
+  });
+  const axis = ([of, title]) =>
+    log_channel(of, title, log_extent(rows.map((row) => row[of])));
+  const pick = `pick_${id}`;
+  const channels = {
+    x: axis(x),
+    y: axis(y),
+    series: series_channels(field, name, style, legend),
+    opacity: dimmed_unless([pick]),
+    tooltip: tooltips(tooltip),
+  };
+  return panels(
+    with_parameters(
+      groups.map(([title, members]) => ({
+        title,
+        width: panel_width,
+        height: 240,
+        layer: marked_line(members, channels),
+      })),
+      [legend_selection(pick, field)],
+    ),
+    columns,
+  );
 }

@@ -1,18 +1,6 @@
 // What a head costs when processes divide it: measured, and by the model.
 import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
-import {
-  dimmed_unless,
-  layout,
-  legend_selection,
-  log_channel,
-  log_extent,
-  marked_line,
-  panels,
-  series_channels,
-  tooltips,
-  with_parameters,
-} from './common.mjs';
-import { series_style } from './palette.mjs';
+import { line_panels } from './common.mjs';
 
 const rows_of = ({ divided_heads = [] }) =>
   divided_heads
@@ -35,39 +23,19 @@ export const divided_heads = {
 
   spec(tables, { width }) {
     const rows = rows_of(tables);
-    const effects = [...group_by(rows, (row) => row.effects)];
-    const style = series_style(rows.map((row) => row.hairs));
-    const { columns, panel_width, legend } = layout(width, effects.length, {
-      columns_max: 2,
-      labels: style.domain,
-      above: true,
+    return line_panels([...group_by(rows, (row) => row.effects)], {
+      id: 'divided_heads',
+      width,
+      series: ['hairs', 'hairs'],
+      x: ['ranks', 'processes'],
+      y: ['cost_ms', 'a step (ms)'],
+      tooltip: [
+        ['hairs', 'hairs'],
+        ['ranks', 'processes'],
+        ['cost_ms', 'a step (ms)', '.3g'],
+        ['efficiency', 'efficiency', '.2g'],
+      ],
     });
-    const x = log_channel('ranks', 'processes', log_extent(rows.map((row) => row.ranks)));
-    const y = log_channel(
-      'cost_ms',
-      'a step (ms)',
-      log_extent(rows.map((row) => row.cost_ms)),
-    );
-    const series = series_channels('hairs', 'hairs', style, legend);
-    const opacity = dimmed_unless(['pick_divided_heads']);
-    const tooltip = tooltips([
-      ['hairs', 'hairs'],
-      ['ranks', 'processes'],
-      ['cost_ms', 'a step (ms)', '.3g'],
-      ['efficiency', 'efficiency', '.2g'],
-    ]);
-    return panels(
-      with_parameters(
-        effects.map(([title, members]) => ({
-          title,
-          width: panel_width,
-          height: 240,
-          layer: marked_line(members, { x, y, series, opacity, tooltip }),
-        })),
-        [legend_selection('pick_divided_heads', 'hairs')],
-      ),
-      columns,
-    );
   },
 
   describe(tables) {
