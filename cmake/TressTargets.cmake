@@ -1,10 +1,13 @@
 # Warnings for our own targets, and one function per kind of target.
 function(tress_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion)
-  # In a batch what one source keeps to itself would be in the way of the next one's words.
+  # In a batch what one source keeps to itself would be in the way of the next one's words;
+  # GCC can look at local ones alone.
   get_target_property(batched ${target} UNITY_BUILD)
   if(NOT batched)
     target_compile_options(${target} PRIVATE -Wshadow)
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wshadow=local)
   endif()
   # Packs of doubles are passed in another way where there is no AVX; nothing here leaves
   # the library as a binary.

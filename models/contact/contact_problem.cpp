@@ -105,9 +105,9 @@ void ContactProblem::divide() {
   parts_.resize(std::accumulate(rounds_.begin(), rounds_.end(), std::size_t{0}));
   for (Part& part : parts_) part.contacts.clear();
   std::size_t part_between[most_parts][most_parts] = {};
-  std::size_t next = count;
+  std::size_t between = count;
   for (const auto& [a, b] : pairs_of_parts) {
-    if (b < count) part_between[a][b] = part_between[b][a] = next++;
+    if (b < count) part_between[a][b] = part_between[b][a] = between++;
   }
   const auto bodies_of = [](const Contact& contact) {
     return std::pair(static_cast<std::size_t>(contact.ends[0].body),
