@@ -190,9 +190,9 @@ void SegmentCells::sort(In x, const Loop& loop) {
         const Vec a = whole.at((p - part_[segment]) * share),
                   b = whole.at((p + 1 - part_[segment]) * share);
         segment_[at] = static_cast<int>(segment);
-        const auto box = [&](std::size_t axis, double from, double to) {
-          least_[axis][at] = static_cast<float>(std::min(from, to));
-          most_[axis][at] = static_cast<float>(std::max(from, to));
+        const auto box = [&](std::size_t axis, double one, double other) {
+          least_[axis][at] = static_cast<float>(std::min(one, other));
+          most_[axis][at] = static_cast<float>(std::max(one, other));
         };
         box(0, a.x, b.x);
         box(1, a.y, b.y);
