@@ -20,6 +20,10 @@ constexpr double stagnation = 1e4, largest_rounding = 1e-6;
 // After this many growing corrections the iteration counts as not converging.
 constexpr int most_grown = 2;
 
+// The first solution with contact is sought so often by Newton's method alone, with a
+// penalty of its own each time, then so often by all means.
+constexpr int plain_attempts = 4, whole_attempts = 2;
+
 }  // namespace
 
 Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
@@ -107,11 +111,12 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
   }
   std::ranges::copy(a, a_held_.begin());
   std::ranges::copy(lambda, lambda_held_.begin());
-  Status s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix);
-  if (s == Status::retry) {  // the penalty starts anew
+  Status s = Status::retry;
+  for (int i = 0; s == Status::retry && i < plain_attempts + whole_attempts; ++i) {
     std::ranges::copy(a_held_, a.begin());
     std::ranges::copy(lambda_held_, lambda.begin());
-    s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix);
+    s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix,
+                      i < plain_attempts ? Effort::plain : Effort::whole);
   }
   if (s != Status::ok) return s;
   double violation = 0;
@@ -137,11 +142,11 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
 }
 
 Status Stage::first_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
-                            InOut lambda, Matrix matrix) noexcept {
+                            InOut lambda, Matrix matrix, Effort effort) noexcept {
   const double tau = w.pos / w.vel;
   shifted(q_start_, q_bar, -tau, v_bar);
   contacts_->begin(t, tau, q_start_, v_bar);
-  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, Effort::whole);
+  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, effort);
 }
 
 Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,

@@ -70,7 +70,7 @@ class Stage {
 
   /// The first solution, with multipliers of contact as they are at the start.
   Status first_contact(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-                       Matrix matrix) noexcept;
+                       Matrix matrix, Effort effort) noexcept;
   /// The equations with multipliers of contact as they are.
   Status solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                       Matrix matrix, Effort effort) noexcept;

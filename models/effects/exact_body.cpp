@@ -1,6 +1,7 @@
 #include "models/effects/exact_body.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -20,9 +21,15 @@ constexpr double rise = 10, largest_rise = 1e5;
 
 constexpr std::size_t per_point = 6;
 
+// The law's solution does not depend on the penalty, but whether Newton's method finds
+// one does, without a rule: where it has failed, these are tried in turn, over the first
+// one.
+constexpr std::array<double, 4> other_penalties = {1, 100, 10, 0.01};
+
 // Before the points in values_: how the last solutions ended, the penalty over its first
-// value, and how often the multipliers were improved.
-enum Header : std::size_t { phase, stiffer, improved, header };
+// value, how often the multipliers were improved, and how many solutions have failed
+// since the last that did not.
+enum Header : std::size_t { phase, stiffer, improved, failed, header };
 constexpr double not_begun = 0, unsettled = 1, settled = 2;  // of phase
 // Largest violation (m/s) after which what is left of gaps is due to the tolerance.
 constexpr double settled_below = 1e-6;
@@ -90,6 +97,17 @@ void ExactBody::hold(std::size_t point, const HeldContact& contact) {
   at[5] = contact.gap;
 }
 
+/// After a failure: the next one that is not the one of now.
+double ExactBody::other_penalty() noexcept {
+  const double now = values_[stiffer];
+  double next = now;
+  while (next == now) {
+    const auto at = static_cast<std::size_t>(values_[failed]++);
+    next = other_penalties[at % other_penalties.size()];
+  }
+  return next;
+}
+
 void ExactBody::set_penalties(const Points& p) noexcept {
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     penalties_[i].rho = values_[stiffer] * first_penalty * p.mass[i] / penalties_[i].tau;
@@ -99,8 +117,13 @@ void ExactBody::set_penalties(const Points& p) noexcept {
 void ExactBody::begin(double t, double tau, const Points& p) noexcept {
   const double state = std::exchange(values_[phase], unsettled);
   const double improvements = std::exchange(values_[improved], 0.0);
-  if (improvements == 0) values_[stiffer] = 1;  // the last solution failed
-  if (improvements == 1) values_[stiffer] = std::max(1.0, values_[stiffer] / rise);
+  if (state == not_begun) values_[stiffer] = 1;
+  if (state != not_begun && improvements == 0) values_[stiffer] = other_penalty();
+  if (improvements > 0) {
+    values_[failed] = 0;
+    values_[stiffer] =
+        std::max(1.0, improvements == 1 ? values_[stiffer] / rise : values_[stiffer]);
+  }
   violation_ = 0;
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     open_[i] = held(i).normal == 0;

@@ -52,6 +52,7 @@ class ExactBody final : public Effect, private Multipliers {
   void hold(std::size_t point, const HeldContact& contact);
   template <RigidBody::With with, class See>
   void for_touching(const BodyPose& now, const Points& p, See see) const;
+  double other_penalty() noexcept;
   void set_penalties(const Points& p) noexcept;
 
   std::shared_ptr<const RigidBody> body_;  // of all strands
