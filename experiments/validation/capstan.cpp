@@ -222,8 +222,8 @@ std::vector<ValidationTest> capstan_tests() {
                     "tan(d/2)) over turns d",
           .parameter = "friction coefficient mu",
           .quantity = "ratio of pulls that slides over that of the polygon",
-          .range = {0.01,
-                    0.5},  // with more, pulls stretch the rope by as much as it slides
+          // With more, pulls stretch the rope by as much as counts as sliding.
+          .range = {0.01, 0.5},
           .quick = {{0.3}, {24}},
           .usual = {{0.1, 0.3, 0.5}, {24, 48}},
           .full = {{0.1, 0.2, 0.3, 0.4, 0.5}, {24, 36, 48}},
