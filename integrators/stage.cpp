@@ -20,9 +20,9 @@ constexpr double stagnation = 1e4, largest_rounding = 1e-6;
 // After this many growing corrections the iteration counts as not converging.
 constexpr int most_grown = 2;
 
-// The first solution with contact is sought so often by Newton's method alone, with a
-// penalty of its own each time, then so often by all means.
-constexpr int plain_attempts = 4, whole_attempts = 2;
+// The first solution with contact is sought so often by all means, with a penalty of its
+// own each time, then so often by Newton's method alone.
+constexpr int whole_attempts = 2, plain_attempts = 3;
 
 }  // namespace
 
@@ -112,11 +112,11 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
   std::ranges::copy(a, a_held_.begin());
   std::ranges::copy(lambda, lambda_held_.begin());
   Status s = Status::retry;
-  for (int i = 0; s == Status::retry && i < plain_attempts + whole_attempts; ++i) {
+  for (int i = 0; s == Status::retry && i < whole_attempts + plain_attempts; ++i) {
     std::ranges::copy(a_held_, a.begin());
     std::ranges::copy(lambda_held_, lambda.begin());
     s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix,
-                      i < plain_attempts ? Effort::plain : Effort::whole);
+                      i < whole_attempts ? Effort::whole : Effort::plain);
   }
   if (s != Status::ok) return s;
   double violation = 0;
