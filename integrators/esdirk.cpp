@@ -21,7 +21,7 @@ constexpr std::size_t guessed_from = 3;
 class FixedEsdirk final : public FixedStep {
  public:
   FixedEsdirk(System& system, const Options& options, const EsdirkTable& table)
-      : FixedStep(system, options), stages_(dynamics_, options, table) {}
+      : FixedStep(system, options), stages_(dynamics_, options, table, {}) {}
 
  private:
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
@@ -39,18 +39,44 @@ class FixedEsdirk final : public FixedStep {
 };
 
 /// Newton's tolerance over that of the run. Stages enter the estimate with weights of
-/// order one, so that a hundredth of the tolerance is not seen in it.
+/// order one, so that a hundredth of the tolerance is not seen in it. Where a strand
+/// sticks, where multipliers hold it and where stretch drives the next step, more is
+/// seen.
 constexpr double newton_part = 1e-2;
+/// Of smooth equations in reduced coordinates, whose stiff part is linear and is in the
+/// matrix: what an iteration leaves is slow motion. Ten times as much as a hundredth
+/// makes a strand gain energy that swings undamped for 150 s (million_steps of
+/// hard_cases).
+constexpr double smooth_newton_part = 0.03;
+/// From this tolerance on, first corrections of points are so large that a matrix is out
+/// of date after them: new ones in every iteration take half the time. Below, they take
+/// up to a third more. (der with either tangent on scenes/accuracy; equal times at 1e-3
+/// for esdirk43, at 3e-3 for tr_bdf2.)
+constexpr double loose_tolerance = 2e-3;
 /// A jump of velocities below this part of what the tolerance sees needs no step of its
 /// own.
 constexpr double unseen_part = 0.1;
-/// Newton's tolerance has this margin already.
-constexpr double whole_newton_part = 1;
 
-Options with_control(Options options) {
-  options.newton_tolerance = newton_part * options.tolerance;
-  options.refresh = Refresh::every_step;
+/// Coordinates of constant mass are those of points.
+bool of_points(Dynamics& dynamics) { return dynamics.system().traits().constant_mass; }
+
+bool smooth(Dynamics& dynamics) {
+  return !of_points(dynamics) && dynamics.m() == 0 &&
+         dynamics.system().contact_form() == nullptr;
+}
+
+Options with_control(Dynamics& dynamics, Options options) {
+  options.newton_tolerance =
+      (smooth(dynamics) ? smooth_newton_part : newton_part) * options.tolerance;
+  options.refresh = of_points(dynamics) && options.tolerance >= loose_tolerance
+                        ? Refresh::every_iteration
+                        : Refresh::every_step;
   return options;
+}
+
+/// Newton's tolerance has its margin already.
+Stage::Ending ending(Dynamics& dynamics) {
+  return {.remaining = 1, .learns = smooth(dynamics)};
 }
 
 class ControlledEsdirk final : public ErrorControlled {
@@ -58,7 +84,8 @@ class ControlledEsdirk final : public ErrorControlled {
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         table.share * std::pow(options.tolerance, table.power)),
-        stages_(dynamics(), with_control(options), table, whole_newton_part) {}
+        stages_(dynamics(), with_control(dynamics(), options), table,
+                ending(dynamics())) {}
 
  private:
   Status try_step(const State& from, double h, Effort effort, State& to, Out error_q,
@@ -85,10 +112,10 @@ double EsdirkTable::c(std::size_t i) const {
 }
 
 EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
-                           const EsdirkTable& table, double remaining)
+                           const EsdirkTable& table, Stage::Ending ending)
     : table_(table),
       dynamics_(dynamics),
-      stage_(dynamics, options, remaining),
+      stage_(dynamics, options, ending),
       v_(table.stages, std::vector<double>(static_cast<std::size_t>(dynamics.n()))),
       a_(v_),
       q_bar_(v_.front()),

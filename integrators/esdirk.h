@@ -45,9 +45,8 @@ struct EsdirkTable {
 /// positions, which falls with the step, and none of velocities, which does not.
 class EsdirkStages {
  public:
-  /// `remaining`: see Stage.
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
-               double remaining = 0.1);
+               Stage::Ending ending);
 
   /// From (q, v) at t with its acceleration a and multipliers over h. Points that come
   /// upon a rigid surface at less than `gently` (m/s) make no jump.

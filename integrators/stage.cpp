@@ -26,13 +26,13 @@ constexpr int whole_attempts = 2, plain_attempts = 3;
 
 }  // namespace
 
-Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
+Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
     : dynamics_(dynamics),
       contacts_(dynamics.system().contact_form()),
       contact_tolerance_(options.contact_tolerance),
       contact_iterations_(options.contact_iterations),
       tolerance_(options.newton_tolerance),
-      remaining_(remaining * tolerance_),
+      remaining_(ending.remaining * tolerance_),
       rounding_(
           std::max(tolerance_, std::min(stagnation * tolerance_, largest_rounding))),
       iterations_(options.newton_iterations),
@@ -57,7 +57,9 @@ Stage::Stage(Dynamics& dynamics, const Options& options, double remaining)
       there_(q_.size(), c_.size()),
       middle_(q_.size(), c_.size()),
       path_(q_.size(), c_.size()),
-      next_(q_.size(), c_.size()) {}
+      next_(q_.size(), c_.size()) {
+  if (ending.learns) updates_.emplace(dynamics.q_typ());
+}
 
 void Stage::place(In q_bar, In v_bar, Weights w, In a) noexcept {
   for (std::size_t i = 0; i < q_.size(); ++i) {
@@ -78,12 +80,15 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
     if (s != Status::ok) return s;
     factored_ = w;
     matrix_ = dynamics_.matrix();
+    contraction_ = 0;
+    if (updates_) updates_->forget();
   }
   Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
   if (s != Status::ok) return s;
   s = dynamics_.solve(r_, c_);
   if (s != Status::ok) return s;
   ++dynamics_.stats.newton_iterations;
+  if (updates_) updates_->improve(r_);
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= r_[i];
   for (std::size_t k = 0; k < lambda.size(); ++k) lambda[k] -= c_[k];
   place(q_bar, v_bar, w, a);
@@ -177,9 +182,15 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
   return s;
 }
 
+/// Where the tangent is exact, rates grow with the corrections.
+double Stage::expected_rate(double correction) const noexcept {
+  return updates_ ? contraction_ * std::max(1.0, correction / contracted_) : 0;
+}
+
 Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
                      Matrix matrix, InOut a, InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
+  if (updates_) updates_->begin();
   double previous = std::numeric_limits<double>::infinity();
   double rate = rate_ = 0;
   int grown = 0;
@@ -195,9 +206,15 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
-    // this one. The first correction has no rate yet.
-    const double error_left =
-        i > 0 && rate < 1 ? correction * rate / (1 - rate) : correction;
+    // this one.
+    const double expected = i > 0 ? rate : expected_rate(correction);
+    const double error_left = expected > 0 && expected < 1
+                                  ? correction * expected / (1 - expected)
+                                  : correction;
+    if (i > 0 && !linearize) {
+      contraction_ = rate;
+      contracted_ = previous;
+    }
     if (correction <= tolerance_ || error_left <= remaining_) return Status::ok;
     if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;

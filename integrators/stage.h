@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "integrators/control/effort.h"
 #include "integrators/formulation/dynamics.h"
+#include "integrators/secant_updates.h"
 
 namespace tress::integrators {
 
@@ -31,11 +33,20 @@ namespace tress::integrators {
 ///
 /// Options: newton_tolerance bounds the last correction of q and v over System::scale,
 /// newton_iterations, refresh. The iteration also ends where the error that its rate lets
-/// expect is below `remaining` times newton_tolerance, and where corrections of the size
-/// of rounding errors stop shrinking.
+/// expect is below Ending::remaining times newton_tolerance, and where corrections of the
+/// size of rounding errors stop shrinking.
 class Stage {
  public:
-  Stage(Dynamics& dynamics, const Options& options, double remaining = 0.1);
+  struct Ending {
+    double remaining = 0.1;
+    /// Stages learn from those before that had the same matrix: the matrix is improved
+    /// (SecantUpdates), and the first correction has a rate, that of the stage before
+    /// [Hairer, Wanner 1996, Solving ODEs II, IV.8], so that it may be the last. For
+    /// smooth equations without multipliers.
+    bool learns = false;
+  };
+  Stage(Dynamics& dynamics, const Options& options) : Stage(dynamics, options, {}) {}
+  Stage(Dynamics& dynamics, const Options& options, Ending ending);
 
   /// The matrix under Refresh::every_step: of this stage's own, or shared with the stage
   /// solved before, of the same step. Either is rebuilt where it converges slowly, and
@@ -76,6 +87,9 @@ class Stage {
                       Matrix matrix, Effort effort) noexcept;
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
+  /// The rate to expect after a first correction with a matrix that was used before; 0:
+  /// unknown.
+  double expected_rate(double correction) const noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh, Matrix matrix,
                 InOut a, InOut lambda) noexcept;
   /// Newton's step from q_, v_, the state that belongs to `a`, and its size.
@@ -120,8 +134,11 @@ class Stage {
   double rounding_;  // corrections below it may be rounding errors
   int iterations_;
   Refresh refresh_;
-  Weights factored_;    // of the matrix that newton() used last
-  double rate_ = 0;     // of newton(): its last correction over the one before
+  Weights factored_;  // of the matrix that newton() used last
+  double rate_ = 0;   // of newton(): its last correction over the one before
+  std::optional<SecantUpdates> updates_;  // of that matrix
+  // The last such rate with the present matrix, 0: none, and the correction before it.
+  double contraction_ = 0, contracted_ = 1;
   bool shares_ = true;  // the last matrix of this step served all stages so far
   long matrix_ = -1;    // its Dynamics::matrix(); other callers may have factored since
   std::vector<double> q_, v_, r_, c_;

@@ -37,8 +37,8 @@ WallTime wall_time(const std::vector<double>& seconds) {
 Scene SceneMeasure::scene(const Method& method, int elements, int substeps) const {
   Scene run = compared(trial_scene(given_, method, elements, substeps, comparison_.rate),
                        comparison_);
-  // A tolerance does not say how many steps a run takes: less_implicit tangents need
-  // short ones, and where the next solution is far some methods find no way.
+  // A tolerance does not say how many steps a run takes: where the next solution is far
+  // some methods find no way.
   if (method.by_tolerance) run.options.max_steps = std::max(1L, longest_run_ / elements);
   return run;
 }

@@ -62,9 +62,9 @@ std::string physics(Scene scene);
 inline constexpr double newton_tolerance = 1e-6;
 
 /// Every strand model with its options and every integrator that can drive it on this
-/// scene: with fixed steps, those with error control also by tolerance, and the most
-/// accurate of these also extrapolated. Other adaptive methods are left out: they control
-/// an error of the unknowns and not of the strand.
+/// scene: with fixed steps, those with error control also by tolerance, unless a tangent
+/// decides about their steps, and these also extrapolated. Other adaptive methods are
+/// left out: they control an error of the unknowns and not of the strand.
 struct MethodChoice {
   std::vector<std::string> models, integrators;  // empty: all
   /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in

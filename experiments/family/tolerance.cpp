@@ -57,7 +57,7 @@ constexpr double coarsest = 1 / 60.0;  // s, of the fixed steps, which halve
 constexpr double no_solution = 1;      // value of the error
 constexpr double finer = 100;          // tolerance of a run over that of its reference
 constexpr double reference_calls = 5;  // times those of a run: 100^(1/4) = 3 in steps
-constexpr double newton_part = 1e-2;   // of the tolerance, as error control has it
+constexpr double newton_part = 1e-2;   // of the tolerance: it is not seen
 constexpr double trusted = 10;  // an error over what it is uncertain by, at a horizon
 constexpr double calls_of_step = 16;  // of other_method at short steps, at most
 constexpr double most = 5;            // times the work; no ratio is beyond

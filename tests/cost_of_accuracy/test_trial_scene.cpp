@@ -185,6 +185,24 @@ TEST(Methods, OfErrorControlAreTriedInFiveWays) {
   EXPECT_FALSE(same(ways[3], ways[4]));
 }
 
+// Strand.TakesShortStepsForATangentThatLacksTerms says why.
+TEST(Methods, KnowNoToleranceWhereTheTangentDecidesAboutSteps) {
+  const Scene given = read_open_scene(TRESS_SCENES "/accuracy/side_wind.toml");
+  int by_tolerance = 0, by_steps = 0;
+  for (const Method& method :
+       methods(given, {{"articulated_chain"}, {"tr_bdf2"}, {"tangent"}})) {
+    const bool short_steps = method.word("tangent") == "less_implicit";
+    EXPECT_FALSE(short_steps && method.by_tolerance);
+    if (method.by_tolerance) ++by_tolerance;
+    if (short_steps) ++by_steps;
+    for (const Method& other : with_other_words(given, method, "tangent")) {
+      EXPECT_FALSE(other.by_tolerance && other.word("tangent") == "less_implicit");
+    }
+  }
+  EXPECT_EQ(by_tolerance, 4);  // exact and stiff, extrapolated or not
+  EXPECT_EQ(by_steps, 3);      // three ways to rebuild the matrix
+}
+
 TEST(Methods, AreNotExtrapolatedWhereSomethingTouches) {
   const Scene given = read_open_scene(TRESS_SCENES "/accuracy/fall_on_sphere.toml");
   bool by_tolerance = false;

@@ -175,6 +175,46 @@ TEST_P(Strand, KeepsItsOrderWithOneInexactMatrixAStep) {
       << "errors from " << errors.front() << " to " << errors.back();
 }
 
+/// A curl that falls, by tolerance.
+Stats falling_curl(std::string_view id, const char* model, std::string_view tangent,
+                   double tolerance) {
+  const ModelEntry& entry = find_model(model);
+  Parameters p(setup_parameters(entry), std::string("model ") + model);
+  p.set("elements", "13");
+  p.set("length_m", "0.15");
+  p.set("natural_curvature_1_m", "90");
+  p.set("tangent", tangent);
+  const auto system = entry.make(p);
+  Options options;
+  options.tolerance = tolerance;
+  options.max_work = 1e6;
+  Drive drive(id, *system, options);
+  EXPECT_EQ(drive.to(end_time), Status::ok) << drive.integrator->failure();
+  return drive.integrator->stats();
+}
+
+// What less_implicit leaves out of its matrix makes Newton's iteration diverge beyond a
+// length of step that no tolerance changes.
+TEST_P(Strand, TakesShortStepsForATangentThatLacksTerms) {
+  const std::string id = GetParam().id;
+  const Stats stiff = falling_curl(id, "articulated_chain", "stiff", 0.1);
+  const Stats less = falling_curl(id, "articulated_chain", "less_implicit", 0.1);
+  EXPECT_EQ(stiff.rejected_by_newton, 0);
+  EXPECT_GT(less.steps, 3 * stiff.steps);
+  EXPECT_GT(less.rejected_by_newton, 0);
+  EXPECT_EQ(less.rejected_by_error, 0);
+}
+
+// Where a tolerance is loose, corrections of points are large.
+TEST_P(Strand, OfPointsGetsNewMatricesInEveryIterationAtLooseTolerances) {
+  const Stats loose = falling_curl(GetParam().id, "der", "exact", 1e-2);
+  EXPECT_GE(loose.linearizations, loose.newton_iterations);
+  const Stats tight = falling_curl(GetParam().id, "der", "exact", 1e-3);
+  EXPECT_LT(tight.linearizations, tight.newton_iterations);
+  const Stats reduced = falling_curl(GetParam().id, "super_helix", "exact", 1e-2);
+  EXPECT_LT(2 * reduced.linearizations, reduced.newton_iterations);
+}
+
 INSTANTIATE_TEST_SUITE_P(Esdirk, Strand, testing::ValuesIn(all_methods),
                          [](const auto& test) { return test.param.id; });
 

@@ -64,8 +64,11 @@ const by_hand = {
   },
 };
 
-// solve_ivp.csv is rows of work_precision.
-const like = { solve_ivp: 'work_precision' };
+// Tables with the columns of another.
+const like = {
+  solve_ivp: 'work_precision',
+  family_tolerance_summary: 'family_summary',
+};
 
 // Ends of names that are units, as python/tress/tables.py has them.
 export const units = {
@@ -81,8 +84,9 @@ export function unit_of(column) {
 }
 
 function help_of(name, root) {
-  if (by_hand[name] !== undefined) return by_hand[name];
-  const file = join(root, 'results', `${like[name] ?? name}.meta.json`);
+  const known = like[name] ?? name;
+  if (by_hand[known] !== undefined) return by_hand[known];
+  const file = join(root, 'results', `${known}.meta.json`);
   return JSON.parse(readFileSync(file, 'utf8')).columns;
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "contract/system.h"
+
+namespace tress::integrators {
+
+/// What the steps of Newton's iteration with one matrix tell about its error: Broyden's
+/// good rank-one updates, in the product form of [Deuflhard 2011, Newton Methods for
+/// Nonlinear Problems, section 2.1.4]. An update costs two products of vectors in each of
+/// the next steps. It turns the linear convergence with an old or incomplete matrix into
+/// one that gets faster with every step.
+class SecantUpdates {
+ public:
+  /// `typical`: sizes of the unknowns, by which they are compared. It must outlive this.
+  explicit SecantUpdates(In typical);
+
+  /// The matrix is another one.
+  void forget() noexcept;
+  /// The next step is from another point than where the last one ended.
+  void begin() noexcept { follows_ = false; }
+  /// `step`: as the matrix gives it; in return as the updated one does.
+  void improve(InOut step) noexcept;
+
+ private:
+  struct Update {
+    std::vector<double> step, before;  // before: over its square
+  };
+  double product(In x, In y) const noexcept;
+
+  In typical_;
+  std::vector<Update> updates_;
+  std::size_t count_ = 0;
+  std::vector<double> last_;
+  bool follows_ = false;  // last_ is the step before this one
+};
+
+}  // namespace tress::integrators
