@@ -159,8 +159,15 @@ void clear_detail(Table& groom) {
 }
 
 StrandTables with_elements(StrandTables tables, int elements) {
-  for (StrandSource& source : tables.sources) {
-    set_elements(source, elements);
+  const std::vector<int> all(tables.sources.size(), elements);
+  return with_elements(std::move(tables), all);
+}
+
+StrandTables with_elements(StrandTables tables, std::span<const int> elements) {
+  for (std::size_t i = 0; i < tables.sources.size(); ++i) {
+    if (elements[i] <= 0) continue;
+    StrandSource& source = tables.sources[i];
+    set_elements(source, elements[i]);
     if (source.groom) {
       clear_detail(source.table);
     } else if (has_tolerance(source)) {
