@@ -32,6 +32,15 @@ const by_hand = {
     share_above: 'of those above',
     told_right_share: 'of all hairs, by that threshold',
   },
+  compare_itself: {
+    beside: 'itself, or a build with a slowed kernel',
+    rows: 'benchmarks compared',
+    wrong: 'verdicts that are not what was built',
+    verdict: 'of the kernel that is slowed',
+    ratio: 'its time over that of the build itself, median of the rounds',
+    ratio_low: 'lower end of its interval',
+    ratio_high: 'upper end',
+  },
   mutants: {
     file: 'source that was spoilt',
     line: 'of it',
@@ -68,7 +77,7 @@ const by_hand = {
 const like = { solve_ivp: 'work_precision' };
 
 // Ends of names that are units: the Python module's own.
-export const units = Object.fromEntries(
+const units = Object.fromEntries(
   Object.entries(
     JSON.parse(
       readFileSync(new URL('../../../../python/tress/units.json', import.meta.url), 'utf8'),
