@@ -7,6 +7,8 @@ import { InputError } from '../report/src/input.mjs';
 import { fewest, spread, verdict } from './statistics.mjs';
 
 const confidence = 0.99;
+// Of what is timed again, alone, over those of the first look: there are few such rows.
+export const more_rounds = 3;
 export const fewest_rounds = fewest(confidence);
 
 const programs_in = (folder) =>
@@ -72,9 +74,11 @@ function ratios(a, b, options, say) {
 const exactly = (names) =>
   `^(${names.map((name) => name.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')).join('|')})$`;
 
-/// Rows of all benchmarks of the two folders. What looks slower or faster is measured once
-/// more, alone, and the second measurement is what counts: with hundreds of rows some
-/// look so by chance.
+/// Rows of all benchmarks of the two folders. The first rounds only look: of ten ratios the
+/// interval goes from the least to the largest, so that a single disturbed round would hide
+/// what is slower. Whatever is off by half the threshold is measured once more, alone and
+/// in more rounds, and the second measurement is what counts: with hundreds of rows some
+/// are off by chance.
 export function compare_benchmarks(a, b, options, say) {
   const rows = [];
   for (const name of programs_in(a)) {
@@ -82,31 +86,34 @@ export function compare_benchmarks(a, b, options, say) {
       rows.push({ table: name, row: '', verdict: 'only before' });
       continue;
     }
-    const measure = (what, filter) =>
-      ratios(join(a, name), join(b, name), { ...options, filter }, (round) =>
-        say(`${name}, ${what}: round ${round + 1} of ${options.rounds}`),
+    const measure = (what, filter, rounds) =>
+      ratios(join(a, name), join(b, name), { ...options, filter, rounds }, (round) =>
+        say(`${name}, ${what}: round ${round + 1} of ${rounds}`),
       );
-    const { found, only } = measure('timings', options.filter);
+    const { found, only } = measure('timings', options.filter, options.rounds);
     const judged = new Map(
-      [...found].map(([row, values]) => {
-        const interval = spread(values, confidence);
-        return [row, { interval, verdict: verdict(interval, options.threshold) }];
-      }),
+      [...found].map(([row, values]) => [
+        row,
+        { ...spread(values, confidence), verdict: 'same' },
+      ]),
     );
-    const suspected = [...judged].filter(([, { verdict }]) => verdict !== 'same');
+    const half = Math.sqrt(options.threshold);
+    const suspected = [...judged.keys()].filter(
+      (row) => judged.get(row).ratio > half || judged.get(row).ratio < 1 / half,
+    );
     if (suspected.length > 0) {
       const again = measure(
         `${suspected.length} again`,
-        exactly(suspected.map(([row]) => row)),
+        exactly(suspected),
+        more_rounds * options.rounds,
       );
-      for (const [row, { verdict: before }] of suspected) {
+      for (const row of suspected) {
         const interval = spread(again.found.get(row), confidence);
-        const after = verdict(interval, options.threshold);
-        judged.set(row, { interval, verdict: after === before ? after : 'same' });
+        judged.set(row, { ...interval, verdict: verdict(interval, options.threshold) });
       }
     }
-    for (const [row, { interval, verdict }] of judged)
-      rows.push({ table: name, row, column: 'cpu_time', ...interval, verdict });
+    for (const [row, found] of judged)
+      rows.push({ table: name, row, column: 'cpu_time', ...found });
     for (const row of only.a) rows.push({ table: name, row, verdict: 'only before' });
     for (const row of only.b) rows.push({ table: name, row, verdict: 'only after' });
   }

@@ -3,7 +3,7 @@
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { InputError } from '../report/src/input.mjs';
-import { compare_benchmarks, fewest_rounds } from './benchmarks.mjs';
+import { compare_benchmarks, fewest_rounds, more_rounds } from './benchmarks.mjs';
 import { counts, csv_of, page_of } from './page.mjs';
 import { build, side_of } from './sides.mjs';
 import { compare_results } from './tables.mjs';
@@ -77,7 +77,7 @@ function compare(options) {
     side.kind === 'commit' ? build(side, repository, say) : side,
   );
   const rows = compare_benchmarks(a.folder, b.folder, options, say);
-  const how = `Processor time of ${options.rounds} rounds in turns; median ratio and an interval that encloses it with 99 %, whatever the noise. What looked slower or faster by more than ${options.threshold} was timed again, and the second time counts.`;
+  const how = `Processor time of ${options.rounds} rounds in turns; median ratio and an interval that encloses it with 99 %, whatever the noise. What was off by half of ${options.threshold} was timed again, in ${more_rounds} times the rounds, and the second time counts.`;
   return { sides: [a, b], rows, how };
 }
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "experiments/regrading/regrading.h"
+#include "simulation/errors/error_bars.h"
+#include "simulation/errors/pilot.h"
 #include "simulation/run/tip_paths.h"
 #include "simulation/scene/changes.h"
 
@@ -49,6 +51,15 @@ Scene scene_of(const LooseHair& hair, double tolerance) {
       hair.name + ".toml");
 }
 
+MotionError error_of(const Scene& own, const Scene& reference) {
+  const simulation::StrandError points =
+      simulation::distance(own, reference, 1, 1).strands.front();
+  return {static_cast<int>(own.strands.front().segments.size()),
+          simulation::distance_rel(simulation::tip_paths(own, 0),
+                                   simulation::tip_paths(reference, 0), reference),
+          points.parts ? simulation::parted_from : points.error.largest};
+}
+
 }  // namespace
 
 std::vector<LooseHair> loose_hairs() {
@@ -70,10 +81,15 @@ std::vector<LooseHair> loose_hairs() {
 }
 
 MotionError motion_error(const LooseHair& hair, double tolerance) {
-  const Scene reference = scene_of(hair, 0), own = scene_of(hair, tolerance);
-  return {static_cast<int>(own.strands.front().segments.size()),
-          simulation::distance_rel(simulation::tip_paths(own, 0),
-                                   simulation::tip_paths(reference, 0), reference)};
+  return error_of(scene_of(hair, tolerance), scene_of(hair, 0));
+}
+
+PilotError pilot_error(const LooseHair& hair, double tolerance) {
+  const simulation::Pilot found = simulation::pilot(scene_of(hair, tolerance), 1);
+  if (!found.missing.empty()) throw std::runtime_error(found.missing);
+  const simulation::Pilot::OfStrand& one = found.strands.front();
+  return {error_of(found.scene, scene_of(hair, 0)), one.error / hair.length,
+          static_cast<double>(found.elements) / one.elements};
 }
 
 PointsError points_error(const Scene& given, int elements) {

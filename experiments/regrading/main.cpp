@@ -15,8 +15,8 @@ namespace {
 constexpr Column columns[] = {
     {"part",
      "errors (of so many elements), elements (for a distance), limit (of the gain, for "
-     "many elements), in_motion (tolerance_m of hairs that are let go), points (of "
-     "quadrature)"},
+     "many elements), in_motion (tolerance_m of hairs that are let go, cut by their "
+     "rest), pilot (the same, tried in motion), points (of quadrature)"},
     {"scene", "name of the scene"},
     {"model", "of the reference"},
     {"fine_elements", "of the reference"},
@@ -40,6 +40,9 @@ constexpr Column columns[] = {
     {"tip_error_rel",
      "distance of tips from those of a finer cut in the half second after a hair is let "
      "go, rms, over the length; points: from those of 96 elements"},
+    {"largest_error_rel", "the same of all joints, at the worst frame"},
+    {"estimate_rel", "pilot: its estimate of that"},
+    {"work_rel", "pilot: elements of all its runs, over those of one with what it found"},
     {"points_error_rel", "distance of tips from those with 32 quadrature points"},
     {"turning_rad", "of the tangent along the strand, its largest"},
     {"gain", "elements_fixed over elements_regraded"},
@@ -119,18 +122,31 @@ std::vector<Row> measure(const Work& work, const Row& identity) {
   return rows;
 }
 
+void set_error(const MotionError& error, Row& row) {
+  row.set("elements", error.elements).set("tip_error_rel", error.tip);
+  row.set("largest_error_rel", error.largest);
+}
+
 void add_in_motion(std::vector<Case>& all) {
   for (const LooseHair& hair : loose_hairs()) {
     for (const double tolerance : {judged_tolerance, judged_tolerance / 2}) {
       Row identity;
       identity.set("part", "in_motion").set("scene", hair.name);
       identity.set("model", "super_helix").set("tolerance_rel", tolerance);
-      all.push_back(
-          {identity, [hair, tolerance](Row& row, const Deadline&) {
-             const MotionError error = motion_error(hair, tolerance);
-             row.set("elements", error.elements).set("tip_error_rel", error.tip);
-           }});
+      all.push_back({identity, [hair, tolerance](Row& row, const Deadline&) {
+                       const MotionError error = motion_error(hair, tolerance);
+                       set_error(error, row);
+                     }});
     }
+    Row identity;
+    identity.set("part", "pilot").set("scene", hair.name);
+    identity.set("model", "super_helix").set("tolerance_rel", judged_tolerance);
+    all.push_back({identity, [hair](Row& row, const Deadline&) {
+                     const PilotError error = pilot_error(hair, judged_tolerance);
+                     set_error(error.found, row);
+                     row.set("estimate_rel", error.estimate);
+                     row.set("work_rel", error.work);
+                   }});
   }
 }
 

@@ -100,12 +100,20 @@ inline constexpr double judged_tolerance = 5e-3;
 
 /// Elements that cuts = "rest" makes for a tolerance, over the length, and the distance
 /// of tips from those of a finer cut in the half second after the hair is let go: rms
-/// over the frames, over the length.
+/// over the frames, over the length; `largest`: of joints, at the worst frame.
 struct MotionError {
   int elements;
-  double tip;
+  double tip, largest;
 };
 MotionError motion_error(const LooseHair& hair, double tolerance);
+/// The same of the elements that a pilot finds for it (simulation/errors/pilot.h); the
+/// error that it estimates, over the length; the elements of all of its runs, over those
+/// of one run with what it found.
+struct PilotError {
+  MotionError found;
+  double estimate, work;
+};
+PilotError pilot_error(const LooseHair& hair, double tolerance);
 
 /// Distances of the tips of a scene of `elements` from those with many quadrature points,
 /// and from those of many elements: rms over its frames, over the length. Throws

@@ -14,12 +14,12 @@
 #include "experiments/run/exit_code.h"
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
-#include "experiments/simulate/error_bars.h"
 #include "experiments/simulate/head_scene_run.h"
 #include "experiments/simulate/held_report.h"
 #include "experiments/simulate/outcome.h"
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
+#include "simulation/errors/error_bars.h"
 #include "simulation/files/files.h"
 #include "simulation/groom/fitted_groom.h"
 #include "simulation/plugin/load_plugin.h"
@@ -281,7 +281,13 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
     if (!ranks.first()) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
+  std::optional<Pilot> tried;
   if (!job.head) {
+    if (wants_pilot(scene)) {
+      tried = pilot(scene, a.threads);
+      scene = tried->scene;
+      tell("simulate: {}: {}\n", scene.name, in_words(*tried));
+    }
     scene = without_falling(std::move(scene), options.stem + ".rest.csv", a.threads);
   }
   Errors errors;
@@ -299,6 +305,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   const SceneRun run = job.head ? run_head(outline, key, options, interruption)
                                 : run_scene(scene, key, options, interruption);
   Row row = outcome(scene, run);
+  if (tried) set_pilot(*tried, row);
   bool complete = run.end != SceneRun::End::failed;
   if (!ranks.first()) return complete;
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",

@@ -32,6 +32,16 @@ constexpr Column columns_of_outcome[] = {
     {"contact_iterations", "with exact friction: solutions of steps until its law held"},
     {"contact_unfinished", "steps or stages that ended before the law held"},
     {"contact_violation_m_s", "the largest speed by which they violate it"},
+    {"pilot_elements",
+     "[strand] tolerance_m: elements of these strands, by trials in motion; see "
+     "pilot_missing"},
+    {"pilot_elements_at_rest", "the same, as their shapes at rest ask for"},
+    {"pilot_error_rel",
+     "estimated error in space over the tolerance: of a strand, largest"},
+    {"pilot_tries",
+     "pairs of runs of the pilot, with a number of elements and with twice"},
+    {"pilot_s", "time that they took", true},
+    {"pilot_missing", "why there was no pilot: elements are those at rest"},
     {"time_error_max_rel",
      "estimated error in time: largest of a point of the strand with the largest, over "
      "its length, at the frames before the two runs part"},
@@ -74,6 +84,20 @@ constexpr Column columns_of_outcome[] = {
     {"write_s", "to write frames and states", true},
     {"wall_s", "time it took, output included", true},
 };
+
+/// Elements of the strands of a pilot.
+struct Totals {
+  int elements = 0, at_rest = 0;
+};
+
+Totals totals_of(const Pilot& pilot) {
+  Totals all;
+  for (const Pilot::OfStrand& one : pilot.strands) {
+    all.elements += one.elements;
+    all.at_rest += one.at_rest;
+  }
+  return all;
+}
 
 std::string strands_in_words(const ErrorBar& bar) {
   if (bar.strands.size() == 1) return "";
@@ -216,6 +240,39 @@ std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& sc
   }
   if (part == "time" && scene.options.tolerance > 0) {
     words += fmt::format("; asked for {:g}", scene.options.tolerance);
+  }
+  return words;
+}
+
+void set_pilot(const Pilot& pilot, Row& row) {
+  if (!pilot.missing.empty()) {
+    row.set("pilot_missing", pilot.missing);
+    return;
+  }
+  const Totals totals = totals_of(pilot);
+  row.set("pilot_elements", totals.elements);
+  row.set("pilot_elements_at_rest", totals.at_rest);
+  row.set("pilot_error_rel", pilot.worst().error / pilot.worst().tolerance);
+  row.set("pilot_tries", pilot.tries).set("pilot_s", pilot.wall_s);
+}
+
+std::string in_words(const Pilot& pilot) {
+  if (!pilot.missing.empty()) {
+    return fmt::format("no pilot, elements are those that shapes at rest ask for: {}",
+                       pilot.missing);
+  }
+  const Totals totals = totals_of(pilot);
+  const Pilot::OfStrand& worst = pilot.worst();
+  std::string words = fmt::format(
+      "pilot: {} elements ({} at rest), estimated error in space {:.2g} m, "
+      "tolerance {:g} m; {} tries in {:.3g} s",
+      totals.elements, totals.at_rest, worst.error, worst.tolerance, pilot.tries,
+      pilot.wall_s);
+  if (pilot.strands.size() > 1) {
+    words += fmt::format("; strand {} of {}", worst.strand, pilot.strands.size());
+  }
+  if (worst.error > worst.tolerance) {
+    words += "; not within the tolerance: `elements` of its table allows no more";
   }
   return words;
 }

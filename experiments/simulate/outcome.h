@@ -4,8 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/simulate/error_bars.h"
 #include "experiments/simulate/scene_run.h"
+#include "simulation/errors/error_bars.h"
+#include "simulation/errors/pilot.h"
 #include "simulation/files/row.h"
 
 namespace tress::experiments::scene_runs {
@@ -28,5 +29,9 @@ std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& sc
 
 /// A table of both over time: one line a frame.
 std::string errors_csv(const Scene& scene, const ErrorBar& time, const ErrorBar& space);
+
+/// What a pilot found, as cells and as words.
+void set_pilot(const Pilot& pilot, Row& row);
+std::string in_words(const Pilot& pilot);
 
 }  // namespace tress::experiments::scene_runs

@@ -15,12 +15,9 @@ import numpy as np
 from . import _core
 from .errors import InputError, ProgramError
 
-# Ends of column names that are units (results/README.md).
-_UNITS = {
-    "s": "s", "m": "m", "j": "J", "n": "N", "pa": "Pa", "kg": "kg", "hz": "1/s", "rad": "rad",
-    "rel": "1", "m_s": "m/s", "rad_s": "rad/s", "1_m": "1/m", "1_s": "1/s", "kg_m3": "kg/m^3",
-    "kg_m_s": "kg/(m s)", "kg_m3_s": "kg m^3/s", "m_s2": "m/s^2", "n_m": "N m", "bytes": "B",
-}  # fmt: skip
+# Ends of column names that are units (results/README.md); docs/tables.md is made from the
+# same file.
+_UNITS = json.loads((Path(__file__).parent / "units.json").read_text())
 
 
 def unit_of(column):

@@ -113,6 +113,12 @@ Scene with_elements(Scene scene, int elements) {
   });
 }
 
+Scene with_elements_of_strands(Scene scene, std::span<const int> elements) {
+  return cut_anew(std::move(scene), [elements](const StrandTables& tables) {
+    return with_elements(tables, elements);
+  });
+}
+
 Scene with_elements_at_rest(Scene scene, int elements) {
   const bool linear = scene.model->id == "super_clothoid";
   return cut_anew(std::move(scene), [&](const StrandTables& tables) {

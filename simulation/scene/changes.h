@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +31,10 @@ Scene with_method(Scene scene, const Method& method);
 /// The same strands with `elements` elements each. Throws InputError as read_scene does,
 /// and std::logic_error if the scene's tables no longer describe its strands.
 Scene with_elements(Scene scene, int elements);
-/// As above, elements that share what bends a strand at rest: cuts = "rest", or
+/// As above, of the strands of each [strand], [groom] table that has an entry above 0 in
+/// `elements`, in their order.
+Scene with_elements_of_strands(Scene scene, std::span<const int> elements);
+/// As with_elements(), elements that share what bends a strand at rest: cuts = "rest", or
 /// "rest_linear" where the scene's model is super_clothoid. Only of [strand] tables,
 /// without points.
 Scene with_elements_at_rest(Scene scene, int elements);

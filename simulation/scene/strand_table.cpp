@@ -59,8 +59,10 @@ constexpr Parameter own_parameters[] = {
              "curvature that is linear in an element (super_clothoid)",
      .choices = "grading|rest|rest_linear"},
     {.name = "tolerance_m",
-     .help = "as few elements as its shape at rest needs to be within this distance, up "
-             "to `elements` (m); 0: `elements`",
+     .help =
+         "as few elements as its shape at rest needs to be within this distance, up "
+         "to `elements` (m); `simulate` tries its motion and gives it more where that "
+         "needs them; 0: `elements`",
      .number = 0,
      .min = 0,
      .max = 1e3},

@@ -47,6 +47,16 @@ void set_elements(StrandSource& source, long elements) {
   source.table.set("elements", std::to_string(elements), place);
 }
 
+/// As above, without a tolerance that would give others.
+void set_elements_alone(StrandSource& source, int elements) {
+  set_elements(source, elements);
+  if (source.groom) {
+    clear_detail(source.table);
+  } else if (has_tolerance(source)) {
+    source.table.set("tolerance_m", "0", source.table.place("tolerance_m"));
+  }
+}
+
 }  // namespace
 
 StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
@@ -159,13 +169,13 @@ void clear_detail(Table& groom) {
 }
 
 StrandTables with_elements(StrandTables tables, int elements) {
-  for (StrandSource& source : tables.sources) {
-    set_elements(source, elements);
-    if (source.groom) {
-      clear_detail(source.table);
-    } else if (has_tolerance(source)) {
-      source.table.set("tolerance_m", "0", source.table.place("tolerance_m"));
-    }
+  for (StrandSource& source : tables.sources) set_elements_alone(source, elements);
+  return tables;
+}
+
+StrandTables with_elements(StrandTables tables, std::span<const int> elements) {
+  for (std::size_t i = 0; i < tables.sources.size(); ++i) {
+    if (elements[i] > 0) set_elements_alone(tables.sources[i], elements[i]);
   }
   return tables;
 }

@@ -95,6 +95,9 @@ void clear_detail(Table& groom);
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
+/// The same tables, those with an entry in `elements` above 0 with so many elements, and
+/// no tolerance, in every strand.
+StrandTables with_elements(StrandTables tables, std::span<const int> elements);
 /// The same tables, every [strand] with these `cuts`.
 StrandTables with_cuts(StrandTables tables, std::string_view cuts);
 /// The same tables, every strand with twice its elements. Throws InputError where these

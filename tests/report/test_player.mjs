@@ -1,6 +1,6 @@
 // The scenes' picture by WebGL in headless Chromium: `node --test tests/report/test_player.mjs`.
 import assert from 'node:assert/strict';
-import { mkdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Browser } from '../../experiments/report/src/chromium.mjs';
@@ -14,27 +14,14 @@ import {
   scattered,
   tables_of,
 } from '../../experiments/report/src/hair/fibre.mjs';
+import { picture_ms, write_many, write_scene as written_scene } from './picture_times.mjs';
 import { fixture_directory, remove, run_page } from './support.mjs';
 
 let directory, browser, url;
 
 const base64 = (array) => Buffer.from(array.buffer).toString('base64');
 
-// Points within the box of -0.1 .. 0.1 m in every direction, one frame.
-function write_scene(name, strands, more = {}) {
-  const points = strands.flat();
-  const words = points.flatMap((p) =>
-    p.map((x) => Math.round(((x + 0.1) / 0.2) * 65535)),
-  );
-  const scene = {
-    format: 'tress-strands-1', scene: name, title: name, source: '', model: 'made up',
-    integrator: 'none', dt_s: null, times_s: [0], low: [-0.1, -0.1, -0.1],
-    high: [0.1, 0.1, 0.1], strand_points: strands.map((strand) => strand.length),
-    positions: base64(new Uint16Array(words)), channels: [], bodies: [],
-    series: { columns: ['t_s'], rows: [[0]] }, ...more,
-  }; // prettier-ignore
-  writeFileSync(join(directory, 'scenes', `${name}.json`), JSON.stringify(scene));
-}
+const write_scene = (...what) => written_scene(directory, ...what);
 
 // A line across the picture, seen from -y, 7 degrees off the vertical, and specks in a corner
 // that make it one of so many that it is drawn thin.
@@ -189,34 +176,13 @@ test('WithoutWebgl_TheCanvasDraws', async () => {
   await browser.devtools('Page.removeScriptToEvaluateOnNewDocument', { identifier });
 });
 
-// How long a picture takes, without a bound: that is the machine's. Pixels are read back, so
-// that every picture is done.
+// How long a picture takes, without a bound: that is the machine's.
 test('Frames_OfTwoThousandHairsAreTimed', async (t) => {
-  const hair = (k) => {
-    const [x, y] = [0.08 * Math.cos(2.4 * k), 0.08 * Math.sin(2.4 * k)];
-    return Array.from({ length: 20 }, (_, i) => [x, y, 0.09 - 0.009 * i]);
-  };
-  write_scene(
-    'many',
-    Array.from({ length: 2000 }, (_, k) => hair(k)),
-  );
+  write_many(directory);
   assert.equal(run_page(directory).status, 0);
   for (const by of ['webgl', 'canvas']) {
-    await browser.open(
-      `${url}#scene=many&colour=strand&full=picture&draw=${by}`,
-      800,
-      600,
-    );
+    const ms = await picture_ms(browser, url, by);
     assert.equal(await drawn_by(), by);
-    const ms = await browser.run(`
-      const canvas = document.getElementById('scene-canvas');
-      const pictures = 10;
-      const begin = performance.now();
-      for (let i = 0; i < pictures; ++i) {
-        canvas.dispatchEvent(new CustomEvent('scene-time', { detail: 0 }));
-        canvas.getContext('2d').getImageData(0, 0, 1, 1);
-      }
-      return (performance.now() - begin) / pictures;`);
     t.diagnostic(
       `2 000 hairs of 20 points at 800 x 600 by ${by}: ${ms.toFixed(1)} ms a picture`,
     );

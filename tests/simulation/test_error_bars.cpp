@@ -6,14 +6,15 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "experiments/simulate/error_bars.h"
 #include "experiments/simulate/outcome.h"
+#include "simulation/errors/error_bars.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
 namespace tress::test_error_bars {
 
 using namespace experiments::scene_runs;
+using namespace simulation;
 
 constexpr double length = 0.1;  // m
 

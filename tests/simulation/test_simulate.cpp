@@ -243,6 +243,21 @@ TEST(Simulate, RunsByToleranceAndVerifiesIt) {
   EXPECT_LE(achieved, 1e-2);
 }
 
+TEST(Simulate, ElementsOfAStrandWithAToleranceAreTried) {
+  Toy toy;
+  std::string scene = falling("super_helix");
+  const std::string before = "elements = 10";
+  scene.replace(scene.find(before), before.size(), "elements = 40\ntolerance_m = 0.001");
+  toy.write("fall.toml", scene);
+  const Toy::Result run = toy.run("fall.toml --out out --progress none");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("fall: pilot: "), std::string::npos) << run.err;
+  const auto outcome = nlohmann::json::parse(toy.read("out/fall.meta.json"))["outcome"];
+  EXPECT_GE(outcome["pilot_elements"], outcome["pilot_elements_at_rest"]);
+  EXPECT_GE(outcome["pilot_tries"], 1);
+  EXPECT_LE(outcome["pilot_error_rel"], 1);
+}
+
 TEST(Simulate, ErrorsAndCountsStandInTheManifestAndBesideTheSeries) {
   Toy toy;
   toy.write("fall.toml", falling("super_helix"));

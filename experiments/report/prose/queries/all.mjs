@@ -3,6 +3,7 @@
 import * as catalogue from './catalogue.mjs';
 import * as claims from './claims.mjs';
 import * as columns from './columns.mjs';
+import * as compare from './compare.mjs';
 import * as cost from './cost.mjs';
 import * as damping from './damping.mjs';
 import * as divided_heads from './divided_heads.mjs';
@@ -31,6 +32,7 @@ export const queries = {
   catalogue,
   claims,
   columns,
+  compare,
   cost,
   damping,
   divided_heads,

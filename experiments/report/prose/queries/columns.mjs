@@ -32,6 +32,15 @@ const by_hand = {
     share_above: 'of those above',
     told_right_share: 'of all hairs, by that threshold',
   },
+  compare_itself: {
+    beside: 'itself, or a build with a slowed kernel',
+    rows: 'benchmarks compared',
+    wrong: 'verdicts that are not what was built',
+    verdict: 'of the kernel that is slowed',
+    ratio: 'its time over that of the build itself, median of the rounds',
+    ratio_low: 'lower end of its interval',
+    ratio_high: 'upper end',
+  },
   mutants: {
     file: 'source that was spoilt',
     line: 'of it',
@@ -70,12 +79,14 @@ const like = {
   family_tolerance_summary: 'family_summary',
 };
 
-// Ends of names that are units, as python/tress/tables.py has them.
-export const units = {
-  s: 's', m: 'm', j: 'J', n: 'N', pa: 'Pa', kg: 'kg', hz: '1/s', rad: 'rad', rel: '1',
-  m_s: 'm/s', rad_s: 'rad/s', '1_m': '1/m', '1_s': '1/s', kg_m3: 'kg/m³', kg_m_s: 'kg/(m s)',
-  kg_m3_s: 'kg m³/s', m_s2: 'm/s²', n_m: 'N m', bytes: 'B',
-}; // prettier-ignore
+// Ends of names that are units: the Python module's own.
+const units = Object.fromEntries(
+  Object.entries(
+    JSON.parse(
+      readFileSync(new URL('../../../../python/tress/units.json', import.meta.url), 'utf8'),
+    ),
+  ).map(([end, unit]) => [end, unit.replace('^2', '²').replace('^3', '³')]),
+);
 
 export function unit_of(column) {
   const words = column.split('_');

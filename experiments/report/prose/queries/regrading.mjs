@@ -77,6 +77,21 @@ export const in_motion = (tables) => {
   );
 };
 
+// Those whose motion was tried.
+export const pilot = (tables) => {
+  const all = rows(tables, 'pilot');
+  const asked = Number(all[0].tolerance_rel);
+  const within = (column) => all.filter((row) => row[column] <= asked).length;
+  const numbers = (column) => all.map((row) => Number(row[column]));
+  const once = all.filter((row) => Number(row.work_rel) === 3).length;
+  return (
+    `${within('tip_error_rel')} of ${all.length} hairs keep ${percent(asked)} of their length by the same measure, and ` +
+    `${within('largest_error_rel')} at every joint and frame, with ${range(numbers('elements'), number)} elements. ` +
+    `For ${once} of them the elements of rest were enough; the runs of a pilot have ` +
+    `${range(numbers('work_rel'), (x) => number(x, 2))} times the elements of the run that it prepares.`
+  );
+};
+
 const with_points = (tables) =>
   rows(tables, 'points').filter((row) => row.points_error_rel !== undefined);
 

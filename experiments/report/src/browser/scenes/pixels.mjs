@@ -9,14 +9,25 @@ const up_to = (x) => {
   return x <= -1 ? 0 : 0.5 + x + 0.5 * x * x;
 };
 
+const level_of = (light) =>
+  levels[light < 1 ? (level_steps * light + 0.5) | 0 : level_steps];
+
 export class Pixels {
-  // `background`: linear, also of what lies `rim` pixels beyond the lines.
-  constructor(data, width, height, background, rim) {
+  light = new Float32Array(0);
+  touched = new Uint8Array(0); // 0: `light` is not of this picture yet
+
+  // Of a picture to draw on. `background`: linear, also of what lies `rim` pixels beyond
+  // the lines.
+  begin(data, width, height, background, rim) {
     this.data = data;
     this.width = width;
     this.height = height;
     this.background = background;
     this.rim = rim;
+    if (this.touched.length === width * height) {
+      this.touched.fill(0);
+      return;
+    }
     this.light = new Float32Array(3 * width * height);
     this.touched = new Uint8Array(width * height);
   }
@@ -52,16 +63,23 @@ export class Pixels {
     const place_step = steep ? 1 : this.width;
     const [am_way, an_way] = [along[2 * a + major], along[2 * a + minor]];
     const [bm_way, bn_way] = [along[2 * b + major], along[2 * b + minor]];
+    const [a_half, a_red, a_green, a_blue] = [
+      seen[3 * a + 2], lit[3 * a], lit[3 * a + 1], lit[3 * a + 2],
+    ]; // prettier-ignore
+    const more_half = seen[3 * b + 2] - a_half;
+    const more_red = lit[3 * b] - a_red;
+    const more_green = lit[3 * b + 1] - a_green;
+    const more_blue = lit[3 * b + 2] - a_blue;
     const start = Math.max(0, Math.ceil(Math.min(am, bm) - longer - 0.5));
     const end = Math.min(lines, Math.ceil(Math.max(am, bm) + longer - 0.5));
     for (let line = start; line < end; ++line) {
       const m = line + 0.5;
       const t = Math.max(0, Math.min(1, (m - am) / (bm - am)));
       const centre = an + slope * (m - am);
-      const half = seen[3 * a + 2] + t * (seen[3 * b + 2] - seen[3 * a + 2]);
-      const red = lit[3 * a] + t * (lit[3 * b] - lit[3 * a]);
-      const green = lit[3 * a + 1] + t * (lit[3 * b + 1] - lit[3 * a + 1]);
-      const blue = lit[3 * a + 2] + t * (lit[3 * b + 2] - lit[3 * a + 2]);
+      const half = a_half + t * more_half;
+      const red = a_red + t * more_red;
+      const green = a_green + t * more_green;
+      const blue = a_blue + t * more_blue;
       const last = Math.min(places - 1, Math.floor(centre + wide - 0.5));
       for (let k = Math.max(0, Math.ceil(centre - wide - 0.5)); k <= last; ++k) {
         const n = k + 0.5;
@@ -71,11 +89,19 @@ export class Pixels {
         }
         const off = (n - centre) * cosine;
         const inner = up_to(off + half) - up_to(off - half);
-        const all = rim > 0 ? up_to(off + half + rim) - up_to(off - half - rim) : inner;
-        if (all === 0) continue;
         const pixel = line * line_step + k * place_step;
-        if (touched[pixel] === 0) this.#read(pixel);
         const i = 3 * pixel;
+        if (rim === 0) {
+          if (inner === 0) continue;
+          if (touched[pixel] === 0) this.#read(pixel);
+          light[i] += inner * (red - light[i]);
+          light[i + 1] += inner * (green - light[i + 1]);
+          light[i + 2] += inner * (blue - light[i + 2]);
+          continue;
+        }
+        const all = up_to(off + half + rim) - up_to(off - half - rim);
+        if (all === 0) continue;
+        if (touched[pixel] === 0) this.#read(pixel);
         const outer = all - inner;
         light[i] += inner * red + outer * back_red - all * light[i];
         light[i + 1] += inner * green + outer * back_green - all * light[i + 1];
@@ -96,12 +122,12 @@ export class Pixels {
 
   write() {
     const { data, light, touched } = this;
-    for (let pixel = 0; pixel < touched.length; ++pixel) {
+    for (let pixel = 0, i = 0, j = 0; pixel < touched.length; ++pixel, i += 3, j += 4) {
       if (touched[pixel] === 0) continue;
-      for (let c = 0; c < 3; ++c)
-        data[4 * pixel + c] =
-          levels[Math.round(level_steps * Math.min(1, light[3 * pixel + c]))];
-      data[4 * pixel + 3] = 255;
+      data[j] = level_of(light[i]);
+      data[j + 1] = level_of(light[i + 1]);
+      data[j + 2] = level_of(light[i + 2]);
+      data[j + 3] = 255;
     }
   }
 }

@@ -12,6 +12,7 @@ export class Strands {
     this.along = new Float32Array(2 * curves.size); // direction on the picture
     this.lit = new Float32Array(3 * curves.size);
     this.layer = new Uint8Array(curves.size);
+    this.pixels = new Pixels();
   }
 
   // Where the points are on the picture, how they are lit, and the body before which each is
@@ -91,7 +92,8 @@ export class Strands {
     const { width, height } = this;
     const { segments } = this.order;
     const image = context.getImageData(left, 0, width, height);
-    const picture = new Pixels(image.data, width, height, linear(background), rim);
+    const { pixels: picture } = this;
+    picture.begin(image.data, width, height, linear(background), rim);
     for (let o = 0; o < this.count; ++o) {
       const f = segments[o];
       if (Math.min(this.layer[f], this.layer[f + 1]) === layer)

@@ -1,4 +1,4 @@
-#include "experiments/simulate/error_bars.h"
+#include "simulation/errors/error_bars.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 
-namespace tress::experiments::scene_runs {
+namespace tress::simulation {
 namespace {
 
 /// A scene as it runs.
@@ -273,21 +273,24 @@ ErrorBar time_error(const Scene& scene, int threads) {
   return compared(scene, given, finer, std::move(comparison));
 }
 
-ErrorBar space_error(const Scene& scene, int threads) try {
-  if (scene.tables == nullptr) {
-    return missing("the model brings its own elements, which cannot be doubled");
-  }
-  const Scene doubled = with_twice_the_elements(scene);
-  Run given(scene, threads), finer(doubled, threads);
-  const double falls = std::pow(2, scene.model->order);  // the error, by doubling
-  Comparison comparison(given, finer, falls / (falls - 1));
+ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int threads) {
+  Run given(scene, threads), other(finer, threads);
+  Comparison comparison(given, other, factor);
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     const auto places = [k](const Scene& of, const Run& run) {
       return by_length(of.strands[k], static_cast<std::size_t>(run.world.points()[k]));
     };
-    comparison.match(k, places(scene, given), places(doubled, finer));
+    comparison.match(k, places(scene, given), places(finer, other));
   }
-  return compared(scene, given, finer, std::move(comparison));
+  return compared(scene, given, other, std::move(comparison));
+}
+
+ErrorBar space_error(const Scene& scene, int threads) try {
+  if (scene.tables == nullptr) {
+    return missing("the model brings its own elements, which cannot be doubled");
+  }
+  const double falls = std::pow(2, scene.model->order);  // the error, by doubling
+  return distance(scene, with_twice_the_elements(scene), falls / (falls - 1), threads);
 } catch (const InputError& error) {
   return missing(error.what());
 }
@@ -299,4 +302,4 @@ void check_verifiable(const Scene& scene) {
                    "take --error-bars");
 }
 
-}  // namespace tress::experiments::scene_runs
+}  // namespace tress::simulation

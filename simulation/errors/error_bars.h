@@ -6,9 +6,7 @@
 
 #include "simulation/scene/scene.h"
 
-namespace tress::experiments::scene_runs {
-
-using namespace simulation;
+namespace tress::simulation {
 
 /// Distance of two runs above which they are no longer one motion and its error, over the
 /// length: from there the estimate would be of no meaning.
@@ -52,6 +50,10 @@ struct ErrorBar {
 /// up to 3/2 of the estimate.
 ErrorBar time_error(const Scene& scene, int threads);
 
+/// Of two runs of one scene that is cut in two ways: what lies between them, at equal arc
+/// length, times `factor`.
+ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int threads);
+
 /// Against a run with twice the elements, at equal arc length, by the model's order in
 /// their length. Missing for bodies that no table says how to cut.
 ErrorBar space_error(const Scene& scene, int threads);
@@ -59,4 +61,4 @@ ErrorBar space_error(const Scene& scene, int threads);
 /// Throws InputError if the scene has no tolerance to compare the error with.
 void check_verifiable(const Scene& scene);
 
-}  // namespace tress::experiments::scene_runs
+}  // namespace tress::simulation
