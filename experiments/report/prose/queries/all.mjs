@@ -20,6 +20,7 @@ import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as matrices from './matrices.mjs';
 import * as newest from './newest.mjs';
+import * as player from './player.mjs';
 import * as python from './python.mjs';
 import * as references from './references.mjs';
 import * as regrading from './regrading.mjs';
@@ -49,6 +50,7 @@ export const queries = {
   machine,
   matrices,
   newest,
+  player,
   python,
   references,
   regrading,

@@ -48,6 +48,15 @@ const by_hand = {
     after: 'the line, spoilt',
     outcome: 'killed by a test, or survived',
   },
+  player: {
+    draw: 'by what: the canvas alone, or WebGL that a processor computes',
+    colour: 'one colour a strand, or hair in light',
+    hairs: 'drawn',
+    points: 'of each',
+    width: 'of the picture in pixels',
+    height: 'the same',
+    picture_ms: 'wall time of a picture (ms), median of five times ten',
+  },
   peers_published: {
     name: 'of the method',
     cited_as: 'in this repository',
