@@ -11,7 +11,7 @@
 #include "experiments/benchmarks/reference_strands.h"
 #include "models/effects/body.h"
 #include "models/head/head.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_run.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::benchmarks {

@@ -14,6 +14,10 @@
 #include <thread>
 #include <vector>
 
+#include "contract/input_error.h"
+#include "experiments/divided_heads/cost_model.h"
+#include "experiments/divided_heads/predictions.h"
+#include "experiments/divided_heads/scene.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 #include "simulation/files/files.h"
@@ -24,43 +28,40 @@ namespace {
 constexpr Column columns[] = {
     {"kind", "measured, or predicted by the model alone"},
     {"effects", "beside gravity: drag; interaction of neighbouring hairs, and drag"},
-    {"strands", "hairs, all on one scalp"},
+    {"strands", "hairs, as dense on the scalp whatever their number"},
     {"ranks", "processes of mpirun, of one thread each"},
+    {"beside", "such heads that run at the same time"},
     {"cores", "of the machine", true},
-    {"cost_per_step_s", "wall time of a step, mean", true},
+    {"cost_per_step_s", "wall time of a step, mean of a run; median of runs", true},
     {"ghosts_per_strand",
      "strands of other ranks that may touch a rank's own, over these"},
     {"claim_per_element_s", "of a step: to find which strands those are, by own elements",
      true},
     {"exchange_per_element_s",
      "of a step: to send and receive them, waiting included, by own elements", true},
+    {"meet_per_element_s",
+     "of a step: to list what touches strands that they may touch, by own elements",
+     true},
     {"memory_mb", "of the rank that holds most, program included", true},
     {"model_cost_per_step_s", "what the model says", true},
     {"model_off_rel", "its difference from the measurement, over that", true},
-    {"efficiency", "one rank's time over that of all ranks together, by the model", true},
+    {"model_ghosts_per_strand", "what the model says"},
+    {"efficiency", "of a rank's time, what its own hairs take, by the model", true},
     {"state", "checksum of all states at the end: equal bits, equal checksum"},
 };
 
-constexpr int elements = 10;
-constexpr double dt = 0.0025, duration = 0.2;  // s
-constexpr int measured_strands[] = {500, 1000, 2000, 4000}, measured_ranks[] = {1, 2, 4};
-// Those that set the model's numbers; the others test it.
-constexpr int fitted_strands[] = {500, 2000};
+#ifdef TRESS_HAS_MPI
+constexpr bool has_mpi = true;
+#else
+constexpr bool has_mpi = false;
+#endif
 
-std::string scene(bool interaction, int strands) {
-  return fmt::format(
-      "title = \"a head that processes divide\"\nduration_s = {}\nframes_1_s = 5\n"
-      "[model]\nid = \"super_helix\"\ntangent = \"stiff\"\n[integrator]\n"
-      "id = \"semi_implicit_euler\"\ndt_s = {}\n[material]\nname = \"hair.caucasian\"\n"
-      "[groom]\ncount = {}\nelements = {}\nlength_m = 0.2\n[root]\nmotion = \"rotate\"\n"
-      "axis = [0, 0, 1]\nangle_rad = 0.5\n[effects.gravity]\n[effects.linear_drag]\n"
-      "drag_kg_m_s = 1e-4\n{}",
-      duration, dt, strands, elements,
-      interaction ? "[effects.strand_interaction]\nstiffness_n_m2 = 2e-4\n"
-                    "viscosity_n_s_m2 = 2e-4\ninner_radius_m = 3e-3\n"
-                    "outer_radius_m = 6e-3\n"
-                  : "");
-}
+constexpr int measured_strands[] = {1000, 2000, 4000};
+/// What is measured, in turns, of a number of hairs.
+struct Setting {
+  int ranks, beside;
+};
+constexpr Setting settings_of_head[] = {{1, 1}, {1, 2}, {2, 1}, {4, 1}};
 
 /// A folder that is removed in the end.
 struct Folder {
@@ -73,162 +74,122 @@ struct Folder {
   }
 };
 
-/// As a user would: simulate by mpirun, more ranks than cores if need be.
-void measure(Row& row) {
-  const Folder folder;
-  const std::string file = (folder.path / "head.toml").string();
-  const auto ranks = static_cast<int>(row.number("ranks"));
-  replace_file(file, scene(row.text("effects") == "interaction",
-                           static_cast<int>(row.number("strands"))));
+struct Failed {
+  std::string reason;
+};
+
+/// As a user would: simulate by mpirun, more ranks than cores if need be. The outcomes of
+/// the heads that run at the same time.
+std::vector<nlohmann::json> run(const Folder& folder, const Setting& setting) {
   const std::filesystem::path simulate =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "simulate";
-  const std::string command = fmt::format(
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-      "mpirun --oversubscribe --bind-to none -n {} '{}' '{}' --as head --frames none "
-      "--progress none --out '{}' >'{}' 2>&1",
-      ranks, simulate.string(), file, folder.path.string(),
-      (folder.path / "log").string());
-  if (std::system(command.c_str()) != 0) {
-    row.failed("refused",
-               "no mpirun, or simulate was built without MPI: see "
-               "cmake/mpi_packages.txt");
-    return;
+  const auto out = [&](int i) { return folder.path / std::to_string(i); };
+  std::string commands =
+      "export OMPI_ALLOW_RUN_AS_ROOT=1 "
+      "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; pids=; ";
+  for (int i = 0; i < setting.beside; ++i) {
+    commands += fmt::format(
+        "mpirun --oversubscribe --bind-to none -n {} '{}' '{}' --as head --frames none "
+        "--progress none --out '{}' >'{}' 2>&1 & pids=\"$pids $!\"; ",
+        setting.ranks, simulate.string(), (folder.path / "head.toml").string(),
+        out(i).string(), out(i).string() + ".log");
   }
-  const auto manifest =
-      nlohmann::json::parse(read_file((folder.path / "head.meta.json").string()));
-  const nlohmann::json& outcome = manifest.at("outcome");
-  const auto number = [&](const char* name) { return outcome.at(name).get<double>(); };
+  commands += "code=0; for pid in $pids; do wait $pid || code=1; done; exit $code";
+  if (std::system(commands.c_str()) != 0) {
+    const std::string log = read_file(out(0).string() + ".log");
+    throw Failed{"mpirun failed: " + log.substr(0, log.find('\n'))};
+  }
+  std::vector<nlohmann::json> outcomes;
+  for (int i = 0; i < setting.beside; ++i) {
+    outcomes.push_back(
+        nlohmann::json::parse(read_file((out(i) / "head.meta.json").string()))
+            .at("outcome"));
+  }
+  return outcomes;
+}
+
+double step_of(const nlohmann::json& outcome) {
+  return outcome.at("step_s").get<double>() / outcome.at("steps").get<double>();
+}
+
+void fill(Row& row, const nlohmann::json& outcome) {
+  const auto number = [&](const std::string& name) {
+    return outcome.at(name).get<double>();
+  };
   const double own = number("rank_strands");
   row.set("cores", static_cast<int>(std::thread::hardware_concurrency()));
-  row.set("cost_per_step_s", number("step_s") / number("steps"));
+  row.set("cost_per_step_s", step_of(outcome));
   row.set("memory_mb", number("peak_memory_mb"));
   row.set("state", outcome.at("state").get<std::string>());
   if (!outcome.contains("ghosts_per_step")) return;
   row.set("ghosts_per_strand", number("ghosts_per_step") / own);
-  row.set("claim_per_element_s", number("claim_s") / (own * elements));
-  row.set("exchange_per_element_s", number("exchange_s") / (own * elements));
+  for (const std::string part : {"claim", "exchange", "meet"}) {
+    row.set(part + "_per_element_s", number(part + "_s") / (own * elements));
+  }
+}
+
+/// Settings take turns, so that what else the machine does meets all of them alike.
+std::vector<Row> measure(const Row& head, int repeat) {
+  const Folder folder;
+  replace_file((folder.path / "head.toml").string(),
+               scene(head.text("effects") == "interaction",
+                     static_cast<int>(head.number("strands"))));
+  std::vector<Row> rows;
+  for (const Setting& setting : settings_of_head) {
+    rows.push_back(head);
+    rows.back().set("ranks", setting.ranks).set("beside", setting.beside);
+  }
+  std::vector<std::vector<nlohmann::json>> runs(rows.size());
+  try {
+    for (int i = 0; i < repeat; ++i) {
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        // The slowest of those that run at the same time.
+        runs[k].push_back(
+            std::ranges::max(run(folder, settings_of_head[k]), {}, step_of));
+      }
+    }
+  } catch (const Failed& failed) {
+    for (Row& row : rows) row.failed("not_run", failed.reason);
+    return rows;
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto middle = runs[k].begin() + static_cast<std::ptrdiff_t>(repeat / 2);
+    std::ranges::nth_element(runs[k], middle, {}, step_of);
+    fill(rows[k], *middle);
+  }
+  return rows;
 }
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, {});
+  if (!has_mpi) {
+    throw InputError("built without MPI", "divided_heads",
+                     "install the packages of cmake/mpi_packages.txt and build again");
+  }
   std::vector<Case> all;
-  const auto add = [&](const char* kind, const char* effects, long strands, int ranks) {
+  const auto row_of = [](const char* kind, const char* effects, long strands) {
     Row row;
     row.set("kind", kind).set("effects", effects).set("strands", strands);
-    row.set("ranks", ranks);
-    const bool measured = std::string_view(kind) == "measured";
-    all.push_back({row, [measured](Row& r, const Deadline&) {
-                     if (measured) measure(r);
-                   }});
+    return row;
   };
   for (const char* effects : {"drag", "interaction"}) {
     for (const int strands : measured_strands) {
-      for (const int ranks : measured_ranks) add("measured", effects, strands, ranks);
+      all.push_back({row_of("measured", effects, strands),
+                     {},
+                     [repeat = line.repeat](const Row& row, const Deadline&) {
+                       return measure(row, repeat);
+                     }});
     }
   }
   for (const char* effects : {"drag", "interaction"}) {
     for (const long strands : {10'000L, 100'000L, 1'000'000L, 10'000'000L}) {
       for (int ranks = 1; ranks <= 4096; ranks *= 4) {
-        add("predicted", effects, strands, ranks);
+        all.push_back({row_of("predicted", effects, strands).set("ranks", ranks),
+                       [](Row&, const Deadline&) {}});
       }
     }
   }
   return all;
-}
-
-/// Wall time of a step of n hairs of e elements on R ranks,
-///
-///     T(n, R) = (n e/R) (k + c n) (1 + b g(R)) + l log2 R,
-///
-/// k: a hair alone; c n: its contacts, as the hairs within reach of one are as many as
-/// hairs are dense; g(R): ghosts of an own strand, b: what one costs over a hair, to
-/// send, receive, hold and list; l: latency of the collective calls of a step. Ghosts lie
-/// along the border of a rank's region, over its area: g(R) = g(2) sqrt(R/2), but no more
-/// than there are.
-struct Model {
-  double kernel = 0, contacts = 0, ghost = 0, ghosts_of_two = 0, latency = 0;
-
-  /// Of the hairs of a rank, ghosts left out.
-  double own_cost(double strands, double ranks) const {
-    return strands * elements / ranks * (kernel + contacts * strands);
-  }
-  double cost(double strands, double ranks) const {
-    const double ghosts =
-        ranks > 1 ? std::min(ghosts_of_two * std::sqrt(ranks / 2), ranks - 1) : 0;
-    return own_cost(strands, ranks) * (1 + ghost * ghosts) + latency * std::log2(ranks);
-  }
-};
-
-/// The measured rows that set the model's numbers; empty if some are missing.
-std::vector<const Row*> fitted(const std::vector<Row>& rows, std::string_view effects,
-                               int ranks) {
-  std::vector<const Row*> found;
-  for (const Row& row : rows) {
-    if (row.ok() && row.text("kind") == "measured" && row.text("effects") == effects &&
-        row.number("ranks") == ranks &&
-        std::ranges::find(fitted_strands, static_cast<int>(row.number("strands"))) !=
-            std::end(fitted_strands)) {
-      found.push_back(&row);
-    }
-  }
-  if (found.size() != std::size(fitted_strands)) found.clear();
-  return found;
-}
-
-/// The line through two points.
-struct Line {
-  double slope, offset;
-  static Line through(const std::vector<const Row*>& two, const auto& x, const auto& y) {
-    const double slope = (y(*two[1]) - y(*two[0])) / (x(*two[1]) - x(*two[0]));
-    return {slope, y(*two[0]) - slope * x(*two[0])};
-  }
-};
-
-std::optional<Model> model_of(const std::vector<Row>& rows, std::string_view effects) {
-  const auto one = fitted(rows, effects, 1), two = fitted(rows, effects, 2);
-  if (one.empty() || two.empty()) return {};
-  const auto strands = [](const Row& row) { return row.number("strands"); };
-  const auto per_element = [](const Row& row) {
-    return row.number("cost_per_step_s") / (row.number("strands") * elements);
-  };
-  Model model;
-  if (effects == "interaction") {
-    const Line line = Line::through(one, strands, per_element);
-    model.kernel = line.offset;
-    model.contacts = line.slope;
-    for (const Row* row : two) {
-      model.ghosts_of_two += row->number("ghosts_per_strand") / std::size(fitted_strands);
-    }
-  } else {
-    model.kernel = (per_element(*one[0]) + per_element(*one[1])) / 2;
-  }
-  // What two ranks take: by their own hairs, and in any case.
-  const Line line = Line::through(
-      two, [&](const Row& row) { return model.own_cost(row.number("strands"), 2); },
-      [](const Row& row) { return row.number("cost_per_step_s"); });
-  model.latency = std::max(line.offset, 0.0);
-  if (model.ghosts_of_two > 0) model.ghost = (line.slope - 1) / model.ghosts_of_two;
-  return model;
-}
-
-void predict(std::vector<Row>& rows) {
-  for (const char* effects : {"drag", "interaction"}) {
-    const std::optional<Model> model = model_of(rows, effects);
-    if (!model) continue;
-    for (Row& row : rows) {
-      if (!row.ok() || row.text("effects") != effects) continue;
-      const double n = row.number("strands"), ranks = row.number("ranks");
-      // More ranks than cores take turns.
-      const double turns =
-          row.has("cores") ? std::max(1.0, ranks / row.number("cores")) : 1;
-      const double cost = turns * model->cost(n, ranks);
-      row.set("model_cost_per_step_s", cost);
-      row.set("efficiency", model->cost(n, 1) / (ranks * model->cost(n, ranks)));
-      if (row.has("cost_per_step_s")) {
-        row.set("model_off_rel", cost / row.number("cost_per_step_s") - 1);
-      }
-    }
-  }
 }
 
 void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
@@ -262,13 +223,9 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdicts.figure("two ranks: largest time to exchange, by own elements, s", exchange);
 }
 
-/// Without MPI.
-bool finding(const Row& row) { return row.status() == "refused"; }
-
 constexpr Unused unused[] = {{"models", "hairs are super-helices"},
                              {"integrators", "steps are those of semi_implicit_euler"},
                              {"elements", "hairs have ten"},
-                             {"repeat", "a row is the mean of its steps"},
                              not_random};
 
 }  // namespace
@@ -281,11 +238,11 @@ int main(int argc, char** argv) {
       .name = "divided_heads",
       .question = "what does a head of hair cost when processes divide it?",
       .example = "--quick",
+      .quick_timeout_s = 600,
       .columns = columns,
       .unused = unused,
       .cases = cases,
-      .derive = predict,
-      .checks = judge,
-      .finding = finding};
+      .derive = add_predictions,
+      .checks = judge};
   return run_experiment(experiment, argc, argv);
 }

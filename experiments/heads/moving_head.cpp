@@ -12,7 +12,7 @@
 
 #include "models/effects/body.h"
 #include "models/effects/strand_interaction.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_run.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::heads {

@@ -44,6 +44,7 @@ void Interruption::wait() {
   // A second signal is not waited for: exit_code()'s handler ends the program.
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
   const auto held = hold();
+  if (silent_ && silent_()) ::_exit(interrupted);
   try {
     if (save_) save_();
     tell("{}{}: interrupted: the same command with --resume continues\n",
@@ -52,6 +53,16 @@ void Interruption::wait() {
     tell("{}: interrupted, and {}\n", program_, error.what());
   }
   ::_exit(interrupted);
+}
+
+Interruption::Silence::Silence(Interruption& of, std::function<bool()> silent) : of_(of) {
+  const auto held = of_.hold();
+  of_.silent_ = std::move(silent);
+}
+
+Interruption::Silence::~Silence() {
+  const auto held = of_.hold();
+  of_.silent_ = nullptr;
 }
 
 Interruption::Save::Save(Interruption& of, std::function<void()> save) : of_(of) {

@@ -26,6 +26,19 @@ class Interruption {
   /// No signal is handled while a hold exists: for operations that must be atomic.
   [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
+  /// While it exists, a signal ends the program without saving or a word if `silent()`:
+  /// another process has said why all end.
+  class Silence {
+   public:
+    Silence(Interruption& of, std::function<bool()> silent);
+    ~Silence();
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+   private:
+    Interruption& of_;
+  };
+
   /// While it exists, a signal calls `save` before the program ends.
   class Save {
    public:
@@ -44,6 +57,7 @@ class Interruption {
   std::string program_;
   std::mutex mutex_;
   std::function<void()> save_;
+  std::function<bool()> silent_;
   std::atomic<bool> over_ = false;
   std::thread thread_;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
@@ -21,13 +22,15 @@ namespace {
 constexpr Column columns[] = {
     {"structure", "straight strand, which tree, or the scene file"},
     {"model", "catalogue id"},
-    {"solver", "how the model solves S x = b"},
+    {"solver", "how the model solves S x = b; head: strands side by side"},
     {"tangent", "which terms S has"},
     {"modes", "unknowns per element"},
     {"grows", "of a scene file, what the series makes larger: elements or strands"},
     {"elements", "number of elements; of a scene file, of a strand"},
     {"strands", "of a scene file, number of strands"},
     {"unknowns", "number of coordinates"},
+    {"device",
+     "of a scene file as a head: that took its steps, a GPU or cpu; why not a GPU"},
     {"cost_per_step_s",
      "wall time of a semi-implicit step of the released strand, or of the scene", true},
     {"cost_per_element_step_s", "the same over the number of elements", true},
@@ -46,9 +49,6 @@ struct Moving {
   double t;  // s
   State state;
 };
-
-// s; the cost of a step does not depend on it: short enough for models that diverge.
-constexpr double timed_step = 1e-4;
 
 Options step_of(double h, System& system) {
   Options options;
@@ -138,7 +138,16 @@ void measure(const Work& work, Row& row) {
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, scaling_settings());
   const std::string_view files = settings.experiment().word("scenes");
-  if (!files.empty()) return scene_costs(line, split(files, ',', "scenes"));
+  const DeviceChoice device = device_choice(settings.experiment().word("device"));
+  if (!files.empty()) {
+    const std::vector<std::string> list = split(files, ',', "scenes");
+    return device == DeviceChoice::cpu ? scene_costs(line, list)
+                                       : head_costs(line, list, device);
+  }
+  if (device != DeviceChoice::cpu) {
+    throw InputError("a device steps heads of hair only, and these are single strands",
+                     line.place("device"), "give --scene head.toml, or --device cpu");
+  }
   const double chosen = settings.experiment().number("row_s");
   const double time_s = chosen > 0 ? chosen : line.quick ? 0.02 : 1;
   std::vector<Case> all;
@@ -152,6 +161,9 @@ std::vector<Case> cases(const CommandLine& line) {
 
 constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"device", "device",
+     "gpu or auto: your scene as a head of hair, by a GPU (default cpu: strand by "
+     "strand)"},
 };
 
 /// A model that cannot represent the scene of a file.

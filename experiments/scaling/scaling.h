@@ -11,11 +11,15 @@
 #include "experiments/run/settings.h"
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
+#include "simulation/head/head_device.h"
 
 namespace tress::experiments::scaling {
 
 /// Name of a straight strand in the column `structure`; other names are trees.
 inline constexpr std::string_view straight = "straight";
+
+/// s; the cost of a step does not depend on it: short enough for models that diverge.
+inline constexpr double timed_step = 1e-4;
 
 /// One row of scaling: the strand or tree, and how its model solves S x = b.
 struct ScalingCase {
@@ -48,6 +52,12 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& 
 /// InputError on scenes without strands and on two of one name.
 std::vector<Case> scene_costs(const CommandLine& line,
                               const std::vector<std::string>& files);
+
+/// Rows for scene files as heads of hair, by a device or what stands in for it: the cost
+/// of a step of the scene's own model, all strands side by side, against their number.
+/// Throws InputError on a scene that is no head.
+std::vector<Case> head_costs(const CommandLine& line,
+                             const std::vector<std::string>& files, DeviceChoice device);
 
 /// Fills `exponent` of every series of straight strands (same model, solver, tangent and
 /// modes) and of scene files: p of cost ~ N^p, fitted to the measurements from 20

@@ -29,6 +29,10 @@ constexpr Parameter settings_of_rows[] = {
      .number = 0,
      .min = 0},
     {.name = "scenes", .help = "scene files instead of our strands", .text = true},
+    {.name = "device",
+     .help = "that steps scene files as heads of hair: gpu, or auto, where there is one "
+             "(cpu: strand by strand, by every model)",
+     .choices = device_choices},
 };
 
 struct Variation {

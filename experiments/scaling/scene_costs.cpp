@@ -13,9 +13,6 @@
 namespace tress::experiments::scaling {
 namespace {
 
-// s; the cost of a step does not depend on it: short enough for models that diverge.
-constexpr double timed_step = 1e-4;
-
 constexpr int most_strands = 64;  // without --full
 
 void measure(const Scene& cut, const ModelEntry& model, double steps, int repeat,

@@ -11,7 +11,7 @@
 #include "simulation/export/head_state.h"
 #include "simulation/files/files.h"
 #include "simulation/files/locked_file.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_run.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::experiments::scene_runs {

@@ -4,10 +4,6 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Throws InputError, with both figures, if the head of a scene needs more memory than
-/// there is, or its frames more of the disk; else says on standard error what they need.
-void check_room(const SceneOutline& outline, const SceneRunOptions& options);
-
 /// run_scene() for a scene that runs as one head of hair: its frames go to <stem>.h5 and
 /// .xdmf, strands that are lost to <stem>.lost.csv while the others go on, pictures are
 /// of some strands. An interrupted run is continued with the same bits as one that never

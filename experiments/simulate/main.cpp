@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -14,18 +13,20 @@
 #include "experiments/run/exit_code.h"
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
+#include "experiments/simulate/head_room.h"
 #include "experiments/simulate/head_scene_run.h"
 #include "experiments/simulate/held_report.h"
 #include "experiments/simulate/outcome.h"
+#include "experiments/simulate/rank_failures.h"
 #include "experiments/simulate/scene_run.h"
 #include "integrators/error_indicator.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/files/files.h"
 #include "simulation/groom/fitted_groom.h"
+#include "simulation/head/head_classes.h"
+#include "simulation/head/ranks.h"
+#include "simulation/head/scene_head.h"
 #include "simulation/plugin/load_plugin.h"
-#include "simulation/run/head_classes.h"
-#include "simulation/run/ranks.h"
-#include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -270,9 +271,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   options.gltf = exports(false, "gltf");
   options.progress = line.progress;
   options.pack = pack_of(a);
-  options.device = a.device == "cpu"   ? DeviceChoice::cpu
-                   : a.device == "gpu" ? DeviceChoice::gpu
-                                       : DeviceChoice::automatic;
+  options.device = device_choice(a.device);
   options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
   options.ranks = &ranks;
   std::error_code ignored;  // what a run before has left would only mislead
@@ -324,6 +323,28 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   return complete;
 }
 
+int run_scenes(const Arguments& a, const CommandLine& line, Ranks& ranks,
+               Interruption& interruption) {
+  const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
+  static_cast<void>(models::helix_head({}, pack_of(a)));  // refuses other lanes
+  std::vector<Job> jobs;
+  std::set<std::string> names;
+  for (const std::string& file : files) {
+    jobs.push_back(job_of(file, a, ranks));
+    if (names.insert(jobs.back().outline.scene.name).second) continue;
+    throw InputError("two scenes of one name", file,
+                     "rename one of them, or run it with another --out");
+  }
+  ready_folder(a.out, "--out " + a.out);
+  bool complete = true;
+  for (const Job& whole : jobs) {
+    for (const Job& job : heads_of(whole, a)) {
+      complete = run_job(job, a, line, ranks, interruption) && complete;
+    }
+  }
+  return complete ? done : rows_failed;
+}
+
 int run(const Arguments& a, CommandLine line) {
   if (a.print_defaults || a.print_schema) {
     write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
@@ -335,28 +356,8 @@ int run(const Arguments& a, CommandLine line) {
   // Before the threads of MPI, and of anything else.
   Interruption interruption("simulate");
   const std::unique_ptr<Ranks> ranks = ranks_of_job();
-  // All say the same, but what the first says is enough.
-  if (!ranks->first() && std::freopen("/dev/null", "w", stderr) == nullptr) {
-    return internal_error;
-  }
-  const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
-  static_cast<void>(models::helix_head({}, pack_of(a)));  // refuses other lanes
-  std::vector<Job> jobs;
-  std::set<std::string> names;
-  for (const std::string& file : files) {
-    jobs.push_back(job_of(file, a, *ranks));
-    if (names.insert(jobs.back().outline.scene.name).second) continue;
-    throw InputError("two scenes of one name", file,
-                     "rename one of them, or run it with another --out");
-  }
-  ready_folder(a.out, "--out " + a.out);
-  bool complete = true;
-  for (const Job& whole : jobs) {
-    for (const Job& job : heads_of(whole, a)) {
-      complete = run_job(job, a, line, *ranks, interruption) && complete;
-    }
-  }
-  return complete ? done : rows_failed;
+  return exit_code_of_ranks(*ranks, interruption,
+                            [&] { return run_scenes(a, line, *ranks, interruption); });
 }
 
 int answer(int argc, char** argv) {

@@ -74,6 +74,7 @@ constexpr Column columns_of_outcome[] = {
      "how often ghosts were looked for, over the steps since the strands were divided"},
     {"claim_s", "the same: time of a step to find them", true},
     {"exchange_s", "the same: to send and receive, waiting included", true},
+    {"meet_s", "the same: to list what touches own strands that ghosts may touch", true},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
     {"state",
      "of a head: checksum of all states at the end, the same for any number of ranks, "
@@ -144,7 +145,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   if (run.head) {
     const HeadOutcome& head = *run.head;
     row.set("strands", head.strands).set("lost_strands", head.lost);
-    row.set("bits", head.pack.number == models::HeadNumber::float64 ? 64 : 32);
+    row.set("bits", bits_of(head.pack));
     row.set("device", head.device).set("ranks", head.ranks);
     row.set("rank_strands", head.rank_strands);
     row.set("peak_memory_mb", head.peak_memory_mb);

@@ -9,15 +9,13 @@
 #include "experiments/run/interruption.h"
 #include "models/head/head.h"
 #include "simulation/files/run_key.h"
-#include "simulation/run/ranks.h"
+#include "simulation/head/head_device.h"
+#include "simulation/head/ranks.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::experiments::scene_runs {
-
-/// What takes the steps of a head: `automatic` is a GPU where there is one for it.
-enum class DeviceChoice { cpu, gpu, automatic };
 
 /// A channel that is not read from the run itself.
 struct FurtherChannel {
@@ -44,6 +42,10 @@ struct SceneRunOptions {
   int frame_bits = 32;  // of a coordinate in <stem>.h5; 0: frames only of shown strands
 };
 
+inline int bits_of(const models::HeadPack& pack) {
+  return pack.number == models::HeadNumber::float64 ? 64 : 32;
+}
+
 /// Of a head.
 struct HeadOutcome {
   models::HeadPack pack;
@@ -53,7 +55,7 @@ struct HeadOutcome {
   std::size_t rank_strands = 0;
   double peak_memory_mb = 0, ghosts_per_step = 0, sent_per_step = 0, claims_per_step = 0;
   // Of a step, s, the same.
-  double claim_s = 0, exchange_s = 0;
+  double claim_s = 0, exchange_s = 0, meet_s = 0;
   std::size_t strands, lost;
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end

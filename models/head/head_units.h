@@ -14,6 +14,10 @@ struct HeadUnits {
   static HeadUnits of(double longest) {
     return {longest, std::sqrt(longest / earth_gravity), 0};
   }
+  /// By the first strand added: `given`, if there is such a number, or its own (kg/m).
+  void weigh(double given, double first) {
+    if (density == 0) density = given > 0 ? given : first;
+  }
   double stiffness() const { return density * std::pow(length, 4) / (time * time); }
   double speed() const { return length / time; }
   double force() const { return density * speed() * speed(); }

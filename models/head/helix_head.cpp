@@ -56,9 +56,7 @@ class HelixHead final : public Head, public HelixSource {
     const Segment& first = strand.segments.front();
     const CrossSection& section = first.section;
     const double density = strand.material.density * section.area();
-    if (units_.density == 0) {
-      units_.density = options_.line_density > 0 ? options_.line_density : density;
-    }
+    units_.weigh(options_.line_density, density);
     const bool opens = lost_.size() % width == 0;
     if (opens) {
       roots_.emplace_back();

@@ -80,12 +80,8 @@ class SteppingHead final : public Head {
     check_for_head(strand, n_);
     refuse_if(!own.empty(), own.empty() ? "" : on_this_model(*own.front()), place_of_head,
               use_others);
-    if (units_.density == 0) {
-      units_.density =
-          options_.line_density > 0
-              ? options_.line_density
-              : strand.material.density * strand.segments.front().section.area();
-    }
+    units_.weigh(options_.line_density,
+                 strand.material.density * strand.segments.front().section.area());
     if constexpr (Model::takes_bodies) {
       radius_ = std::max(radius_, norm(strand.root.position - options_.motion.position) +
                                       Model::most_stretched * static_cast<double>(n_) *

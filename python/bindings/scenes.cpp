@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "python/bindings/owned_system.h"
-#include "simulation/run/head_guard.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_guard.h"
+#include "simulation/head/head_run.h"
+#include "simulation/head/scene_head.h"
 #include "simulation/run/readout.h"
-#include "simulation/run/scene_head.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/write_scene.h"

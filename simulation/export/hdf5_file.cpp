@@ -4,7 +4,13 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -38,7 +44,38 @@ hid_t made(hid_t id, const std::string& file, const char* what) {
   return id;
 }
 
+/// Nor does HDF5 close at the program's end what is still open.
+void start() {
+  static const int started = H5dont_atexit();
+  static_cast<void>(started);
+}
+
+/// A file whose last flush met a full disk is shorter than it says, and HDF5 does not
+/// open it. What is missing is of the last entries; those that were flushed before are
+/// whole.
+void lengthen(const std::string& file) {
+  // Superblock, version 0, with addresses of 8 bytes [HDF5 file format specification 2.0,
+  // II.A]: the end of the file by its own account stands at 40.
+  std::array<unsigned char, 48> head{};
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char*>(head.data()), head.size())) return;
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  if (!std::equal(signature.begin(), signature.end(), head.begin(),
+                  [](char a, unsigned char b) { return a == static_cast<char>(b); }) ||
+      head[8] != 0 || head[13] != 8) {
+    return;
+  }
+  std::uintmax_t end = 0;
+  for (std::size_t i = 8; i-- > 0;) end = end << 8 | head[40 + i];
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  constexpr std::uintmax_t of_entries = 1 << 20;
+  if (unknown || size >= end || end > 2 * size + of_entries) return;
+  std::filesystem::resize_file(file, end, unknown);
+}
+
 std::int64_t opened(const std::string& file, Hdf5File::Mode mode) {
+  start();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not prints
   const Hdf5Handle access(made(H5Pcreate(H5P_FILE_ACCESS), file, "open"), H5Pclose);
   // Metadata stay in memory between flushes: what is on disk always fits together.
@@ -54,6 +91,7 @@ std::int64_t opened(const std::string& file, Hdf5File::Mode mode) {
     return made(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file,
                 "create");
   }
+  if (mode == Hdf5File::Mode::extend) lengthen(file);
   return made(
       H5Fopen(file.c_str(), mode == Hdf5File::Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR,
               access.id()),
@@ -81,8 +119,9 @@ Hdf5File::Hdf5File(std::string file, Mode mode)
     : file_(std::move(file)), handle_(opened(file_, mode), H5Fclose) {}
 
 std::int64_t Hdf5File::checked(std::int64_t result, const char* what) const {
-  if (result < 0) failed(file_, what);
-  return result;
+  if (result >= 0) return result;
+  if (what == std::string_view("write")) handle_.keep_open();
+  failed(file_, what);
 }
 
 void Hdf5File::set(const std::string& name, const std::string& text) {
@@ -251,6 +290,7 @@ void Hdf5File::sync() {
 }
 
 std::string hdf5_version() {
+  start();
   unsigned major = 0, minor = 0, release = 0;
   if (H5get_libversion(&major, &minor, &release) < 0) return {};
   return fmt::format("{}.{}.{}", major, minor, release);

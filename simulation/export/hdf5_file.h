@@ -15,11 +15,13 @@ class Hdf5Handle {
   using Close = int (*)(std::int64_t);
   Hdf5Handle(std::int64_t id, Close close) : id_(id), close_(close) {}
   ~Hdf5Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && close_ != nullptr) close_(id_);
   }
   Hdf5Handle(const Hdf5Handle&) = delete;
   Hdf5Handle& operator=(const Hdf5Handle&) = delete;
   std::int64_t id() const { return id_; }
+  /// Stays open to the end of the program.
+  void keep_open() { close_ = nullptr; }
 
  private:
   std::int64_t id_;
@@ -31,8 +33,8 @@ enum class Hdf5Type { float32, float64, int32 };
 
 /// An HDF5 file of datasets with two or three dimensions, the first of which may grow
 /// [The HDF Group, HDF5 1.10]. What it says about itself changes on disk at flush() only:
-/// a file whose writer was killed holds what the last flush left. Throws InputError with
-/// HDF5's own reason whenever a call fails.
+/// a file whose writer was killed, or could not write on, holds what the last flush left.
+/// Throws InputError with HDF5's own reason whenever a call fails.
 class Hdf5File {
  public:
   enum class Mode { create, extend, read };
@@ -83,7 +85,7 @@ class Hdf5File {
   std::int64_t checked(std::int64_t result, const char* what) const;
 
   std::string file_;
-  Hdf5Handle handle_;
+  mutable Hdf5Handle handle_;  // kept open after a failure, as closing it is a flush
 };
 
 std::string hdf5_version();

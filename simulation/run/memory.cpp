@@ -35,12 +35,6 @@ double elements(const Scene& scene) {
 
 }  // namespace
 
-double peak_memory() {
-  struct rusage usage {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
 double free_memory() {
   double bytes = std::numeric_limits<double>::infinity();
   std::ifstream file("/proc/meminfo");

@@ -9,9 +9,6 @@ namespace tress::simulation {
 /// scenes are not measured.
 void refuse_too_large(const Scene& scene);
 
-/// Bytes that this process has held at most.
-double peak_memory();
-
 /// Bytes that are available: of the machine, and of the address space if it is limited.
 double free_memory();
 

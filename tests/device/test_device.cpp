@@ -13,7 +13,7 @@
 #include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/head/device_code.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_run.h"
 #include "tests/harness/toy_process.h"
 #include "tests/models/head/hairs.h"
 
@@ -375,6 +375,44 @@ TEST_F(SimulateOnDevice, SaysWhichScenesItDoesNotKnow) {
       toy.run("head.toml --as strands --device gpu --out out --progress none");
   EXPECT_EQ(strands.code, 2);
   EXPECT_THAT(strands.err, HasSubstr("give --as head, or --device cpu"));
+}
+
+/// `scaling`, the same.
+class ScalingOnDevice : public SimulateOnDevice {
+ protected:
+  Toy::Result scaling(const std::string& arguments, const std::string& fails = "") {
+    const auto file = [this](const char* name) { return toy.path("work/") + name; };
+    const std::string command =
+        "cd '" + toy.path("work") + "' && TRESS_FAKE_CUDA='" + fails +
+        "' LD_LIBRARY_PATH='" + std::filesystem::path(FAKE_CUDA).parent_path().string() +
+        "' '" SCALING "' " + arguments +
+        " --quick --progress none --out table.csv >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    const auto text = [](const std::string& name) {
+      std::ifstream stream(name);
+      return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    return {WEXITSTATUS(status), text(file("table.csv")), text(file("err.txt"))};
+  }
+};
+
+TEST_F(ScalingOnDevice, StepsAHeadThereOrSaysWhyNot) {
+  const std::string head = "--scene '" + toy.path("work/head.toml") + "' --device ";
+  for (const std::string device : {"gpu", "auto"}) {
+    const Toy::Result there = scaling(head + device);
+    EXPECT_EQ(there.code, 0) << there.err;
+    EXPECT_THAT(there.out, HasSubstr(",no device (host twin),"));
+  }
+  const Toy::Result asked = scaling(head + "gpu", "no_device");
+  EXPECT_EQ(asked.code, 3);
+  EXPECT_THAT(asked.err, HasSubstr("the driver has no device"));
+  const Toy::Result open = scaling(head + "auto", "no_device");
+  EXPECT_EQ(open.code, 0) << open.err;
+  EXPECT_THAT(open.out, HasSubstr("cpu; the driver has no device"));
+  const Toy::Result strands = scaling("--device gpu");
+  EXPECT_EQ(strands.code, 2);
+  EXPECT_EQ(errors_in(strands.err), 1) << strands.err;
+  EXPECT_THAT(strands.err, HasSubstr("give --scene head.toml, or --device cpu"));
 }
 
 }  // namespace tress::test_device

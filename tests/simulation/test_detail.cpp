@@ -11,8 +11,8 @@
 
 #include "contract/input_error.h"
 #include "models/strand/needed_elements.h"
-#include "simulation/run/head_classes.h"
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_classes.h"
+#include "simulation/head/head_run.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"

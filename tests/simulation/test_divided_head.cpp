@@ -8,7 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_balance.h"
+#include "simulation/head/head_run.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/strand_tables.h"
 #include "tests/support/thread_ranks.h"
@@ -88,6 +89,43 @@ TEST(HeadDivision, FindsOwnStrandsOfAList) {
     if (division.owner(k) == 1) own.push_back(k);
   }
   for (const auto& one : found) EXPECT_EQ(division.own()[one.place], own[one.index]);
+}
+
+TEST(HeadDivision, OrdersItsPlacesByTheNumbers) {
+  const std::vector<Vec> roots = roots_on_a_ball(300);
+  const HeadDivision division(roots, std::vector<double>(300, 1), 3, 2);
+  ASSERT_EQ(division.order().size(), division.own().size());
+  for (std::size_t i = 0; i < division.own().size(); ++i) {
+    EXPECT_EQ(division.order()[division.by_number()[i]], i);
+  }
+}
+
+TEST(HeadBalance, SharesTheTimeOfARankAmongItsStrands) {
+  const std::vector<Vec> roots = roots_on_a_ball(100);
+  std::vector<double> unequal(100, 1);
+  unequal[0] = 30;
+  const HeadDivision division(roots, unequal, 2, 0);
+  const std::vector<double> seconds{3, 1}, cost = cost_of_strands(division, seconds);
+  std::vector<double> sums(2);
+  for (std::size_t k = 0; k < 100; ++k) {
+    sums[static_cast<std::size_t>(division.owner(k))] += cost[k];
+    EXPECT_GT(cost[k], 0);
+  }
+  // Of a hundred roundings.
+  for (const int rank : {0, 1}) {
+    EXPECT_NEAR(sums[static_cast<std::size_t>(rank)],
+                seconds[static_cast<std::size_t>(rank)], 3 * 100 * 2.3e-16);
+  }
+}
+
+TEST(Ranks, TellEachOtherWhatTheyHave) {
+  ThreadRanks::run(3, [](Ranks& mine) {
+    const std::vector<double> all = mine.of_each(10.0 * mine.rank());
+    EXPECT_EQ(all, (std::vector<double>{0, 10, 20}));
+    std::vector<int> numbers(2, 5 + mine.rank());
+    mine.as_first(std::span(numbers));
+    EXPECT_EQ(numbers, (std::vector<int>{5, 5}));
+  });
 }
 
 struct Scalp {

@@ -15,7 +15,7 @@
 #include "simulation/groom/frames.h"
 #include "simulation/groom/guide_choice.h"
 #include "simulation/groom/random.h"
-#include "simulation/run/scene_head.h"
+#include "simulation/head/scene_head.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
 #include "simulation/scene/write_scene.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <barrier>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/run/ranks.h"
+#include "simulation/head/ranks.h"
 
 namespace tress::testing_support {
 
@@ -86,7 +87,17 @@ class ThreadRanks {
       meet();
     }
 
+    bool speaks() override { return true; }
+    bool one_has_failed() const override { return false; }
+    [[noreturn]] void end_all(int) override { std::abort(); }
+
    protected:
+    void bytes_as_first(Bytes x) override {
+      all_.parts[own()] = x;
+      meet();
+      if (!first()) std::ranges::copy(all_.parts[0], x.begin());
+      meet();
+    }
     void share_bytes(Bytes x, Sizes sizes) override {
       all_.parts[own()] = x;
       meet();

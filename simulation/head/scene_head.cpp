@@ -1,4 +1,4 @@
-#include "simulation/run/scene_head.h"
+#include "simulation/head/scene_head.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "models/reduced/reduced_strand.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/threads/crew.h"
@@ -16,121 +17,6 @@ namespace {
 using models::HeadOptions;
 
 constexpr std::size_t parts = 64;  // of strands that are made at the same time
-
-bool of_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
-
-/// An option of the model that heads do not have.
-NoHead no_option(const Parameters& p, const char* key, const char* remedy) {
-  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)), remedy};
-}
-
-std::optional<NoHead> no_springs(const Parameters& p) {
-  if (p.word("bending") != "angular") {
-    return no_option(p, "bending", "give [model] bending = \"angular\"");
-  }
-  if (p.word("torsion") != "none") {
-    return no_option(p, "torsion", "give [model] torsion = \"none\"");
-  }
-  if (p.word("tangent") != "filtered") {
-    return no_option(p, "tangent", "give [model] tangent = \"filtered\"");
-  }
-  return {};
-}
-
-std::optional<NoHead> no_model(const Scene& scene) {
-  const Parameters& p = scene.model_options;
-  if (of_springs(scene)) return no_springs(p);
-  if (scene.model->id != "super_helix") {
-    return NoHead{fmt::format("{} does not come as a head", scene.model->id),
-                  "use [model] id = \"super_helix\", or \"mass_spring\""};
-  }
-  if (p.word("modes") == "bend_planar") {
-    return NoHead{"strands of a head bend in both directions",
-                  "give [model] modes = \"bend_twist\" or \"bend\""};
-  }
-  if (p.word("tangent") != "stiff") {
-    return no_option(p, "tangent", "give [model] tangent = \"stiff\"");
-  }
-  if (p.word("solver") != "recursive") {
-    return no_option(p, "solver", "leave out [model] solver");
-  }
-  if (p.whole("quadrature") == 1 || p.whole("quadrature") > 16) {
-    return NoHead{fmt::format("{} points of an element", p.whole("quadrature")),
-                  "give [model] quadrature = 0, or 2 to 16"};
-  }
-  return {};
-}
-
-std::optional<NoHead> no_method(const Scene& scene) {
-  if (scene.integrator != "semi_implicit_euler") {
-    return NoHead{fmt::format("{} does not step a head", scene.integrator),
-                  "use [integrator] id = \"semi_implicit_euler\""};
-  }
-  if (scene.rest == RestStrains::inverse) {
-    return NoHead{"strands of a head have the natural strains of their tables",
-                  "leave out rest = \"inverse\""};
-  }
-  const Options& options = scene.options;
-  if (options.max_work > 0) {
-    return NoHead{"a head does not count its work", "leave out [integrator] max_work"};
-  }
-  if (1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
-    return NoHead{"more than max_steps steps of dt_s from frame to frame",
-                  "give a longer dt_s, or more frames_1_s"};
-  }
-  return {};
-}
-
-std::optional<NoHead> no_strands(const Scene& scene) {
-  const std::vector<StrandSource>& sources = scene.tables->sources;
-  const int elements = sources.front().table.values().whole("elements");
-  for (const StrandSource& source : sources) {
-    const Parameters& p = source.table.values();
-    if (p.whole("elements") != elements) {
-      return NoHead{
-          fmt::format("strands of {} and of {} elements", elements, p.whole("elements")),
-          "give all equally many elements"};
-    }
-    if (source.groom && p.whole("guides") > 0) {
-      return NoHead{"all strands of a head are simulated", "leave out guides"};
-    }
-    if (source.file && p.word("cuts") != "equal") {
-      return NoHead{"elements of different lengths", "give [groom] cuts = \"equal\""};
-    }
-    if (p.number("grading") != 1) {
-      return NoHead{"elements of different lengths", "leave out grading"};
-    }
-  }
-  if (scene.strands.front().free_root) {
-    return NoHead{"free roots", "use another [root] motion"};
-  }
-  return {};
-}
-
-std::optional<NoHead> no_effects(const Scene& scene) {
-  for (const EffectChoice& choice : scene.effects) {
-    const auto effect = make_effect(scene, choice);
-    if (effect != nullptr) {
-      if (auto no = models::refused_by_heads(*effect))
-        return NoHead{no->reason, no->remedy};
-      if (of_springs(scene) && !effect->uniform_acceleration() && !effect->viscosity() &&
-          effect->rigid_contact() == nullptr) {
-        return NoHead{fmt::format("[effects.{}] on a head of springs", choice.entry->id),
-                      "leave it out, or use [model] id = \"super_helix\""};
-      }
-    } else if (of_springs(scene) && &choice.parameters == scene.interaction()) {
-      return NoHead{"interaction on a head of springs",
-                    "leave it out, or use [model] id = \"super_helix\""};
-    } else if (&choice.parameters != scene.interaction()) {
-      return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
-                    "leave it out"};
-    } else if (choice.parameters.word("coupling") == "monolithic") {
-      return NoHead{"strands of a head are no system of one",
-                    "give [effects.strand_interaction] coupling = \"lagged\""};
-    }
-  }
-  return {};
-}
 
 /// Whether what acts beside gravity and drag does no work in the frame of the head.
 bool at_rest_in_head(const Scene& scene) {
@@ -145,7 +31,7 @@ bool at_rest_in_head(const Scene& scene) {
 HeadOptions options_of(const Scene& scene) {
   HeadOptions options;
   options.elements = static_cast<int>(scene.strands.front().segments.size());
-  if (!of_springs(scene)) {
+  if (!steps_springs(scene)) {
     options.points = scene.model_options.whole("quadrature");
     options.twist = scene.model_options.word("modes") == "bend_twist";
     options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
@@ -158,7 +44,7 @@ HeadOptions options_of(const Scene& scene) {
 
 std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
                                  const HeadPack& pack) {
-  return of_springs(scene) ? spring_head(options, pack) : helix_head(options, pack);
+  return steps_springs(scene) ? spring_head(options, pack) : helix_head(options, pack);
 }
 
 /// Strands of a scene as a series.
@@ -249,8 +135,6 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     made_head.interaction = std::make_unique<models::StrandInteraction>(
         *between, std::vector<int>(own, options.elements + 1));
   }
-  std::vector<std::size_t> order(own);  // of places, by numbers
-  for (std::size_t i = 0; i < own; ++i) order[division.by_number()[i]] = i;
   std::vector<std::shared_ptr<ChosenEffect>> chosen;
   made_head.head = empty_head(scene, options, pack);
   Head* const head = made_head.head.get();
@@ -265,7 +149,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     for (std::size_t k = begin; k < end; ++k) {
       models::Effects effects;
       if (made_head.interaction) {
-        auto effect = made_head.interaction->effect(order[k]);
+        auto effect = made_head.interaction->effect(division.order()[k]);
         if (divided) {
           chosen.push_back(std::make_shared<ChosenEffect>(std::move(effect)));
           effects.push_back(chosen.back());
@@ -289,22 +173,6 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
 }
 
 }  // namespace
-
-std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
-  const Scene& scene = outline.scene;
-  if (scene.strands.empty()) {
-    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
-                  "use [model] id = \"super_helix\""};
-  }
-  if (auto no = no_model(scene)) return no;
-  if (of_springs(scene) && number != models::HeadNumber::float64) {
-    return NoHead{"springs in 32 bits, which do not resolve their strains",
-                  "give --bits 64"};
-  }
-  if (auto no = no_method(scene)) return no;
-  if (auto no = no_strands(scene)) return no;
-  return no_effects(scene);
-}
 
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads) {
   OneRank alone;

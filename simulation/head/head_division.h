@@ -31,6 +31,8 @@ class HeadDivision {
   std::size_t number(std::size_t i) const { return own_[by_number_[i]]; }
   /// Their places, by their numbers.
   std::span<const std::size_t> by_number() const { return by_number_; }
+  /// The other way: of each place, which it is by the numbers.
+  std::span<const std::size_t> order() const { return order_; }
 
   /// An own strand of a list.
   struct Listed {
@@ -46,7 +48,7 @@ class HeadDivision {
 
   int ranks_ = 1, rank_ = 0;
   std::vector<int> owner_;  // of each strand
-  std::vector<std::size_t> own_, by_number_;
+  std::vector<std::size_t> own_, by_number_, order_;
 };
 
 }  // namespace tress::simulation

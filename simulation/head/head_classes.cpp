@@ -1,4 +1,4 @@
-#include "simulation/run/head_classes.h"
+#include "simulation/head/head_classes.h"
 
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "models/head/head.h"
-#include "simulation/run/scene_head.h"
+#include "simulation/head/scene_head.h"
 
 namespace tress::simulation {
 

@@ -1,7 +1,9 @@
 #include <mpi.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <numeric>
@@ -9,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "simulation/run/ranks.h"
+#include "simulation/head/ranks.h"
 
 namespace tress::simulation {
 namespace {
@@ -45,15 +47,16 @@ class MpiRanks final : public Ranks {
                         &here);
     MPI_Comm_size(here, &on_this_machine_);
     MPI_Comm_free(&here);
+    MPI_Win_allocate(first() ? sizeof *failures_ : 0, sizeof *failures_, MPI_INFO_NULL,
+                     MPI_COMM_WORLD, &failures_, &of_failures_);
+    if (first()) *failures_ = 0;
+    MPI_Barrier(MPI_COMM_WORLD);
   }
-  /// A rank that fails does not wait for the others, which mpirun then ends. Where all
-  /// fail alike the first alone says why, and has time to say so before it is ended.
+  /// A rank that fails does not wait for the others: see end_all().
   ~MpiRanks() override {
-    if (std::uncaught_exceptions() == 0) {
-      MPI_Finalize();
-    } else if (!first()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    }
+    if (std::uncaught_exceptions() > 0) return;
+    MPI_Win_free(&of_failures_);
+    MPI_Finalize();
   }
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
@@ -84,6 +87,26 @@ class MpiRanks final : public Ranks {
                 message.rank, 0, MPI_COMM_WORLD, &requests_.emplace_back());
     }
   }
+  bool speaks() override {
+    // Where all fail alike, what the first says is enough.
+    if (!first()) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    constexpr int one = 1;
+    int before = 0;
+    MPI_Win_lock(MPI_LOCK_SHARED, 0, 0, of_failures_);
+    MPI_Fetch_and_op(&one, &before, MPI_INT, 0, 0, MPI_SUM, of_failures_);
+    MPI_Win_unlock(0, of_failures_);
+    silent_ = before > 0;
+    return !silent_;
+  }
+  bool one_has_failed() const override {
+    return first() && std::atomic_ref(*failures_).load() > 0;
+  }
+  void end_all(int code) override {
+    // The one that speaks has time to do so, and ends this one.
+    if (silent_) std::this_thread::sleep_for(std::chrono::seconds(5));
+    MPI_Abort(MPI_COMM_WORLD, code);
+    std::abort();
+  }
   void finish() override {
     MPI_Waitall(counted(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
     requests_.clear();
@@ -94,6 +117,9 @@ class MpiRanks final : public Ranks {
     const Parts parts(sizes);
     MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x.data(), parts.counts.data(),
                    parts.starts.data(), MPI_BYTE, MPI_COMM_WORLD);
+  }
+  void bytes_as_first(std::span<std::byte> x) override {
+    MPI_Bcast(x.data(), counted(x.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
   }
   void bytes_to_first(std::span<std::byte> own, std::span<std::byte> all,
                       Sizes sizes) override {
@@ -110,6 +136,9 @@ class MpiRanks final : public Ranks {
 
  private:
   int rank_ = 0, size_ = 1, on_this_machine_ = 1;
+  MPI_Win of_failures_ = MPI_WIN_NULL;
+  int* failures_ = nullptr;  // of all ranks, on the first
+  bool silent_ = false;
   std::vector<MPI_Request> requests_;  // since begin()
 };
 

@@ -8,10 +8,10 @@
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/device/device_head.h"
-#include "simulation/run/halo.h"
-#include "simulation/run/head_division.h"
-#include "simulation/run/ranks.h"
-#include "simulation/run/scene_head.h"
+#include "simulation/head/halo.h"
+#include "simulation/head/head_division.h"
+#include "simulation/head/ranks.h"
+#include "simulation/head/scene_head.h"
 #include "simulation/threads/crew.h"
 
 namespace tress::simulation {
@@ -81,6 +81,7 @@ class HeadRun {
   /// What other ranks' strands have cost; null: none touch its own.
   const Halo* halo() const { return halo_.get(); }
   Crew& crew() { return crew_; }
+  Ranks& ranks() { return *ranks_; }
 
  private:
   struct Blocks {
@@ -115,7 +116,6 @@ class HeadRun {
   std::unique_ptr<DeviceHead> device_;  // or null
   // By numbers, of look(): positions, velocities, and what Head::ahead() says.
   std::vector<double> x_, v_, ahead_, bulge_;
-  std::vector<std::size_t> order_;  // of each place, its own strand's by numbers
   Crew crew_;
   std::vector<Blocks> all_;            // pieces for the crew
   std::vector<Blocks> inner_, outer_;  // of strands that other ranks' cannot, may touch

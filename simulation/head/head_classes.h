@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "simulation/run/scene_head.h"
+#include "simulation/head/scene_head.h"
 
 namespace tress::simulation {
 

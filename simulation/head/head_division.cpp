@@ -1,4 +1,4 @@
-#include "simulation/run/head_division.h"
+#include "simulation/head/head_division.h"
 
 #include <algorithm>
 #include <functional>
@@ -83,6 +83,8 @@ void HeadDivision::order_own() {
   by_number_.resize(own_.size());
   std::iota(by_number_.begin(), by_number_.end(), std::size_t{0});
   std::ranges::sort(by_number_, {}, [this](std::size_t place) { return own_[place]; });
+  order_.resize(own_.size());
+  for (std::size_t i = 0; i < own_.size(); ++i) order_[by_number_[i]] = i;
 }
 
 std::vector<HeadDivision::Listed> HeadDivision::own_among(

@@ -1,4 +1,4 @@
-#include "simulation/run/head_guard.h"
+#include "simulation/head/head_guard.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -41,6 +42,19 @@ class Ranks {
   void share(std::span<T> x, Sizes sizes) {
     share_bytes(bytes_of(x), in_bytes<T>(sizes));
   }
+  /// What each rank gives, by the ranks.
+  template <class T>
+  std::vector<T> of_each(const T& own) {
+    std::vector<T> all(static_cast<std::size_t>(size()));
+    all[static_cast<std::size_t>(rank())] = own;
+    share(std::span(all), std::vector<std::size_t>(all.size(), 1));
+    return all;
+  }
+  /// What the first rank has in x, all have then.
+  template <class T>
+  void as_first(std::span<T> x) {
+    bytes_as_first(bytes_of(x));
+  }
   /// The first rank gets the ranks' own parts, one after the other. Others need not know
   /// the sizes.
   template <class T>
@@ -58,6 +72,14 @@ class Ranks {
   /// Returns when all has come.
   virtual void finish() = 0;
 
+  // A rank that fails asks whether to say why, and then ends them all:
+  /// True for one of all that fail, the first rank if it does.
+  virtual bool speaks() = 0;
+  /// Whether one has been told to, as far as the first rank knows; by any thread.
+  virtual bool one_has_failed() const = 0;
+  /// The job's exit code.
+  [[noreturn]] virtual void end_all(int code) = 0;
+
   template <class T>
   static std::span<std::byte> bytes_of(std::span<T> x) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -66,6 +88,7 @@ class Ranks {
 
  protected:
   virtual void share_bytes(std::span<std::byte> x, Sizes sizes) = 0;
+  virtual void bytes_as_first(std::span<std::byte> x) = 0;
   virtual void bytes_to_first(std::span<std::byte> own, std::span<std::byte> all,
                               Sizes sizes) = 0;
   virtual void bytes_from_first(std::span<std::byte> all, Sizes sizes,
@@ -101,9 +124,13 @@ class OneRank final : public Ranks {
   }
   void begin(std::span<const Message>, std::span<const Message>) override {}
   void finish() override {}
+  bool speaks() override { return true; }
+  bool one_has_failed() const override { return false; }
+  [[noreturn]] void end_all(int code) override { std::exit(code); }
 
  protected:
   void share_bytes(std::span<std::byte>, Sizes) override {}
+  void bytes_as_first(std::span<std::byte>) override {}
   void bytes_to_first(std::span<std::byte> own, std::span<std::byte> all,
                       Sizes) override {
     std::ranges::copy(own, all.begin());

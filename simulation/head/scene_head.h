@@ -3,27 +3,16 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
-#include "simulation/run/halo.h"
-#include "simulation/run/head_division.h"
-#include "simulation/run/ranks.h"
+#include "simulation/head/halo.h"
+#include "simulation/head/head_division.h"
+#include "simulation/head/no_head.h"
+#include "simulation/head/ranks.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
-
-/// Why a scene is no head of hair, and what would make it one.
-struct NoHead {
-  std::string reason, remedy;
-};
-
-/// What speaks against running a scene as one Head (models/head/head.h); nothing if it
-/// can, with such numbers. Of strands it sees what their tables say: make_head() throws
-/// InputError where a strand of them does not fit.
-std::optional<NoHead> no_head(const SceneOutline& outline,
-                              models::HeadNumber number = models::HeadNumber::float64);
 
 /// What bounds the motion of a head, from its options and its strands (HeadGuard).
 struct HeadReach {

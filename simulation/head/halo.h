@@ -1,87 +1,19 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "contract/system.h"
 #include "models/contact/box_pairs.h"
-#include "models/effects/effect.h"
 #include "models/effects/strand_interaction.h"
 #include "models/motion/root_motion.h"
-#include "simulation/run/head_division.h"
-#include "simulation/run/ranks.h"
+#include "simulation/head/cell_set.h"
+#include "simulation/head/chosen_effect.h"
+#include "simulation/head/head_division.h"
+#include "simulation/head/ranks.h"
 
 namespace tress::simulation {
-
-/// An effect on a strand that may give way to another one of its kind between steps.
-class ChosenEffect final : public models::Effect {
- public:
-  explicit ChosenEffect(std::unique_ptr<const models::Effect> usual)
-      : usual_(std::move(usual)) {}
-
-  /// Null: the usual one again.
-  void choose(std::unique_ptr<const models::Effect> other) { other_ = std::move(other); }
-
-  std::string_view name() const override { return now().name(); }
-  models::Needs needs() const override { return now().needs(); }
-  void add_load(double t, const models::Points& p, InOut f) const noexcept override {
-    now().add_load(t, p, f);
-  }
-  void add_derivatives(double t, const models::Points& p, double pos, double vel,
-                       InOut blocks) const noexcept override {
-    now().add_derivatives(t, p, pos, vel, blocks);
-  }
-  void add_both(double t, const models::Points& p, double pos, double vel, InOut f,
-                InOut blocks) const noexcept override {
-    now().add_both(t, p, pos, vel, f, blocks);
-  }
-  double potential(double t, const models::Points& p) const noexcept override {
-    return now().potential(t, p);
-  }
-  double power(double t, const models::Points& p) const noexcept override {
-    return now().power(t, p);
-  }
-  double next_breakpoint(double t) const noexcept override {
-    return now().next_breakpoint(t);
-  }
-
- private:
-  const models::Effect& now() const { return other_ ? *other_ : *usual_; }
-
-  std::unique_ptr<const models::Effect> usual_, other_;
-};
-
-/// Cells of space that something lies in, as far as a box of them reaches. All such sets
-/// of one corner and size of cells have the same cells.
-class CellSet {
- public:
-  CellSet() = default;
-  /// `all`: what it may hold.
-  CellSet(const Vec& corner, double size, const models::Box& all);
-
-  /// Safe for several threads at once.
-  void mark(const models::Box& box);
-  bool holds_some(const models::Box& box) const;
-
-  const models::Box& all() const { return box_; }
-  std::vector<char>& marks() { return marks_; }
-
- private:
-  struct Range {
-    std::array<long, 3> from, to;
-  };
-  Range cells(const models::Box& box) const;
-
-  Vec corner_;
-  double size_ = 1;
-  models::Box box_ = models::Box::none();
-  Range all_{{0, 0, 0}, {-1, -1, -1}};
-  std::vector<char> marks_;
-};
 
 /// The strands of other ranks that may touch those of this one, its ghosts, and what they
 /// do to them:
@@ -121,6 +53,7 @@ class Halo {
     long steps = 0, claims = 0;          // claims: how often they were made
     double sent = 0, ghosts = 0;         // strands, all steps
     double claim_s = 0, exchange_s = 0;  // exchange_s: packing, waiting, unpacking
+    double meet_s = 0;                   // to list what touches strands that are sent
   };
   const Work& work() const { return work_; }
 

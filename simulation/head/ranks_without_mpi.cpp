@@ -1,5 +1,5 @@
 #include "contract/input_error.h"
-#include "simulation/run/ranks.h"
+#include "simulation/head/ranks.h"
 
 namespace tress::simulation {
 

@@ -1,4 +1,4 @@
-#include "simulation/run/halo.h"
+#include "simulation/head/halo.h"
 
 #include <algorithm>
 #include <atomic>
@@ -20,7 +20,6 @@ using models::Loop;
 // neighbours anew when claims are made, which takes as long as to step some 24 times
 // (StrandPartners), against few ghosts more.
 constexpr double steps_of_room = 16, least_room = 0.25;
-constexpr double most_cells = 128;  // along a side of the head
 // Of places, in 32 bits, over the size of the head.
 constexpr double place_rounding = 2e-6;
 constexpr double farthest = 1e100;  // m: what is beyond it is near to nothing
@@ -40,72 +39,6 @@ void each_strand(std::size_t count, const Loop& loop,
 }
 
 }  // namespace
-
-CellSet::CellSet(const Vec& corner, double size, const Box& all)
-    : corner_(corner), size_(size), box_(all) {
-  if (all.empty()) return;
-  all_ = cells(all);
-  std::size_t count = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    count *= static_cast<std::size_t>(all_.to[i] - all_.from[i] + 1);
-  }
-  marks_.resize(count);
-}
-
-/// Of a box that may reach beyond all cells of the head.
-CellSet::Range CellSet::cells(const Box& box) const {
-  const auto index = [&](double at, double from) {
-    return static_cast<long>(
-        std::floor(std::clamp((at - from) / size_, -2.0, most_cells + 2)));
-  };
-  return {{index(box.least.x, corner_.x), index(box.least.y, corner_.y),
-           index(box.least.z, corner_.z)},
-          {index(box.most.x, corner_.x), index(box.most.y, corner_.y),
-           index(box.most.z, corner_.z)}};
-}
-
-namespace {
-
-/// Calls use(first, last) for the rows of cells of a range in a box of cells, until it
-/// returns true; whether it has.
-template <class Range, class Use>
-bool each_row(const Range& all, Range some, Use use) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    some.from[i] = std::max(some.from[i], all.from[i]);
-    some.to[i] = std::min(some.to[i], all.to[i]);
-  }
-  const auto side = [&](std::size_t i) { return all.to[i] - all.from[i] + 1; };
-  for (long z = some.from[2]; z <= some.to[2]; ++z) {
-    for (long y = some.from[1]; y <= some.to[1]; ++y) {
-      const long row =
-          ((z - all.from[2]) * side(1) + (y - all.from[1])) * side(0) - all.from[0];
-      if (some.from[0] <= some.to[0] && use(static_cast<std::size_t>(row + some.from[0]),
-                                            static_cast<std::size_t>(row + some.to[0]))) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
-void CellSet::mark(const Box& box) {
-  each_row(all_, cells(box), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i <= last; ++i) {
-      std::atomic_ref(marks_[i]).store(1, std::memory_order_relaxed);
-    }
-    return false;
-  });
-}
-
-bool CellSet::holds_some(const Box& box) const {
-  return each_row(all_, cells(box), [&](std::size_t first, std::size_t last) {
-    return std::find(marks_.begin() + static_cast<std::ptrdiff_t>(first),
-                     marks_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-                     1) != marks_.begin() + static_cast<std::ptrdiff_t>(last) + 1;
-  });
-}
 
 Halo::Halo(Ranks& ranks, std::shared_ptr<const HeadDivision> division,
            models::RootMotion motion, const models::StrandInteraction& interaction,
@@ -190,7 +123,7 @@ void Halo::claim(const Places& places, const models::RootPose& now,
                                 ranks_.largest(claims_.most.y) - corner_.y,
                                 ranks_.largest(claims_.most.z) - corner_.z});
   rounding_ = place_rounding * side;
-  size_ = std::max({reach, 0.5 * ranks_.largest(rooms), side / most_cells});
+  size_ = std::max({reach, 0.5 * ranks_.largest(rooms), side / CellSet::most_cells});
 }
 
 template <class Use>
@@ -200,8 +133,8 @@ void Halo::each_piece(std::size_t strand, Use use) const {
     if (!is_place(a) || !is_place(b)) continue;
     const double length = norm(b - a),
                  room = std::max(room_[i], room_[i + 1]) + rounding_;
-    const double count =
-        std::clamp(std::ceil(length / std::max(size_, room)), 1.0, 2 * most_cells);
+    const double count = std::clamp(std::ceil(length / std::max(size_, room)), 1.0,
+                                    2 * CellSet::most_cells);
     for (double k = 0; k < count; ++k) {
       Box box{a + (k / count) * (b - a), a + (k / count) * (b - a)};
       box.include(a + ((k + 1) / count) * (b - a));
@@ -240,9 +173,7 @@ void Halo::find_neighbours(const Loop& loop) {
   });
   const auto size = static_cast<std::size_t>(ranks_.size()),
              rank = static_cast<std::size_t>(ranks_.rank());
-  std::vector<Box> boxes(size);
-  boxes[rank] = claims_;
-  ranks_.share(std::span(boxes), std::vector<std::size_t>(size, 1));
+  const std::vector<Box> boxes = ranks_.of_each(claims_);
   std::vector<CellSet> sets;
   std::vector<std::size_t> counts;
   std::size_t all = 0;
@@ -367,7 +298,8 @@ void Halo::receive(In x, In v, const Loop& loop) {
       std::copy_n(is_own ? &v[each * met.index] : at + each, each, &v_[each * k]);
     });
   });
-  if (between_) between_->update(x_, v_, loop);
+  if (!between_) return;
+  work_.meet_s += seconds_of([&] { between_->update(x_, v_, loop); });
 }
 
 }  // namespace tress::simulation

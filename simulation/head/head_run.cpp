@@ -1,4 +1,4 @@
-#include "simulation/run/head_run.h"
+#include "simulation/head/head_run.h"
 
 #include <algorithm>
 #include <numeric>
@@ -35,9 +35,6 @@ HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
       halo_(std::move(made.halo)),
       head_(std::move(made.head)),
       crew_(threads) {
-  const std::span<const std::size_t> by_number = division_->by_number();
-  order_.resize(by_number.size());
-  for (std::size_t i = 0; i < by_number.size(); ++i) order_[by_number[i]] = i;
   all_ = pieces([](std::size_t) { return true; });
   inner_ = all_;
   for (std::size_t w = 0; w < crew_.workers(); ++w) {
@@ -205,12 +202,13 @@ void HeadRun::look(double t, double h) {
     ahead_.resize(x_.size());
     bulge_.resize(head_->strands());
   }
+  const std::span<const std::size_t> order = division_->order();
   each_block([&](std::size_t block, std::size_t first) {
     const std::size_t count = head_->strands_of(block);
     std::vector<double> of_block(each * count), more(of_block.size());
     const auto put = [&](const std::vector<double>& from, std::vector<double>& to) {
       for (std::size_t k = 0; k < count; ++k) {
-        std::copy_n(&from[each * k], each, &to[each * order_[first + k]]);
+        std::copy_n(&from[each * k], each, &to[each * order[first + k]]);
       }
     };
     head_->motion(block, t, of_block, more);
@@ -220,7 +218,7 @@ void HeadRun::look(double t, double h) {
     std::vector<double> bulge(count);
     head_->ahead(block, t, h, of_block, bulge);
     put(of_block, ahead_);
-    for (std::size_t k = 0; k < count; ++k) bulge_[order_[first + k]] = bulge[k];
+    for (std::size_t k = 0; k < count; ++k) bulge_[order[first + k]] = bulge[k];
   });
   if (halo_) {
     if (halo_->look(t, h, {x_, ahead_, bulge_}, loop())) {

@@ -1,4 +1,4 @@
-#include "simulation/run/ranks.h"
+#include "simulation/head/ranks.h"
 
 #include <algorithm>
 #include <cstdlib>

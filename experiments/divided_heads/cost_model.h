@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "contract/layers.h"
+
+namespace tress::experiments::divided_heads {
+
+/// Elements of a hair.
+inline constexpr int elements = 10;
+
+/// The border that a region of the scalp has in common with others, over the side of the
+/// whole: the largest of so many regions, a power of two, made by halving a square and
+/// its parts across their longer sides.
+double border(double ranks);
+
+/// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
+/// ranks (processes of one thread),
+///
+///     T(n, R) = s (n/R) e (k + c) + G e b + l log2 R,
+///
+/// where e is the number of elements, k and c what one costs by itself and by its hair's
+/// contacts, and s how much longer that takes while other cores of the machine are busy,
+/// for R > 1. Ghosts lie within a depth w of a region's border: with hairs' roots a
+/// distance d apart on average,
+///
+///     G = border(R) (w/d) sqrt(n),  but at most all hairs of other ranks;
+///
+/// b is what an element of one costs, to be sent, received, held and listed; l the
+/// latency of what all ranks agree on in a step.
+struct CostModel {
+  double kernel = 0, contacts = 0;  // s
+  double busy = 1;
+  double depth = 0;  // w/d
+  double ghost = 0;  // s
+  double latency = 0;
+
+  double own_cost(double strands, double ranks) const;
+  double ghosts(double strands, double ranks) const;
+  double cost(double strands, double ranks) const;
+  /// Of a rank's time, what its own hairs take.
+  double efficiency(double strands, double ranks) const {
+    return own_cost(strands, ranks) / cost(strands, ranks);
+  }
+};
+
+/// A head that was measured.
+struct Measurement {
+  bool touch = false;  // hairs interact
+  double strands = 0, ranks = 1;
+  double beside = 1;  // such heads that ran at the same time
+  double cost = 0;    // of a step, s
+  double ghosts = 0;  // of the rank that has most
+};
+
+/// The model of hairs that do not touch and of those that do, each of its numbers the
+/// mean of what single measurements say: kernel and contacts of one rank alone; busy of
+/// one rank beside another; latency of two ranks whose hairs do not touch; depth and
+/// ghost of two whose hairs do. Empty if measurements for one of these are missing.
+struct CostModels {
+  CostModel apart, touching;
+};
+std::optional<CostModels> fit_cost(std::span<const Measurement> all);
+
+}  // namespace tress::experiments::divided_heads

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "simulation/export/head_frames.h"
+#include "simulation/head/head_run.h"
+
+namespace tress::experiments::scene_runs {
+
+using namespace simulation;
+
+/// What of a head goes to the first rank as it runs: strands come by the thousand, so
+/// that it need not hold what all ranks have.
+class HeadReading {
+ public:
+  /// `shown`: strands of pictures.
+  HeadReading(std::vector<std::size_t> shown, int threads)
+      : shown_(std::move(shown)),
+        at_once_(HeadFrames::at_once(static_cast<std::size_t>(threads))) {}
+
+  const std::vector<std::size_t>& shown() const { return shown_; }
+  std::size_t at_once() const { return at_once_; }  // strands
+  /// Calls use(strands) for all, so many at a time.
+  void by_chunks(const HeadRun& run,
+                 const std::function<void(HeadRun::Numbers)>& use) const {
+    run.by_chunks(at_once_, use);
+  }
+
+  /// Of own strands, by their places, at t.
+  const std::vector<models::HeadEnergy>& energies(HeadRun& run, double t);
+  /// A row of head_series() from them; on the first rank.
+  std::vector<double> series(HeadRun& run, double t) const;
+  /// Positions at t into `frame`, null on other ranks; of all strands, or shown ones
+  /// alone.
+  void frame(HeadRun& run, double t, bool all, HeadFrames* frame) const;
+
+ private:
+  std::vector<std::size_t> shown_;
+  std::size_t at_once_;  // strands
+  std::vector<models::HeadEnergy> energies_;
+};
+
+}  // namespace tress::experiments::scene_runs

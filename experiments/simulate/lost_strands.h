@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "simulation/export/head_state.h"
+#include "simulation/head/ranks.h"
+
+namespace tress::experiments::scene_runs {
+
+using namespace simulation;
+
+/// The strands of a head that ranks lose, until all of them know.
+class LostStrands {
+ public:
+  explicit LostStrands(Ranks& ranks) : ranks_(ranks) {}
+
+  /// One of this rank's own.
+  void lose(const LostStrand& strand) { own_.push_back(strand); }
+  /// Of all ranks, those lost since the last call, by the time and then by the strand.
+  std::vector<LostStrand> gathered();
+
+ private:
+  Ranks& ranks_;
+  std::vector<LostStrand> own_;  // since the last call
+};
+
+}  // namespace tress::experiments::scene_runs

@@ -1,0 +1,147 @@
+#include "simulation/head/no_head.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/head/head.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::simulation {
+namespace {
+
+/// An option of the model that heads do not have.
+NoHead no_option(const Parameters& p, const char* key, const char* remedy) {
+  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)), remedy};
+}
+
+std::optional<NoHead> no_springs(const Parameters& p) {
+  if (p.word("bending") != "angular") {
+    return no_option(p, "bending", "give [model] bending = \"angular\"");
+  }
+  if (p.word("torsion") != "none") {
+    return no_option(p, "torsion", "give [model] torsion = \"none\"");
+  }
+  if (p.word("tangent") != "filtered") {
+    return no_option(p, "tangent", "give [model] tangent = \"filtered\"");
+  }
+  return {};
+}
+
+std::optional<NoHead> no_model(const Scene& scene) {
+  const Parameters& p = scene.model_options;
+  if (steps_springs(scene)) return no_springs(p);
+  if (scene.model->id != "super_helix") {
+    return NoHead{fmt::format("{} does not come as a head", scene.model->id),
+                  "use [model] id = \"super_helix\", or \"mass_spring\""};
+  }
+  if (p.word("modes") == "bend_planar") {
+    return NoHead{"strands of a head bend in both directions",
+                  "give [model] modes = \"bend_twist\" or \"bend\""};
+  }
+  if (p.word("tangent") != "stiff") {
+    return no_option(p, "tangent", "give [model] tangent = \"stiff\"");
+  }
+  if (p.word("solver") != "recursive") {
+    return no_option(p, "solver", "leave out [model] solver");
+  }
+  if (p.whole("quadrature") == 1 || p.whole("quadrature") > 16) {
+    return NoHead{fmt::format("{} points of an element", p.whole("quadrature")),
+                  "give [model] quadrature = 0, or 2 to 16"};
+  }
+  return {};
+}
+
+std::optional<NoHead> no_method(const Scene& scene) {
+  if (scene.integrator != "semi_implicit_euler") {
+    return NoHead{fmt::format("{} does not step a head", scene.integrator),
+                  "use [integrator] id = \"semi_implicit_euler\""};
+  }
+  if (scene.rest == RestStrains::inverse) {
+    return NoHead{"strands of a head have the natural strains of their tables",
+                  "leave out rest = \"inverse\""};
+  }
+  const Options& options = scene.options;
+  if (options.max_work > 0) {
+    return NoHead{"a head does not count its work", "leave out [integrator] max_work"};
+  }
+  if (1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
+    return NoHead{"more than max_steps steps of dt_s from frame to frame",
+                  "give a longer dt_s, or more frames_1_s"};
+  }
+  return {};
+}
+
+std::optional<NoHead> no_strands(const Scene& scene) {
+  const std::vector<StrandSource>& sources = scene.tables->sources;
+  const int elements = sources.front().table.values().whole("elements");
+  for (const StrandSource& source : sources) {
+    const Parameters& p = source.table.values();
+    if (p.whole("elements") != elements) {
+      return NoHead{
+          fmt::format("strands of {} and of {} elements", elements, p.whole("elements")),
+          "give all equally many elements"};
+    }
+    if (source.groom && p.whole("guides") > 0) {
+      return NoHead{"all strands of a head are simulated", "leave out guides"};
+    }
+    if (source.file && p.word("cuts") != "equal") {
+      return NoHead{"elements of different lengths", "give [groom] cuts = \"equal\""};
+    }
+    if (p.number("grading") != 1) {
+      return NoHead{"elements of different lengths", "leave out grading"};
+    }
+  }
+  if (scene.strands.front().free_root) {
+    return NoHead{"free roots", "use another [root] motion"};
+  }
+  return {};
+}
+
+std::optional<NoHead> no_effects(const Scene& scene) {
+  for (const EffectChoice& choice : scene.effects) {
+    const auto effect = make_effect(scene, choice);
+    if (effect != nullptr) {
+      if (auto no = models::refused_by_heads(*effect))
+        return NoHead{no->reason, no->remedy};
+      if (steps_springs(scene) && !effect->uniform_acceleration() &&
+          !effect->viscosity() && effect->rigid_contact() == nullptr) {
+        return NoHead{fmt::format("[effects.{}] on a head of springs", choice.entry->id),
+                      "leave it out, or use [model] id = \"super_helix\""};
+      }
+    } else if (steps_springs(scene) && &choice.parameters == scene.interaction()) {
+      return NoHead{"interaction on a head of springs",
+                    "leave it out, or use [model] id = \"super_helix\""};
+    } else if (&choice.parameters != scene.interaction()) {
+      return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
+                    "leave it out"};
+    } else if (choice.parameters.word("coupling") == "monolithic") {
+      return NoHead{"strands of a head are no system of one",
+                    "give [effects.strand_interaction] coupling = \"lagged\""};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
+
+std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
+  const Scene& scene = outline.scene;
+  if (scene.strands.empty()) {
+    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
+                  "use [model] id = \"super_helix\""};
+  }
+  if (auto no = no_model(scene)) return no;
+  if (steps_springs(scene) && number != models::HeadNumber::float64) {
+    return NoHead{"springs in 32 bits, which do not resolve their strains",
+                  "give --bits 64"};
+  }
+  if (auto no = no_method(scene)) return no;
+  if (auto no = no_strands(scene)) return no;
+  return no_effects(scene);
+}
+
+}  // namespace tress::simulation
