@@ -2,6 +2,7 @@
 // repository, each of which returns the Markdown that stands in for its slot.
 import * as catalogue from './catalogue.mjs';
 import * as claims from './claims.mjs';
+import * as cluster from './cluster.mjs';
 import * as columns from './columns.mjs';
 import * as cost from './cost.mjs';
 import * as damping from './damping.mjs';
@@ -30,6 +31,7 @@ import * as validation from './validation.mjs';
 export const queries = {
   catalogue,
   claims,
+  cluster,
   columns,
   cost,
   damping,

@@ -32,6 +32,17 @@ const by_hand = {
     share_above: 'of those above',
     told_right_share: 'of all hairs, by that threshold',
   },
+  full_sweeps: {
+    experiment: 'of `./tress run`',
+    rows: 'of all that it has',
+    timed_rows: 'of these, spread over all',
+    cut_off_rows: 'of the timed rows, which ran into the timeout: what they take is more',
+    row_s: 'processor time of a timed row, mean (s)',
+    plan_s: 'the same to plan them, which each part does (s)',
+    parts: 'of about a quarter of an hour',
+    core_hours: 'of all rows in these parts',
+    memory_mb: 'of the largest process (MB)',
+  },
   mutants: {
     file: 'source that was spoilt',
     line: 'of it',
