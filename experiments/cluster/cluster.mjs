@@ -1,12 +1,14 @@
 // cluster.mjs slurm|snakemake [--parts n] [--profile file] [--folder folder] [--cores n]
 //             [--sbatch] [--write-only] EXPERIMENT [its arguments]
 // cluster.mjs status|resume|merge FOLDER
+// cluster.mjs estimate [--out FILE] [--timeout TIME] [EXPERIMENT...]
 // See docs/cluster.md. Exit codes as of ./tress.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { join, relative, resolve } from 'node:path';
 import { InputError } from '../report/src/input.mjs';
+import { write_estimates } from './estimate.mjs';
 import { read_profile } from './profile.mjs';
 import * as slurm from './slurm.mjs';
 import * as snakemake from './snakemake.mjs';
@@ -57,8 +59,11 @@ function read_words(words) {
   return { options, experiment, args };
 }
 
+const known_experiments = () =>
+  readFileSync(join(programs, 'list.txt'), 'utf8').trim().split('\n');
+
 function known_experiment(name) {
-  const list = readFileSync(join(programs, 'list.txt'), 'utf8').trim().split('\n');
+  const list = known_experiments();
   if (name === undefined || !list.includes(name))
     throw new InputError(
       `cluster: no experiment '${name ?? ''}'; there are ${list.join(' ')}`,
@@ -122,7 +127,7 @@ function prepared(scheduler, { options, experiment, args }, program, folder) {
 }
 
 function tell_estimate({ pilot, parts, needs }) {
-  const hours = (pilot.rows * pilot.row_s) / 3600;
+  const hours = sweeps.core_hours(pilot, parts);
   say(
     `${pilot.rows} rows of about ${pilot.row_s.toPrecision(2)} s ` +
       `(${pilot.timed} were timed): ${hours.toPrecision(2)} core hours in ${parts} parts; ` +
@@ -234,6 +239,35 @@ function status(sweep) {
   return 0;
 }
 
+/// What every sweep of all rows takes, as a table.
+function estimate(words) {
+  const options = { '--out': 'results/full_sweeps.csv', '--timeout': '60s' };
+  while (words.length > 0 && words[0].startsWith('-')) {
+    const name = words.shift();
+    if (!(name in options))
+      throw new InputError(
+        `cluster: unknown option '${name}'; there are ${Object.keys(options).join(', ')}`,
+      );
+    if (words.length === 0)
+      throw new InputError(`cluster: ${name} without a value; give one`);
+    options[name] = words.shift();
+  }
+  // simulate runs scenes, which are not rows of a sweep.
+  const names =
+    words.length > 0 ? words : known_experiments().filter((name) => name !== 'simulate');
+  const list = names.map((name) => [name, known_experiment(name)]);
+  return write_estimates(
+    list.map(([experiment, program]) => ({
+      experiment,
+      program,
+      repository,
+      args: ['--full', '--timeout', options['--timeout']],
+    })),
+    resolve(repository, options['--out']),
+    say,
+  );
+}
+
 function answer([command, ...words]) {
   if (command === 'slurm' || command === 'snakemake') {
     const read = read_words(words);
@@ -264,8 +298,9 @@ function answer([command, ...words]) {
       command === 'merge' ? merged(sweep) : submit(sweep, {}),
     );
   }
+  if (command === 'estimate') return estimate(words);
   throw new InputError(
-    `cluster: no command '${command ?? ''}'; there are slurm, snakemake, status, resume, merge`,
+    `cluster: no command '${command ?? ''}'; there are slurm, snakemake, status, resume, merge, estimate`,
   );
 }
 

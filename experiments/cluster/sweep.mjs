@@ -99,25 +99,32 @@ export function alone(folder, use) {
   }
 }
 
-/// Runs the experiment's program here; its last line on failure is the complaint.
+/// Runs the experiment's program here; its last line on failure is the complaint. What it
+/// takes of a processor, in s, is bash's to say.
 function program(sweep, args) {
-  const done = spawnSync(sweep.program, [...sweep.args, ...args], {
-    cwd: sweep.repository,
-    encoding: 'utf8',
-    maxBuffer: 2 ** 28,
-  });
+  const done = spawnSync(
+    'bash',
+    ['-c', 'code=0; "$@" || code=$?; times >&2; exit $code', 'bash', sweep.program]
+      .concat(sweep.args)
+      .concat(args),
+    { cwd: sweep.repository, encoding: 'utf8', maxBuffer: 2 ** 28 },
+  );
   if (done.status === 130 || done.signal)
     throw new InputError('interrupted; give the same command again');
-  if (done.status !== 0 && done.status !== 3) {
-    const [last] = done.stderr.trim().split('\n').slice(-1);
-    throw new InputError(last || `${sweep.program} ended with ${done.status}`);
-  }
-  return done;
+  // The last two lines are of times: the shell's own, the program's.
+  const lines = done.stderr.trim().split('\n');
+  if (done.status !== 0 && done.status !== 3)
+    throw new InputError(lines.at(-3) || `${sweep.program} ended with ${done.status}`);
+  const times = [...lines.at(-1).matchAll(/(\d+)m([\d.]+)s/g)];
+  const processor_s = times.reduce((sum, [, m, s]) => sum + 60 * Number(m) + Number(s), 0);
+  return { stdout: done.stdout, processor_s };
 }
 
-/// Counts rows and runs some of them, spread over all, to tell what a part takes.
+/// Counts rows and runs some of them, spread over all, to tell what they take: a row, and
+/// to plan them, which every part does.
 export function pilot(sweep, say) {
-  const rows = program(sweep, ['--dry-run']).stdout.split('\n').length - 1;
+  const plan = program(sweep, ['--dry-run']);
+  const rows = plan.stdout.split('\n').length - 1;
   if (rows < 2)
     throw new InputError(
       `${sweep.experiment}: ${rows} row, nothing to share; ./tress run`,
@@ -145,11 +152,17 @@ export function pilot(sweep, say) {
   return {
     rows,
     timed,
-    row_s: manifest.spent.processor_s / timed,
+    plan_s: plan.processor_s,
+    row_s: Math.max(0, manifest.spent.processor_s - plan.processor_s) / timed,
+    cut_off: manifest.rows.by_status.timeout ?? 0,
     largest_mb: manifest.spent.largest_mb,
     timeout_s: manifest.timeout_s,
   };
 }
+
+/// Of the whole, in so many parts.
+export const core_hours = ({ rows, row_s, plan_s = 0 }, parts) =>
+  (rows * row_s + parts * plan_s) / 3600;
 
 /// Minutes and memory of a part: twice what the pilot's rows took, and one row that runs
 /// into its timeout; half more memory than its largest process, twice (two processes).
@@ -157,7 +170,8 @@ export function needs(known, parts, profile) {
   const rows = Math.ceil(known.rows / parts);
   return {
     minutes:
-      profile.minutes ?? Math.ceil((2 * rows * known.row_s + known.timeout_s) / 60),
+      profile.minutes ??
+      Math.ceil((2 * (rows * known.row_s + (known.plan_s ?? 0)) + known.timeout_s) / 60),
     memory_mb:
       profile.memory_mb ?? Math.max(256, 64 * Math.ceil((3 * known.largest_mb) / 64)),
   };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace tress::experiments::divided_heads {
 
@@ -18,7 +20,8 @@ double border(double ranks) {
 }
 
 double CostModel::own_cost(double strands, double ranks) const {
-  return (ranks > 1 ? busy : 1) * strands / ranks * elements * (kernel + contacts);
+  return (ranks > 1 ? busy : 1) * strands / ranks * elements *
+         (kernel + contacts * (1 - edge / std::sqrt(strands)));
 }
 
 double CostModel::ghosts(double strands, double ranks) const {
@@ -46,6 +49,23 @@ std::optional<double> mean(std::span<const Measurement> all, Wanted wanted, Valu
   return sum / count;
 }
 
+/// The line of least squares; level through points of one place.
+struct Line {
+  double offset, slope;
+};
+Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto count = static_cast<double>(x.size());
+  const double mx = std::accumulate(x.begin(), x.end(), 0.0) / count,
+               my = std::accumulate(y.begin(), y.end(), 0.0) / count;
+  double xx = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mx) * (x[i] - mx);
+    xy += (x[i] - mx) * (y[i] - my);
+  }
+  const double slope = xx > 0 ? xy / xx : 0;
+  return {my - slope * mx, slope};
+}
+
 }  // namespace
 
 std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
@@ -62,7 +82,17 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
     });
     if (!alone) return {};
     model.kernel = touch ? models.apart.kernel : *alone;
-    model.contacts = *alone - model.kernel;
+    if (touch) {
+      std::vector<double> x, y;
+      for (const Measurement& m : all) {
+        if (!of(1, 1)(m)) continue;
+        x.push_back(1 / std::sqrt(m.strands));
+        y.push_back(m.cost / (m.strands * elements) - model.kernel);
+      }
+      const auto [offset, slope] = line_through(x, y);
+      model.contacts = offset;
+      if (offset > 0) model.edge = -slope / offset;
+    }
     const auto busy = mean(all, of(1, 2), [&](const Measurement& m) {
       return m.cost / model.own_cost(m.strands, 1);
     });

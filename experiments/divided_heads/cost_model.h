@@ -18,12 +18,13 @@ double border(double ranks);
 /// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
 /// ranks (processes of one thread),
 ///
-///     T(n, R) = s (n/R) e (k + c) + G e b + l log2 R,
+///     T(n, R) = s (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
 /// where e is the number of elements, k and c what one costs by itself and by its hair's
-/// contacts, and s how much longer that takes while other cores of the machine are busy,
-/// for R > 1. Ghosts lie within a depth w of a region's border: with hairs' roots a
-/// distance d apart on average,
+/// contacts, of which hairs near the edge of the scalp have fewer, a/sqrt(n) of all; s
+/// how much longer that takes while other cores of the machine are busy, for R > 1.
+/// Ghosts lie within a depth w of a region's border: with hairs' roots a distance d apart
+/// on average,
 ///
 ///     G = border(R) (w/d) sqrt(n),  but at most all hairs of other ranks;
 ///
@@ -31,6 +32,7 @@ double border(double ranks);
 /// latency of what all ranks agree on in a step.
 struct CostModel {
   double kernel = 0, contacts = 0;  // s
+  double edge = 0;                  // a
   double busy = 1;
   double depth = 0;  // w/d
   double ghost = 0;  // s
@@ -55,9 +57,10 @@ struct Measurement {
 };
 
 /// The model of hairs that do not touch and of those that do, each of its numbers the
-/// mean of what single measurements say: kernel and contacts of one rank alone; busy of
-/// one rank beside another; latency of two ranks whose hairs do not touch; depth and
-/// ghost of two whose hairs do. Empty if measurements for one of these are missing.
+/// mean of what single measurements say, but for contacts and edge, which are a line
+/// through those of one rank alone; kernel of one whose hairs do not touch; busy of one
+/// rank beside another; latency of two ranks whose hairs do not touch; depth and ghost of
+/// two whose hairs do. Empty if measurements for one of these are missing.
 struct CostModels {
   CostModel apart, touching;
 };

@@ -154,6 +154,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
       row.set("sent_per_step", head.sent_per_step);
       row.set("claims_per_step", head.claims_per_step);
       row.set("claim_s", head.claim_s).set("exchange_s", head.exchange_s);
+      row.set("meet_s", head.meet_s);
     }
     row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
     row.set("state", head.state).set("build_s", head.build_s);

@@ -131,11 +131,16 @@ rm -rf results/cluster/{springs,snake}
 while IFS= read -r line; do
   case $line in
     *' snakemake '*) command -v snakemake >/dev/null || continue ;;
+    # Not over the published table.
+    *' estimate '*) line="${line/estimate/estimate --out $work/full_sweeps.csv}" ;;
   esac
   read -ra words <<<"$line"
   expect 0 '.' cluster "${words[@]:2}"
   until_true 120 idle
 done < <(commands_of_page '^./tress cluster')
+(($(grep -cE '^(damping|force_transport),' "$work/full_sweeps.csv") == 2)) ||
+  fail "no estimates: $(cat "$work/full_sweeps.csv")"
+expect 2 "no experiment 'nope'" cluster estimate nope
 for folder in springs snake; do
   [[ $folder == snake ]] && ! command -v snakemake >/dev/null && continue
   [[ -s results/cluster/$folder/stability_limit.csv ]] || fail "no table in $folder"

@@ -79,6 +79,7 @@ TEST(DividedBorder, CountsTheGhostsOfADividedScalp) {
 CostModel touching() {
   return {.kernel = 5e-8,
           .contacts = 2e-6,
+          .edge = 12,
           .busy = 1.2,
           .depth = 4,
           .ghost = 3e-6,
@@ -87,8 +88,9 @@ CostModel touching() {
 
 TEST(DividedCost, IsItsOwnAloneAndHalfOfItWithoutGhosts) {
   CostModel model = touching();
-  EXPECT_NEAR(model.cost(3000, 1), 3000 * elements * 2.05e-6,
-              3000 * elements * 2.05e-6 * 4 * eps);
+  const double element = 5e-8 + 2e-6 * (1 - 12 / std::sqrt(3000.0));
+  EXPECT_NEAR(model.cost(3000, 1), 3000 * elements * element,
+              3000 * elements * element * 8 * eps);
   EXPECT_EQ(model.efficiency(3000, 1), 1);
   model.depth = model.latency = 0;
   EXPECT_NEAR(model.cost(3000, 2), model.busy * model.cost(3000, 1) / 2,
@@ -108,8 +110,9 @@ TEST(DividedCost, GhostsAreTheRimOfACut) {
 /// As many hairs on each rank: regions with four neighbours have as many ghosts, however
 /// many ranks there are, and only agreement takes longer.
 TEST(DividedCost, GrowsByLatencyAloneWhereRanksHaveAsManyHairs) {
-  const CostModel model = touching();
+  CostModel model = touching();
   constexpr double own = 5000;
+  model.edge = 0;
   const auto without = [&](double ranks) {
     return model.cost(own * ranks, ranks) - model.latency * std::log2(ranks);
   };
@@ -142,7 +145,7 @@ std::vector<Measurement> measured_by(const CostModel& model, bool touch) {
 TEST(DividedCost, IsFoundAgainInWhatItSays) {
   const CostModel want = touching();
   CostModel apart = want;
-  apart.contacts = apart.depth = apart.ghost = 0;
+  apart.contacts = apart.edge = apart.depth = apart.ghost = 0;
   std::vector<Measurement> all = measured_by(apart, false);
   const auto more = measured_by(want, true);
   all.insert(all.end(), more.begin(), more.end());
@@ -151,8 +154,10 @@ TEST(DividedCost, IsFoundAgainInWhatItSays) {
   const CostModel& got = found->touching;
   const double step = want.cost(4000, 2);
   EXPECT_NEAR(got.kernel, want.kernel, 8 * eps * want.kernel);
-  EXPECT_NEAR(got.contacts, want.contacts, 8 * eps * want.contacts);
-  EXPECT_NEAR(got.busy, want.busy, 16 * eps * want.busy);
+  // A line through two places whose distance is half of the farther one.
+  EXPECT_NEAR(got.contacts, want.contacts, 64 * eps * want.contacts);
+  EXPECT_NEAR(got.edge, want.edge, 64 * eps * want.edge);
+  EXPECT_NEAR(got.busy, want.busy, 64 * eps * want.busy);
   EXPECT_NEAR(got.depth, want.depth, 8 * eps * want.depth);
   EXPECT_NEAR(got.latency, want.latency, 32 * eps * apart.cost(4000, 2));
   EXPECT_NEAR(got.ghost, want.ghost, 64 * eps * step / (want.ghosts(1000, 2) * elements));
@@ -162,7 +167,7 @@ TEST(DividedCost, IsFoundAgainInWhatItSays) {
 
 TEST(DividedCost, NeedsAMeasurementForEachOfItsNumbers) {
   CostModel apart = touching();
-  apart.contacts = apart.depth = apart.ghost = 0;
+  apart.contacts = apart.edge = apart.depth = apart.ghost = 0;
   std::vector<Measurement> all = measured_by(apart, false);
   const auto more = measured_by(touching(), true);
   all.insert(all.end(), more.begin(), more.end());
@@ -193,7 +198,7 @@ Row row(const char* kind, const Measurement& m) {
 TEST(DividedPredictions, MeetWhatSetThemAndGoOnFromThere) {
   const CostModel model = touching();
   CostModel apart = model;
-  apart.contacts = apart.depth = apart.ghost = 0;
+  apart.contacts = apart.edge = apart.depth = apart.ghost = 0;
   std::vector<Row> rows;
   for (const auto& m : measured_by(apart, false)) rows.push_back(row("measured", m));
   for (Measurement m : measured_by(model, true)) {

@@ -17,7 +17,7 @@ export const divided_heads = {
   title: 'A head that processes divide',
   table: 'divided_heads',
   caption: `Time of a step against the number of processes, by the model that one and two processes were measured for, from 10 000 to 10
-    million hairs on one scalp. A panel for hairs that do not touch, and for hairs that do. Made from divided_heads.csv.`,
+    million hairs, as dense as on a scalp. A panel for hairs that do not touch, and for hairs that do. Made from divided_heads.csv.`,
 
   rows: rows_of,
 

@@ -2,6 +2,7 @@
 // repository, each of which returns the Markdown that stands in for its slot.
 import * as catalogue from './catalogue.mjs';
 import * as claims from './claims.mjs';
+import * as cluster from './cluster.mjs';
 import * as columns from './columns.mjs';
 import * as compare from './compare.mjs';
 import * as cost from './cost.mjs';
@@ -32,6 +33,7 @@ import * as validation from './validation.mjs';
 export const queries = {
   catalogue,
   claims,
+  cluster,
   columns,
   compare,
   cost,

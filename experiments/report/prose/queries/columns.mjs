@@ -41,6 +41,17 @@ const by_hand = {
     ratio_low: 'lower end of its interval',
     ratio_high: 'upper end',
   },
+  full_sweeps: {
+    experiment: 'of `./tress run`',
+    rows: 'of all that it has',
+    timed_rows: 'of these, spread over all',
+    cut_off_rows: 'of the timed rows, which ran into the timeout: what they take is more',
+    row_s: 'processor time of a timed row, mean (s)',
+    plan_s: 'the same to plan them, which each part does (s)',
+    parts: 'of about a quarter of an hour',
+    core_hours: 'of all rows in these parts',
+    memory_mb: 'of the largest process (MB)',
+  },
   mutants: {
     file: 'source that was spoilt',
     line: 'of it',

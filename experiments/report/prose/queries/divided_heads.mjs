@@ -8,11 +8,8 @@ const predicted = (tables) => all(tables).filter((row) => row.kind === 'predicte
 const milli = (seconds) => (is_positive(seconds) ? number(1e3 * seconds) : '');
 const micro = (seconds) => (is_positive(seconds) ? number(1e6 * seconds) : '');
 
-// Rows that set the model's numbers are met but for rounding.
 const off_of = ({ model_off_rel }) =>
-  is_number(model_off_rel) && Math.abs(model_off_rel) < 1e-9
-    ? 'sets it'
-    : percent(model_off_rel);
+  is_number(model_off_rel) ? percent(model_off_rel) : '';
 
 export const measured_table = (tables) =>
   table(
@@ -20,12 +17,15 @@ export const measured_table = (tables) =>
       'hairs',
       'beside gravity',
       'processes',
+      'heads at once',
       'a step, ms',
       'by the model',
       'off',
       'ghosts of a hair',
+      'by the model',
       'to find them, of an element, µs',
       'to exchange them',
+      'to list what they touch',
       'memory of a process, MB',
       'checksum of the states',
     ],
@@ -33,16 +33,40 @@ export const measured_table = (tables) =>
       row.strands,
       row.effects,
       row.ranks,
+      row.beside,
       milli(row.cost_per_step_s),
       milli(row.model_cost_per_step_s),
       off_of(row),
       number(row.ghosts_per_strand),
+      is_positive(row.model_ghosts_per_strand) ? number(row.model_ghosts_per_strand) : '',
       micro(row.claim_per_element_s),
       micro(row.exchange_per_element_s),
+      micro(row.meet_per_element_s),
       number(row.memory_mb),
       String(row.state).slice(0, 8),
     ]),
   );
+
+// As many hairs on each of more processes.
+export function weak_table(tables) {
+  const rows = measured(tables).filter(({ beside }) => beside === 1);
+  const own = Math.min(...rows.map(({ strands }) => strands));
+  const one = (effects) =>
+    rows.find((row) => row.effects === effects && row.strands === own && row.ranks === 1);
+  return table(
+    ['beside gravity', 'processes', 'hairs', 'a step, ms', 'over that of one', 'by the model'],
+    rows
+      .filter((row) => row.strands === own * row.ranks)
+      .map((row) => [
+        row.effects,
+        row.ranks,
+        row.strands,
+        milli(row.cost_per_step_s),
+        number(row.cost_per_step_s / one(row.effects).cost_per_step_s),
+        number(row.model_cost_per_step_s / one(row.effects).model_cost_per_step_s),
+      ]),
+  );
+}
 
 export function predicted_table(tables) {
   const rows = predicted(tables);
@@ -69,7 +93,7 @@ export const off = (tables) =>
   percent(
     Math.max(
       ...measured(tables)
-        .filter((row) => row.ranks <= 2 && is_number(row.model_off_rel))
+        .filter((row) => row.ranks <= 2 && row.beside === 1 && is_number(row.model_off_rel))
         .map((row) => Math.abs(row.model_off_rel)),
     ),
   );
