@@ -243,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(
                           "half_axes_m = [0.11, 0.1, 0.13]\nmoves = \"head\"\n"},
                     Scalp{"interaction",
                           "[effects.strand_interaction]\nouter_radius_m = 0.008\n"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& of) { return of.param.name; });
 
 // A step looks where rates lead from here: x + h v but for terms of h^2.
 TEST(HeadAhead, IsWhereRatesLeadTo) {
