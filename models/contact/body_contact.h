@@ -152,11 +152,11 @@ struct BodyContact {
 
     State(const BodyContact& law, const DistanceOf<T>& to, const Vec3<T>& u)
         : Normal(law.normal(), to, u), slide(Normal::slide(u)), friction(law.friction) {
-      const T y = square_root(dot(slide, slide)), o(0), slip(law.slip);
+      const T y = square_root(dot(slide, slide)), o(0), fast(law.slip);
       const T by = T(1) / where_less(o, y, y, T(1));
       const T fades = T(1 / law.slip);
-      grip = where_less(y, slip, fades * (T(2) - y * fades), by);
-      grip_slope = where_less(y, slip, where_less(o, y, -(fades * fades * by), o),
+      grip = where_less(y, fast, fades * (T(2) - y * fades), by);
+      grip_slope = where_less(y, fast, where_less(o, y, -(fades * fades * by), o),
                               -(by * by * by));
     }
     Vec3<T> direction() const { return this->n - (friction * grip) * slide; }

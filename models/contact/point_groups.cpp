@@ -243,8 +243,7 @@ void PointGroups::list(Group& group) {
     if (!is_own(i)) found_.push_back(i);
   }
   std::ranges::sort(found_);
-  const auto rest = std::ranges::unique(found_);
-  found_.erase(rest.begin(), rest.end());
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
   group.list.reserve(found_.size());
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const bool last = k + 1 == found_.size() ||

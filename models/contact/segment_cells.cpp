@@ -101,7 +101,7 @@ int SegmentCells::number_of_parts(int segment, In x) const noexcept {
 }
 
 void SegmentCells::choose_cells(In x, std::size_t parts) {
-  double width[3], *corner[3] = {&corner_.x, &corner_.y, &corner_.z};
+  double across[3], *corner[3] = {&corner_.x, &corner_.y, &corner_.z};
   std::vector<double> values;
   const std::size_t stride = 1 + points() / sampled;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -112,11 +112,11 @@ void SegmentCells::choose_cells(In x, std::size_t parts) {
     const double least = quantile(values, outside), most = quantile(values, 1 - outside),
                  beyond = 0.25 * (most - least) + longest_;
     *corner[axis] = least - beyond;
-    width[axis] = most - least + 2 * beyond;
+    across[axis] = most - least + 2 * beyond;
   }
   const double limit = cells_over_parts * static_cast<double>(parts) + 1;
   const auto number = [&](std::size_t axis) {
-    return std::max(1.0, std::ceil(width[axis] / cell_));
+    return std::max(1.0, std::ceil(across[axis] / cell_));
   };
   while (number(0) * number(1) * number(2) > limit && cell_ < 1e200) cell_ *= 1.1;
   inverse_cell_ = 1 / cell_;
@@ -255,8 +255,7 @@ void SegmentCells::near(const StraightPiece& axis, double radius, int but,
   found.insert(found.end(), long_.begin(), long_.end());
   std::erase_if(found, [&](int segment) { return polyline(segment) == but; });
   std::ranges::sort(found);
-  const auto rest = std::ranges::unique(found);
-  found.erase(rest.begin(), rest.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 std::size_t SegmentCells::bytes() const {

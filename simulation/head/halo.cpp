@@ -233,8 +233,7 @@ void Halo::find_met(const Loop& loop) {
     touched_.insert(touched_.end(), one.sent.begin(), one.sent.end());
   }
   std::ranges::sort(touched_);
-  const auto rest = std::ranges::unique(touched_);
-  touched_.erase(rest.begin(), rest.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
 
   CellSet cells(corner_, size_, claims_);
   for (const std::size_t i : touched_) {
