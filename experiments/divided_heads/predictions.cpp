@@ -1,7 +1,6 @@
 #include "experiments/divided_heads/predictions.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "experiments/divided_heads/cost_model.h"
 
@@ -10,14 +9,10 @@ namespace {
 
 bool touch(const Row& row) { return row.text("effects") == "interaction"; }
 
-std::vector<Measurement> fitted(const std::vector<Row>& rows) {
+std::vector<Measurement> measured(const std::vector<Row>& rows) {
   std::vector<Measurement> all;
   for (const Row& row : rows) {
-    if (!row.ok() || row.text("kind") != "measured" ||
-        std::ranges::find(fitted_strands, static_cast<int>(row.number("strands"))) ==
-            std::end(fitted_strands)) {
-      continue;
-    }
+    if (!row.ok() || row.text("kind") != "measured") continue;
     const double ranks = row.number("ranks"), strands = row.number("strands");
     all.push_back({.touch = touch(row),
                    .strands = strands,
@@ -34,7 +29,7 @@ std::vector<Measurement> fitted(const std::vector<Row>& rows) {
 }  // namespace
 
 void add_predictions(std::vector<Row>& rows) {
-  const auto models = fit_cost(fitted(rows));
+  const auto models = fit_cost(measured(rows));
   if (!models) return;
   for (Row& row : rows) {
     if (!row.ok()) continue;

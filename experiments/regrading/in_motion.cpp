@@ -52,11 +52,12 @@ Scene scene_of(const LooseHair& hair, double tolerance) {
 }
 
 MotionError error_of(const Scene& own, const Scene& reference) {
+  // These end with the reason where a run fails.
+  const double tips = simulation::distance_rel(
+      simulation::tip_paths(own, 0), simulation::tip_paths(reference, 0), reference);
   const simulation::StrandError points =
       simulation::distance(own, reference, 1, 1).strands.front();
-  return {static_cast<int>(own.strands.front().segments.size()),
-          simulation::distance_rel(simulation::tip_paths(own, 0),
-                                   simulation::tip_paths(reference, 0), reference),
+  return {static_cast<int>(own.strands.front().segments.size()), tips,
           points.parts ? simulation::parted_from : points.error.largest};
 }
 

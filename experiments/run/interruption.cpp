@@ -55,24 +55,4 @@ void Interruption::wait() {
   ::_exit(interrupted);
 }
 
-Interruption::Silence::Silence(Interruption& of, std::function<bool()> silent) : of_(of) {
-  const auto held = of_.hold();
-  of_.silent_ = std::move(silent);
-}
-
-Interruption::Silence::~Silence() {
-  const auto held = of_.hold();
-  of_.silent_ = nullptr;
-}
-
-Interruption::Save::Save(Interruption& of, std::function<void()> save) : of_(of) {
-  const auto held = of_.hold();
-  of_.save_ = std::move(save);
-}
-
-Interruption::Save::~Save() {
-  const auto held = of_.hold();
-  of_.save_ = nullptr;
-}
-
 }  // namespace tress::experiments

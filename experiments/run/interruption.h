@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "contract/layers.h"
 
@@ -17,6 +18,27 @@ namespace tress::experiments {
 ///
 /// Construct before any other thread: later threads inherit the blocked signals.
 class Interruption {
+  /// Something that a signal asks for, while this exists.
+  template <class Answer>
+  class Asked {
+   public:
+    Asked(Interruption& of, std::function<Answer()>& at, std::function<Answer()> asked)
+        : of_(of), at_(at) {
+      const auto held = of_.hold();
+      at_ = std::move(asked);
+    }
+    ~Asked() {
+      const auto held = of_.hold();
+      at_ = nullptr;
+    }
+    Asked(const Asked&) = delete;
+    Asked& operator=(const Asked&) = delete;
+
+   private:
+    Interruption& of_;
+    std::function<Answer()>& at_;
+  };
+
  public:
   explicit Interruption(std::string_view program);
   ~Interruption();
@@ -28,27 +50,17 @@ class Interruption {
 
   /// While it exists, a signal ends the program without saving or a word if `silent()`:
   /// another process has said why all end.
-  class Silence {
+  class Silence : Asked<bool> {
    public:
-    Silence(Interruption& of, std::function<bool()> silent);
-    ~Silence();
-    Silence(const Silence&) = delete;
-    Silence& operator=(const Silence&) = delete;
-
-   private:
-    Interruption& of_;
+    Silence(Interruption& of, std::function<bool()> silent)
+        : Asked(of, of.silent_, std::move(silent)) {}
   };
 
   /// While it exists, a signal calls `save` before the program ends.
-  class Save {
+  class Save : Asked<void> {
    public:
-    Save(Interruption& of, std::function<void()> save);
-    ~Save();
-    Save(const Save&) = delete;
-    Save& operator=(const Save&) = delete;
-
-   private:
-    Interruption& of_;
+    Save(Interruption& of, std::function<void()> save)
+        : Asked(of, of.save_, std::move(save)) {}
   };
 
  private:

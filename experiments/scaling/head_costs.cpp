@@ -48,22 +48,12 @@ void measure(const SceneOutline& whole, DeviceChoice choice, int steps, int repe
                          }
                          head.fetch();
                        }).median_s;
-    row.set("cost_per_step_s", run / steps);
-    row.set("cost_per_element_step_s",
-            run / steps / row.number("elements") / row.number("strands"));
+    set_cost(run / steps, row);
   } catch (const InputError& no) {
     row.failed("no_device", no.what());
   } catch (const DeviceFailure& no) {
     row.failed("no_device", no.what());
   }
-}
-
-/// 64, 256, 1024 ... and all.
-std::vector<std::size_t> counts_of_head(std::size_t all) {
-  std::vector<std::size_t> list;
-  for (std::size_t n = 64; n < all; n *= 4) list.push_back(n);
-  list.push_back(all);
-  return list;
 }
 
 }  // namespace
@@ -81,7 +71,7 @@ std::vector<Case> head_costs(const CommandLine& line,
     }
     const std::size_t strands =
         line.full ? whole->series->size() : std::min(whole->series->size(), most_of_head);
-    for (const std::size_t n : counts_of_head(strands)) {
+    for (const std::size_t n : growing(64, 4, strands)) {
       Row identity;
       identity.set("structure", name).set("model", whole->scene.model->id);
       identity.set("solver", "head").set("grows", "strands");

@@ -53,6 +53,12 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& 
 std::vector<Case> scene_costs(const CommandLine& line,
                               const std::vector<std::string>& files);
 
+/// `first`, and `factor` times the one before, while below `all`; and all.
+std::vector<std::size_t> growing(std::size_t first, std::size_t factor, std::size_t all);
+
+/// What a step takes (s), and an element of all strands of the row.
+void set_cost(double per_step, Row& row);
+
 /// Rows for scene files as heads of hair, by a device or what stands in for it: the cost
 /// of a step of the scene's own model, all strands side by side, against their number.
 /// Throws InputError on a scene that is no head.

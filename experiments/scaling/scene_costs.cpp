@@ -19,23 +19,12 @@ void measure(const Scene& cut, const ModelEntry& model, double steps, int repeat
              Row& row) {
   try {
     Scene scene = driven(cut, model, find_integrator("semi_implicit_euler"));
-    const double cost = step_cost(std::move(scene), timed_step, steps, repeat);
-    row.set("cost_per_step_s", cost);
-    row.set("cost_per_element_step_s",
-            cost / row.number("elements") / row.number("strands"));
+    set_cost(step_cost(std::move(scene), timed_step, steps, repeat), row);
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   } catch (const std::runtime_error& failed) {
     row.failed("solver_error", failed.what());
   }
-}
-
-/// 1, 2, 4 ... and all.
-std::vector<std::size_t> counts(std::size_t all) {
-  std::vector<std::size_t> list;
-  for (std::size_t n = 1; n < all; n *= 2) list.push_back(n);
-  list.push_back(all);
-  return list;
 }
 
 class SceneCosts {
@@ -53,7 +42,7 @@ class SceneCosts {
     const std::size_t all =
         line_.full ? scene.strands.size()
                    : std::min<std::size_t>(scene.strands.size(), most_strands);
-    for (const std::size_t n : counts(all)) {
+    for (const std::size_t n : growing(1, 2, all)) {
       if (all > 1) add("strands", only(scene, typical_strands(scene.strands, n)));
     }
     return std::move(all_);
@@ -80,6 +69,19 @@ class SceneCosts {
 };
 
 }  // namespace
+
+std::vector<std::size_t> growing(std::size_t first, std::size_t factor, std::size_t all) {
+  std::vector<std::size_t> list;
+  for (std::size_t n = first; n < all; n *= factor) list.push_back(n);
+  list.push_back(all);
+  return list;
+}
+
+void set_cost(double per_step, Row& row) {
+  row.set("cost_per_step_s", per_step);
+  row.set("cost_per_element_step_s",
+          per_step / row.number("elements") / row.number("strands"));
+}
 
 std::vector<Case> scene_costs(const CommandLine& line,
                               const std::vector<std::string>& files) {

@@ -117,9 +117,11 @@ void ExactBody::set_penalties(const Points& p) noexcept {
 void ExactBody::begin(double t, double tau, const Points& p) noexcept {
   const double state = std::exchange(values_[phase], unsettled);
   const double improvements = std::exchange(values_[improved], 0.0);
-  if (state == not_begun) values_[stiffer] = 1;
-  if (state != not_begun && improvements == 0) values_[stiffer] = other_penalty();
-  if (improvements > 0) {
+  if (state == not_begun) {
+    values_[stiffer] = 1;
+  } else if (improvements == 0) {  // the last solution failed
+    values_[stiffer] = other_penalty();
+  } else {
     values_[failed] = 0;
     values_[stiffer] =
         std::max(1.0, improvements == 1 ? values_[stiffer] / rise : values_[stiffer]);

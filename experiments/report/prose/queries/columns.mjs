@@ -93,11 +93,8 @@ const by_hand = {
   },
 };
 
-// Tables with the columns of another.
-const like = {
-  solve_ivp: 'work_precision',
-  family_tolerance_summary: 'family_summary',
-};
+// solve_ivp.csv is rows of work_precision.
+const like = { solve_ivp: 'work_precision' };
 
 // Ends of names that are units: the Python module's own.
 const units = Object.fromEntries(
@@ -115,9 +112,8 @@ export function unit_of(column) {
 }
 
 function help_of(name, root) {
-  const known = like[name] ?? name;
-  if (by_hand[known] !== undefined) return by_hand[known];
-  const file = join(root, 'results', `${known}.meta.json`);
+  if (by_hand[name] !== undefined) return by_hand[name];
+  const file = join(root, 'results', `${like[name] ?? name}.meta.json`);
   return JSON.parse(readFileSync(file, 'utf8')).columns;
 }
 

@@ -150,23 +150,16 @@ export const equal_curly_wind = (tables) => {
 export const gravito_bending = (tables) =>
   range(rows_of(tables, 'family').map((row) => row.gravito_bending));
 
-// The table of runs by tolerance: of the whole family where that was run, which takes
-// longer than --quick may, else of the hairs of --quick.
-const by_tolerance = (tables) =>
-  tables.family_tolerance === undefined ? 'family' : 'family_tolerance';
-
 // Claims about runs by tolerance are made of every model and integrator.
 const tolerance_rows = (tables, claim) =>
-  rows_of(tables, `${by_tolerance(tables)}_summary`, { study: 'tolerance', claim }).filter(
-    (row) => row.model,
-  );
+  rows_of(tables, 'family_summary', { study: 'tolerance', claim }).filter((row) => row.model);
 
 const same_runs = (row) => ({ claim: row.claim, model: row.model, integrator: row.integrator });
 
 // Hairs of one model and integrator: all, within the tolerance, without a solution; the
 // latter two of those with internal friction, and of those without.
 const solved = (tables, row) => {
-  const rows = rows_of(tables, by_tolerance(tables), same_runs(row));
+  const rows = rows_of(tables, 'family', same_runs(row));
   const count = (chosen) => ({
     all: chosen.length,
     within: chosen.filter((hair) => hair.holds === 'true').length,
@@ -187,8 +180,7 @@ export const tolerance_table = (tables) => {
   const met = tolerance_rows(tables, 'tolerance_met');
   if (met.length === 0) return `${not_stored}.`;
   const spread_of = (claim, row) => {
-    const summary_table = `${by_tolerance(tables)}_summary`;
-    const found = rows_of(tables, summary_table, { ...same_runs(row), claim })[0];
+    const found = rows_of(tables, 'family_summary', { ...same_runs(row), claim })[0];
     return found?.hairs > 0
       ? [found.decile_1, found.median, found.decile_9].map((x) => number(x)).join(', ')
       : '';
@@ -225,10 +217,7 @@ export const tolerance_table = (tables) => {
 
 // "Sensitive are hair 28 by super_helix (growth 11) ..."
 export const sensitive = (tables) => {
-  const rows = rows_of(tables, by_tolerance(tables), {
-    claim: 'tolerance_met',
-    status: 'sensitive',
-  });
+  const rows = rows_of(tables, 'family', { claim: 'tolerance_met', status: 'sensitive' });
   if (rows.length === 0) return 'None is among the stored hairs.';
   const named = (row) =>
     `hair ${row.hair} by \`${row.model}\`, \`${row.integrator}\` (growth ${number(row.growth)}, ` +
@@ -238,7 +227,7 @@ export const sensitive = (tables) => {
 
 // Hairs that neither method solves, by model.
 export const unsolved = (tables) => {
-  const rows = rows_of(tables, by_tolerance(tables), { claim: 'tolerance_met' });
+  const rows = rows_of(tables, 'family', { claim: 'tolerance_met' });
   if (rows.length === 0) return not_stored;
   const of_model = (model) => {
     const own = rows.filter((row) => row.model === model);
@@ -259,9 +248,7 @@ export const tolerance = (tables) => {
   );
   if (rows.length === 0) return not_stored;
   const asked = distinct(
-    rows_of(tables, by_tolerance(tables), { claim: 'tolerance_met' }).map(
-      (row) => row.tolerance,
-    ),
+    rows_of(tables, 'family', { claim: 'tolerance_met' }).map((row) => row.tolerance),
   );
   const of_model = (row) => {
     const { within, all, damped, undamped } = solved(tables, row);
