@@ -55,7 +55,7 @@ void HeadRecording::open(const Scene& scene, StoredFrames stored, bool resume) {
   if (resume && std::filesystem::exists(state, error)) {
     saved_ = std::make_unique<HeadToResume>(state, key_, head_.strands, kept_);
     progress_ = saved_->progress();
-    frames_.emplace(stem_, head_, std::move(stored), progress_.sums);
+    frames_.emplace(stem_, head_, std::move(stored), progress_.sums, progress_.frames);
   } else {
     if (std::filesystem::remove(state, error); error) {
       throw InputError("cannot remove: " + error.message(), state,
@@ -96,6 +96,7 @@ void HeadRecording::add(const std::vector<double>& series) {
 
 std::unique_ptr<SavedHead> HeadRecording::saving(std::size_t step, double speed) {
   frames_->sync();
+  progress_.frames = frames_->state();
   progress_.step = step;
   progress_.speed = speed;
   return std::make_unique<SavedHead>(stem_ + ".state", key_, head_.strands, kept_,

@@ -4,13 +4,8 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -50,30 +45,6 @@ void start() {
   static_cast<void>(started);
 }
 
-/// A file whose last flush met a full disk is shorter than it says, and HDF5 does not
-/// open it. What is missing is of the last entries; those that were flushed before are
-/// whole.
-void lengthen(const std::string& file) {
-  // Superblock, version 0, with addresses of 8 bytes [HDF5 file format specification 2.0,
-  // II.A]: the end of the file by its own account stands at 40.
-  std::array<unsigned char, 48> head{};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(reinterpret_cast<char*>(head.data()), head.size())) return;
-  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
-  if (!std::equal(signature.begin(), signature.end(), head.begin(),
-                  [](char a, unsigned char b) { return a == static_cast<char>(b); }) ||
-      head[8] != 0 || head[13] != 8) {
-    return;
-  }
-  std::uintmax_t end = 0;
-  for (std::size_t i = 8; i-- > 0;) end = end << 8 | head[40 + i];
-  std::error_code unknown;
-  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  constexpr std::uintmax_t of_entries = 1 << 20;
-  if (unknown || size >= end || end > 2 * size + of_entries) return;
-  std::filesystem::resize_file(file, end, unknown);
-}
-
 std::int64_t opened(const std::string& file, Hdf5File::Mode mode) {
   start();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not prints
@@ -91,7 +62,6 @@ std::int64_t opened(const std::string& file, Hdf5File::Mode mode) {
     return made(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file,
                 "create");
   }
-  if (mode == Hdf5File::Mode::extend) lengthen(file);
   return made(
       H5Fopen(file.c_str(), mode == Hdf5File::Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR,
               access.id()),
@@ -189,10 +159,6 @@ bool Hdf5File::has(const std::string& dataset) const {
   return true;
 }
 
-void Hdf5File::remove(const std::string& dataset) {
-  checked(H5Ldelete(handle_.id(), dataset.c_str(), H5P_DEFAULT), "write");
-}
-
 Sizes Hdf5File::size(const std::string& dataset) const {
   const Hdf5Handle set = open(dataset);
   const Hdf5Handle space(checked(H5Dget_space(set.id()), "read"), H5Sclose);
@@ -276,6 +242,17 @@ std::vector<char> Hdf5File::read_chunk(const std::string& dataset,
   checked(H5Dread_chunk(set.id(), H5P_DEFAULT, offset.data(), &skipped, bytes.data()),
           "read");
   return bytes;
+}
+
+FileRange Hdf5File::place(const std::string& dataset, const Sizes& at) const {
+  const std::vector<hsize_t> offset = dimensions(at);
+  haddr_t begin = 0;
+  hsize_t size = 0;
+  unsigned filters = 0;
+  checked(H5Dget_chunk_info_by_coord(open(dataset).id(), offset.data(), &filters, &begin,
+                                     &size),
+          "read");
+  return {begin, size};
 }
 
 void Hdf5File::flush() { checked(H5Fflush(handle_.id(), H5F_SCOPE_GLOBAL), "write"); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/layers.h"
+#include "simulation/files/file_state.h"
 
 namespace tress::simulation {
 
@@ -33,7 +34,8 @@ enum class Hdf5Type { float32, float64, int32 };
 
 /// An HDF5 file of datasets with two or three dimensions, the first of which may grow
 /// [The HDF Group, HDF5 1.10]. What it says about itself changes on disk at flush() only:
-/// a file whose writer was killed, or could not write on, holds what the last flush left.
+/// a file whose writer was killed, or could not write on, holds what the last flush left,
+/// unless that happened within a flush (FileState helps).
 /// Throws InputError with HDF5's own reason whenever a call fails.
 class Hdf5File {
  public:
@@ -53,7 +55,6 @@ class Hdf5File {
   };
   void create(const std::string& dataset, const Shape& shape);
   bool has(const std::string& dataset) const;
-  void remove(const std::string& dataset);
   std::vector<std::size_t> size(const std::string& dataset) const;
   /// Entries of the first dimension: new ones are zero, those beyond are dropped.
   void resize(const std::string& dataset, std::size_t rows);
@@ -73,6 +74,9 @@ class Hdf5File {
                    std::span<const char> bytes);
   std::vector<char> read_chunk(const std::string& dataset,
                                const std::vector<std::size_t>& at) const;
+
+  /// Where it is in the file; nowhere (of no bytes) where it was not written yet.
+  FileRange place(const std::string& dataset, const std::vector<std::size_t>& at) const;
 
   void flush();
   /// A flush that also reaches the disk.

@@ -98,27 +98,23 @@ HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, StrandCount 
 }
 
 HeadFrames::HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
-                       std::vector<std::uint64_t> sums)
-    : HeadFrames(stem, head, std::move(stored), Hdf5File::Mode::extend) {
+                       std::vector<std::uint64_t> sums, const FileState& state)
+    : HeadFrames((restore(stem + ".h5", state), stem), head, std::move(stored),
+                 Hdf5File::Mode::extend) {
   const auto damaged = [&] {
     return InputError("frames are missing or damaged: their checksum does not fit",
                       stem + ".h5", "leave out --resume to begin again");
   };
-  const std::vector<std::size_t> series_size{sums.size(), stored_.columns.size()},
-      shown_size{sums.size(), points_ * stored_.shown.size(), 3},
-      positions_size{strands_ * points_, 3};
   const auto fits = [&](const std::string& name, const std::vector<std::size_t>& want) {
-    if (!file_.has(name)) return false;
-    const std::vector<std::size_t> size = file_.size(name);
-    return size.size() == want.size() && size.front() >= want.front() &&
-           std::equal(size.begin() + 1, size.end(), want.begin() + 1);
+    return file_.has(name) && file_.size(name) == want;
   };
-  if (!fits(series_name, series_size) || !fits(shown_positions, shown_size)) {
+  if (!fits(series_name, {sums.size(), stored_.columns.size()}) ||
+      !fits(shown_positions, {sums.size(), points_ * stored_.shown.size(), 3})) {
     throw damaged();
   }
   try {
     for (std::size_t frame = 0; frame < sums.size(); ++frame) {
-      if (stored_.bits != 0 && !fits(dataset(frame), positions_size)) {
+      if (stored_.bits != 0 && !fits(dataset(frame), {strands_ * points_, 3})) {
         throw damaged();
       }
       for (std::size_t c = 0; stored_.bits != 0 && c < chunks_.size(); ++c) {
@@ -132,12 +128,6 @@ HeadFrames::HeadFrames(const std::string& stem, StrandCount head, StoredFrames s
     throw damaged();
   }
   sums_ = std::move(sums);
-  for (const char* grown : {series_name, shown_positions}) {
-    file_.resize(grown, sums_.size());
-  }
-  for (std::size_t frame = sums_.size(); file_.has(dataset(frame)); ++frame) {
-    file_.remove(dataset(frame));
-  }
 }
 
 std::vector<std::size_t> HeadFrames::place_of(std::size_t chunk) const {
@@ -220,6 +210,16 @@ void HeadFrames::write(std::span<const double> series) {
 void HeadFrames::sync() {
   file_.sync();
   if (stored_.bits != 0) replace_file(stem_ + ".xdmf", xdmf());
+}
+
+FileState HeadFrames::state() {
+  for (; placed_ < size(); ++placed_) {
+    written_.push_back(file_.place(shown_positions, {placed_, 0, 0}));
+    for (std::size_t c = 0; stored_.bits != 0 && c < chunks_.size(); ++c) {
+      written_.push_back(file_.place(dataset(placed_), place_of(c)));
+    }
+  }
+  return state_of(stem_ + ".h5", written_);
 }
 
 std::vector<double> HeadFrames::series(std::size_t frame) const {

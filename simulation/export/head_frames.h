@@ -33,16 +33,17 @@ struct StoredFrames {
 /// agree on whole datasets only, so that each frame is one. Strands are shuffled and
 /// compressed by a crew, a thousand or two as one chunk; a frame is in the file once
 /// written. Memory: one compressed frame. A killed run leaves the frames before the one
-/// that it was writing.
+/// that it was writing, or where it was killed as the file was told of a frame what can
+/// be read after a resumed run only.
 class HeadFrames {
  public:
   /// A new file.
   HeadFrames(const std::string& stem, const Scene& scene, StrandCount head,
              StoredFrames stored);
-  /// The file of an interrupted run whose first frames have these checksums; others are
-  /// dropped. Throws InputError if they are damaged, or of another head.
+  /// The file of an interrupted run as it was in that state, when its frames had these
+  /// checksums. Throws InputError if they are damaged, or of another head.
   HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
-             std::vector<std::uint64_t> sums);
+             std::vector<std::uint64_t> sums, const FileState& state);
 
   /// So many strands at a time are taken by so many workers.
   static std::size_t at_once(std::size_t workers);
@@ -55,6 +56,8 @@ class HeadFrames {
   void write(std::span<const double> series);
   /// All frames so far are on disk, and the .xdmf with them.
   void sync();
+  /// Of the file as the last sync() left it.
+  FileState state();
 
   std::size_t size() const { return sums_.size(); }
   const std::vector<std::uint64_t>& sums() const { return sums_; }
@@ -83,6 +86,8 @@ class HeadFrames {
   std::size_t each_;              // strands of a chunk
   Hdf5File file_;
   std::vector<std::uint64_t> sums_;  // of frames
+  std::vector<FileRange> written_;   // chunks that stay as they are,
+  std::size_t placed_ = 0;           // of so many frames
   // The frame that was taken.
   std::vector<std::vector<char>> chunks_;
   std::vector<std::size_t> sizes_;         // used bytes of chunks

@@ -17,8 +17,10 @@ SavedHead::SavedHead(const std::string& file, const RunKey& key, std::size_t str
     : replacement_(file) {
   replacement_.write(seal());
   put_bytes(key.line() + '\n');
+  const FileState& frames = progress.frames;
   put_numbers(std::vector<std::uint64_t>{strands, kept, progress.step,
-                                         progress.sums.size(), progress.lost.size()});
+                                         progress.sums.size(), progress.lost.size(),
+                                         frames.ranges.size(), frames.bytes.size()});
   put_numbers(progress.sums);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
@@ -32,6 +34,9 @@ SavedHead::SavedHead(const std::string& file, const RunKey& key, std::size_t str
   put_numbers(when);
   put_numbers(fast);
   put_numbers(std::vector{progress.speed});
+  put_numbers(std::vector{frames.length});
+  put_numbers(frames.ranges);
+  put_bytes(frames.bytes);
 }
 
 void SavedHead::put(const std::vector<double>& kept) { put_numbers(kept); }
@@ -72,7 +77,7 @@ void HeadToResume::parse(const RunKey& key, const std::string& file,
   const std::string_view first = rest_.substr(0, rest_.find('\n'));
   key.check(first, file);
   rest_.remove_prefix(first.size() + 1);
-  const auto sizes = numbers<std::uint64_t>(5);
+  const auto sizes = numbers<std::uint64_t>(7);
   if (sizes[0] != strands || sizes[1] != kept_) {
     throw InputError("the saved state is of other strands", file, begin_again);
   }
@@ -85,6 +90,10 @@ void HeadToResume::parse(const RunKey& key, const std::string& file,
     progress_.lost.push_back({which[i], when[i], fast[i] != 0});
   }
   progress_.speed = numbers<double>(1).front();
+  progress_.frames.length = numbers<std::uint64_t>(1).front();
+  progress_.frames.ranges = numbers<FileRange>(sizes[5]);
+  const auto bytes = numbers<char>(sizes[6]);
+  progress_.frames.bytes.assign(bytes.begin(), bytes.end());
   if (rest_.size() / sizeof(double) < kept_ * strands) {
     throw std::runtime_error("it ends too early");
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/files/checksum.h"
+#include "simulation/files/file_state.h"
 #include "simulation/files/files.h"
 #include "simulation/files/run_key.h"
 
@@ -24,6 +25,7 @@ struct HeadProgress {
   std::size_t step = 0;             // taken towards the next one
   std::vector<LostStrand> lost;     // in the order in which they were
   double speed = 0;                 // m/s, what HeadGuard has gathered
+  FileState frames;                 // of HeadFrames
 };
 
 /// The state of all strands on disk, with its checksum. It is written beside the file and
