@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <vector>
 
@@ -19,9 +20,19 @@ double border(double ranks) {
   return sum;
 }
 
+double CostModel::kernel_cost(double strands) const {
+  const auto above = std::ranges::upper_bound(kernel, strands, {}, &Kernel::strands);
+  if (above == kernel.begin()) return kernel.front().cost;
+  const Kernel& from = *(above - 1);
+  if (above == kernel.end()) return from.cost;
+  const double part =
+      std::log(strands / from.strands) / std::log(above->strands / from.strands);
+  return from.cost + part * (above->cost - from.cost);
+}
+
 double CostModel::own_cost(double strands, double ranks) const {
   return (ranks > 1 ? busy : 1) * strands / ranks * elements *
-         (kernel + contacts * (1 - edge / std::sqrt(strands)));
+         (kernel_cost(strands / ranks) + contacts * (1 - edge / std::sqrt(strands)));
 }
 
 double CostModel::ghosts(double strands, double ranks) const {
@@ -77,17 +88,23 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
         return m.touch == touch && m.ranks == ranks && m.beside == beside;
       };
     };
-    const auto alone = mean(all, of(1, 1), [](const Measurement& m) {
+    std::vector<Measurement> alone;
+    std::ranges::copy_if(all, std::back_inserter(alone), of(1, 1));
+    if (alone.empty()) return {};
+    const auto of_element = [](const Measurement& m) {
       return m.cost / (m.strands * elements);
-    });
-    if (!alone) return {};
-    model.kernel = touch ? models.apart.kernel : *alone;
-    if (touch) {
+    };
+    if (!touch) {
+      std::ranges::sort(alone, {}, &Measurement::strands);
+      for (const Measurement& m : alone) {
+        model.kernel.push_back({m.strands, of_element(m)});
+      }
+    } else {
+      model.kernel = models.apart.kernel;
       std::vector<double> x, y;
-      for (const Measurement& m : all) {
-        if (!of(1, 1)(m)) continue;
+      for (const Measurement& m : alone) {
         x.push_back(1 / std::sqrt(m.strands));
-        y.push_back(m.cost / (m.strands * elements) - model.kernel);
+        y.push_back(of_element(m) - model.kernel_cost(m.strands));
       }
       const auto [offset, slope] = line_through(x, y);
       model.contacts = offset;
@@ -119,6 +136,12 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
     model.ghost = std::max(*ghost, 0.0);
   }
   return models;
+}
+
+double predicted(const CostModels& models, const Measurement& of) {
+  const CostModel& model = of.touch ? models.touching : models.apart;
+  return model.cost(of.strands, of.ranks) * (of.beside > 1 ? model.busy : 1) *
+         std::max(1.0, of.ranks / of.cores);
 }
 
 }  // namespace tress::experiments::divided_heads

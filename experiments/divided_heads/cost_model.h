@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "contract/layers.h"
 
@@ -18,11 +19,12 @@ double border(double ranks);
 /// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
 /// ranks (processes of one thread),
 ///
-///     T(n, R) = s (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
+///     T(n, R) = s (n/R) e (k(n/R) + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
-/// where e is the number of elements, k and c what one costs by itself and by its hair's
-/// contacts, of which hairs near the edge of the scalp have fewer, a/sqrt(n) of all; s
-/// how much longer that takes while other cores of the machine are busy, for R > 1.
+/// where e is the number of elements; k what one costs by itself, which depends on
+/// whether the memory of a rank's hairs is near; c what it costs by its hair's contacts,
+/// of which hairs near the edge of the scalp have fewer, a/sqrt(n) of all; s how much
+/// longer that takes while other cores of the machine are busy, for R > 1.
 /// Ghosts lie within a depth w of a region's border: with hairs' roots a distance d apart
 /// on average,
 ///
@@ -31,13 +33,20 @@ double border(double ranks);
 /// b is what an element of one costs, to be sent, received, held and listed; l the
 /// latency of what all ranks agree on in a step.
 struct CostModel {
-  double kernel = 0, contacts = 0;  // s
-  double edge = 0;                  // a
+  /// Of a rank with that many hairs, ascending: straight in their logarithm between
+  /// these, level beyond.
+  struct Kernel {
+    double strands, cost;  // cost: s
+  };
+  std::vector<Kernel> kernel;
+  double contacts = 0;  // s
+  double edge = 0;      // a
   double busy = 1;
   double depth = 0;  // w/d
   double ghost = 0;  // s
   double latency = 0;
 
+  double kernel_cost(double strands) const;
   double own_cost(double strands, double ranks) const;
   double ghosts(double strands, double ranks) const;
   double cost(double strands, double ranks) const;
@@ -52,18 +61,21 @@ struct Measurement {
   bool touch = false;  // hairs interact
   double strands = 0, ranks = 1;
   double beside = 1;  // such heads that ran at the same time
+  double cores = 1;   // of the machine
   double cost = 0;    // of a step, s
   double ghosts = 0;  // of the rank that has most
 };
 
 /// The model of hairs that do not touch and of those that do, each of its numbers the
 /// mean of what single measurements say, but for contacts and edge, which are a line
-/// through those of one rank alone; kernel of one whose hairs do not touch; busy of one
+/// through those of one rank alone; kernel of those whose hairs do not touch; busy of one
 /// rank beside another; latency of two ranks whose hairs do not touch; depth and ghost of
 /// two whose hairs do. Empty if measurements for one of these are missing.
 struct CostModels {
   CostModel apart, touching;
 };
 std::optional<CostModels> fit_cost(std::span<const Measurement> all);
+/// Of a step, beside other heads and where ranks take turns on fewer cores as well.
+double predicted(const CostModels& models, const Measurement& of);
 
 }  // namespace tress::experiments::divided_heads

@@ -45,6 +45,8 @@ constexpr Column columns[] = {
     {"memory_mb", "of the rank that holds most, program included", true},
     {"model_cost_per_step_s", "what the model says", true},
     {"model_off_rel", "its difference from the measurement, over that", true},
+    {"held_out_off_rel", "the same of a model that knows heads of other numbers alone",
+     true},
     {"model_ghosts_per_strand", "what the model says"},
     {"efficiency", "of a rank's time, what its own hairs take, by the model", true},
     {"state", "checksum of all states at the end: equal bits, equal checksum"},
@@ -56,7 +58,8 @@ constexpr bool has_mpi = true;
 constexpr bool has_mpi = false;
 #endif
 
-constexpr int measured_strands[] = {1000, 2000, 4000};
+constexpr int measured_strands[] = {1000, 2000, 4000, 8000, 16'000};
+constexpr int most_strands_of_quick = 4000;
 /// What is measured, in turns, of a number of hairs.
 struct Setting {
   int ranks, beside;
@@ -174,6 +177,7 @@ std::vector<Case> cases(const CommandLine& line) {
   };
   for (const char* effects : {"drag", "interaction"}) {
     for (const int strands : measured_strands) {
+      if (line.quick && strands > most_strands_of_quick) continue;
       all.push_back({row_of("measured", effects, strands),
                      {},
                      [repeat = line.repeat](const Row& row, const Deadline&) {
@@ -195,7 +199,7 @@ std::vector<Case> cases(const CommandLine& line) {
 void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   std::map<std::string, std::string> states;
   int compared = 0, different = 0;
-  double off = 0, exchange = 0;
+  double off = 0, held_out = 0, exchange = 0;
   for (const Row& row : rows) {
     if (!row.ok() || row.text("kind") != "measured") continue;
     const auto [first, added] = states.emplace(
@@ -209,6 +213,9 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row.has("model_off_rel")) {
       off = std::max(off, std::abs(row.number("model_off_rel")));
     }
+    if (row.has("held_out_off_rel")) {
+      held_out = std::max(held_out, std::abs(row.number("held_out_off_rel")));
+    }
     if (row.has("exchange_per_element_s")) {
       exchange = std::max(exchange, row.number("exchange_per_element_s"));
     }
@@ -220,6 +227,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     verdicts.not_judged(bits);
   }
   verdicts.figure("one and two ranks: largest difference of the model, relative", off);
+  verdicts.figure("the same of numbers of hairs that the model does not know", held_out);
   verdicts.figure("two ranks: largest time to exchange, by own elements, s", exchange);
 }
 

@@ -265,6 +265,7 @@ export const known_tables = {
       'memory_mb',
       'model_cost_per_step_s',
       'model_off_rel',
+      'held_out_off_rel',
       'model_ghosts_per_strand',
       'efficiency',
     ],

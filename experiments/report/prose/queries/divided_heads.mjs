@@ -8,8 +8,7 @@ const predicted = (tables) => all(tables).filter((row) => row.kind === 'predicte
 const milli = (seconds) => (is_positive(seconds) ? number(1e3 * seconds) : '');
 const micro = (seconds) => (is_positive(seconds) ? number(1e6 * seconds) : '');
 
-const off_of = ({ model_off_rel }) =>
-  is_number(model_off_rel) ? percent(model_off_rel) : '';
+const share = (value) => (is_number(value) ? percent(value) : '');
 
 export const measured_table = (tables) =>
   table(
@@ -21,6 +20,7 @@ export const measured_table = (tables) =>
       'a step, ms',
       'by the model',
       'off',
+      'off where it does not know that number of hairs',
       'ghosts of a hair',
       'by the model',
       'to find them, of an element, µs',
@@ -36,7 +36,8 @@ export const measured_table = (tables) =>
       row.beside,
       milli(row.cost_per_step_s),
       milli(row.model_cost_per_step_s),
-      off_of(row),
+      share(row.model_off_rel),
+      share(row.held_out_off_rel),
       number(row.ghosts_per_strand),
       is_positive(row.model_ghosts_per_strand) ? number(row.model_ghosts_per_strand) : '',
       micro(row.claim_per_element_s),
@@ -88,15 +89,17 @@ export function predicted_table(tables) {
   );
 }
 
-// Of one and two processes, which have a core each.
-export const off = (tables) =>
+// Of one and two processes, which have a core each, the largest difference.
+const largest = (column) => (tables) =>
   percent(
     Math.max(
       ...measured(tables)
-        .filter((row) => row.ranks <= 2 && row.beside === 1 && is_number(row.model_off_rel))
-        .map((row) => Math.abs(row.model_off_rel)),
+        .filter((row) => row.ranks <= 2 && row.beside === 1 && is_number(row[column]))
+        .map((row) => Math.abs(row[column])),
     ),
   );
+export const off = largest('model_off_rel');
+export const held_out = largest('held_out_off_rel');
 export const exchange = (tables) =>
   micro(
     Math.max(
