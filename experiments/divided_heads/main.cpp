@@ -58,7 +58,7 @@ constexpr bool has_mpi = true;
 constexpr bool has_mpi = false;
 #endif
 
-constexpr int measured_strands[] = {1000, 2000, 4000, 8000, 16'000};
+constexpr int measured_strands[] = {1000, 2000, 4000, 8000};
 constexpr int most_strands_of_quick = 4000;
 /// What is measured, in turns, of a number of hairs.
 struct Setting {
