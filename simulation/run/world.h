@@ -32,6 +32,11 @@ struct Snapshot {
   std::vector<double> guards;  // their Guard::memory(); empty: they start here
   std::vector<double> rubs;    // StrandFriction::memory()
   std::vector<double> mesh;    // ControlMesh::memory()
+
+  /// Adds the strands of one system: parts of q and v of so many coordinates, and of its
+  /// memory.
+  void add(In q, In v, In memory, const std::vector<std::size_t>& coordinates,
+           const std::vector<std::size_t>& memories);
 };
 
 /// Exchanges between strands whose intervals error control chose.

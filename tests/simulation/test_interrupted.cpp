@@ -16,6 +16,7 @@
 #include "experiments/run/interruption.h"
 #include "simulation/files/checksum.h"
 #include "simulation/files/csv.h"
+#include "simulation/files/file_state.h"
 #include "simulation/files/files.h"
 #include "simulation/files/run_key.h"
 #include "tests/harness/toy_process.h"
@@ -236,6 +237,38 @@ TEST(Checksum, IsFnv1a) {
   EXPECT_EQ(checksum(""), "cbf29ce484222325");
   EXPECT_EQ(checksum("a"), "af63dc4c8601ec8c");
   EXPECT_EQ(checksum("foobar"), "85944171f73967e8");
+}
+
+/// What changes is at the start, between two ranges that do not, and at the end; what
+/// they hold is not kept.
+TEST(FileState, TakesAFileBackWhateverHappenedToIt) {
+  Toy toy;
+  const std::string was =
+      "head" + std::string(100, 'a') + "mid" + std::string(50, 'b') + "end";
+  const std::string file = toy.path("work") + "/frames";
+  for (const std::string& spoilt :
+       {was + "more", was.substr(0, 157),
+        "HEAD" + was.substr(4, 100) + "MID" + was.substr(107, 50) + "END and more"}) {
+    toy.write("frames", was);
+    const simulation::FileState state = simulation::state_of(file, {{107, 50}, {4, 100}});
+    EXPECT_EQ(state.length, was.size());
+    EXPECT_EQ(state.bytes, "headmidend");
+    ASSERT_EQ(state.ranges.size(), 3U);
+    toy.write("frames", spoilt);
+    simulation::restore(file, state);
+    EXPECT_EQ(toy.read("frames"), was);
+  }
+  // What does not change may reach to the end, or be nothing, or all.
+  toy.write("frames", was);
+  const auto kept = [&](std::vector<simulation::FileRange> unchanging) {
+    return simulation::state_of(file, std::move(unchanging)).bytes.size();
+  };
+  EXPECT_EQ(kept({}), was.size());
+  EXPECT_EQ(kept({{4, was.size() - 4}}), 4U);
+  EXPECT_EQ(kept({{0, was.size()}}), 0U);
+  EXPECT_THROW(simulation::state_of(toy.path("work") + "/none", {}), InputError);
+  EXPECT_THROW(simulation::restore(toy.path("work") + "/none", {}), InputError);
+  EXPECT_FALSE(toy.exists("none"));
 }
 
 }  // namespace tress::test_interrupted
