@@ -12,7 +12,7 @@ namespace tress::models {
 /// What Models of models/head/stepping_head.h have in common whose strands are chains of
 /// edges from the root on: `per_element` numbers of an edge, the first three the vector
 /// along it, in axes of the world. The rate of the first edge is that of its end. Flat as
-/// HelixLoads.
+/// ReducedLoads.
 template <class Pack, int per_element>
 class EdgeModel {
  public:

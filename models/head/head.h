@@ -203,6 +203,12 @@ class Head {
 /// the options or the pack make no sense.
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack);
 
+/// A head of chains of rigid links (models/head/chain_strand.h); coordinates are the
+/// rotation vectors of the joints (rad), 3 per link; semi_implicit_euler with the stiff
+/// tangent; `points` are those of a link at which effects act. Throws InputError as
+/// above.
+std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
+
 /// A head of discrete elastic rods (models/head/der_strand.h), `elements` edges each:
 /// semi_implicit_euler with the stiff tangent, or backward_euler. Coordinates are, per
 /// edge, the vector along it (m, world axes) and the angle of its frame; the rate of the

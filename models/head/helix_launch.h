@@ -1,16 +1,17 @@
 #pragma once
 
-#include "models/head/helix_motion.h"
+#include "models/head/head_motion.h"
+#include "models/head/helix_strand.h"
 
 /// Steps of many super-helices as a device takes them, a strand a thread: what
-/// HelixHead::step() does under gravity and linear drag, by the same HelixStrand. This
-/// header is compiled for the host and for the device (helix_kernel.cu).
+/// a head of super-helices does under gravity and linear drag, by the same HelixStrand.
+/// This header is compiled for the host and for the device (helix_kernel.cu).
 namespace tress::models {
 
 /// What steps do not change of a strand, before the rest shape of its elements.
 template <class T>
 struct HelixFixed {
-  HelixMaterial<T> material;
+  ReducedMaterial<T> material;
   LaneRoot<T> root;
 
   static constexpr int numbers = 20;
@@ -21,8 +22,8 @@ constexpr int helix_state(int elements) { return 6 * elements; }
 
 /// A step from t to t + h.
 struct HelixStep {
-  HelixMotion motion;  // of the head at t + h
-  double h;            // in the head's unit of time
+  HeadMotion motion;  // of the head at t + h
+  double h;           // in the head's unit of time
 };
 
 /// One launch. Entry k of strand s of an array lies at [k strands + s], so that threads
@@ -70,7 +71,7 @@ void helix_steps(const HelixLaunch<T>& launch, long s) {
   for (int step = 0; step < launch.steps; ++step) {
     const HelixStep& now = launch.motion[step];
     for (int i = 0; i < n; ++i) before[i] = q[i];
-    const HelixRoot<T> root = root_motion(fixed.root, now.motion);
+    const ReducedMotion<T> root = root_motion(fixed.root, now.motion);
     const auto end = launch.kernel.move(fixed.material, root, now.h, q, v, scratch);
     launch.kernel.semi_implicit_step(fixed.material, end, nullptr, rest, now.h, q, v,
                                      scratch);

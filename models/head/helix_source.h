@@ -27,7 +27,7 @@ class HelixSource {
   virtual Shape shape() const = 0;
   /// Of each strand of a block helix_fixed(elements) numbers.
   virtual void fixed(std::size_t block, std::span<double> each) const = 0;
-  virtual HelixMotion motion_at(double t) const = 0;
+  virtual HeadMotion motion_at(double t) const = 0;
   virtual double time_unit() const = 0;  // s
 };
 

@@ -44,7 +44,7 @@ class NodeLoads {
     for (std::size_t i = 0; i < x_.size(); ++i) {
       if (!any_less(T(0), loads_[i].some)) continue;
       loaded = true;
-      // Of all effects together, linear drag among them, as HelixLoads.
+      // Of all effects together, linear drag among them, as ReducedLoads.
       const T own = T(h / units.time) * part(i) * drag;
       Symmetric3<T>& block = loads_[i].load.block;
       shift(block, own);

@@ -35,7 +35,7 @@ Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
 }
 
 /// Their sums over an element: sum J^T f and sum J^T B J with the motion of a point J =
-/// [1, -[P]x, d], d_j = dP/dkappa_j, in the components of the element's start.
+/// [1, -[P]x, d], d_j = dP/dq_j, in the components of the element's axes.
 template <class T>
 struct LoadSums {
   T some{};  // 1 in lanes with a load, 0 in others
@@ -44,14 +44,19 @@ struct LoadSums {
   Matrix3<T> la;
   Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
 
-  void add(const Vec3<T>& p, const Matrix3<T>& d, const PointLoad<T>& load) {
+  /// Where the unknowns do not move the point.
+  void add(const Vec3<T>& p, const PointLoad<T>& load) {
     force = force + load.force;
     moment = moment + cross(p, load.force);
-    unknown = unknown + d.back(load.force);
-    const Matrix3<T> turned = times_cross(full(load.block), p), own = load.block * d;
+    const Matrix3<T> turned = times_cross(full(load.block), p);
     ll = ll + load.block;
     la = la - turned;
     aa = aa - upper(cross_times(p, turned));
+  }
+  /// What is missing if they move it by d.
+  void add_unknowns(const Vec3<T>& p, const Matrix3<T>& d, const PointLoad<T>& load) {
+    const Matrix3<T> own = load.block * d;
+    unknown = unknown + d.back(load.force);
     of_force = of_force + own.transposed();
     of_moment = of_moment + cross_times(p, own).transposed();
     inner = inner + upper(d.transposed(), own.transposed());

@@ -32,9 +32,10 @@ std::optional<NoHead> no_springs(const Parameters& p) {
 std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (steps_springs(scene)) return no_springs(p);
-  if (scene.model->id != "super_helix") {
+  if (scene.model->id != "super_helix" && !steps_chains(scene)) {
     return NoHead{fmt::format("{} does not come as a head", scene.model->id),
-                  "use [model] id = \"super_helix\", or \"mass_spring\""};
+                  "use [model] id = \"super_helix\", \"articulated_chain\" or "
+                  "\"mass_spring\""};
   }
   if (p.word("modes") == "bend_planar") {
     return NoHead{"strands of a head bend in both directions",
@@ -127,6 +128,7 @@ std::optional<NoHead> no_effects(const Scene& scene) {
 }  // namespace
 
 bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
+bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 
 std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
   const Scene& scene = outline.scene;

@@ -19,7 +19,8 @@ struct NoHead {
 std::optional<NoHead> no_head(const SceneOutline& outline,
                               models::HeadNumber number = models::HeadNumber::float64);
 
-/// Of a scene that can be a head: of springs, or else of super-helices.
+/// Of a scene that can be a head: of springs, of rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
+bool steps_chains(const Scene& scene);
 
 }  // namespace tress::simulation

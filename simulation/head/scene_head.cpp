@@ -44,7 +44,14 @@ HeadOptions options_of(const Scene& scene) {
 
 std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
                                  const HeadPack& pack) {
-  return steps_springs(scene) ? spring_head(options, pack) : helix_head(options, pack);
+  return steps_springs(scene)  ? spring_head(options, pack)
+         : steps_chains(scene) ? chain_head(options, pack)
+                               : helix_head(options, pack);
+}
+
+/// Points of an element that winds by so much, as reduced_strand() takes them.
+int points_of(const Scene& scene, double winding) {
+  return steps_chains(scene) ? 4 : models::quadrature_points(winding);
 }
 
 /// Strands of a scene as a series.
@@ -119,7 +126,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   std::vector<Vec> roots(divided ? series.size() : 0);
   const Extent all = extent_of(series, options, crew, ranks, std::span(roots));
   options.longest = all.length;
-  if (options.points == 0) options.points = models::quadrature_points(all.winding);
+  if (options.points == 0) options.points = points_of(scene, all.winding);
   const Strand strand_0 = series.strand(0);
   options.line_density =
       strand_0.material.density * strand_0.segments.front().section.area();

@@ -79,7 +79,7 @@ TEST_P(OnDevice, StepsAreTheBitsOfTheProcessorIn64Bits) {
   }
 }
 
-// So what is known of the errors of 32 bits (tests/models/head/test_helix_head.cpp)
+// So what is known of the errors of 32 bits (tests/models/head/test_reduced_head.cpp)
 // holds.
 TEST_P(OnDevice, StepsAreTheBitsOfTheProcessorIn32Bits) {
   HeadRun here(testing_support::head(GetParam(), {HeadNumber::float32, 8}, 19), 1);
@@ -247,8 +247,10 @@ TEST_F(Device, RefusesWhatItsCodeDoesNotKnow) {
     return models::Effects{std::make_shared<models::Gravity>(Vec{0, 0, 1})};
   };
   EXPECT_THAT(refusal(testing_support::head(c, pack, 4)), HasSubstr("single strands"));
-  auto rods = models::der_head(testing_support::options({"Rods"}), pack);
-  EXPECT_THAT(refusal(std::move(rods)), HasSubstr("super-helices only"));
+  for (const auto& make : {models::der_head, models::chain_head}) {
+    EXPECT_THAT(refusal(make(testing_support::options({"Others"}), pack)),
+                HasSubstr("super-helices only"));
+  }
 }
 
 /// Lines beside those that say what is computed.

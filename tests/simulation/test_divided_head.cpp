@@ -129,15 +129,18 @@ TEST(Ranks, TellEachOtherWhatTheyHave) {
 }
 
 struct Scalp {
-  std::string name, more;
+  std::string name, more, model = "super_helix";
+  double h = 0.005;  // s
 };
-void PrintTo(const Scalp& a, std::ostream* out) { *out << a.name; }  // NOLINT
+void PrintTo(const Scalp& a, std::ostream* out) {  // NOLINT
+  *out << a.name << ' ' << a.model;
+}
 class DividedHead : public testing::TestWithParam<Scalp> {};
 
 SceneOutline scene(const Scalp& scalp, int count) {
   return parse_outline(
       fmt::format("title = \"t\"\nduration_s = 1\nframes_1_s = 10\n[model]\n"
-                  "id = \"super_helix\"\ntangent = \"stiff\"\n[integrator]\n"
+                  "id = \"{}\"\ntangent = \"stiff\"\n[integrator]\n"
                   "id = \"semi_implicit_euler\"\ndt_s = 0.005\n[material]\n"
                   "name = \"hair.caucasian\"\n[groom]\ncount = {}\nelements = 4\n"
                   "length_m = 0.1\ncurl_variation = 0.5\nshape = \"helix\"\n"
@@ -145,7 +148,7 @@ SceneOutline scene(const Scalp& scalp, int count) {
                   "motion = \"rotate\"\naxis = [0, 0.6, 0.8]\nangle_rad = 1\n"
                   "frequency_hz = 2\n[effects.gravity]\n[effects.linear_drag]\n"
                   "drag_kg_m_s = 1e-4\n{}",
-                  count, scalp.more),
+                  scalp.model, count, scalp.more),
       "head.toml");
 }
 
@@ -156,12 +159,11 @@ struct Outcome {
 };
 
 Outcome run(const SceneOutline& outline, const models::HeadPack& pack, int ranks,
-            int threads, int steps) {
+            int threads, int steps, double h) {
   Outcome outcome;
   std::mutex guard;
   ThreadRanks::run(ranks, [&](Ranks& mine) {
     HeadRun head(make_head(outline, pack, threads, mine), threads, mine);
-    constexpr double h = 0.005;
     for (int s = 0; s < steps; ++s) head.step(s * h, h);
     const std::size_t hash = head.hash();
     std::vector<double> x, kept;
@@ -186,10 +188,10 @@ TEST_P(DividedHead, IsTheSameBitsForAnyNumberOfRanksAndThreads) {
   for (const models::HeadPack& pack :
        {models::HeadPack{models::HeadNumber::float64, 8},
         models::HeadPack{models::HeadNumber::float32, 16}}) {
-    const Outcome one = run(outline, pack, 1, 1, steps);
+    const Outcome one = run(outline, pack, 1, 1, steps, GetParam().h);
     EXPECT_EQ(one.most, count);
     for (const auto& [ranks, threads] : {std::pair(2, 1), {3, 2}, {4, 1}}) {
-      const Outcome more = run(outline, pack, ranks, threads, steps);
+      const Outcome more = run(outline, pack, ranks, threads, steps, GetParam().h);
       EXPECT_EQ(more.hash, one.hash) << ranks;
       EXPECT_EQ(more.x, one.x) << ranks;
       EXPECT_EQ(more.kept, one.kept) << ranks;
@@ -205,11 +207,11 @@ TEST_P(DividedHead, GoesOnWhenItIsDividedAnew) {
   constexpr int count = 100, steps = 30;
   const SceneOutline outline = scene(GetParam(), count);
   const models::HeadPack pack{models::HeadNumber::float64, 4};
-  const Outcome one = run(outline, pack, 1, 1, 2 * steps);
+  const Outcome one = run(outline, pack, 1, 1, 2 * steps, GetParam().h);
   for (const int ranks : {2, 4}) {
     std::optional<std::size_t> hash;
     ThreadRanks::run(ranks, [&](Ranks& mine) {
-      constexpr double h = 0.005;
+      const double h = GetParam().h;
       HeadRun before(make_head(outline, pack, 1, mine), 1, mine);
       for (int s = 0; s < steps; ++s) before.step(s * h, h);
       std::vector<double> cost(count, 1);
@@ -235,22 +237,32 @@ TEST_P(DividedHead, GoesOnWhenItIsDividedAnew) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scalps, DividedHead,
-    testing::Values(Scalp{"free", ""},
-                    Scalp{"body",
-                          "[effects.body]\nshape = \"ellipsoid\"\n"
-                          "half_axes_m = [0.11, 0.1, 0.13]\nmoves = \"head\"\n"},
-                    Scalp{"interaction",
-                          "[effects.strand_interaction]\nouter_radius_m = 0.008\n"}),
-    [](const auto& of) { return of.param.name; });
+std::vector<Scalp> scalps() {
+  std::vector<Scalp> all;
+  for (const std::string model : {"super_helix", "articulated_chain"}) {
+    all.push_back({"free", "", model});
+    // By longer steps rigid links come apart on a body.
+    all.push_back({"body",
+                   "[effects.body]\nshape = \"ellipsoid\"\n"
+                   "half_axes_m = [0.11, 0.1, 0.13]\nmoves = \"head\"\n",
+                   model, model == "articulated_chain" ? 0.001 : 0.005});
+    all.push_back(
+        {"interaction", "[effects.strand_interaction]\nouter_radius_m = 0.008\n", model});
+  }
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(Scalps, DividedHead, testing::ValuesIn(scalps()),
+                         [](const auto& of) {
+                           return of.param.name + '_' + of.param.model;
+                         });
 
 // A step looks where rates lead from here: x + h v but for terms of h^2.
 TEST(HeadAhead, IsWhereRatesLeadTo) {
   const SceneOutline outline = scene({"free", ""}, 11);
   models::HeadOptions options{
       .elements = 4, .longest = 0.1, .motion = outline.scene.head};
-  for (const auto& make : {models::helix_head, models::der_head, models::spring_head}) {
+  for (const auto& make :
+       {models::helix_head, models::chain_head, models::der_head, models::spring_head}) {
     const auto head = make(options, {models::HeadNumber::float64, 4});
     for (std::size_t k = 0; k < outline.series->size(); ++k) {
       head->add(outline.series->strand(k));

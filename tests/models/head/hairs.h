@@ -3,11 +3,13 @@
 #include <functional>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include "integrators/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/head/head.h"
+#include "models/reduced/articulated_chain.h"
 #include "models/reduced/super_helix.h"
 
 namespace tress::testing_support {
@@ -21,6 +23,18 @@ inline constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                                      {HeadNumber::float32, 8},
                                      {HeadNumber::float32, 16}};
 
+/// What hair is made of, as a head and by itself.
+struct HairModel {
+  std::string_view name;
+  std::unique_ptr<Head> (*head)(const HeadOptions&, const HeadPack&);
+  std::unique_ptr<System> (*alone)(const Strand&, const ReducedOptions&, Effects);
+  /// Relative change of a start that makes no less than the roundings of all steps do.
+  double rounding;
+};
+inline constexpr HairModel helices{"Helices", helix_head, super_helix, 1e-12},
+    chains{"Chains", chain_head, articulated_chain, 3e-11};
+inline constexpr const HairModel* hair_models[] = {&helices, &chains};
+
 struct Case {
   std::string name;
   int elements = 10, points = 8;
@@ -31,6 +45,7 @@ struct Case {
   double drag = 2e-5, mass_damping = 0.5;
   Effects effects = {};                                 // on all strands
   std::function<Effects(std::size_t strand)> own = {};  // of each strand
+  const HairModel* model = &helices;
   Effects own_of(std::size_t k) const { return own ? own(k) : Effects{}; }
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
@@ -79,7 +94,7 @@ inline Strand strand(const Case& c, std::size_t k) {
 }
 
 inline std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {
-  auto all = helix_head(options(c), pack);
+  auto all = c.model->head(options(c), pack);
   for (std::size_t k = 0; k < strands; ++k) all->add(strand(c, k), c.own_of(k));
   return all;
 }
@@ -105,12 +120,13 @@ inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
   effects.insert(effects.end(), c.effects.begin(), c.effects.end());
   const Effects own = c.own_of(k);
   effects.insert(effects.end(), own.begin(), own.end());
-  const auto system = super_helix(one, of_model, effects);
+  const auto system = c.model->alone(one, of_model, effects);
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
-  std::vector<double> q(n), v(n);
+  std::vector<double> q(n), v(n), size(n), of_rate(n);
   system->initial_state(q, v);
+  system->scale(size, of_rate);
   for (std::size_t i = 0; i < n; ++i) {
-    q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + 1 / one.length());
+    q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + size[i]);
   }
   Options step;
   step.step = hair_step;

@@ -23,6 +23,8 @@ using testing_support::advance;
 using testing_support::Alone;
 using testing_support::alone;
 using testing_support::Case;
+using testing_support::hair_models;
+using testing_support::HairModel;
 using testing_support::head;
 using testing_support::options;
 using testing_support::packs;
@@ -53,8 +55,9 @@ Tether::Settings pulled() {
 }
 
 /// All strands where they are at first, each near some of the others.
-std::shared_ptr<StrandInteraction> neighbours(std::size_t strands) {
-  const Case c{.name = ""};
+std::shared_ptr<StrandInteraction> neighbours(std::size_t strands,
+                                              const HairModel& model) {
+  const Case c{.name = "", .model = &model};
   const auto all = head(c, {HeadNumber::float64, 4}, strands);
   std::vector<double> x(strands * all->numbers()), v(x.size());
   for (std::size_t b = 0, first = 0; b < all->blocks(); ++b) {
@@ -74,7 +77,7 @@ std::shared_ptr<StrandInteraction> neighbours(std::size_t strands) {
 
 constexpr std::size_t strands = 10;
 
-std::vector<Case> cases() {
+std::vector<Case> cases_of(const HairModel& model) {
   const Vec low{0.12, 0.08, 1.43};
   const auto one = [](const char* name, Effects effects) {
     return Case{.name = name, .effects = std::move(effects)};
@@ -108,18 +111,28 @@ std::vector<Case> cases() {
   uneven.uneven = 5;
   all.push_back(uneven);
   Case interacts{.name = "Interacting"};
-  interacts.own = [of = neighbours(strands)](std::size_t k) {
+  interacts.own = [of = neighbours(strands, model)](std::size_t k) {
     // The effect refers to it.
     return Effects{std::shared_ptr<const Effect>(
         of->effect(k).release(), [of](const Effect* effect) { delete effect; })};
   };
   all.push_back(interacts);
+  for (Case& c : all) c.model = &model;
+  return all;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const HairModel* model : hair_models) {
+    for (const Case& c : cases_of(*model)) all.push_back(c);
+  }
   return all;
 }
 
 class HeadWithEffects : public testing::TestWithParam<Case> {};
 
-// As in test_helix_head.cpp: what a relative change of 1e-12 of the start makes.
+// As in test_reduced_head.cpp: what a relative change of 1e-12 of the start makes, of
+// chains one of 3e-11.
 TEST_P(HeadWithEffects, StrandsMoveAsTheyDoAlone) {
   const Case& c = GetParam();
   constexpr int steps = 100;
@@ -141,7 +154,8 @@ TEST_P(HeadWithEffects, StrandsMoveAsTheyDoAlone) {
     SCOPED_TRACE(k);
     EXPECT_FALSE(all->lost(k));
     all->state(k, q, v);
-    const Alone want = alone(c, k, steps, 0), changed = alone(c, k, steps, 1e-12);
+    const Alone want = alone(c, k, steps, 0),
+                changed = alone(c, k, steps, c.model->rounding);
     EXPECT_LE(apart(q, want.q), apart(changed.q, want.q));
     EXPECT_LE(apart(v, want.v), apart(changed.v, want.v));
     EXPECT_LE(apart(In(x).subspan(k * (n + 3), n + 3), want.x), apart(changed.x, want.x));
@@ -183,7 +197,9 @@ TEST_P(HeadWithEffects, LanesGiveTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, HeadWithEffects, testing::ValuesIn(cases()),
-                         [](const auto& of) { return of.param.name; });
+                         [](const auto& of) {
+                           return std::string(of.param.model->name) + of.param.name;
+                         });
 
 struct State {
   std::vector<double> q, v;
@@ -201,10 +217,12 @@ Vec tip(const Case& c, std::size_t k) {
   return load3(&at.x[at.x.size() - 3]);
 }
 
+class HeadWithEffectsOnSome : public testing::TestWithParam<const HairModel*> {};
+
 // A ball of 4 mm at one tip, and a tether on one strand: the strands beside them have the
 // bits of a head without, whatever their neighbours in a block do.
-TEST(HeadWithEffectsOnSome, OthersAreTheSameBits) {
-  Case c{.name = ""};
+TEST_P(HeadWithEffectsOnSome, OthersAreTheSameBits) {
+  Case c{.name = "", .model = GetParam()};
   const Case bare = c;
   const Vec at = tip(c, 5) + Vec{2e-3, 0, 0};
   c.effects = {body(Sphere{4e-3}, at)};
@@ -226,8 +244,8 @@ TEST(HeadWithEffectsOnSome, OthersAreTheSameBits) {
 }
 
 // The load of the same ball is infinite.
-TEST(HeadWithEffectsOnSome, AStrandThatABodyLosesLeavesOthersAlone) {
-  Case c{.name = ""};
+TEST_P(HeadWithEffectsOnSome, AStrandThatABodyLosesLeavesOthersAlone) {
+  Case c{.name = "", .model = GetParam()};
   const Case bare = c;
   BodyContact hard = soft;
   hard.stiffness = 1e308;
@@ -248,7 +266,7 @@ TEST(HeadWithEffectsOnSome, AStrandThatABodyLosesLeavesOthersAlone) {
   }
 }
 
-TEST(HeadEffects, ThatNeedMoreThanPointsAreRefused) {
+TEST_P(HeadWithEffectsOnSome, ThatNeedMoreThanPointsAreRefused) {
   const ContactLaw law({.stiffness = 1, .viscosity = 0, .inner = 1e-3, .outer = 2e-3},
                        "test");
   const Effects refused[] = {
@@ -256,14 +274,17 @@ TEST(HeadEffects, ThatNeedMoreThanPointsAreRefused) {
       {std::make_shared<ExactBody>(Plane{}, StrandPlace{},
                                    ExactContact{soft.normal(), false, 0.3, 0})}};
   for (const Effects& effects : refused) {
-    Case c{.name = "", .effects = effects};
-    EXPECT_THROW(helix_head(options(c), {}), InputError);
+    Case c{.name = "", .effects = effects, .model = GetParam()};
+    EXPECT_THROW(c.model->head(options(c), {}), InputError);
     c.effects.clear();
-    const auto all = helix_head(options(c), {});
+    const auto all = c.model->head(options(c), {});
     EXPECT_THROW(all->add(strand(c, 0), effects), InputError);
     EXPECT_EQ(all->strands(), 0U);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Models, HeadWithEffectsOnSome, testing::ValuesIn(hair_models),
+                         [](const auto& of) { return std::string(of.param->name); });
 
 /// Random symmetric matrices: of any signs, of rank 1 and 2, with equal eigenvalues.
 std::vector<std::array<double, 9>> matrices() {

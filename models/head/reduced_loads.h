@@ -5,24 +5,25 @@
 
 #include "math/instructions.h"
 #include "models/head/head_units.h"
-#include "models/head/helix_strand.h"
 #include "models/head/near_bodies.h"
+#include "models/head/reduced_kernel.h"
 
 namespace tress::models {
 
-/// Loads of effects on the points of a block of super-helices in one step, between the
-/// sweeps of HelixStrand. Bodies: all strands at once, a point only if its element's ball
-/// comes near enough. Other effects: strand by strand, as ReducedSystem calls them.
-/// Elements that nothing loads are left alone. Compiled without fused products, whose
-/// choice depends on the number of lanes: the same bits for all.
-template <class T>
-class HelixLoads {
+/// Loads of effects on the points of a block of strands in one step, between the sweeps
+/// of ReducedKernel, for a Kind of it. Bodies: all strands at once, a point only if its
+/// element's ball comes near enough. Other effects: strand by strand, as ReducedSystem
+/// calls them. Elements that nothing loads are left alone. Compiled without fused
+/// products, whose choice depends on the number of lanes: the same bits for all.
+template <class Kind>
+class ReducedLoads {
  public:
+  using T = typename Kind::Real;
   using Vec3T = Vec3<T>;
-  using Kernel = HelixStrand<T>;
+  using Kernel = ReducedKernel<Kind>;
   using Element = typename Kernel::Scratch;
 
-  HelixLoads(const Kernel& kernel, const HeadUnits& units, Instructions instructions)
+  ReducedLoads(const Kernel& kernel, const HeadUnits& units, Instructions instructions)
       : kernel_(kernel),
         instructions_(instructions),
         units_(units),
@@ -37,7 +38,7 @@ class HelixLoads {
   /// strand the other effects. `from`, `frame`: of the roots, seen from the head's
   /// position along the axes of the world, m.
   struct Block {
-    const HelixMaterial<T>* material;
+    const ReducedMaterial<T>* material;
     Vec3T from;
     FrameOf<T> frame;
     double t, h;  // end and length of the step, s
@@ -51,25 +52,25 @@ class HelixLoads {
 
  private:
   struct Start {
-    Vec3T x;  // m, from the head's position
-    FrameOf<T> frame;
-    Vec3T chord;  // to the tip
+    Vec3T x;           // m, from the head's position
+    FrameOf<T> frame;  // of the element's axes
+    Vec3T chord;       // to the tip
   };
   struct Point {
-    Vec3T p;  // from the start, in its components
+    Vec3T p;  // from the start, in the element's axes
     PointLoad<T> load;
     T some;  // 1 in lanes with a load, 0 in others
   };
 
-  using Functions = LaneFunctions<T>;
+  using OnElement = typename Kind::Points;
 
   void place(const Element* elements);
   bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
-  bool add_up(std::size_t i, const HelixElement<T>& helix, const Functions& functions);
+  bool add_up(std::size_t i, const OnElement& points);
   void look_for(const NearBody& body, std::span<char> near) const;
   template <class Shape>
-  void touch(const NearBody& body, const Shape& shape, std::size_t i, const Element& e,
-             const HelixElement<T>& helix, const Functions& functions, const Vec3T& rate);
+  void touch(const NearBody& body, const Shape& shape, std::size_t i,
+             const OnElement& points);
   void take_others(const Vec3T* v, const Element* elements);
   void take_others(int lane);
   void put(std::size_t i, int lane);

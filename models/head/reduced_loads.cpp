@@ -1,13 +1,15 @@
-#include "models/head/helix_loads.h"
+#include "models/head/reduced_loads.h"
 
 #include <algorithm>
 
+#include "models/head/chain_strand.h"
+#include "models/head/helix_strand.h"
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
-template <class T>
-const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v,
-                                              const Element* elements) {
+template <class Kind>
+auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element* elements)
+    -> const LoadSums<T>* const* {
   block_ = block;
   by(instructions_, [&] { place(elements); });
   near_.resize(block_.bodies.size() * n_);
@@ -27,33 +29,31 @@ const LoadSums<T>* const* HelixLoads<T>::find(const Block& block, const Vec3T* v
 
 // Flat: functions of its own that another source has, too, compiled with fused products,
 // could be taken from there.
-template <class T>
-[[gnu::flatten]] void HelixLoads<T>::place(const Element* elements) {
+template <class Kind>
+[[gnu::flatten]] void ReducedLoads<Kind>::place(const Element* elements) {
   Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
-    const Element& e = elements[i];
+    const auto& e = elements[i].kept;
+    Kind::enter(e, at.frame);
     at.chord = at.frame * (length * e.position);
     starts_[i] = at;
     at.x = at.x + at.chord;
-    at.frame = at.frame * FrameOf<T>{e.rotation.column(0), e.rotation.column(1),
-                                     e.rotation.column(2)};
+    Kind::go_on(e, at.frame);
   }
 }
 
 /// Whether some of its points have a load, which is in sums_ then.
-template <class T>
-[[gnu::flatten]] bool HelixLoads<T>::element(std::size_t i, const Vec3T& rate,
-                                             const Element& e, bool others) {
-  const HelixElement<T> helix(e.q, rate);
-  const Functions functions(e.q, block_.material->length);
+template <class Kind>
+[[gnu::flatten]] bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
+                                                  const Element& e, bool others) {
+  const OnElement points(e.kept, e.q, rate, block_.material->length);
   bool ready = false;
   const auto prepare = [&] {
     if (ready) return;
     ready = true;
     for (std::size_t k = 0; k < points_; ++k) {
-      const T arc = arc_of(k);
-      at_[k].p = helix.position(arc, functions.at(arc));
+      at_[k].p = points.position(arc_of(k));
       at_[k].load = others ? others_[points_ * i + k] : PointLoad<T>{};
       at_[k].some = others ? some_[points_ * i + k] : T(0);
     }
@@ -65,16 +65,14 @@ template <class T>
     if (near_[b * n_ + i] == 0) continue;
     const NearBody& body = block_.bodies[b];
     prepare();
-    std::visit(
-        [&](const auto& shape) { touch(body, shape, i, e, helix, functions, rate); },
-        body.contact->body.shape());
+    std::visit([&](const auto& shape) { touch(body, shape, i, points); },
+               body.contact->body.shape());
   }
-  return ready && add_up(i, helix, functions);
+  return ready && add_up(i, points);
 }
 
-template <class T>
-bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
-                           const Functions& functions) {
+template <class Kind>
+bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
   LoadSums<T>& sums = sums_[i];
   bool loaded = false;
   for (std::size_t k = 0; k < points_; ++k) {
@@ -94,7 +92,7 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
     shift(drag);
     load.block = semidefinite(load.block, at.some);
     shift(-drag);
-    sums.add(at.p, helix.slope(functions.at(arc_of(k))), load);
+    points.add(arc_of(k), at.p, load, sums);
   }
   return loaded;
 }
@@ -104,9 +102,9 @@ bool HelixLoads<T>::add_up(std::size_t i, const HelixElement<T>& helix,
 ///
 ///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
 ///     phi.
-template <class T>
-[[gnu::flatten]] void HelixLoads<T>::look_for(const NearBody& body,
-                                              std::span<char> near) const {
+template <class Kind>
+[[gnu::flatten]] void ReducedLoads<Kind>::look_for(const NearBody& body,
+                                                   std::span<char> near) const {
   const T length = T(units_.length) * block_.material->length;
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
@@ -129,21 +127,17 @@ template <class T>
       body.contact->body.shape());
 }
 
-template <class T>
+template <class Kind>
 template <class Shape>
-void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t i,
-                          const Element& e, const HelixElement<T>& helix,
-                          const Functions& functions, const Vec3T& rate) {
+void ReducedLoads<Kind>::touch(const NearBody& body, const Shape& shape, std::size_t i,
+                               const OnElement& points) {
   const Start& at = starts_[i];
   const BodyTouch<T, Shape> of_body(body, shape, at.frame, block_.h);
   const Vec3T start = of_body.in_body(at.x);
   const T length(units_.length), speed(units_.speed());
   for (std::size_t k = 0; k < points_; ++k) {
     Point& point = at_[k];
-    const auto velocity = [&] {
-      return speed * (e.v + cross(e.omega, point.p) +
-                      helix.slope(functions.at(arc_of(k))) * rate);
-    };
+    const auto velocity = [&] { return speed * points.velocity(arc_of(k), point.p); };
     const T w = weight_of(k);
     of_body.touch(start + of_body.turn() * (length * point.p), velocity,
                   w * T(units_.length / units_.force()), w * T(1 / units_.density),
@@ -152,9 +146,9 @@ void HelixLoads<T>::touch(const NearBody& body, const Shape& shape, std::size_t 
 }
 
 /// Effects other than bodies, strand by strand.
-template <class T>
-[[gnu::flatten]] void HelixLoads<T>::take_others(const Vec3T* v,
-                                                 const Element* elements) {
+template <class Kind>
+[[gnu::flatten]] void ReducedLoads<Kind>::take_others(const Vec3T* v,
+                                                      const Element* elements) {
   const std::size_t all = n_ * points_;
   others_.assign(all, {});
   some_.assign(all, T(0));
@@ -165,16 +159,14 @@ template <class T>
   for (std::size_t i = 0; i < n_; ++i) {
     const Element& e = elements[i];
     const Start& at = starts_[i];
-    const HelixElement<T> shape(e.q, v[i]);
-    const LaneFunctions<T> functions(e.q, block_.material->length);
+    const OnElement points(e.kept, e.q, v[i], block_.material->length);
     for (std::size_t k = 0; k < points_; ++k) {
-      const HelixFunctions<T> f = functions.at(arc_of(k));
-      const Vec3T p = shape.position(arc_of(k), f);
+      const T arc = arc_of(k);
+      const Vec3T p = points.position(arc);
       const std::size_t point = points_ * i + k;
       x_[point] = at.x + at.frame * (length * p);
-      v_[point] = at.frame * (speed * (e.v + cross(e.omega, p) + shape.slope(f) * v[i]));
-      tangent_[point] =
-          at.frame * (Vec3T{T(1), T(0), T(0)} + f.S * shape.u() + f.A * shape.z());
+      v_[point] = at.frame * (speed * points.velocity(arc, p));
+      tangent_[point] = at.frame * points.tangent(arc);
     }
   }
   for (std::size_t k = 0; k < block_.others.size(); ++k) {
@@ -182,8 +174,8 @@ template <class T>
   }
 }
 
-template <class T>
-void HelixLoads<T>::take_others(int lane) {
+template <class Kind>
+void ReducedLoads<Kind>::take_others(int lane) {
   const std::size_t all = n_ * points_;
   for (auto* to : {&of_x_, &of_v_, &of_tangent_}) to->resize(3 * all);
   mass_.resize(all);
@@ -215,9 +207,9 @@ void HelixLoads<T>::take_others(int lane) {
   for (std::size_t i = 0; i < all; ++i) put(i, lane);
 }
 
-/// Into the lane, in the components of the element.
-template <class T>
-void HelixLoads<T>::put(std::size_t i, int lane) {
+/// Into the lane, in the components of the element's axes.
+template <class Kind>
+void ReducedLoads<Kind>::put(std::size_t i, int lane) {
   const double *f = &load_[3 * i], *b = &blocks_[9 * i];
   const auto zero = [](double x) { return x == 0; };
   if (std::all_of(f, f + 3, zero) && std::all_of(b, b + 9, zero)) return;
@@ -240,10 +232,15 @@ void HelixLoads<T>::put(std::size_t i, int lane) {
   some_[i].set(lane, 1);
 }
 
-template class HelixLoads<PackOf<double, 1>>;
-template class HelixLoads<PackOf<double, 4>>;
-template class HelixLoads<PackOf<double, 8>>;
-template class HelixLoads<PackOf<float, 8>>;
-template class HelixLoads<PackOf<float, 16>>;
+template class ReducedLoads<HelixKind<PackOf<double, 1>>>;
+template class ReducedLoads<HelixKind<PackOf<double, 4>>>;
+template class ReducedLoads<HelixKind<PackOf<double, 8>>>;
+template class ReducedLoads<HelixKind<PackOf<float, 8>>>;
+template class ReducedLoads<HelixKind<PackOf<float, 16>>>;
+template class ReducedLoads<ChainKind<PackOf<double, 1>>>;
+template class ReducedLoads<ChainKind<PackOf<double, 4>>>;
+template class ReducedLoads<ChainKind<PackOf<double, 8>>>;
+template class ReducedLoads<ChainKind<PackOf<float, 8>>>;
+template class ReducedLoads<ChainKind<PackOf<float, 16>>>;
 
 }  // namespace tress::models

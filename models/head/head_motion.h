@@ -1,19 +1,19 @@
 #pragma once
 
-#include "models/head/helix_strand.h"
 #include "models/head/lane_root.h"
+#include "models/head/reduced_kernel.h"
 
 namespace tress::models {
 
 /// Motion of a head in its own components and units; gravity g is a part of a.
-struct HelixMotion {
+struct HeadMotion {
   Vec v, omega;  // velocity, angular velocity
   Vec a, alpha;  // acceleration minus g, angular acceleration
 };
 
 /// That of roots that are fixed to it.
 template <class T>
-HelixRoot<T> root_motion(const LaneRoot<T>& root, const HelixMotion& head) {
+ReducedMotion<T> root_motion(const LaneRoot<T>& root, const HeadMotion& head) {
   const Vec3<T> omega(head.omega), alpha(head.alpha);
   const Vec3<T> v = Vec3<T>(head.v) + cross(omega, root.from);
   const Vec3<T> a =

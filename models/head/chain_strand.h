@@ -1,0 +1,206 @@
+#pragma once
+
+#include "models/head/helix_element.h"
+#include "models/head/reduced_kernel.h"
+#include "models/strand/strand.h"
+
+namespace tress::models {
+
+/// Rigid links behind ball joints whose rotation vectors are the unknowns (rad) [Hadap,
+/// Magnenat-Thalmann 2001; Hadap 2006]: a Kind of models/head/reduced_kernel.h, with the
+/// equations of models/reduced/articulated_chain.h. A joint of rotation vector theta
+/// turns like an element of length 1 that winds by theta (models/head/helix_element.h):
+/// with K = [theta]x
+///
+///     E = I + S K + A K^2      from the link's axes to those of the link before
+///     W = I + A K + B K^2      angular velocity = W theta', in the latter
+///
+/// regular for |theta| < 2 pi. Its axes are those of the link: in them all of it lies on
+/// e0 and does not move, so sums over its points are closed, carrying a wrench from one
+/// end to the other takes a few products, and the unknowns enter by E^T W = W^T alone.
+/// Cost: O(elements), whatever the points, at which effects act.
+template <class T>
+struct ChainKind {
+  using Real = T;
+  using Vec = Vec3<T>;
+  using Matrix = Matrix3<T>;
+  using Material = ReducedMaterial<T>;
+  using Motion = ReducedMotion<T>;
+  using Sum = ArticulatedSum<T>;
+
+  struct Kept {
+    Vec v, omega;           // of its joint, in the link's axes
+    Vec force, moment;      // of inertia and drag, about the joint
+    Vec position;           // of its tip
+    Matrix rotation, turn;  // E, W
+  };
+
+  /// The clamp's joint is half as long as others (reduced_strand()).
+  static constexpr double first_stiffness = 2;
+  static constexpr double rotors_of_root = 0, rotors_of_last = 1;
+  static constexpr bool straight = true;
+  static double unit(double /*length*/) { return 1; }
+  static double moment(double length) { return 1 / length; }
+  /// Halves of two links' angles; `shape`: natural or initial.
+  static tress::Vec at_rest(const Strand& strand, std::size_t i,
+                            tress::Vec Segment::*shape) {
+    const Segment& own = strand.segments[i];
+    tress::Vec angle = own.length / 2 * (own.*shape);
+    if (i == 0) return angle;
+    const Segment& before = strand.segments[i - 1];
+    return angle + before.length / 2 * (before.*shape);
+  }
+
+  static void move(const Material& m, const Vec& q, const Vec& rate, Motion& at,
+                   Kept& e) {
+    const auto joint = turn_of(q, rate);
+    e.rotation = joint.rotation;
+    e.turn = joint.turn;
+    at.alpha = e.rotation.back(at.alpha + joint.bias + cross(at.omega, joint.velocity));
+    at.omega = e.rotation.back(at.omega + joint.velocity);
+    at.v = e.rotation.back(at.v);
+    at.a = e.rotation.back(at.a);
+    e.v = at.v;
+    e.omega = at.omega;
+    const T o(0);
+    e.position = {m.length, o, o};
+    // At the distance s the velocity is v + s `moving`, the acceleration a + s `bent`.
+    const Vec &w = at.omega, moving{o, w.z, -w.y};
+    const Vec bent = Vec{o, at.alpha.z, -at.alpha.y} + cross(w, moving);
+    const Vec near = m.density * at.a + m.drag * at.v,
+              far = m.density * bent + m.drag * moving;
+    const T first = T(0.5) * m.length * m.length, second = T(2.0 / 3) * first * m.length;
+    e.force = m.length * near + first * far;
+    const Vec arm = first * near + second * far;
+    e.moment = Vec{o, -arm.z, arm.y} + rotor_moment(m.rotor, w, at.alpha);
+    at.v = at.v + m.length * moving;
+    at.a = at.a + m.length * bent;
+  }
+
+  static Sum last(const Material& /*m*/, const Motion& /*tip*/, const T& /*acc*/) {
+    return {};
+  }
+
+  template <class Kernel>
+  static void carry(const Kernel& /*kernel*/, const Material& m,
+                    const typename Kernel::Inertia& inertia, const Vec& /*q*/,
+                    const Vec& /*rate*/, const Sum& hanging,
+                    const LoadSums<T>* of_effects, const Kept& e,
+                    typename Kernel::Uneliminated& to) {
+    const T& l = m.length;
+    const T mass = inertia.of_length * l, first = T(0.5) * l * mass,
+            second = T(2.0 / 3) * l * first;
+    Sum& all = to.sum;
+    const Vec tip_force = l * hanging.force;
+    all.force = e.force + hanging.force;
+    all.moment = e.moment + hanging.moment + Vec{T(0), -tip_force.z, tip_force.y};
+    // By a turn of the link the tip moves by -[l e0]x.
+    const Symmetric3<T>& ll = hanging.ll;
+    const Matrix& la = hanging.la;
+    all.la.row[0] = {la.row[0].x, la.row[0].y - l * ll.xz, la.row[0].z + l * ll.xy};
+    all.la.row[1] = {la.row[1].x, la.row[1].y - l * ll.yz, la.row[1].z + l * ll.yy};
+    all.la.row[2] = {la.row[2].x, la.row[2].y - l * ll.zz, la.row[2].z + l * ll.yz};
+    const Symmetric3<T>& aa = hanging.aa;
+    all.aa = {aa.xx + inertia.acc * m.rotor,
+              aa.yy - l * (la.row[2].y + all.la.row[2].y) + second,
+              aa.zz + l * (la.row[1].z + all.la.row[1].z) + second,
+              aa.xy - l * la.row[2].x,
+              aa.xz + l * la.row[1].x,
+              aa.yz + l * (la.row[1].y - all.la.row[2].z)};
+    all.la.row[1].z += first;
+    all.la.row[2].y -= first;
+    all.ll = ll;
+    all.ll.xx += mass;
+    all.ll.yy += mass;
+    all.ll.zz += mass;
+    // One code with and without loads: the same bits for strands that have none. The
+    // wrench is that of inertia less loads.
+    if (of_effects != nullptr) [[unlikely]] {
+      of_effects->add_to(all.force, Vec{} - of_effects->force);
+      of_effects->add_to(all.moment, Vec{} - of_effects->moment);
+      of_effects->add_to(all.ll, of_effects->ll);
+      of_effects->add_to(all.la, of_effects->la);
+      of_effects->add_to(all.aa, of_effects->aa);
+    }
+    to.of_force = e.turn * all.la.transposed();
+    to.of_moment = e.turn * full(all.aa);
+    to.own = upper(to.of_moment, e.turn);
+    to.unknown = Vec{} - e.turn * all.moment;
+  }
+
+  /// In the axes of the link before.
+  static void pass(const Material& /*m*/, const T& /*acc*/, const Kept& e, Sum& sum) {
+    const Matrix& r = e.rotation;
+    sum = {r * sum.force, r * sum.moment, congruent(r, sum.ll), congruent(r, sum.aa),
+           r * sum.la * r.transposed()};
+  }
+
+  static void arrive(const Kept& e, Vec& l, Vec& a) {
+    l = e.rotation.back(l);
+    a = e.rotation.back(a);
+  }
+  static void leave(const Kept& e, const Vec& own, Vec& l, Vec& a) {
+    a = a + e.turn.back(own);
+    l = l + cross(a, e.position);
+  }
+
+  /// Kinematics alone, seen from the joint in the axes of the link before.
+  class Shape {
+   public:
+    Shape(const Vec& q, const Vec& rate, const T& length)
+        : joint_(turn_of(q, rate)),
+          along_(joint_.rotation.column(0)),
+          moving_(cross(joint_.velocity, along_)),
+          length_(length) {}
+
+    SeenPoint<T> at(const T& arc) const { return {arc * along_, arc * moving_}; }
+    SeenTip<T> tip() const {
+      return {length_ * along_, length_ * moving_, joint_.rotation, joint_.velocity};
+    }
+
+   private:
+    typename HelixElement<T>::Turn joint_;
+    Vec along_, moving_;
+    T length_;
+  };
+
+  static void enter(const Kept& e, FrameOf<T>& frame) {
+    frame = frame *
+            FrameOf<T>{e.rotation.column(0), e.rotation.column(1), e.rotation.column(2)};
+  }
+  static void go_on(const Kept& /*e*/, FrameOf<T>& /*frame*/) {}
+
+  /// Points on which effects act, in the link's axes.
+  class Points {
+   public:
+    Points(const Kept& e, const Vec& /*q*/, const Vec& /*rate*/, const T& /*length*/)
+        : e_(e) {}
+
+    Vec position(const T& arc) const { return {arc, T(0), T(0)}; }
+    Vec velocity(const T& /*arc*/, const Vec& position) const {
+      return e_.v + cross(e_.omega, position);
+    }
+    Vec tangent(const T& /*arc*/) const { return {T(1), T(0), T(0)}; }
+    /// The unknowns move a point as a turn of the link does.
+    void add(const T& /*arc*/, const Vec& position, const PointLoad<T>& load,
+             LoadSums<T>& sums) const {
+      sums.add(position, load);
+    }
+
+   private:
+    const Kept& e_;
+  };
+
+ private:
+  static typename HelixElement<T>::Turn turn_of(const Vec& theta, const Vec& rate) {
+    const T one(1);
+    const LaneFunctions<T> functions(theta, one);
+    return HelixElement<T>(theta, rate).turn(one, functions.at(one), functions.x2());
+  }
+};
+
+/// Newton's step of clamped chains of rigid links, side by side.
+template <class T>
+using ChainStrand = ReducedKernel<ChainKind<T>>;
+
+}  // namespace tress::models

@@ -1,0 +1,414 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/head/head_motion.h"
+#include "models/head/lane_head.h"
+#include "models/head/reduced_energies.h"
+#include "models/head/reduced_kernel.h"
+#include "models/head/reduced_loads.h"
+#include "models/head/reduced_places.h"
+
+namespace tress::models {
+
+/// A head of strands of this Kind of element (models/head/reduced_kernel.h): blocks of as
+/// many as its numbers have lanes, each a step of ReducedKernel with the loads of
+/// ReducedLoads between its sweeps. Of a strand it keeps coordinates, rates and rest
+/// shape, material and root.
+template <class Kind>
+class ReducedHead : public Head {
+ public:
+  using T = typename Kind::Real;
+
+  ReducedHead(const HeadOptions& options, Instructions instructions)
+      : options_(with_uniform_effects(options)),
+        instructions_(instructions),
+        n_(static_cast<std::size_t>(options.elements)),
+        kernel_(options.elements, options.points, options.twist),
+        energies_(kernel_),
+        units_(HeadUnits::of(options.longest)) {
+    options_.motion.frame = {};
+    for (const auto& effect : options_.effects) {
+      check_for_head(*effect);
+      if (effect->rigid_contact() != nullptr) {
+        bodies_.push_back(effect->rigid_contact());
+      } else {
+        others_.push_back(effect.get());
+      }
+    }
+  }
+
+  void reserve(std::size_t strands) override {
+    const std::size_t blocks = (strands + width - 1) / width;
+    roots_.reserve(blocks);
+    materials_.reserve(blocks);
+    hurt_.reserve(blocks);
+    for (auto* state : {&q_, &v_, &rest_}) state->reserve(n_ * blocks);
+    lost_.reserve(strands);
+  }
+
+  using Head::add;
+  void add(const Strand& strand, Effects own_effects) override {
+    models::check(strand);
+    check_for_head(strand, n_);
+    for (const auto& effect : own_effects) check_for_head(*effect);
+    const Segment& first = strand.segments.front();
+    const CrossSection& section = first.section;
+    const double density = strand.material.density * section.area();
+    units_.weigh(options_.line_density, density);
+    const bool opens = lost_.size() % width == 0;
+    if (opens) {
+      roots_.emplace_back();
+      materials_.emplace_back();
+      hurt_.push_back(0);
+      for (auto* state : {&q_, &v_, &rest_}) state->resize(state->size() + n_);
+    }
+    const std::size_t block = roots_.size() - 1;
+    const Vec from = strand.root.position - options_.motion.position;
+    radius_ = std::max(radius_, norm(from) + static_cast<double>(n_) * first.length);
+    const int own = static_cast<int>(lost_.size() % width);
+    const double unit = Kind::unit(units_.length);
+    // The first strand of a block fills the lanes of those that may not come.
+    for (int lane = own; lane < (opens ? T::lanes : own + 1); ++lane) {
+      Root& root = roots_[block];
+      set_lane(root.from, lane, (1 / units_.length) * from);
+      set_lane(root.frame, lane, strand.root.frame);
+      ReducedMaterial<T>& m = materials_[block];
+      const double length = first.length / units_.length, bending = units_.stiffness(),
+                   moment = Kind::moment(length);
+      set_lane(m.length, lane, length);
+      set_lane(m.density, lane, density / units_.density);
+      set_lane(m.drag, lane,
+               (options_.drag + options_.mass_damping * density) * units_.time /
+                   units_.density);
+      set_lane(m.stiffness, lane, moment / bending * stiffness(strand.material, section));
+      set_lane(m.friction, lane,
+               moment * strand.material.internal_friction / (bending * units_.time));
+      const double polar = options_.rotary_inertia ? section.polar() : 0;
+      set_lane(m.rotor, lane,
+               length * strand.material.density * polar /
+                   (units_.density * units_.length * units_.length));
+      for (std::size_t i = 0; i < n_; ++i) {
+        const Vec rest = unit * Kind::at_rest(strand, i, &Segment::natural);
+        Vec initial = unit * Kind::at_rest(strand, i, &Segment::initial);
+        if (!options_.twist) initial.x = rest.x;  // held
+        set_lane(rest_[n_ * block + i], lane, rest);
+        set_lane(q_[n_ * block + i], lane, initial);
+        set_lane(v_[n_ * block + i], lane, Vec{});
+      }
+    }
+    lost_.push_back(0);
+    if (own_effects.empty() && own_.empty()) return;
+    own_.resize(lost_.size());
+    own_.back() = std::move(own_effects);
+  }
+
+  std::size_t strands() const override { return lost_.size(); }
+  std::size_t blocks() const override { return roots_.size(); }
+  std::size_t bytes() const override {
+    return blocks() * (sizeof(Root) + sizeof(ReducedMaterial<T>) +
+                       3 * n_ * sizeof(Vec3<T>) + 1) +
+           lost_.size() + own_.size() * sizeof(Effects);
+  }
+
+  std::unique_ptr<Scratch> scratch() const override {
+    // Units are known from the first strand on.
+    return std::make_unique<Own>(kernel_, units_, instructions_);
+  }
+
+  void step(std::size_t block, double t, double h, Scratch& given) override {
+    Own& scratch = static_cast<Own&>(given);
+    Vec3<T>*const q = &q_[n_ * block], *const v = &v_[n_ * block];
+    std::copy_n(q, n_, scratch.before.begin());
+    if (scratch.t != t + h) look_around(t + h, scratch);
+    const ReducedMotion<T> root = root_of(roots_[block], scratch.pose);
+    const ReducedMaterial<T>& material = materials_[block];
+    const double step = h / units_.time;
+    auto* const elements = scratch.elements.data();
+    ReducedMotion<T> end;
+    by(instructions_, [&] { end = kernel_.move(material, root, step, q, v, elements); });
+    const LoadSums<T>* const* loads = nullptr;
+    if (const auto reached = reached_by_effects(block, h, scratch)) {
+      loads = scratch.loads.find(*reached, v, elements);
+    }
+    by(instructions_, [&] {
+      kernel_.semi_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
+                                 elements);
+    });
+    T finite(0);  // 0 or NaN
+    for (std::size_t i = 0; i < n_; ++i) {
+      const T all = q[i].x + q[i].y + q[i].z;
+      finite += all - all;
+    }
+    if (!all_up_to(finite, 0) || hurt_[block] != 0) {
+      freeze(block, finite, h, scratch);
+    }
+  }
+  bool lost(std::size_t strand) const override { return lost_[strand] != 0; }
+  using Head::losses;
+  std::vector<HeadLoss> losses(std::size_t known) const override {
+    return losses_.after(known);
+  }
+  void lose(std::size_t strand) override {
+    const std::size_t block = strand / width;
+    for (std::size_t i = 0; i < n_; ++i) {
+      set_lane(v_[n_ * block + i], static_cast<int>(strand % width), Vec{});
+    }
+    hurt_[block] = 1;
+    lost_[strand] = 1;
+  }
+
+  std::size_t numbers() const override { return 3 * (n_ + 1); }
+  std::size_t strands_of(std::size_t block) const override {
+    return std::min(width, lost_.size() - width * block);
+  }
+
+  void positions(std::size_t block, double t, std::span<double> x) const override {
+    places(block, t).write(strands_of(block), x, {});
+  }
+  void motion(std::size_t block, double t, std::span<double> x,
+              std::span<double> v) const override {
+    places(block, t).write(strands_of(block), x, v);
+  }
+  /// Of an arc of length l over a chord c no point is farther from the chord than
+  /// sqrt(l^2 - c^2)/2; l allows for what chords are rounded by.
+  void ahead(std::size_t block, double t, double h, std::span<double> x,
+             std::span<double> bulge) const override {
+    constexpr double rounding = 1 + (sizeof(typename T::Scalar) == 8 ? 1e-12 : 1e-5);
+    std::vector<Vec3<T>> q(n_);
+    const T step(h / units_.time);
+    for (std::size_t i = 0; i < n_; ++i) {
+      q[i] = q_[n_ * block + i] + step * v_[n_ * block + i];
+    }
+    ReducedPlaces<Kind> next = places(block, t + h);
+    next.q = q.data();
+    next.write(strands_of(block), x, {});
+    if constexpr (Kind::straight) {
+      std::ranges::fill(bulge, 0.0);
+      return;
+    }
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const double length = rounding * units_.length *
+                            lane_of(materials_[block].length, static_cast<int>(k));
+      double square = 0;
+      for (std::size_t i = 0; i < n_; ++i) {
+        const double* const from = &x[3 * (k * (n_ + 1) + i)];
+        const Vec chord = load3(from + 3) - load3(from);
+        square = std::max(square, length * length - dot(chord, chord));
+      }
+      bulge[k] = 0.5 * std::sqrt(square);
+    }
+  }
+  void state(std::size_t strand, std::span<double> q,
+             std::span<double> v) const override {
+    const auto lane = static_cast<int>(strand % width);
+    const double unit = Kind::unit(units_.length);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const std::size_t at = n_ * (strand / width) + i;
+      store3((1 / unit) * lane_of(q_[at], lane), &q[3 * i]);
+      store3(1 / (unit * units_.time) * lane_of(v_[at], lane), &v[3 * i]);
+    }
+  }
+
+  void energies(std::size_t block, double t, std::span<HeadEnergy> each) const override {
+    const RootPose pose = options_.motion.at(t);
+    const Root& root = roots_[block];
+    const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
+    LaneEnergies<T> sums;
+    by(instructions_, [&] {
+      sums = energies_(materials_[block], root_of(root, pose), head * root.from,
+                       head * root.frame, &rest_[n_ * block], &q_[n_ * block],
+                       &v_[n_ * block]);
+    });
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      const auto lane = static_cast<int>(k);
+      const double mass = units_.mass() * static_cast<double>(n_) *
+                          lane_of(materials_[block].density, lane) *
+                          lane_of(materials_[block].length, lane);
+      each[k] = sums.of(lane, units_, mass, pose.x, options_.gravity);
+    }
+  }
+
+  std::size_t kept() const override { return 6 * n_ + 1; }
+  std::size_t kept_of_state() const override { return 6 * n_; }
+  void keep(std::size_t block, std::span<double> x) const override {
+    double* to = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        store3(lane_of(q_[i], static_cast<int>(k)), to);
+        store3(lane_of(v_[i], static_cast<int>(k)), to + 3);
+        to += 6;
+      }
+      *to++ = lost_[width * block + k];
+    }
+  }
+  void recall(std::size_t block, std::span<const double> x) override {
+    const double* from = x.data();
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
+        set_lane(q_[i], static_cast<int>(k), load3(from));
+        set_lane(v_[i], static_cast<int>(k), load3(from + 3));
+        from += 6;
+      }
+      char& lost = lost_[width * block + k];
+      lost = *from++ != 0 ? 1 : 0;
+      hurt_[block] = static_cast<char>(hurt_[block] | lost);
+    }
+  }
+
+ protected:
+  static constexpr std::size_t width = T::lanes;
+
+  using Root = LaneRoot<T>;
+
+  struct Own final : Scratch {
+    Own(const ReducedKernel<Kind>& kernel, const HeadUnits& units,
+        Instructions instructions)
+        : elements(static_cast<std::size_t>(kernel.elements())),
+          before(elements.size()),
+          loads(kernel, units, instructions),
+          others(width) {}
+    std::vector<typename ReducedKernel<Kind>::Scratch> elements;
+    std::vector<Vec3<T>> before;  // q
+    ReducedLoads<Kind> loads;
+    double t = std::numeric_limits<double>::quiet_NaN();  // of what follows
+    RootPose pose;
+    std::vector<NearBody> bodies;            // that reach the head
+    std::vector<const Effect*> all_strands;  // other effects that reach it
+    std::vector<NearBody> near;              // those that reach a block
+    std::vector<std::vector<const Effect*>> others;
+  };
+
+  /// Effects that reach the ball in which all strands are.
+  void look_around(double t, Own& scratch) const {
+    scratch.t = t;
+    scratch.pose = options_.motion.at(t);
+    const Ball ball{scratch.pose.x, radius_};
+    bodies_around(bodies_, t, ball, scratch.bodies);
+    scratch.all_strands.clear();
+    for (const Effect* effect : others_) {
+      if (effect->reaches(t, ball)) scratch.all_strands.push_back(effect);
+    }
+  }
+
+  /// A block and the effects that reach some of its strands, if there are any.
+  std::optional<typename ReducedLoads<Kind>::Block> reached_by_effects(
+      std::size_t block, double h, Own& scratch) const {
+    if (scratch.bodies.empty() && scratch.all_strands.empty() && own_.empty()) return {};
+    const Root& root = roots_[block];
+    const ReducedMaterial<T>& material = materials_[block];
+    const Frame& head = scratch.pose.frame;
+    const FrameOf<T> axes{head.e0, head.e1, head.e2};
+    const Vec3<T> from = T(units_.length) * (axes * root.from);
+    const T radius = T(static_cast<double>(n_) * units_.length) * material.length;
+    bodies_near<T>(scratch.bodies, from, radius, scratch.near);
+    bool others = false;
+    if (!scratch.all_strands.empty() || !own_.empty()) {
+      for (std::size_t k = 0; k < strands_of(block); ++k) {
+        const int lane = static_cast<int>(k);
+        const Ball ball{scratch.pose.x + lane_of(from, lane), lane_of(radius, lane)};
+        others =
+            take_others(width * block + k, ball, scratch, scratch.others[k]) || others;
+      }
+    }
+    if (scratch.near.empty() && !others) return {};
+    std::span<const std::vector<const Effect*>> of_strands;
+    if (others) of_strands = std::span(scratch.others).first(strands_of(block));
+    return typename ReducedLoads<Kind>::Block{&material,    from,      axes * root.frame,
+                                              scratch.t,    h,         scratch.pose.x,
+                                              scratch.near, of_strands};
+  }
+  bool take_others(std::size_t strand, const Ball& ball, const Own& scratch,
+                   std::vector<const Effect*>& to) const {
+    to.clear();
+    if (lost_[strand] != 0) return false;
+    for (const Effect* effect : scratch.all_strands) {
+      if (effect->reaches(scratch.t, ball)) to.push_back(effect);
+    }
+    if (strand < own_.size()) {
+      for (const auto& effect : own_[strand]) {
+        if (effect->reaches(scratch.t, ball)) to.push_back(effect.get());
+      }
+    }
+    return !to.empty();
+  }
+
+  HeadMotion motion_of(const RootPose& pose) const {
+    const double l = units_.length, tau = units_.time;
+    const auto in_head = [&](const Vec& x, double unit) {
+      return (1 / unit) * pose.frame.back(x);
+    };
+    return {in_head(pose.v, l / tau), in_head(pose.omega, 1 / tau),
+            in_head(pose.a - options_.gravity, l / (tau * tau)),
+            in_head(pose.alpha, 1 / (tau * tau))};
+  }
+  ReducedMotion<T> root_of(const Root& root, const RootPose& pose) const {
+    return root_motion(root, motion_of(pose));
+  }
+
+  void freeze(std::size_t block, const T& finite, double h, const Own& scratch) {
+    for (int lane = 0; lane < T::lanes; ++lane) {
+      const std::size_t strand = width * block + static_cast<std::size_t>(lane);
+      const bool counts = strand < lost_.size();
+      if (finite[lane] == 0 && !(counts && lost_[strand] != 0)) continue;
+      for (std::size_t i = 0; i < n_; ++i) {
+        set_lane(q_[n_ * block + i], lane, lane_of(scratch.before[i], lane));
+        set_lane(v_[n_ * block + i], lane, Vec{});
+      }
+      hurt_[block] = 1;
+      if (!counts || lost_[strand] != 0) continue;
+      lost_[strand] = 1;
+      losses_.add(strand, scratch.t - h, h, "the result of the step is not finite");
+    }
+  }
+
+  ReducedPlaces<Kind> places(std::size_t block, double t) const {
+    const RootPose pose = options_.motion.at(t);
+    const Root& root = roots_[block];
+    return {pose,
+            root.from,
+            root.frame,
+            root_of(root, pose),
+            materials_[block].length,
+            n_,
+            &q_[n_ * block],
+            &v_[n_ * block],
+            units_.length,
+            units_.speed()};
+  }
+
+  HeadOptions options_;
+  Instructions instructions_;
+  std::size_t n_;
+  ReducedKernel<Kind> kernel_;
+  ReducedEnergies<Kind> energies_;
+  HeadUnits units_;
+  std::vector<const RigidContact*> bodies_;
+  std::vector<const Effect*> others_;
+  double radius_ = 0;  // of the ball about the head's position that holds all strands, m
+  std::vector<Root> roots_;
+  std::vector<ReducedMaterial<T>> materials_;
+  std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
+  std::vector<char> lost_;             // of each strand
+  HeadLosses losses_;
+  std::vector<char> hurt_;    // of each block: whether it has a lost strand
+  std::vector<Effects> own_;  // of each strand, or empty
+};
+
+/// Throws InputError unless such a head can have these options; `of`: its hair.
+inline void check_for_reduced_head(const HeadOptions& options, const std::string& of) {
+  check_for_head(options);
+  refuse_if(options.points < 2 || options.points > most_points_of_element,
+            std::to_string(options.points) + " points of an element", place_of_head,
+            "use 2 to 16");
+  refuse_if(options.method != HeadMethod::semi_implicit_euler,
+            "a method that " + of + " do not have", place_of_head,
+            "use semi_implicit_euler");
+}
+
+}  // namespace tress::models

@@ -1,0 +1,263 @@
+#pragma once
+
+#include <array>
+
+#include "contract/system.h"
+#include "math/gauss_legendre.h"
+#include "models/head/point_loads.h"
+
+namespace tress::models {
+
+/// What the elements of a strand have in common, in consistent units.
+template <class T>
+struct ReducedMaterial {
+  T length;           // of an element
+  T density;          // mass per length
+  T drag;             // force per length and velocity: nu + c density (LinearDrag)
+  Vec3<T> stiffness;  // moment per unknown of an element
+  T friction;         // moment per rate of an unknown
+  T rotor;            // inertia of an element about its tangent: length rho (I1 + I2)
+};
+
+/// Motion of a frame in its own components, such as that of a clamped root; gravity g is
+/// a part of a.
+template <class T>
+struct ReducedMotion {
+  Vec3<T> v, omega;  // velocity, angular velocity
+  Vec3<T> a, alpha;  // acceleration minus g, angular acceleration
+};
+
+/// The wrench and the articulated inertia at a frame: force = ll a + la alpha, moment =
+/// la^T a + aa alpha.
+template <class T>
+struct ArticulatedSum {
+  Vec3<T> force, moment;
+  Symmetric3<T> ll, aa;
+  Matrix3<T> la;
+};
+
+/// The motion of a point of an element seen from the element's start.
+template <class T>
+struct SeenPoint {
+  Vec3<T> position, velocity;
+};
+/// The same of its tip, with the turn of the tip's frame.
+template <class T>
+struct SeenTip {
+  Vec3<T> position, velocity;
+  Matrix3<T> rotation;  // from the components of the tip to those of the start
+  Vec3<T> turning;      // angular velocity
+};
+
+inline constexpr int most_points_of_element = 16;
+
+/// I d/dt((omega . t) t), t the tangent: what turns the rotor of an element.
+template <class T>
+Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
+  return inertia * Vec3<T>{alpha.x, w.x * w.z, -(w.x * w.y)};
+}
+
+/// Newton's step of a clamped strand of equal elements of three unknowns each, with the
+/// stiff tangent:
+///
+///     delta = -S(w)^-1 r(q, v, a),   S = w.acc M + w.vel C + w.pos K
+///
+/// in three sweeps over the elements that keep all of an element in registers: motion
+/// from the root to the tip, then residual wrenches and articulated inertias back to the
+/// root [Featherstone 1983], then delta to the tip. The equations of ReducedSystem with
+/// gravity and linear drag, and with the loads of other effects on points if a step is
+/// given them, for as many strands as T has lanes. Lanes do not mix: a lane that is not
+/// finite leaves the others as they are, and results are the same bits for any number of
+/// lanes and whether or not others have loads.
+///
+/// A Kind of element says how its unknowns move it (models/head/helix_strand.h,
+/// chain_strand.h). It has
+///
+///     Real                          // T
+///     Kept                          // of an element, between sweeps: v, omega of its
+///                                   // axes, position and rotation of its tip
+///     move(material, q, rate, motion, Kept)   // of its start, replaced by its tip's
+///     last(material, motion, acc)             // the sum that hangs on the last tip
+///     carry(kernel, material, Inertia, q, rate, sum, loads, Kept, Uneliminated)
+///                                   // that of its tip to its axes, with its own
+///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
+///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
+///     leave(Kept, own, l, a)        // its axes, and to its tip
+///     enter(Kept, frame)            // frames: from the tip before to its axes, and to
+///     go_on(Kept, frame)            // its tip
+///     Shape(q, rate, length)        // at(arc), tip(): seen from its start
+///     Points(Kept, q, rate, length) // for models/head/reduced_loads.h
+///     at_rest(strand, i, shape)     // the unknowns of element i in this shape
+///     unit(length)                  // what multiplies unknowns where this is 1 m
+///     moment(length)                // stiffness against an unknown over bending's
+///     first_stiffness               // of the first element, over that of others
+///     rotors_of_root, rotors_of_last          // shares of a rotor that turn with these
+///     straight                      // whether elements are
+///
+/// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, as it stands; results
+/// differ from ReducedSystem's by what a relative change of the state by 1e-12, of chains
+/// by 3e-11, makes (tests/models/head/test_reduced_head.cpp). Cost: O(elements), of
+/// helices O(elements points).
+template <class Kind>
+class ReducedKernel {
+ public:
+  using T = typename Kind::Real;
+  using Vec = Vec3<T>;
+  using Matrix = Matrix3<T>;
+  using Material = ReducedMaterial<T>;
+  using Motion = ReducedMotion<T>;
+  using Sum = ArticulatedSum<T>;
+
+  /// Of an element, between sweeps.
+  struct Scratch {
+    typename Kind::Kept kept;
+    Symmetric3<T> pivot;         // H_kk^-1
+    Matrix of_force, of_moment;  // H_k(translation), H_k(rotation)
+    Vec unknown;                 // right side of its unknowns
+    Vec q;                       // where the step is linearised
+  };
+
+  /// `points`: Gauss-Legendre points of an element. `twist` false: the strand bends only,
+  /// the first component of q is held.
+  ReducedKernel(int elements, int points, bool twist)
+      : elements_(elements), points_(points), twist_(twist) {
+    int i = 0;
+    for (const QuadraturePoint& p : gauss_legendre(points, 1)) {
+      at_[static_cast<std::size_t>(i)] = p.at;
+      weight_[static_cast<std::size_t>(i)] = p.weight;
+      ++i;
+    }
+  }
+  int elements() const { return elements_; }
+  int points() const { return points_; }
+  double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
+  double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
+
+  /// One linear solve per step h (SemiImplicitStep) in two parts, between which loads of
+  /// effects are found: motion at q + h v and v in `scratch`; then q and v (elements) are
+  /// updated. The first returns what the second needs.
+  [[gnu::flatten]] Motion move(const Material& m, const Motion& root, double h,
+                               const Vec* q, const Vec* v, Scratch* scratch) const {
+    const T step(h);
+    for (int i = 0; i < elements_; ++i) scratch[i].q = q[i] + step * v[i];
+    Motion at = root;
+    for (int i = 0; i < elements_; ++i) {
+      Kind::move(m, scratch[i].q, v[i], at, scratch[i].kept);
+    }
+    return at;
+  }
+  /// `end`: what move() returned. `loads`: of an element null or its loads; null if there
+  /// are none.
+  [[gnu::flatten]] void semi_implicit_step(const Material& m, const Motion& end,
+                                           const LoadSums<T>* const* loads,
+                                           const Vec* rest, double h, Vec* q, Vec* v,
+                                           Scratch* scratch) const {
+    const T step(h);
+    backward(m, rest, v, {1, h, h * h}, end, loads, scratch);
+    solve(scratch, [&](int i, const Vec& a) {
+      v[i] = v[i] + step * a;
+      q[i] = q[i] + step * v[i];
+    });
+  }
+
+  /// What weighs acceleration in S: of a length, and of a rotor.
+  struct Inertia {
+    T of_length, acc;
+  };
+  /// Of an element with all that hangs on it, in its axes.
+  struct Uneliminated {
+    Sum sum;
+    Symmetric3<T> own;           // H_kk
+    Matrix of_force, of_moment;  // H_k(translation), H_k(rotation), rows k
+    Vec unknown;                 // right side of its unknowns
+  };
+
+ private:
+  void backward(const Material& m, const Vec* rest, const Vec* v, Weights w,
+                const Motion& end, const LoadSums<T>* const* loads,
+                Scratch* scratch) const {
+    const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
+    Sum hanging = Kind::last(m, end, inertia.acc);
+    for (int i = elements_ - 1; i >= 0; --i) {
+      Scratch& e = scratch[i];
+      Uneliminated all;
+      Kind::carry(*this, m, inertia, e.q, v[i], hanging,
+                  loads != nullptr ? loads[i] : nullptr, e.kept, all);
+      bend(m, w, i, rest[i], v[i], e, all);
+      hanging = eliminate(all, e);
+      Kind::pass(m, inertia.acc, e.kept, hanging);
+    }
+  }
+
+  static void bend(const Material& m, Weights w, int i, const Vec& rest, const Vec& v,
+                   const Scratch& e, Uneliminated& all) {
+    Vec stiffness = m.stiffness;
+    T friction = m.friction;
+    if constexpr (Kind::first_stiffness != 1) {
+      const T times(i == 0 ? Kind::first_stiffness : 1);
+      stiffness = times * stiffness;
+      friction = times * friction;
+    }
+    const T pos(w.pos), damping = T(w.vel) * friction;
+    all.own.xx += pos * stiffness.x + damping;
+    all.own.yy += pos * stiffness.y + damping;
+    all.own.zz += pos * stiffness.z + damping;
+    const Vec strain = e.q - rest;
+    all.unknown = all.unknown - Vec{stiffness.x * strain.x + friction * v.x,
+                                    stiffness.y * strain.y + friction * v.y,
+                                    stiffness.z * strain.z + friction * v.z};
+  }
+
+  Sum eliminate(const Uneliminated& from, Scratch& e) const {
+    e.of_force = from.of_force;
+    e.of_moment = from.of_moment;
+    e.unknown = from.unknown;
+    e.pivot = inverse(from.own);
+    const Matrix z_l = e.pivot * e.of_force, z_a = e.pivot * e.of_moment;
+    Sum all = from.sum;
+    all.force = all.force + z_l.back(e.unknown);
+    all.moment = all.moment + z_a.back(e.unknown);
+    const Matrix by_force = e.of_force.transposed(), by_moment = e.of_moment.transposed();
+    all.ll = all.ll - upper(by_force, z_l.transposed());
+    all.la = all.la - by_force * z_a;
+    all.aa = all.aa - upper(by_moment, z_a.transposed());
+    return all;
+  }
+
+  /// Without twist, of the lower right block.
+  Symmetric3<T> inverse(const Symmetric3<T>& h) const {
+    const T first = h.yy * h.zz - h.yz * h.yz;
+    const T o(0);
+    if (!twist_) {
+      const T by = T(1) / first;
+      return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
+    }
+    const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
+    const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
+    return {first * by,
+            (h.xx * h.zz - h.xz * h.xz) * by,
+            (h.xx * h.yy - h.xy * h.xy) * by,
+            second * by,
+            third * by,
+            (h.xy * h.xz - h.xx * h.yz) * by};
+  }
+
+  /// From the root, which does not move, to the tip.
+  template <class Use>
+  void solve(const Scratch* scratch, Use use) const {
+    Vec l, a;
+    for (int i = 0; i < elements_; ++i) {
+      const Scratch& e = scratch[i];
+      Kind::arrive(e.kept, l, a);
+      const Vec own = e.pivot * (e.unknown - e.of_force * l - e.of_moment * a);
+      use(i, own);
+      Kind::leave(e.kept, own, l, a);
+    }
+  }
+
+  int elements_, points_;
+  bool twist_;
+  std::array<double, most_points_of_element> at_{}, weight_{};
+};
+
+}  // namespace tress::models
