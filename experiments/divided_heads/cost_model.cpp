@@ -30,17 +30,18 @@ double CostModel::kernel_cost(double strands) const {
   return from.cost + part * (above->cost - from.cost);
 }
 
-double CostModel::own_cost(double strands, double ranks) const {
-  return (ranks > 1 ? busy : 1) * strands / ranks * elements *
-         (kernel_cost(strands / ranks) + contacts * (1 - edge / std::sqrt(strands)));
+double CostModel::own_cost(double strands, double ranks, double beside) const {
+  const double own = strands / ranks, near = own * std::min(ranks, cores) * beside;
+  return (ranks > 1 ? busy : 1) * own * elements *
+         (kernel_cost(near) + contacts * (1 - edge / std::sqrt(strands)));
 }
 
 double CostModel::ghosts(double strands, double ranks) const {
   return std::min(border(ranks) * depth * std::sqrt(strands), strands * (1 - 1 / ranks));
 }
 
-double CostModel::cost(double strands, double ranks) const {
-  return own_cost(strands, ranks) + ghosts(strands, ranks) * elements * ghost +
+double CostModel::cost(double strands, double ranks, double beside) const {
+  return own_cost(strands, ranks, beside) + ghosts(strands, ranks) * elements * ghost +
          latency * std::log2(ranks);
 }
 
@@ -91,6 +92,7 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
     std::vector<Measurement> alone;
     std::ranges::copy_if(all, std::back_inserter(alone), of(1, 1));
     if (alone.empty()) return {};
+    model.cores = alone.front().cores;
     const auto of_element = [](const Measurement& m) {
       return m.cost / (m.strands * elements);
     };
@@ -111,7 +113,7 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
       if (offset > 0) model.edge = -slope / offset;
     }
     const auto busy = mean(all, of(1, 2), [&](const Measurement& m) {
-      return m.cost / model.own_cost(m.strands, 1);
+      return m.cost / model.own_cost(m.strands, 1, m.beside);
     });
     if (!busy) return {};
     model.busy = std::max(*busy, 1.0);
@@ -140,7 +142,7 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
 
 double predicted(const CostModels& models, const Measurement& of) {
   const CostModel& model = of.touch ? models.touching : models.apart;
-  return model.cost(of.strands, of.ranks) * (of.beside > 1 ? model.busy : 1) *
+  return model.cost(of.strands, of.ranks, of.beside) * (of.beside > 1 ? model.busy : 1) *
          std::max(1.0, of.ranks / of.cores);
 }
 

@@ -19,12 +19,13 @@ double border(double ranks);
 /// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
 /// ranks (processes of one thread),
 ///
-///     T(n, R) = s (n/R) e (k(n/R) + c (1 - a/sqrt(n))) + G e b + l log2 R,
+///     T(n, R) = s (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
-/// where e is the number of elements; k what one costs by itself, which depends on
-/// whether the memory of a rank's hairs is near; c what it costs by its hair's contacts,
-/// of which hairs near the edge of the scalp have fewer, a/sqrt(n) of all; s how much
-/// longer that takes while other cores of the machine are busy, for R > 1.
+/// where e is the number of elements; k what one costs by itself, which depends on how
+/// many hairs there are on the machine, for its cores share what memory is near; c what
+/// it costs by its hair's contacts, of which hairs near the edge of the scalp have fewer,
+/// a/sqrt(n) of all; s how much longer that takes while other cores of the machine are
+/// busy, for R > 1.
 /// Ghosts lie within a depth w of a region's border: with hairs' roots a distance d apart
 /// on average,
 ///
@@ -33,12 +34,13 @@ double border(double ranks);
 /// b is what an element of one costs, to be sent, received, held and listed; l the
 /// latency of what all ranks agree on in a step.
 struct CostModel {
-  /// Of a rank with that many hairs, ascending: straight in their logarithm between
+  /// Of a machine with that many hairs, ascending: straight in their logarithm between
   /// these, level beyond.
   struct Kernel {
     double strands, cost;  // cost: s
   };
   std::vector<Kernel> kernel;
+  double cores = 1;     // of a machine, with a rank on each
   double contacts = 0;  // s
   double edge = 0;      // a
   double busy = 1;
@@ -47,9 +49,10 @@ struct CostModel {
   double latency = 0;
 
   double kernel_cost(double strands) const;
-  double own_cost(double strands, double ranks) const;
+  /// `beside`: such heads on the machine.
+  double own_cost(double strands, double ranks, double beside = 1) const;
   double ghosts(double strands, double ranks) const;
-  double cost(double strands, double ranks) const;
+  double cost(double strands, double ranks, double beside = 1) const;
   /// Of a rank's time, what its own hairs take.
   double efficiency(double strands, double ranks) const {
     return own_cost(strands, ranks) / cost(strands, ranks);

@@ -78,6 +78,7 @@ TEST(DividedBorder, CountsTheGhostsOfADividedScalp) {
 
 CostModel touching() {
   return {.kernel = {{1000, 5e-8}, {4000, 6e-8}},
+          .cores = 2,
           .contacts = 2e-6,
           .edge = 12,
           .busy = 1.2,
@@ -128,12 +129,14 @@ std::vector<Measurement> measured_by(const CostModel& model, bool touch) {
   std::vector<Measurement> all;
   for (const double strands : {1000.0, 4000.0}) {
     const auto add = [&](double ranks, double beside) {
-      all.push_back({.touch = touch,
-                     .strands = strands,
-                     .ranks = ranks,
-                     .beside = beside,
-                     .cost = model.cost(strands, ranks) * (beside > 1 ? model.busy : 1),
-                     .ghosts = model.ghosts(strands, ranks)});
+      all.push_back(
+          {.touch = touch,
+           .strands = strands,
+           .ranks = ranks,
+           .beside = beside,
+           .cores = model.cores,
+           .cost = model.cost(strands, ranks, beside) * (beside > 1 ? model.busy : 1),
+           .ghosts = model.ghosts(strands, ranks)});
     };
     add(1, 1);
     add(1, 2);
