@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -59,8 +60,8 @@ constexpr bool has_mpi = false;
 #endif
 
 constexpr int measured_strands[] = {1000, 2000, 4000, 8000};
-constexpr int most_strands_of_quick = 4000;
-/// What is measured, in turns, of a number of hairs.
+constexpr std::size_t strands_of_quick = 3;
+/// How a head is measured.
 struct Setting {
   int ranks, beside;
 };
@@ -83,7 +84,8 @@ struct Failed {
 
 /// As a user would: simulate by mpirun, more ranks than cores if need be. The outcomes of
 /// the heads that run at the same time.
-std::vector<nlohmann::json> run(const Folder& folder, const Setting& setting) {
+std::vector<nlohmann::json> run(const Folder& folder, const std::string& head,
+                                const Setting& setting) {
   const std::filesystem::path simulate =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "simulate";
   const auto out = [&](int i) { return folder.path / std::to_string(i); };
@@ -94,7 +96,7 @@ std::vector<nlohmann::json> run(const Folder& folder, const Setting& setting) {
     commands += fmt::format(
         "mpirun --oversubscribe --bind-to none -n {} '{}' '{}' --as head --frames none "
         "--progress none --out '{}' >'{}' 2>&1 & pids=\"$pids $!\"; ",
-        setting.ranks, simulate.string(), (folder.path / "head.toml").string(),
+        setting.ranks, simulate.string(), (folder.path / (head + ".toml")).string(),
         out(i).string(), out(i).string() + ".log");
   }
   commands += "code=0; for pid in $pids; do wait $pid || code=1; done; exit $code";
@@ -105,7 +107,7 @@ std::vector<nlohmann::json> run(const Folder& folder, const Setting& setting) {
   std::vector<nlohmann::json> outcomes;
   for (int i = 0; i < setting.beside; ++i) {
     outcomes.push_back(
-        nlohmann::json::parse(read_file((out(i) / "head.meta.json").string()))
+        nlohmann::json::parse(read_file((out(i) / (head + ".meta.json")).string()))
             .at("outcome"));
   }
   return outcomes;
@@ -131,24 +133,34 @@ void fill(Row& row, const nlohmann::json& outcome) {
   }
 }
 
-/// Settings take turns, so that what else the machine does meets all of them alike.
-std::vector<Row> measure(const Row& head, int repeat) {
+/// Heads of all these numbers of hairs and all settings take turns, so that what else the
+/// machine does, and how fast it is at the time, meets all of them alike.
+std::vector<Row> measure(const Row& of_all, std::span<const int> strands, int repeat) {
+  struct Measured {
+    std::string head;
+    Setting setting;
+    std::vector<nlohmann::json> runs;
+  };
   const Folder folder;
-  replace_file((folder.path / "head.toml").string(),
-               scene(head.text("effects") == "interaction",
-                     static_cast<int>(head.number("strands"))));
   std::vector<Row> rows;
-  for (const Setting& setting : settings_of_head) {
-    rows.push_back(head);
-    rows.back().set("ranks", setting.ranks).set("beside", setting.beside);
+  std::vector<Measured> all;
+  for (const int count : strands) {
+    const std::string head = fmt::format("head_{}", count);
+    replace_file((folder.path / (head + ".toml")).string(),
+                 scene(of_all.text("effects") == "interaction", count));
+    for (const Setting& setting : settings_of_head) {
+      all.push_back({head, setting, {}});
+      rows.push_back(of_all);
+      rows.back().set("strands", count).set("ranks", setting.ranks);
+      rows.back().set("beside", setting.beside);
+    }
   }
-  std::vector<std::vector<nlohmann::json>> runs(rows.size());
   try {
     for (int i = 0; i < repeat; ++i) {
-      for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (Measured& one : all) {
         // The slowest of those that run at the same time.
-        runs[k].push_back(
-            std::ranges::max(run(folder, settings_of_head[k]), {}, step_of));
+        one.runs.push_back(
+            std::ranges::max(run(folder, one.head, one.setting), {}, step_of));
       }
     }
   } catch (const Failed& failed) {
@@ -156,8 +168,9 @@ std::vector<Row> measure(const Row& head, int repeat) {
     return rows;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto middle = runs[k].begin() + static_cast<std::ptrdiff_t>(repeat / 2);
-    std::ranges::nth_element(runs[k], middle, {}, step_of);
+    auto& runs = all[k].runs;
+    const auto middle = runs.begin() + static_cast<std::ptrdiff_t>(repeat / 2);
+    std::ranges::nth_element(runs, middle, {}, step_of);
     fill(rows[k], *middle);
   }
   return rows;
@@ -170,26 +183,26 @@ std::vector<Case> cases(const CommandLine& line) {
                      "install the packages of cmake/mpi_packages.txt and build again");
   }
   std::vector<Case> all;
-  const auto row_of = [](const char* kind, const char* effects, long strands) {
+  const auto row_of = [](const char* kind, const char* effects) {
     Row row;
-    row.set("kind", kind).set("effects", effects).set("strands", strands);
+    row.set("kind", kind).set("effects", effects);
     return row;
   };
+  const std::span<const int> strands =
+      line.quick ? std::span(measured_strands).first(strands_of_quick) : measured_strands;
   for (const char* effects : {"drag", "interaction"}) {
-    for (const int strands : measured_strands) {
-      if (line.quick && strands > most_strands_of_quick) continue;
-      all.push_back({row_of("measured", effects, strands),
-                     {},
-                     [repeat = line.repeat](const Row& row, const Deadline&) {
-                       return measure(row, repeat);
-                     }});
-    }
+    all.push_back({row_of("measured", effects),
+                   {},
+                   [strands, repeat = line.repeat](const Row& row, const Deadline&) {
+                     return measure(row, strands, repeat);
+                   }});
   }
   for (const char* effects : {"drag", "interaction"}) {
-    for (const long strands : {10'000L, 100'000L, 1'000'000L, 10'000'000L}) {
+    for (const long count : {10'000L, 100'000L, 1'000'000L, 10'000'000L}) {
       for (int ranks = 1; ranks <= 4096; ranks *= 4) {
-        all.push_back({row_of("predicted", effects, strands).set("ranks", ranks),
-                       [](Row&, const Deadline&) {}});
+        all.push_back(
+            {row_of("predicted", effects).set("strands", count).set("ranks", ranks),
+             [](Row&, const Deadline&) {}});
       }
     }
   }
