@@ -32,7 +32,7 @@ double CostModel::kernel_cost(double strands) const {
 
 double CostModel::own_cost(double strands, double ranks, double beside) const {
   const double own = strands / ranks, near = own * std::min(ranks, cores) * beside;
-  return (ranks > 1 ? busy : 1) * own * elements *
+  return own * elements *
          (kernel_cost(near) + contacts * (1 - edge / std::sqrt(strands)));
 }
 
@@ -112,11 +112,6 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
       model.contacts = offset;
       if (offset > 0) model.edge = -slope / offset;
     }
-    const auto busy = mean(all, of(1, 2), [&](const Measurement& m) {
-      return m.cost / model.own_cost(m.strands, 1, m.beside);
-    });
-    if (!busy) return {};
-    model.busy = std::max(*busy, 1.0);
     const auto left = [&](const Measurement& m) {
       return m.cost - model.own_cost(m.strands, m.ranks);
     };
@@ -142,8 +137,7 @@ std::optional<CostModels> fit_cost(std::span<const Measurement> all) {
 
 double predicted(const CostModels& models, const Measurement& of) {
   const CostModel& model = of.touch ? models.touching : models.apart;
-  return model.cost(of.strands, of.ranks, of.beside) * (of.beside > 1 ? model.busy : 1) *
-         std::max(1.0, of.ranks / of.cores);
+  return model.cost(of.strands, of.ranks, of.beside) * std::max(1.0, of.ranks / of.cores);
 }
 
 }  // namespace tress::experiments::divided_heads

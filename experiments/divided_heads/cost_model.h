@@ -19,13 +19,12 @@ double border(double ranks);
 /// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
 /// ranks (processes of one thread),
 ///
-///     T(n, R) = s (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
+///     T(n, R) = (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
 /// where e is the number of elements; k what one costs by itself, which depends on how
 /// many hairs there are on the machine, for its cores share what memory is near; c what
 /// it costs by its hair's contacts, of which hairs near the edge of the scalp have fewer,
-/// a/sqrt(n) of all; s how much longer that takes while other cores of the machine are
-/// busy, for R > 1.
+/// a/sqrt(n) of all.
 /// Ghosts lie within a depth w of a region's border: with hairs' roots a distance d apart
 /// on average,
 ///
@@ -43,9 +42,8 @@ struct CostModel {
   double cores = 1;     // of a machine, with a rank on each
   double contacts = 0;  // s
   double edge = 0;      // a
-  double busy = 1;
-  double depth = 0;  // w/d
-  double ghost = 0;  // s
+  double depth = 0;     // w/d
+  double ghost = 0;     // s
   double latency = 0;
 
   double kernel_cost(double strands) const;
@@ -71,9 +69,9 @@ struct Measurement {
 
 /// The model of hairs that do not touch and of those that do, each of its numbers the
 /// mean of what single measurements say, but for contacts and edge, which are a line
-/// through those of one rank alone; kernel of those whose hairs do not touch; busy of one
-/// rank beside another; latency of two ranks whose hairs do not touch; depth and ghost of
-/// two whose hairs do. Empty if measurements for one of these are missing.
+/// through those of one rank alone; kernel of those whose hairs do not touch; latency of
+/// two ranks whose hairs do not touch; depth and ghost of two whose hairs do. Empty if
+/// measurements for one of these are missing.
 struct CostModels {
   CostModel apart, touching;
 };
