@@ -209,16 +209,16 @@ std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pac
 /// above.
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
 
-/// A head of discrete elastic rods (models/head/der_strand.h), `elements` edges each:
-/// semi_implicit_euler with the stiff tangent, or backward_euler. Coordinates are, per
-/// edge, the vector along it (m, world axes) and the angle of its frame; the rate of the
-/// first edge is the velocity of its end. Without rotary_inertia angles have no inertia;
-/// `points` is not read. Throws InputError as above.
+/// A head of discrete elastic rods (models/head/maximal/der_strand.h), `elements` edges
+/// each: semi_implicit_euler with the stiff tangent, or backward_euler. Coordinates are,
+/// per edge, the vector along it (m, world axes) and the angle of its frame; the rate of
+/// the first edge is the velocity of its end. Without rotary_inertia angles have no
+/// inertia; `points` is not read. Throws InputError as above.
 std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack);
 
-/// A head of point masses and springs (models/head/spring_strand.h), `elements` edges
-/// each: mass_spring with angular bending, without torsion, by semi_implicit_euler with
-/// the filtered tangent; of effects beyond gravity and linear drag it has bodies.
+/// A head of point masses and springs (models/head/maximal/spring_strand.h), `elements`
+/// edges each: mass_spring with angular bending, without torsion, by semi_implicit_euler
+/// with the filtered tangent; of effects beyond gravity and linear drag it has bodies.
 /// Coordinates are the vectors along the edges (m, world axes); the rate of the first is
 /// the velocity of its end. `points`, `twist` and `rotary_inertia` are not read. Numbers
 /// have 64 bits: 32 do not resolve strains of some 1e-6. Throws InputError as above.

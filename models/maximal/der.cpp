@@ -21,7 +21,7 @@ namespace {
 /// strains are those between the chords of the natural shape. Mass is lumped at the
 /// nodes, rho (I1 + I2) l at the angles. A joint's twist counts its whole turns, from
 /// within half a turn of its rest on (wound(), joint_strain.h); that of a head's strand
-/// (models/head/der_strand.h) stays between -pi and pi.
+/// (models/head/maximal/der_strand.h) stays between -pi and pi.
 ///
 /// Frames are functions of q relative to reference frames, which are fixed until an edge
 /// has turned by more than 60 degrees from its reference; accept() then takes the current

@@ -1,7 +1,7 @@
 // The kernel of discrete rods against the System of one strand: each step of Newton's.
 #include <gtest/gtest.h>
 
-#include "models/head/der_strand.h"
+#include "models/head/maximal/der_strand.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
 #include "tests/models/head/der_strands.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "models/head/der_strand.h"
-#include "models/head/edge_model.h"
+#include "models/head/maximal/der_strand.h"
+#include "models/head/maximal/edge_model.h"
 #include "models/head/stepping_head.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"

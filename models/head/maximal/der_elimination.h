@@ -1,7 +1,7 @@
 #pragma once
 
 #include "contract/system.h"
-#include "models/head/der_joint.h"
+#include "models/head/maximal/der_joint.h"
 
 namespace tress::models {
 

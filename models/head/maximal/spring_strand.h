@@ -4,9 +4,9 @@
 #include "math/frame.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
-#include "models/head/der_algebra.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
+#include "models/head/maximal/der_algebra.h"
 #include "models/head/point_loads.h"
 #include "models/maximal/spring_strain.h"
 

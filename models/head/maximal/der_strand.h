@@ -6,9 +6,9 @@
 #include "math/frame.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
-#include "models/head/der_elimination.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
+#include "models/head/maximal/der_elimination.h"
 
 namespace tress::models {
 

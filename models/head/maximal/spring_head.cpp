@@ -1,9 +1,9 @@
 #include <cmath>
 #include <vector>
 
-#include "models/head/edge_model.h"
-#include "models/head/node_loads.h"
-#include "models/head/spring_strand.h"
+#include "models/head/maximal/edge_model.h"
+#include "models/head/maximal/node_loads.h"
+#include "models/head/maximal/spring_strand.h"
 #include "models/head/stepping_head.h"
 #include "models/maximal/nodal_strand.h"
 

@@ -5,9 +5,9 @@
 
 #include "math/instructions.h"
 #include "models/head/head_units.h"
+#include "models/head/maximal/spring_strand.h"
 #include "models/head/near_bodies.h"
 #include "models/head/semidefinite.h"
-#include "models/head/spring_strand.h"
 
 namespace tress::models {
 
