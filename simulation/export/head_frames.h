@@ -33,8 +33,8 @@ struct StoredFrames {
 /// agree on whole datasets only, so that each frame is one. Strands are shuffled and
 /// compressed by a crew, a thousand or two as one chunk; a frame is in the file once
 /// written. Memory: one compressed frame. A killed run leaves the frames before the one
-/// that it was writing, or where it was killed as the file was told of a frame what can
-/// be read after a resumed run only.
+/// that it was writing; where it was killed while HDF5 wrote what the file says about
+/// itself, they can be read once it was resumed.
 class HeadFrames {
  public:
   /// A new file.
