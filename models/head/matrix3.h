@@ -106,4 +106,18 @@ Symmetric3<T> upper(const Matrix3<T>& a) {
   return {a.row[0].x, a.row[1].y, a.row[2].z, a.row[0].y, a.row[0].z, a.row[1].z};
 }
 
+/// By cofactors: of graded definite matrices, too.
+template <class T>
+Symmetric3<T> inverse(const Symmetric3<T>& h) {
+  const T first = h.yy * h.zz - h.yz * h.yz;
+  const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
+  const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
+  return {first * by,
+          (h.xx * h.zz - h.xz * h.xz) * by,
+          (h.xx * h.yy - h.xy * h.xy) * by,
+          second * by,
+          third * by,
+          (h.xy * h.xz - h.xx * h.yz) * by};
+}
+
 }  // namespace tress::models

@@ -226,20 +226,9 @@ class ReducedKernel {
 
   /// Without twist, of the lower right block.
   Symmetric3<T> inverse(const Symmetric3<T>& h) const {
-    const T first = h.yy * h.zz - h.yz * h.yz;
-    const T o(0);
-    if (!twist_) {
-      const T by = T(1) / first;
-      return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
-    }
-    const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
-    const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
-    return {first * by,
-            (h.xx * h.zz - h.xz * h.xz) * by,
-            (h.xx * h.yy - h.xy * h.xy) * by,
-            second * by,
-            third * by,
-            (h.xy * h.xz - h.xx * h.yz) * by};
+    if (twist_) return models::inverse(h);
+    const T o(0), by = T(1) / (h.yy * h.zz - h.yz * h.yz);
+    return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
   }
 
   /// From the root, which does not move, to the tip.

@@ -35,20 +35,6 @@ Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) 
   return all;
 }
 
-/// By cofactors: of graded definite matrices, too.
-template <class T>
-Symmetric3<T> inverse(const Symmetric3<T>& h) {
-  const T first = h.yy * h.zz - h.yz * h.yz;
-  const T second = h.xz * h.yz - h.xy * h.zz, third = h.xy * h.yz - h.xz * h.yy;
-  const T by = T(1) / (h.xx * first + h.xy * second + h.xz * third);
-  return {first * by,
-          (h.xx * h.zz - h.xz * h.xz) * by,
-          (h.xx * h.yy - h.xy * h.xy) * by,
-          second * by,
-          third * by,
-          (h.xy * h.xz - h.xx * h.yz) * by};
-}
-
 template <class T>
 Matrix3<T> inverse(const Matrix3<T>& h) {
   const Vec3<T> c0 = cross(h.row[1], h.row[2]), c1 = cross(h.row[2], h.row[0]),
