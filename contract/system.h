@@ -101,6 +101,27 @@ class ConstraintForm {
 
 class ComplianceForm;  // contract/compliance_form.h
 
+/// Stresses of stiff strains s(q) as unknowns of Newton's method beside q, condensed
+/// [Magisano, Leonetti, Garcea 2017, CMAME 313, 986, "mixed integration points"]. The
+/// tangent of r = k s ds/dq has a term of second order, stress d^2 s/dq^2, with the
+/// stress k s of the state at which it is evaluated. A correction that turns an edge by x
+/// leaves it longer by x^2/2 of its length, so that a stiff one has a stress there that
+/// the solution does not have: it makes the next correction take back the one before. The
+/// stress that the linear equations themselves have found is free of that.
+class StressForm {
+ public:
+  virtual ~StressForm() = default;
+  enum class Stresses {
+    held,      // those at the origin
+    followed,  // with their change linear in that of q since: what a correction from the
+               // origin found
+  };
+  /// From where the terms of second order of the next linearize() or SparseForm::values()
+  /// have their stresses; all others have those of their own state, as the derivative of
+  /// the residual does.
+  virtual void take_stresses(double t, In q, Stresses stresses) noexcept = 0;
+};
+
 struct Energy {
   double kinetic = 0;    // J
   double potential = 0;  // J
@@ -211,8 +232,8 @@ class ContactForm {
 };
 
 /// One mechanical system. `residual` is pure; `linearize` prepares `solve`; nothing
-/// allocates after the first call of each; only History::accept and ContactForm may
-/// change what it remembers.
+/// allocates after the first call of each; only History::accept, ContactForm and
+/// StressForm may change what it remembers.
 class System {
  public:
   virtual ~System() = default;
@@ -242,6 +263,7 @@ class System {
   virtual ExplicitForm* explicit_form() { return nullptr; }
   virtual ConstraintForm* constraint_form() { return nullptr; }
   virtual ComplianceForm* compliance_form() { return nullptr; }
+  virtual StressForm* stress_form() { return nullptr; }
   virtual Energetics* energetics() { return nullptr; }
   virtual MaterialPoints* material_points() { return nullptr; }
   virtual History* history() { return nullptr; }

@@ -31,6 +31,7 @@ class Bdf2 final : public FixedStep {
       v_bar_[i] = c0 * v_[i] - c1 * v_previous_[i];
       q_bar_[i] = c0 * q_[i] - c1 * q_previous_[i] + bh * v_bar_[i];
     }
+    stage_.leave(t, q_);
     const Status s = stage_.solve(t + h, q_bar_, v_bar_, {1, bh, bh * bh}, a_, lambda_);
     q_previous_ = q_;
     v_previous_ = v_;

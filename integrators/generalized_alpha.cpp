@@ -58,6 +58,7 @@ class GeneralizedAlpha final : public FixedStep {
       v_bar_[i] = v_[i] + h * ((1 - k_.gamma) * a_[i] + k_.gamma * a_known_[i]);
     }
     const Weights w{1, h * k_.gamma * ratio, h * h * k_.beta * ratio};
+    stage_.leave(t, q_);
     const Status s = stage_.solve(t + h, q_bar_, v_bar_, w, u_, lambda_);
     for (std::size_t i = 0; i < q_.size(); ++i) a_[i] = a_known_[i] + ratio * u_[i];
     take(stage_.q(), stage_.v());

@@ -17,6 +17,7 @@ class ImplicitMidpoint final : public FixedStep {
  private:
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h / 2, v_);
+    stage_.leave(t, q_);
     const Status s =
         stage_.solve(t + h / 2, q_bar_, v_, {1, h / 2, h * h / 4}, a_, lambda_);
     add(q_, h, stage_.v());

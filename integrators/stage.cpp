@@ -29,15 +29,19 @@ constexpr int whole_attempts = 2, plain_attempts = 3;
 Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
     : dynamics_(dynamics),
       contacts_(dynamics.system().contact_form()),
+      stresses_(dynamics.system().stress_form()),
       contact_tolerance_(options.contact_tolerance),
       contact_iterations_(options.contact_iterations),
       tolerance_(options.newton_tolerance),
       remaining_(ending.remaining * tolerance_),
+      turned_(ending.turned),
       rounding_(
           std::max(tolerance_, std::min(stagnation * tolerance_, largest_rounding))),
       iterations_(options.newton_iterations),
       refresh_(options.refresh),
-      q_(static_cast<std::size_t>(dynamics.n())),
+      q_left_(static_cast<std::size_t>(dynamics.n())),
+      q_corrected_(q_left_),
+      q_(q_left_),
       v_(q_.size()),
       r_(q_.size()),
       c_(static_cast<std::size_t>(dynamics.m())),
@@ -89,11 +93,27 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
   if (s != Status::ok) return s;
   ++dynamics_.stats.newton_iterations;
   if (updates_) updates_->improve(r_);
+  std::ranges::copy(q_, q_corrected_.begin());
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= r_[i];
   for (std::size_t k = 0; k < lambda.size(); ++k) lambda[k] -= c_[k];
   place(q_bar, v_bar, w, a);
   correction = size_of(r_, w);
   return std::isfinite(correction) ? Status::ok : Status::retry;
+}
+
+void Stage::leave(double t, In q) noexcept {
+  t_left_ = t;
+  left_ = true;
+  std::ranges::copy(q, q_left_.begin());
+}
+
+void Stage::take_stresses(double t, bool first) noexcept {
+  if (stresses_ == nullptr || (first && !left_)) return;
+  if (first) {
+    stresses_->take_stresses(t_left_, q_left_, StressForm::Stresses::held);
+  } else {
+    stresses_->take_stresses(t, q_corrected_, StressForm::Stresses::followed);
+  }
 }
 
 Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
@@ -165,7 +185,7 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
     s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
   }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
-  if (effort == Effort::plain) return s;
+  if (effort == Effort::plain && s != Status::ok) return s;
   // From the guess, from zero acceleration, from standstill.
   for (int start = 0; s == Status::retry && start < 3; ++start) {
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -179,6 +199,7 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
     std::ranges::copy(lambda_guess_, lambda.begin());
     s = lengthened(t, q_bar, v_bar, w, drift, a, lambda);
   }
+  if (s == Status::ok && left_) leave(t, q_);
   return s;
 }
 
@@ -202,6 +223,7 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
   bool linearize = !usable || !(refresh == Refresh::when_slow || shared);
   for (int i = 0; i < iterations_; ++i) {
     double correction = 0;
+    if (linearize) take_stresses(t, i == 0);
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
@@ -220,7 +242,8 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <
                                                  most_to_come * std::log(rate));
-    linearize = refresh == Refresh::every_iteration || slow;
+    linearize = refresh == Refresh::every_iteration || slow ||
+                ((i == 0 || linearize) && correction > turned_);
     if (slow) shares_ = false;
     previous = correction;
   }
@@ -230,6 +253,7 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
 Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                           InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
+  take_stresses(t, true);
   const Status s = dynamics_.linearize(t, q_, v_, a_matrix, lambda, w);
   if (s != Status::ok) return s;
   double correction = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,10 @@ namespace tress::integrators {
 /// [Filippov 1988]: the state on the jump at which a mean of the forces of both sides
 /// solves the equations. There a mean of Newton's corrections from both sides vanishes.
 ///
+/// Systems with a StressForm have the stresses of their matrices from the last solution
+/// (leave()), then from Newton's corrections: an edge that turns within an iteration is
+/// not stretched by that.
+///
 /// Options: newton_tolerance bounds the last correction of q and v over System::scale,
 /// newton_iterations, refresh. The iteration also ends where the error that its rate lets
 /// expect is below Ending::remaining times newton_tolerance, and where corrections of the
@@ -44,6 +49,9 @@ class Stage {
     /// [Hairer, Wanner 1996, Solving ODEs II, IV.8], so that it may be the last. For
     /// smooth equations without multipliers.
     bool learns = false;
+    /// A correction of this size (System::scale), if it is the first one or has a new
+    /// matrix, leaves the matrix out of date, whatever its rate.
+    double turned = std::numeric_limits<double>::infinity();
   };
   Stage(Dynamics& dynamics, const Options& options) : Stage(dynamics, options, {}) {}
   Stage(Dynamics& dynamics, const Options& options, Ending ending);
@@ -61,8 +69,14 @@ class Stage {
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
 
+  /// The state from which the next solution goes on, to be told of every step: its
+  /// stresses are near those of the solution, where those of a guess need not be.
+  void leave(double t, In q) noexcept;
+
   /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
-  /// with the matrix at acceleration a_matrix.
+  /// with the matrix at acceleration a_matrix. Its stresses are those of the state that
+  /// was left: at der's guess for a long step, q + h v, edges are stretched so much that
+  /// the matrix is that of another strand.
   Status single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                      InOut lambda) noexcept;
 
@@ -90,6 +104,7 @@ class Stage {
   /// The rate to expect after a first correction with a matrix that was used before; 0:
   /// unknown.
   double expected_rate(double correction) const noexcept;
+  void take_stresses(double t, bool first) noexcept;
   Status newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh, Matrix matrix,
                 InOut a, InOut lambda) noexcept;
   /// Newton's step from q_, v_, the state that belongs to `a`, and its size.
@@ -128,9 +143,10 @@ class Stage {
 
   Dynamics& dynamics_;
   ContactForm* contacts_;  // null: none
+  StressForm* stresses_;   // null: none
   double contact_tolerance_;
   int contact_iterations_;
-  double tolerance_, remaining_;
+  double tolerance_, remaining_, turned_;
   double rounding_;  // corrections below it may be rounding errors
   int iterations_;
   Refresh refresh_;
@@ -141,6 +157,9 @@ class Stage {
   double contraction_ = 0, contracted_ = 1;
   bool shares_ = true;  // the last matrix of this step served all stages so far
   long matrix_ = -1;    // its Dynamics::matrix(); other callers may have factored since
+  double t_left_ = 0;
+  bool left_ = false;                         // at t_left_ and q_left_
+  std::vector<double> q_left_, q_corrected_;  // q_ before the last correction
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps

@@ -37,6 +37,7 @@ CoupledStrands::CoupledStrands(std::vector<std::unique_ptr<System>> strands,
     strand_values_.emplace_back(static_cast<std::size_t>(tangents.back()->nonzeros()));
     points.push_back(strand(k).material_points()->count());
     if (strand(k).contact_form() != nullptr) held_contacts_.push_back(k);
+    if (strand(k).stress_form() != nullptr) stressed_.push_back(k);
   }
   solver_ = std::make_unique<CoupledSolver>(std::move(tangents), means_);
   x_.resize(3 * means_.size());
@@ -149,6 +150,12 @@ Status CoupledStrands::solve(In b, Out x) noexcept {
   }
   std::ranges::copy(b, x.begin());
   return solver_->solve(x);
+}
+
+void CoupledStrands::take_stresses(double t, In q, Stresses stresses) noexcept {
+  for (const std::size_t k : stressed_) {
+    strand(k).stress_form()->take_stresses(t, part(q, k), stresses);
+  }
 }
 
 void CoupledStrands::begin(double t, double tau, In q0, In v0) noexcept {

@@ -25,7 +25,10 @@ namespace tress::models {
 /// there is no SparseForm, whose pattern would be fixed. Contacts of points that move
 /// more than an eighth of the law's reach within one step may be missed in that step.
 /// Before a start from a state other than the initial one, accept() it.
-class CoupledStrands final : public StrandBlock, private History, private ContactForm {
+class CoupledStrands final : public StrandBlock,
+                             private History,
+                             private ContactForm,
+                             private StressForm {
  public:
   /// Throws InputError, naming the strand, unless each has a sparse tangent, no
   /// constraints (their multipliers need a fixed pattern) and material points that are
@@ -40,6 +43,7 @@ class CoupledStrands final : public StrandBlock, private History, private Contac
   Status solve(In b, Out x) noexcept override;
   History* history() override { return this; }
   ContactForm* contact_form() override { return held_contacts_.empty() ? nullptr : this; }
+  StressForm* stress_form() override { return stressed_.empty() ? nullptr : this; }
 
   const StrandContacts& contacts() const { return *contacts_; }
   /// The part of energy() that belongs to the contacts, J.
@@ -57,6 +61,7 @@ class CoupledStrands final : public StrandBlock, private History, private Contac
   bool rebounds() const override;
   std::vector<double> multipliers() const override;
   void set_multipliers(In values) override;
+  void take_stresses(double t, In q, Stresses stresses) noexcept override;
   Energy energy(double t, In q, In v) override;
   double power(double t, In q, In v) override;
   std::optional<Mean> mean(int point) override;
@@ -68,6 +73,7 @@ class CoupledStrands final : public StrandBlock, private History, private Contac
 
   std::vector<Mean> means_;                 // all points, over all coordinates
   std::vector<std::size_t> held_contacts_;  // strands with a ContactForm
+  std::vector<std::size_t> stressed_;       // strands with a StressForm
   std::unique_ptr<StrandContacts> contacts_;
   std::vector<double> x_, u_;                       // all points
   std::vector<std::vector<double>> strand_values_;  // tangents

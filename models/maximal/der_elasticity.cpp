@@ -48,6 +48,8 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
       friction_(std::ranges::any_of(
           joint_data_,
           [](const RodJoint& j) { return dot(j.friction, j.friction) > 0; })),
+      stiff_(std::ranges::any_of(edge_data_,
+                                 [](const EdgeData& edge) { return edge.stretch > 0; })),
       angles_(3 * (edge_data_.size() + 1)),
       edges_(edge_data_.size()),
       joints_(joint_data_.size()),
@@ -239,14 +241,23 @@ void DerElasticity::add_slope_of_friction(const Placement& p, std::size_t joint,
   }
 }
 
+double DerElasticity::tension(const Placement& p, std::size_t i) const noexcept {
+  const EdgeTurn& turn = edges_[i].turn;
+  const EdgeData& data = edge_data_[i];
+  if (p.origin == nullptr) return data.stretch * (turn.length - data.length);
+  const Vec e = load3(&p.origin->z[3 * i + 3]) - load3(&p.origin->z[3 * i]);
+  const double length = norm(e);
+  return p.origin->stress(data.stretch, length - data.length,
+                          turn.length * dot(turn.t, e) / length - length);
+}
+
 /// Stretching, and the moments of the edge's joints times its second-order rotation.
-void DerElasticity::add_edge_tangent(std::size_t i, double pos,
+void DerElasticity::add_edge_tangent(const Placement& p, std::size_t i, double pos,
                                      Pack (&h)[4]) const noexcept {
   const EdgeTurn& turn = edges_[i].turn;
   const EdgeData& data = edge_data_[i];
-  const double tension = data.stretch * (turn.length - data.length) / turn.length;
   const bool exact = tangent_ == Tangent::exact;
-  const double across = exact ? pos * tension : 0;
+  const double across = exact ? pos * tension(p, i) / turn.length : 0;
   const Vec along = (pos * data.stretch - across) * turn.t;
   const Pack t(turn.t.x, turn.t.y, turn.t.z, 0);
   h[0] += along.x * t + Pack(across, 0, 0, 0);
@@ -264,7 +275,7 @@ void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
   const auto behind = [&](int k) -> Pack& { return joint[4 + k][1]; };
   const auto add_edge = [&](std::size_t edge) {
     Pack h[4] = {behind(0), behind(1), behind(2), behind(3)};
-    add_edge_tangent(edge, pos, h);
+    add_edge_tangent(p, edge, pos, h);
     for (int k = 0; k < 4; ++k) behind(k) = h[k];
   };
   for (int k = 0; k < 4; ++k) behind(k) = Pack(0);

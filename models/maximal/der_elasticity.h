@@ -34,6 +34,7 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
   std::vector<double> memory() const override;
   void recall(In memory) override;
   NaturalStrains* natural_strains() override { return this; }
+  bool takes_stresses() const override { return tangent_ == Tangent::exact && stiff_; }
 
  private:
   std::vector<double> natural() const override {
@@ -82,15 +83,18 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
                      Matrix& s) const noexcept;
   void add_slope_of_friction(const Placement& p, std::size_t joint, double pos,
                              Matrix& s) const noexcept;
-  void add_edge_tangent(std::size_t edge, double pos, Pack (&h)[4]) const noexcept;
+  /// Tension (N) in the tangent's terms of second order.
+  double tension(const Placement& p, std::size_t edge) const noexcept;
+  void add_edge_tangent(const Placement& p, std::size_t edge, double pos,
+                        Pack (&h)[4]) const noexcept;
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<RodJoint> joint_data_;
   std::vector<double> twist_;  // per joint, after the last accepted step: see wound()
   bool walled_;
   Tangent tangent_;
-  bool friction_;
-  std::size_t angles_;  // first angle in z
+  bool friction_, stiff_;  // whether joints have friction, edges stretch
+  std::size_t angles_;     // first angle in z
   std::vector<Edge> edges_;
   std::vector<Joint> joints_;
   std::vector<double> placed_z_, placed_rate_;

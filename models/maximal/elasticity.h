@@ -9,11 +9,27 @@
 
 namespace tress::models {
 
+/// Origin of stresses (StressForm): all coordinates z and the clamp there.
+struct StressOrigin {
+  RootPose root;
+  std::vector<double> z;
+  StressForm::Stresses stresses = StressForm::Stresses::held;
+
+  /// Of a stiffness whose strain is `strain` there, with a gradient whose product with
+  /// the change of z since is `change`.
+  double stress(double stiffness, double strain, double change) const {
+    const bool follow = stresses == StressForm::Stresses::followed;
+    return stiffness * (follow ? strain + change : strain);
+  }
+};
+
 /// State of a strand of redundant coordinates for its internal forces: all coordinates
 /// z = [held; q], those prescribed by the clamp first, their rates, and the clamp.
 struct Placement {
   const RootPose& root;
   In z, rate;
+  /// For tangents: the origin of stresses in terms of second order; null: this state.
+  const StressOrigin* origin = nullptr;
 };
 
 /// The energy and friction of an Elasticity in terms of strains s(z, clamp), for the
@@ -68,6 +84,8 @@ class Elasticity {
   virtual void reset() {}                                    // undoes every rebase()
   virtual std::vector<double> memory() const { return {}; }  // as History::memory()
   virtual void recall(In /*memory*/) {}
+  /// Whether tangents look at Placement::origin.
+  virtual bool takes_stresses() const { return false; }
   /// Null if the energy is not a function of strains.
   virtual StrainForm* strain_form() { return nullptr; }
   /// Null if it has no natural strain for every direction in which the strand bends.

@@ -57,6 +57,7 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
       massive_(groups_of_mass(strand_), static_cast<int>(held())),
       inert_(groups_of_others(strand_), static_cast<int>(held())),
       directions_(places_of_mass(strand_), static_cast<int>(held())),
+      origin_{{}, strand_.z},
       z_(strand_.z),
       rate_(strand_.rate),
       force_(z_.size()) {
@@ -114,6 +115,14 @@ void MaximalSystem::look_at(double t) noexcept {
   if (t == pose_time_) return;
   pose_ = strand_.root.at(t);
   pose_time_ = t;
+}
+
+void MaximalSystem::take_stresses(double t, In q, Stresses stresses) noexcept {
+  origin_.root = t == pose_time_ ? pose_ : strand_.root.at(t);
+  std::ranges::copy(q, origin_.z.begin() + static_cast<std::ptrdiff_t>(held()));
+  if (strand_.clamped) store3(origin_.root.x, origin_.z.data());
+  origin_.stresses = stresses;
+  displaced_ = true;
 }
 
 void MaximalSystem::place(double t, In q) noexcept {
@@ -235,8 +244,11 @@ Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
     of_others.add(i, &inertia);
   }
   if (w.pos != 0 || w.vel != 0) {
-    strand_.elasticity->add_tangent(placement(), w.pos, w.vel, elastic);
+    Placement here = placement();
+    if (displaced_) here.origin = &origin_;
+    strand_.elasticity->add_tangent(here, w.pos, w.vel, elastic);
   }
+  displaced_ = false;
   if (directed() && w.pos != 0) add_directions(t, points(needs_), w.pos, s);
   return all_finite(s) ? Status::ok : Status::retry;
 }

@@ -59,6 +59,7 @@ class MaximalSystem final : public System,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
+                            private StressForm,
                             private Energetics,
                             private MaterialPoints,
                             private History {
@@ -82,6 +83,9 @@ class MaximalSystem final : public System,
   ExplicitForm* explicit_form() override;
   ConstraintForm* constraint_form() override { return strand_.constraints.get(); }
   ComplianceForm* compliance_form() override;
+  StressForm* stress_form() override {
+    return strand_.elasticity->takes_stresses() ? this : nullptr;
+  }
   Energetics* energetics() override { return this; }
   History* history() override { return this; }
   MaterialPoints* material_points() override { return this; }
@@ -108,6 +112,7 @@ class MaximalSystem final : public System,
   Status values(double t, In q, In v, In, Weights w, Out s) noexcept override {
     return assemble(t, q, v, w, s, false);
   }
+  void take_stresses(double t, In q, Stresses stresses) noexcept override;
   Status acceleration(double t, In q, In v, Out a) noexcept override;
   const std::vector<Block>& blocks() const override { return compliant_; }
   void inverse_mass(Out w) const override;
@@ -158,7 +163,9 @@ class MaximalSystem final : public System,
   std::unique_ptr<Kkt> kkt_;                       // made on first use
   RootPose pose_;                                  // at pose_time_
   double pose_time_ = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> z_, rate_, force_;                        // all coordinates
+  StressOrigin origin_;                   // of the last take_stresses()
+  bool displaced_ = false;                // the next tangent has its stresses from there
+  std::vector<double> z_, rate_, force_;  // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // per mass point
   std::vector<double> blocks_;                                  // (9 mass points)
   std::vector<double> values_, scratch_;

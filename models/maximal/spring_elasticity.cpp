@@ -37,6 +37,15 @@ struct Stretched {
     stress = stiffness * (value - rest) + spring.friction * speed;
   }
 
+  /// In the tangent's terms of second order: elastic stress from there, friction from
+  /// here.
+  double stress_from(const Spring<Strain>& spring, const StressOrigin& origin) const {
+    const Stretched from(spring, {origin.root, origin.z, origin.z});
+    double change = 0;
+    for (int k = 0; k < edges; ++k) change += dot(from.slope[k], e[k] - from.e[k]);
+    return origin.stress(stiffness, from.value - rest, change) + spring.friction * speed;
+  }
+
   Strain strain;
   double stiffness, rest;
   Vec e[edges], slope[edges];
@@ -80,8 +89,10 @@ void add_exact(const Spring<Strain>& spring, const Stretched<Strain>& now,
       s.add_outer(i, j, pos * spring.friction, now.slope[i], slope_of_speed[j]);
     }
   }
+  const double stress =
+      p.origin == nullptr ? now.stress : now.stress_from(spring, *p.origin);
   for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) s.m[i][j] += pos * now.stress * h.m[i][j];
+    for (int j = 0; j < size; ++j) s.m[i][j] += pos * stress * h.m[i][j];
   }
 }
 

@@ -48,6 +48,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   StrainForm* strain_form() override { return this; }
+  bool takes_stresses() const override { return tangent_ == SpringTangent::exact; }
 
  private:
   std::vector<ComplianceForm::Block> strain_blocks() const override;

@@ -41,6 +41,7 @@ struct Strained {
       speed[k] = 0;
       for (int i = 0; i < size; ++i) speed[k] += gradient[k][i] * rate[i];
       stress[k] = part.stiffness[k] * value[k] + part.friction[k] * speed[k];
+      second_stress[k] = stress[k];
     }
   }
 
@@ -51,11 +52,25 @@ struct Strained {
     }
   }
 
+  /// The elastic stresses in the tangent's terms of second order come from there, where
+  /// the part is at x0 (see StressForm).
+  void take_stresses(const StressOrigin& origin, const double* x0) {
+    double value0[strains], gradient0[strains][size];
+    part.strain(x0, value0);
+    part.gradient(x0, gradient0);
+    for (int k = 0; k < strains; ++k) {
+      double change = 0;
+      for (int i = 0; i < size; ++i) change += gradient0[k][i] * (x[i] - x0[i]);
+      second_stress[k] += origin.stress(part.stiffness[k], value0[k], change) -
+                          part.stiffness[k] * value[k];
+    }
+  }
+
   /// h = pos df/dx + vel df/d(rate).
   void tangent(double pos, double vel, double (&h)[size][size]) const {
     for (auto& row : h) std::ranges::fill(row, 0.0);
     double weighted[strains];
-    for (int k = 0; k < strains; ++k) weighted[k] = pos * stress[k];
+    for (int k = 0; k < strains; ++k) weighted[k] = pos * second_stress[k];
     part.add_second(x, weighted, h);
     for (int k = 0; k < strains; ++k) {
       double by[size];  // pos d stress_k/dx + vel d stress_k/d(rate)
@@ -78,6 +93,7 @@ struct Strained {
   const Part& part;
   const double *x, *rate;
   double value[strains], gradient[strains][size], speed[strains], stress[strains];
+  double second_stress[strains];  // of the tangent's terms of second order
 
  private:
   void add_slope_of_speed(int k, double factor, double (&by)[size]) const {

@@ -121,14 +121,23 @@ void QuaternionRod<Edge>::add_force(const Placement& p, InOut f) noexcept {
 template <class Edge>
 void QuaternionRod<Edge>::add_tangent(const Placement& p, double pos, double vel,
                                       GroupSum& s) noexcept {
+  const Placement before =
+      p.origin == nullptr ? p : Placement{p.origin->root, p.origin->z, p.rate};
+  const auto joint_tangent = [&](std::size_t j, double(&h)[8][8]) {
+    const auto now = joint(p, j);
+    Strained strained(joints_[j], now.x, now.rate);
+    if (p.origin != nullptr) strained.take_stresses(*p.origin, joint(before, j).x);
+    strained.tangent(pos, vel, h);
+  };
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     double h[7][7], m[10][10];
     const auto now = edge(p, i);
-    Strained(edges_[i], now.x, now.rate).tangent(pos, vel, h);
+    Strained strained(edges_[i], now.x, now.rate);
+    if (p.origin != nullptr) strained.take_stresses(*p.origin, edge(before, i).x);
+    strained.tangent(pos, vel, h);
     if (walled_ && i == 0) {
       double of_joint[8][8];
-      const auto wall = joint(p, 0);
-      Strained(joints_[0], wall.x, wall.rate).tangent(pos, vel, of_joint);
+      joint_tangent(0, of_joint);
       for (int k = 0; k < 4; ++k) {
         for (int l = 0; l < 4; ++l) h[3 + k][3 + l] += of_joint[4 + k][4 + l];
       }
@@ -138,8 +147,7 @@ void QuaternionRod<Edge>::add_tangent(const Placement& p, double pos, double vel
   }
   for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {
     double h[8][8];
-    const auto now = joint(p, j);
-    Strained(joints_[j], now.x, now.rate).tangent(pos, vel, h);
+    joint_tangent(j, h);
     s.add(edges_.size() + behind(j) - 1, &h[0][0]);
   }
 }

@@ -55,6 +55,7 @@ class QuaternionRod final : public Elasticity,
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
   StrainForm* strain_form() override { return this; }
+  bool takes_stresses() const override { return true; }
   NaturalStrains* natural_strains() override { return this; }
 
  private:

@@ -45,6 +45,7 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   std::vector<double> memory() const override;
   void recall(In memory) override;
   NaturalStrains* natural_strains() override { return this; }
+  bool takes_stresses() const override { return stretching_.takes_stresses(); }
 
  private:
   // Of the twist of each span, then of the bending at its points; lengths at rest, of

@@ -9,17 +9,17 @@ namespace {
 using Point = SplineElasticity::Point;
 
 /// The energy as a function of A = a . a, B = b . b and C = a . b, its derivatives:
-/// stretch (sqrt A - l)^2/2 + bend (B/A - C^2/A^2)/2.
+/// stretch (sqrt A - l)^2/2 + bend (B/A - C^2/A^2)/2, of which the first is given by its
+/// tension.
 struct Slopes {
-  Slopes(const Point& point, const Vec& a, const Vec& b) {
+  Slopes(const Point& point, const Vec& a, const Vec& b, double tension) {
     const double square = dot(a, a), along = dot(a, b) / square;
     const double curved = dot(b, b) / square, length = std::sqrt(square);
     const double bend = point.bend / square;
-    A = point.stretch / 2 * (1 - point.length / length) +
-        bend * (along * along - curved / 2);
+    A = tension / (2 * length) + bend * (along * along - curved / 2);
     B = bend / 2;
     C = -bend * along;
-    AA = point.stretch * point.length / (4 * square * length) +
+    AA = (point.stretch - tension / length) / (4 * square) +
          bend / square * (curved - 3 * along * along);
     AB = -bend / (2 * square);
     AC = 2 * bend * along / square;
@@ -27,6 +27,17 @@ struct Slopes {
   }
   double A, B, C, AA, AB, AC, CC;
 };
+
+double tension_at(const Point& point, const Vec& a) {
+  return point.stretch * (norm(a) - point.length);
+}
+
+/// In the tangent's terms of second order.
+double tension_from(const Point& point, const Vec& a, const StressOrigin& origin) {
+  const Vec a0 = of_controls(point.first, &origin.z[3 * point.span]);
+  const double length = norm(a0);
+  return origin.stress(point.stretch, length - point.length, dot(a0, a - a0) / length);
+}
 
 }  // namespace
 
@@ -42,7 +53,7 @@ void SplineElasticity::add_force(const Placement& p, InOut f) noexcept {
   for (const Point& point : points_) {
     const Vec a = of_controls(point.first, &p.z[3 * point.span]);
     const Vec b = of_controls(point.second, &p.z[3 * point.span]);
-    const Slopes d(point, a, b);
+    const Slopes d(point, a, b, tension_at(point, a));
     const Vec by_a = 2 * d.A * a + d.C * b, by_b = 2 * d.B * b + d.C * a;
     for (std::size_t k = 0; k < 4; ++k) {
       double* force = &f[3 * (point.span + k)];
@@ -60,7 +71,10 @@ void SplineElasticity::add_tangent(const Placement& p, double pos, double,
       double a[3], b[3];
       store3(of_controls(point->first, &p.z[3 * span]), a);
       store3(of_controls(point->second, &p.z[3 * span]), b);
-      const Slopes d(*point, load3(a), load3(b));
+      const double tension = p.origin == nullptr
+                                 ? tension_at(*point, load3(a))
+                                 : tension_from(*point, load3(a), *p.origin);
+      const Slopes d(*point, load3(a), load3(b), tension);
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
           const double one = i == j ? pos : 0;

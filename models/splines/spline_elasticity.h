@@ -48,6 +48,7 @@ class SplineElasticity final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement&) noexcept override { return 0; }
   double stretch(const Placement& p) noexcept override;
+  bool takes_stresses() const override { return true; }
 
  private:
   std::size_t spans_;

@@ -334,6 +334,39 @@ TEST_P(SystemContract, SparseFormHoldsTheTangent) {
   }
 }
 
+/// Stresses from an origin at distance x differ from those of the state by k (g . d) x if
+/// held, and by k (d . H d) x^2/2 if followed; at no distance they are the same, and
+/// without an origin again those of the state.
+TEST_P(SystemContract, StressesOfAnOriginDifferByItsDistance) {
+  StressForm* stresses = system_->stress_form();
+  if (stresses == nullptr) GTEST_SKIP() << "no stress form";
+  if (!exact_tangent(GetParam())) GTEST_SKIP() << "not exact by design";
+  SparseForm& form = *system_->sparse_form();
+  States s(*system_);
+  s.shake(0.05);
+  const std::vector<double> direction = s.random(s.q_typ);
+  const auto values = [&] {
+    std::vector<double> of(static_cast<std::size_t>(form.pattern().nonzeros()));
+    EXPECT_EQ(form.values(t0, s.q, s.v, s.a, {0, 0, 1}, of), Status::ok);
+    return of;
+  };
+  const std::vector<double> own = values();
+  const auto change = [&](double distance, StressForm::Stresses which) {
+    stresses->take_stresses(t0, plus(s.q, -distance, direction), which);
+    return largest(plus(values(), -1, own));
+  };
+  constexpr double x = 1e-4;
+  for (const auto& [which, order] :
+       {std::pair{StressForm::Stresses::held, 1}, {StressForm::Stresses::followed, 2}}) {
+    EXPECT_LE(change(0, which), 1e-12 * largest(own));
+    EXPECT_EQ(values(), own);
+    const double far = change(x, which), near = change(x / 2, which);
+    EXPECT_GT(far, 1e-11 * largest(own));
+    // The next term is up to some hundred x times this one.
+    EXPECT_NEAR(std::log2(far / near), order, 0.05);
+  }
+}
+
 TEST_P(SystemContract, ResidualIsPure) {
   States s(*system_);
   s.shake(0.05);

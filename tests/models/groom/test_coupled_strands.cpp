@@ -158,6 +158,42 @@ TEST(CoupledStrands, FollowPairsAndForgetAndRecallThem) {
             residual(fresh, start.q, start.v, start.a));
 }
 
+TEST(CoupledStrands, TakeTheStressesOfEveryStrand) {
+  // Far apart, each strand moves as if it were alone.
+  const auto apart = [] {
+    std::vector<std::unique_ptr<System>> strands;
+    for (const double y : {0.0, 10.0})
+      strands.push_back(make_strand_of("der", {.at = {0, y, 0}}));
+    return strands;
+  };
+  CoupledStrands both(apart(), strong(1));
+  States s(both), origin(both);
+  s.shake(0.02);
+  for (const bool held : {false, true}) {
+    if (held) both.stress_form()->take_stresses(t0, origin.q, StressForm::Stresses::held);
+    std::vector<double> x(s.n), alone(s.n);
+    ASSERT_EQ(both.linearize(t0, s.q, s.v, s.a, {1, 0.1, 0.01}), Status::ok);
+    ASSERT_EQ(both.solve(s.a, x), Status::ok);
+    auto strands = apart();
+    const std::size_t n = s.n / 2;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto part = [&](const std::vector<double>& all) {
+        return In(all).subspan(k * n, n);
+      };
+      System& strand = *strands[k];
+      if (held) {
+        strand.stress_form()->take_stresses(t0, part(origin.q),
+                                            StressForm::Stresses::held);
+      }
+      ASSERT_EQ(strand.linearize(t0, part(s.q), part(s.v), part(s.a), {1, 0.1, 0.01}),
+                Status::ok);
+      ASSERT_EQ(strand.solve(part(s.a), Out(alone).subspan(k * n, n)), Status::ok);
+    }
+    // Two eliminations of one matrix, of condition 1e7.
+    EXPECT_LE(largest(plus(x, -1, alone)), 1e-8 * largest(alone)) << held;
+  }
+}
+
 /// A step that is tried again starts from the contact forces that it began with.
 TEST(CoupledStrands, GiveAndTakeTheContactForcesOfTheirStrands) {
   const NormalContact normal{.stiffness = 10, .offset = 40e-6};

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "integrators/catalogue.h"
+#include "simulation/run/simulation.h"
+#include "tests/support/catalogue_cases.h"
+
+namespace tress::test_stiff_stresses {
+
+using namespace integrators;
+using namespace simulation;
+
+using namespace testing_support;
+
+/// Of a strand without its stresses as unknowns.
+class Bare final : public System {
+ public:
+  explicit Bare(System& original) : original_(original) {}
+  Layout layout() const override { return original_.layout(); }
+  Traits traits() const override { return original_.traits(); }
+  void initial_state(Out q, Out v) const override { original_.initial_state(q, v); }
+  void scale(Out q, Out v) const override { original_.scale(q, v); }
+  Status residual(double t, In q, In v, In a, Out r) noexcept override {
+    return original_.residual(t, q, v, a, r);
+  }
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return original_.linearize(t, q, v, a, w);
+  }
+  Status solve(In b, Out x) noexcept override { return original_.solve(b, x); }
+
+ private:
+  System& original_;
+};
+
+class StiffStresses : public testing::TestWithParam<const char*> {};
+
+/// A thin strand is let go and falls for half a second in steps of 1/60 s. With stresses
+/// of the iterates, whose edges are longer by the square of how far they turned,
+/// corrections take back those before them.
+TEST_P(StiffStresses, DoNotTakeBackCorrections) {
+  const auto system = make_model(GetParam(), {{"elements", "20"},
+                                              {"length_m", "0.3"},
+                                              {"radius_m", "5e-5"},
+                                              {"youngs_modulus_pa", "4e9"},
+                                              {"root_tangent", "x"}});
+  double iterations[2] = {};
+  std::vector<double> ends[2];
+  Options options;
+  options.step = 1.0 / 60;
+  for (const bool stressed : {false, true}) {
+    Bare bare(*system);
+    System& seen = stressed ? *system : bare;
+    States s(seen);
+    system->reset();
+    const auto method = make_integrator("backward_euler", seen, options);
+    ASSERT_EQ(method->start(0, s.q, s.v), Status::ok);
+    ASSERT_EQ(method->advance(0.5), Status::ok) << method->failure();
+    iterations[stressed] = static_cast<double>(method->stats().newton_iterations);
+    ends[stressed].assign(method->q().begin(), method->q().end());
+    for (std::size_t i = 0; i < s.n; ++i) ends[stressed][i] /= s.q_typ[i];
+  }
+  std::printf("%s: %g iterations, %g without the stresses of the corrections\n",
+              GetParam(), iterations[1], iterations[0]);
+  EXPECT_LE(iterations[1], 0.8 * iterations[0]);
+  // Every step ends by the same tolerance, and damps what those before it left.
+  EXPECT_LE(largest(plus(ends[1], -1, ends[0])), 100 * options.newton_tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Maximal, StiffStresses,
+                         testing::Values("der", "mass_spring", "corde", "dynamic_spline"),
+                         [](const auto& test) { return std::string(test.param); });
+
+}  // namespace tress::test_stiff_stresses
