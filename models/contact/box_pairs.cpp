@@ -56,13 +56,19 @@ std::size_t BoxPairs::bucket(const Cell& c) const {
   return static_cast<std::size_t>(h >> 32) & mask_;
 }
 
+BoxPairs::Placed BoxPairs::place(const Box& box) const {
+  if (!finite(box)) return {{}, {}, {0, 0, 0}, {-1, -1, -1}};
+  return {{below(box.least.x), below(box.least.y), below(box.least.z)},
+          {above(box.most.x), above(box.most.y), above(box.most.z)},
+          cell(box.least),
+          cell(box.most)};
+}
+
 template <class F>
-void BoxPairs::each_cell(const Box& box, F act) const {
-  if (!finite(box)) return;
-  const Cell from = cell(box.least), to = cell(box.most);
-  for (int x = from.x; x <= to.x; ++x) {
-    for (int y = from.y; y <= to.y; ++y) {
-      for (int z = from.z; z <= to.z; ++z) act(bucket({x, y, z}));
+void BoxPairs::each_cell(const Placed& box, F act) const {
+  for (int x = box.from.x; x <= box.to.x; ++x) {
+    for (int y = box.from.y; y <= box.to.y; ++y) {
+      for (int z = box.from.z; z <= box.to.z; ++z) act(bucket({x, y, z}));
     }
   }
 }
@@ -76,51 +82,48 @@ void BoxPairs::fill(std::span<const Box> boxes) {
   }
   inverse_cell_ = 1 / std::max({coarse * sum / static_cast<double>(boxes.size()),
                                 most / longest, 1e-100});
+  placed_.clear();
+  for (const Box& box : boxes) placed_.push_back(place(box));
   const std::size_t buckets = std::bit_ceil(std::max(group, boxes.size()));
   mask_ = buckets - 1;
   // Counting sort by bucket; counts stand two places later, so that starts move into
   // place.
   start_.assign(buckets + 2, 0);
-  for (const Box& box : boxes) each_cell(box, [&](std::size_t b) { ++start_[b + 2]; });
+  for (const Placed& box : placed_) {
+    each_cell(box, [&](std::size_t b) { ++start_[b + 2]; });
+  }
   for (std::size_t b = 2; b < start_.size(); ++b) start_[b] += start_[b - 1];
   boxes_.resize(start_.back());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    each_cell(boxes[i],
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    each_cell(placed_[i],
               [&](std::size_t b) { boxes_[start_[b + 1]++] = static_cast<int>(i); });
   }
 }
 
-void BoxPairs::search(std::size_t b, std::span<const Box> boxes, Listed& listed,
-                      const std::function<bool(int, int)>& keep,
-                      std::vector<Pair>& found) const {
-  const std::size_t count = start_[b + 1] - start_[b];
-  if (count < 2) return;
-  listed.box.clear();
-  listed.cell.clear();
-  for (std::size_t d = 0; d < 3; ++d) {
-    listed.least[d].clear();
-    listed.most[d].clear();
-  }
+void BoxPairs::search(std::size_t b, Group& to) const {
+  if (start_[b + 1] - start_[b] < 2) return;
+  to.box.clear();
   for (std::size_t k = start_[b]; k < start_[b + 1]; ++k) {
-    const int i = boxes_[k];
     // Two cells of a box may share a bucket; its entries follow each other.
-    if (!listed.box.empty() && listed.box.back() == i) continue;
-    listed.box.push_back(i);
-    const Box& box = boxes[static_cast<std::size_t>(i)];
-    listed.cell.push_back(cell(box.least));
-    const double least[3] = {box.least.x, box.least.y, box.least.z};
-    const double most[3] = {box.most.x, box.most.y, box.most.z};
-    for (std::size_t d = 0; d < 3; ++d) {
-      listed.least[d].push_back(below(least[d]));
-      listed.most[d].push_back(above(most[d]));
+    if (to.box.empty() || to.box.back() != boxes_[k]) to.box.push_back(boxes_[k]);
+  }
+  const std::size_t n = to.box.size();
+  const auto placed = [&](std::size_t i) -> const Placed& {
+    return placed_[static_cast<std::size_t>(to.box[i])];
+  };
+  for (std::size_t d = 0; d < 3; ++d) {
+    to.least[d].resize(n);
+    to.most[d].resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      to.least[d][i] = placed(i).least[d];
+      to.most[d][i] = placed(i).most[d];
     }
   }
-  const std::size_t n = listed.box.size();
-  listed.overlaps.resize(n);
-  const float *x0 = listed.least[0].data(), *x1 = listed.most[0].data(),
-              *y0 = listed.least[1].data(), *y1 = listed.most[1].data(),
-              *z0 = listed.least[2].data(), *z1 = listed.most[2].data();
-  int* const overlaps = listed.overlaps.data();
+  to.overlaps.resize(n);
+  to.others.resize(n);
+  const float *x0 = to.least[0].data(), *x1 = to.most[0].data(), *y0 = to.least[1].data(),
+              *y1 = to.most[1].data(), *z0 = to.least[2].data(), *z1 = to.most[2].data();
+  int *const overlaps = to.overlaps.data(), *const others = to.others.data();
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const float ax0 = x0[i], ax1 = x1[i], ay0 = y0[i], ay1 = y1[i], az0 = z0[i],
                 az1 = z1[i];
@@ -129,34 +132,35 @@ void BoxPairs::search(std::size_t b, std::span<const Box> boxes, Listed& listed,
                     static_cast<int>(ay0 <= y1[j]) & static_cast<int>(y0[j] <= ay1) &
                     static_cast<int>(az0 <= z1[j]) & static_cast<int>(z0[j] <= az1);
     }
+    // Without a branch, which nobody could foresee.
+    std::size_t met = 0;
     for (std::size_t j = i + 1; j < n; ++j) {
-      if (overlaps[j] == 0) continue;
+      others[met] = static_cast<int>(j);
+      met += static_cast<std::size_t>(overlaps[j]);
+    }
+    for (std::size_t k = 0; k < met; ++k) {
+      const auto j = static_cast<std::size_t>(others[k]);
       // A pair counts in one of its cells: that of the least corner of its common part.
-      const Cell &a = listed.cell[i], &c = listed.cell[j];
+      const Cell &a = placed(i).from, &c = placed(j).from;
       const Cell corner{std::max(a.x, c.x), std::max(a.y, c.y), std::max(a.z, c.z)};
-      if (bucket(corner) != b) continue;
-      if (keep(listed.box[i], listed.box[j])) {
-        found.emplace_back(listed.box[i], listed.box[j]);
-      }
+      if (bucket(corner) == b) to.found.emplace_back(to.box[i], to.box[j]);
     }
   }
 }
 
 const std::vector<BoxPairs::Pair>& BoxPairs::find(
     std::span<const Box> boxes, const Loop& loop,
-    const std::function<bool(int, int)>& keep) {
+    const std::function<void(std::vector<Pair>&)>& sift) {
   fill(boxes);
-  found_.resize((mask_ + 1) / group);
-  loop(found_.size(), [&](std::size_t g) {
-    Listed listed;
-    found_[g].clear();
-    for (std::size_t b = g * group; b < (g + 1) * group; ++b) {
-      search(b, boxes, listed, keep, found_[g]);
-    }
+  groups_.resize((mask_ + 1) / group);
+  loop(groups_.size(), [&](std::size_t g) {
+    groups_[g].found.clear();
+    for (std::size_t b = g * group; b < (g + 1) * group; ++b) search(b, groups_[g]);
+    sift(groups_[g].found);
   });
   pairs_.clear();
-  for (const std::vector<Pair>& some : found_) {
-    pairs_.insert(pairs_.end(), some.begin(), some.end());
+  for (const Group& some : groups_) {
+    pairs_.insert(pairs_.end(), some.found.begin(), some.found.end());
   }
   return pairs_;
 }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
+#include <limits>
 
 #include "models/contact/cone.h"
 
@@ -22,11 +21,8 @@ constexpr int busy_sweeps = 10;
 // Where all are quiet and one violates the laws nevertheless, less is quiet.
 constexpr double quieter = 0.1;
 
-// Parts are not worth a thread with fewer contacts; more parts have more between them.
-constexpr std::size_t least_part = 500, most_parts = 4;
-// Pairs of parts, so that two that follow each other share none.
-constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}, {0, 2},
-                                                                  {1, 3}, {0, 3}, {1, 2}};
+// Fewer contacts are judged before another thread has woken up.
+constexpr std::size_t least_judged = 4000;
 
 // The contacts about the worst one, unless they are more than these, are solved at once
 // after so many sweeps; then after so many more where that solved them, else after twice
@@ -38,6 +34,12 @@ Pack packed(const Vec& x) { return {x.x, x.y, x.z, 0}; }
 Vec first3(const Pack& x) { return {x[0], x[1], x[2]}; }
 
 bool is_zero(const Vec& a) { return a.x == 0 && a.y == 0 && a.z == 0; }
+
+/// Size of a change of a contact's velocity, the normal part as the laws weigh it.
+double weighed(const Vec& u, double friction) {
+  const double normal = u.x / std::clamp(friction, 0.1, 1.0);
+  return std::sqrt(normal * normal + u.y * u.y + u.z * u.z);
+}
 
 }  // namespace
 
@@ -53,14 +55,18 @@ void ContactProblem::Compliance::set(std::span<const Mat3> blocks) {
 }
 
 void ContactProblem::clear() {
-  bodies_.clear();
+  used_ = 0;
   contacts_.clear();
 }
 
 int ContactProblem::add_body(const Compliance& compliance) {
-  bodies_.push_back({&compliance, std::vector<Pack>(compliance.points_, Pack(0)),
-                     std::vector<Vec>(compliance.points_)});
-  return static_cast<int>(bodies_.size()) - 1;
+  if (used_ == bodies_.size()) bodies_.emplace_back();
+  Body& body = bodies_[used_];
+  body.compliance = &compliance;
+  body.change.assign(compliance.points_, Pack(0));
+  body.forces.assign(compliance.points_, Vec());
+  body.pushes = 0;
+  return static_cast<int>(used_++);
 }
 
 Vec ContactProblem::change(std::size_t body, std::size_t point) const {
@@ -81,6 +87,15 @@ Vec ContactProblem::velocity(const Contact& contact) const {
   return contact.free + contact.axes * change(contact);
 }
 
+Vec ContactProblem::velocity(const Solved& solved) {
+  const Contact& contact = *solved.contact;
+  Pack change(0);
+  for (std::size_t i = 0; i < contact.ends.size(); ++i) {
+    change += Pack(contact.ends[i].weight) * *solved.change[i];
+  }
+  return contact.free + contact.axes * first3(change);
+}
+
 void ContactProblem::push(const Solved& solved, const Vec& force) {
   const Pack normal(force.x), first(force.y), second(force.z);
   for (const Solved::Pushed& on : solved.bodies) {
@@ -91,77 +106,6 @@ void ContactProblem::push(const Solved& solved, const Vec& force) {
       change += column[0] * normal + column[1] * first + column[2] * second;
       column += 3;
     }
-  }
-}
-
-/// Parts of neighbours: bodies in the order in which contacts lead from one to the next,
-/// as many for each part as have an equal share of the contacts.
-void ContactProblem::divide() {
-  const std::size_t count =
-      std::clamp<std::size_t>(contacts_.size() / least_part, 1, most_parts);
-  rounds_ = {count};
-  if (count == most_parts) rounds_.insert(rounds_.end(), {2, 2, 2});
-  if (count < most_parts) rounds_.resize(1 + count * (count - 1) / 2, 1);
-  parts_.resize(std::accumulate(rounds_.begin(), rounds_.end(), std::size_t{0}));
-  for (Part& part : parts_) part.contacts.clear();
-  std::size_t part_between[most_parts][most_parts] = {};
-  std::size_t between = count;
-  for (const auto& [a, b] : pairs_of_parts) {
-    if (b < count) part_between[a][b] = part_between[b][a] = between++;
-  }
-  const auto bodies_of = [](const Contact& contact) {
-    return std::pair(static_cast<std::size_t>(contact.ends[0].body),
-                     static_cast<std::size_t>(contact.ends[2].body));
-  };
-  std::vector<std::size_t> part_of(bodies_.size(), 0);
-  if (count > 1) {
-    // Neighbours of body b: neighbours[start[b] ... start[b + 1]).
-    std::vector<std::size_t> start(bodies_.size() + 2, 0);
-    for (const Contact& contact : contacts_) {
-      const auto [a, b] = bodies_of(contact);
-      ++start[a + 2];
-      ++start[b + 2];
-    }
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<std::size_t> neighbours(start.back());
-    for (const Contact& contact : contacts_) {
-      const auto [a, b] = bodies_of(contact);
-      neighbours[start[a + 1]++] = b;
-      neighbours[start[b + 1]++] = a;
-    }
-    std::vector<std::size_t> order;
-    std::vector<char> met(bodies_.size(), 0);
-    std::size_t ends = 0;
-    for (std::size_t root = 0; root < bodies_.size(); ++root) {
-      if (met[root] != 0) continue;
-      met[root] = 1;
-      order.push_back(root);
-      for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
-        const std::size_t body = order[next];
-        part_of[body] = std::min(count - 1, ends * count / neighbours.size());
-        ends += start[body + 1] - start[body];
-        for (std::size_t i = start[body]; i < start[body + 1]; ++i) {
-          if (std::exchange(met[neighbours[i]], 1) == 0) order.push_back(neighbours[i]);
-        }
-      }
-    }
-  }
-  for (Contact& contact : contacts_) {
-    const auto [a, b] = bodies_of(contact);
-    const std::size_t first = part_of[a], second = part_of[b];
-    Solved& solved = parts_[first == second ? first : part_between[first][second]]
-                         .contacts.emplace_back();
-    solved.contact = &contact;
-    solved.bodies[0].body = &bodies_[a];
-    solved.bodies[1].body = a == b ? nullptr : &bodies_[b];
-  }
-}
-
-void ContactProblem::each_part(const Loop& loop, const std::function<void(Part&)>& act) {
-  std::size_t first = 0;
-  for (const std::size_t count : rounds_) {
-    loop(count, [&](std::size_t i) { act(parts_[first + i]); });
-    first += count;
   }
 }
 
@@ -184,23 +128,28 @@ void ContactProblem::combine(Part& part, double proximal) {
       if (on.body == nullptr) break;
       on.columns = to;
       const std::size_t points = on.body->change.size();
-      std::fill_n(to, 3 * points, Pack(0));
+      const Pack* from[4];
+      double weight[4];
+      std::size_t ends = 0;
       for (const End& end : contact.ends) {
         if (&bodies_[static_cast<std::size_t>(end.body)] != on.body || end.weight == 0) {
           continue;
         }
-        const Pack* from = on.body->compliance->columns_.data() +
-                           3 * points * static_cast<std::size_t>(end.point);
-        const Mat3 weighted = end.weight * axes;
-        for (std::size_t k = 0; k < points; ++k, from += 3) {
-          Pack* const sum = to + 3 * k;
-          sum[0] += from[0] * Pack(weighted.r0.x) + from[1] * Pack(weighted.r0.y) +
-                    from[2] * Pack(weighted.r0.z);
-          sum[1] += from[0] * Pack(weighted.r1.x) + from[1] * Pack(weighted.r1.y) +
-                    from[2] * Pack(weighted.r1.z);
-          sum[2] += from[0] * Pack(weighted.r2.x) + from[1] * Pack(weighted.r2.y) +
-                    from[2] * Pack(weighted.r2.z);
+        from[ends] = on.body->compliance->columns_.data() +
+                     3 * points * static_cast<std::size_t>(end.point);
+        weight[ends++] = end.weight;
+      }
+      for (std::size_t k = 0; k < 3 * points; k += 3) {
+        Pack x(0), y(0), z(0);  // by components of the force
+        for (std::size_t end = 0; end < ends; ++end) {
+          const Pack* const column = from[end] + k;
+          x += Pack(weight[end]) * column[0];
+          y += Pack(weight[end]) * column[1];
+          z += Pack(weight[end]) * column[2];
         }
+        to[k] = x * Pack(axes.r0.x) + y * Pack(axes.r0.y) + z * Pack(axes.r0.z);
+        to[k + 1] = x * Pack(axes.r1.x) + y * Pack(axes.r1.y) + z * Pack(axes.r1.z);
+        to[k + 2] = x * Pack(axes.r2.x) + y * Pack(axes.r2.y) + z * Pack(axes.r2.z);
       }
       for (const End& end : contact.ends) {
         if (&bodies_[static_cast<std::size_t>(end.body)] != on.body) continue;
@@ -214,50 +163,88 @@ void ContactProblem::combine(Part& part, double proximal) {
     if (size == 0) contact.force = {};
     const double near = proximal * size / 3;
     solved.near = contact.local + diagonal({near, near, near});
-    if (!is_zero(contact.force)) push(solved, contact.force);
+    solved.wake();
+  }
+  part.visits = part.contacts.size();
+}
+
+void ContactProblem::push_guesses(const Part& part) {
+  for (const Solved& solved : part.contacts) {
+    if (!is_zero(solved.contact->force)) push(solved, solved.contact->force);
   }
 }
 
+/// Whether the velocities of its bodies are those of the visit at which it had settled.
+bool ContactProblem::settled(const Solved& solved) {
+  const auto& [first, second] = solved.bodies;
+  return first.pushes == first.body->pushes &&
+         (second.body == nullptr || second.pushes == second.body->pushes);
+}
+
+void ContactProblem::settle(Solved& solved) {
+  auto& [first, second] = solved.bodies;
+  first.pushes = first.body->pushes;
+  if (second.body != nullptr) second.pushes = second.body->pushes;
+}
+
+/// Whatever it has seen, its next visit is a solution.
+void ContactProblem::Solved::wake() {
+  bodies[0].pushes = -1;
+  left = std::numeric_limits<double>::infinity();
+}
+
 /// By how much a change of its force alone would change its velocity, m/s, as contacts
-/// weigh the normal part; up to `quiet` the force stays.
+/// weigh the normal part; up to `quiet` the force stays. Where that is seen without a
+/// solution, from how the velocity has changed since the last one, it is a bound.
 double ContactProblem::visit(Solved& solved, double quiet) {
   Contact& contact = *solved.contact;
-  auto& [first, second] = solved.bodies;
-  if (first.pushes == first.body->pushes &&
-      (second.body == nullptr || second.pushes == second.body->pushes)) {
-    return 0;
+  const double friction = contact.friction;
+  const Vec u = velocity(solved);
+  const double at_most = solved.left + weighed(u - solved.seen, friction);
+  if (at_most <= quiet) {
+    settle(solved);
+    return at_most;
   }
-  const Vec u = velocity(contact);
-  double change_of_u = 0;
+  solved.seen = u;
+  solved.left = 0;
   if (!(u.x >= 0 && is_zero(contact.force)) && trace(contact.local) != 0) {
     const Vec force = contact_force(solved.near, u - solved.near * contact.force,
-                                    contact.friction, contact.force);
-    const Vec change = force - contact.force;
-    const Vec by_change = solved.near * change;
-    const double normal = by_change.x / std::clamp(contact.friction, 0.1, 1.0);
-    change_of_u = std::hypot(normal, by_change.y, by_change.z);
+                                    friction, contact.force);
+    const Vec change = force - contact.force, by_change = solved.near * change;
+    const double change_of_u = weighed(by_change, friction);
     if (change_of_u > quiet) {
       contact.force = force;
       push(solved, change);
+      const Vec changed = contact.local * change;
+      solved.seen = u + changed;
+      solved.left = weighed(by_change - changed, friction);
+      if (solved.left <= quiet) settle(solved);
       return change_of_u;
     }
+    solved.left = change_of_u;
   }
-  first.pushes = first.body->pushes;
-  if (second.body != nullptr) second.pushes = second.body->pushes;
-  return change_of_u;
+  settle(solved);
+  return solved.left;
 }
 
 void ContactProblem::sweep(Part& part, double quiet) {
   part.busy.clear();
   part.violation = 0;
+  part.visits = 0;
   for (Solved& solved : part.contacts) {
+    if (settled(solved)) continue;
+    ++part.visits;
     const double seen = visit(solved, quiet);
     part.violation = std::max(part.violation, seen);
     if (seen > quiet) part.busy.push_back(&solved);
   }
   for (int i = 0; i < busy_sweeps && part.busy.size() < part.contacts.size() / 2; ++i) {
     double seen = 0;
-    for (Solved* const solved : part.busy) seen = std::max(seen, visit(*solved, quiet));
+    for (Solved* const solved : part.busy) {
+      if (settled(*solved)) continue;
+      ++part.visits;
+      seen = std::max(seen, visit(*solved, quiet));
+    }
     if (seen <= quiet) break;
   }
 }
@@ -269,16 +256,22 @@ double ContactProblem::largest_seen() const {
 }
 
 double ContactProblem::worst(const Loop& loop) {
-  each_part(loop, [this](Part& part) {
+  const auto judge = [this](std::size_t i) {
+    Part& part = parts_[i];
     part.violation = 0;
+    part.worst = nullptr;
     for (const Solved& solved : part.contacts) {
       const Contact& contact = *solved.contact;
       if (trace(contact.local) == 0) continue;
-      part.violation =
-          std::max(part.violation, contact_violation(contact.local, velocity(contact),
-                                                     contact.force, contact.friction));
+      const double violation = contact_violation(contact.local, velocity(solved),
+                                                 contact.force, contact.friction);
+      if (!(violation > part.violation)) continue;
+      part.violation = violation;
+      part.worst = &solved;
     }
-  });
+  };
+  contacts_.size() < least_judged ? one_by_one(parts_.size(), judge)
+                                  : loop(parts_.size(), judge);
   return largest_seen();
 }
 
@@ -298,21 +291,10 @@ Mat3 ContactProblem::response(const Contact& contact, const Solved& to) const {
 }
 
 /// Those contacts with forces that share a body with the one that violates the laws most:
-/// sweeps between a few that bear each other may need hundreds to settle.
+/// sweeps between a few that bear each other may need hundreds to settle. After worst().
 std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() const {
-  const Solved* worst = nullptr;
-  double most = 0;
-  for (const Part& part : parts_) {
-    for (const Solved& solved : part.contacts) {
-      const Contact& contact = *solved.contact;
-      if (trace(contact.local) == 0) continue;
-      const double violation = contact_violation(contact.local, velocity(contact),
-                                                 contact.force, contact.friction);
-      if (!(violation > most)) continue;
-      most = violation;
-      worst = &solved;
-    }
-  }
+  const Solved* const worst =
+      std::ranges::max_element(parts_, {}, &Part::violation)->worst;
   std::vector<const Solved*> all;
   if (worst == nullptr) return all;
   const auto shares = [&](const Body* body) {
@@ -331,7 +313,8 @@ std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() con
 }
 
 /// Whether they obey the laws then.
-bool ContactProblem::solve_jointly(double tolerance) {
+bool ContactProblem::solve_jointly(const Loop& loop, double tolerance) {
+  worst(loop);
   const std::vector<const Solved*> all = about_the_worst();
   if (all.size() > most_joint) return false;
   joint_.resize(all.size());
@@ -358,8 +341,10 @@ bool ContactProblem::solve_jointly(double tolerance) {
 ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
                                               int most_sweeps, const Loop& loop) {
   divide();
-  for (Body& body : bodies_) std::ranges::fill(body.change, Pack(0));
-  each_part(loop, [&](Part& part) { combine(part, proximal); });
+  for (Body& body : std::span(bodies_).first(used_))
+    std::ranges::fill(body.change, Pack(0));
+  loop(parts_.size(), [&](std::size_t i) { combine(parts_[i], proximal); });
+  for (const Part& part : parts_) push_guesses(part);
   double quiet = quiet_part * tolerance;
   Outcome outcome;
   outcome.violation = worst(loop);
@@ -369,7 +354,7 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
     ++outcome.sweeps;
     const double seen = largest_seen();
     if (seen > tolerance && outcome.sweeps >= joint) {
-      wait = solve_jointly(tolerance) ? next_joint : 2 * wait;
+      wait = solve_jointly(loop, tolerance) ? next_joint : 2 * wait;
       joint += wait;
       outcome.violation = worst(loop);
       continue;
@@ -380,10 +365,11 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
     if (outcome.violation <= tolerance || seen > quiet) continue;
     quiet *= quieter;
     for (Part& part : parts_) {
-      for (Solved& solved : part.contacts) solved.bodies[0].pushes = -1;
+      for (Solved& solved : part.contacts) solved.wake();
     }
   }
-  for (Body& body : bodies_) std::ranges::fill(body.forces, Vec());
+  for (Body& body : std::span(bodies_).first(used_))
+    std::ranges::fill(body.forces, Vec());
   for (const Contact& contact : contacts_) {
     const Vec world = contact.force * contact.axes;
     for (const End& end : contact.ends) {

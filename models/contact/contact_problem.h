@@ -28,7 +28,9 @@ namespace tress::models {
 /// by the contacts alone, so that the result does not depend on the threads.
 ///
 /// A visit of a contact costs O(points of its bodies), about 0.1 us at 10 points each. A
-/// contact that has settled is left alone until the velocities of its bodies change.
+/// contact that has settled is left alone until the velocities of its bodies change, and
+/// not solved again until its own has. What contacts violate the laws by at the end is
+/// computed of all of them.
 class ContactProblem {
  public:
   /// A point of a body, and its weight in the contact's velocity.
@@ -81,7 +83,7 @@ class ContactProblem {
   std::span<const Contact> contacts() const { return contacts_; }
   /// With the forces, in the contact's axes, m/s.
   Vec velocity(const Contact& contact) const;
-  std::size_t bodies() const { return bodies_.size(); }
+  std::size_t bodies() const { return used_; }
   /// By how much the forces change the velocities of a body's points, m/s, and the forces
   /// on them, N.
   Vec change(std::size_t body, std::size_t point) const;
@@ -89,7 +91,7 @@ class ContactProblem {
 
  private:
   struct Body {
-    const Compliance* compliance;
+    const Compliance* compliance = nullptr;
     std::vector<Pack> change;  // of its points, m/s
     std::vector<Vec> forces;   // N
     long pushes = 0;           // so often its velocities have changed
@@ -103,34 +105,46 @@ class ContactProblem {
     };
     std::array<Pushed, 2> bodies;  // the second is null if both are one
     Contact* contact;
-    Mat3 near;  // its compliance with the proximal term
+    std::array<const Pack*, 4> change;  // of the velocities of its ends
+    Mat3 near;                          // its compliance with the proximal term
+    Vec seen;     // its velocity at the last visit, with the force found then, m/s
+    double left;  // by how much another solution would have changed that, m/s
+
+    void wake();
   };
   /// Contacts that share no body with those of parts that are visited at once.
   struct Part {
     std::vector<Solved> contacts;
     std::vector<Solved*> busy;
     std::vector<Pack> columns;
-    double violation = 0;  // at the visits of the last sweep
+    double violation = 0;           // at the visits of the last sweep
+    std::size_t visits = 0;         // of it, to contacts that had not settled
+    const Solved* worst = nullptr;  // violates the laws most
   };
 
   static void one_by_one(std::size_t count,
                          const std::function<void(std::size_t)>& work) {
     for (std::size_t i = 0; i < count; ++i) work(i);
   }
+  static bool settled(const Solved& solved);
+  static void settle(Solved& solved);
+  static Vec velocity(const Solved& solved);
   void divide();
   void each_part(const Loop& loop, const std::function<void(Part&)>& act);
   void combine(Part& part, double proximal);
+  static void push_guesses(const Part& part);
   static void push(const Solved& solved, const Vec& force);
   Vec change(const Contact& contact) const;
   double visit(Solved& solved, double quiet);
   void sweep(Part& part, double quiet);
   Mat3 response(const Contact& contact, const Solved& to) const;
   std::vector<const Solved*> about_the_worst() const;
-  bool solve_jointly(double tolerance);
+  bool solve_jointly(const Loop& loop, double tolerance);
   double largest_seen() const;
   double worst(const Loop& loop);
 
-  std::vector<Body> bodies_;
+  std::vector<Body> bodies_;  // the first used_ are in use
+  std::size_t used_ = 0;
   std::vector<Contact> contacts_;
   JointContacts joint_;
   // Those within parts, then those between two parts: pairs that share none in turn.

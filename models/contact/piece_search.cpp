@@ -136,15 +136,22 @@ void PieceSearch::place_pieces() {
   }
 }
 
-/// Whether two pieces whose boxes overlap may touch in the step, with room for forces to
-/// move both.
-bool PieceSearch::may_touch(int first, int second) const {
-  if (strand_of(first) == strand_of(second) && (!own_ || second - first < 2)) {
-    return false;
+/// Takes away pairs that do not touch in the step, wherever forces move both within their
+/// room, and those that are not looked for.
+void PieceSearch::sift(std::vector<BoxPairs::Pair>& pairs) const {
+  std::erase_if(pairs, [this](const BoxPairs::Pair& pair) {
+    return strand_of(pair.first) == strand_of(pair.second) &&
+           (!own_ || pair.second - pair.first < 2);
+  });
+  std::vector<double> least(pairs.size());
+  least_approaches(motion_, pairs, least);
+  const double reach = (1 + stays) * widest_ + 2 * room_;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[kept] = pairs[i];
+    kept += least[i] <= reach ? 1 : 0;
   }
-  return may_come_within((1 + stays) * widest_ + 2 * room_,
-                         motion_[static_cast<std::size_t>(first)],
-                         motion_[static_cast<std::size_t>(second)]);
+  pairs.resize(kept);
 }
 
 /// The box of the step with what may touch it, and room.
@@ -157,7 +164,7 @@ void PieceSearch::gather(const Loop& loop) {
   gathered_ = now_;
   for (std::size_t i = 0; i < roomy_.size(); ++i) make_room(i);
   near_ = broad_.find(roomy_, loop,
-                      [this](int first, int second) { return may_touch(first, second); });
+                      [this](std::vector<BoxPairs::Pair>& pairs) { sift(pairs); });
 }
 
 /// Gathers pairs of those pieces again that forces have moved beyond their room.
@@ -175,37 +182,36 @@ void PieceSearch::gather_moved(const Loop& loop) {
   if (beyond.empty()) return;
   if (beyond.size() > most_one_by_one) return gather(loop);
   for (const std::size_t i : beyond) make_room(i);
+  std::vector<BoxPairs::Pair> again;
   for (const std::size_t i : beyond) {
     const std::size_t at = 3 * point_of(static_cast<int>(i));
     std::copy_n(&now_[at], 6, &gathered_[at]);
     for (std::size_t k = 0; k < roomy_.size(); ++k) {
       if (k == i || apart(roomy_[i], roomy_[k])) continue;
-      const auto first = static_cast<int>(std::min(i, k));
-      const auto second = static_cast<int>(std::max(i, k));
-      if (may_touch(first, second)) near_.emplace_back(first, second);
+      again.emplace_back(static_cast<int>(std::min(i, k)),
+                         static_cast<int>(std::max(i, k)));
     }
   }
+  sift(again);
+  near_.insert(near_.end(), again.begin(), again.end());
 }
 
-bool PieceSearch::look(int first, int second, const std::function<bool(int, int)>& wider,
-                       Found& found) const {
-  const double thick = thickness(first, second);
+/// `least`: how far they are apart at least.
+bool PieceSearch::look(int first, int second, double least,
+                       const std::function<bool(int, int)>& wider, Found& found) const {
+  const double thick = thickness(first, second), far = (1 + stays) * thick;
   // A strand that is still has moved a little since its motion was taken.
-  const auto within = [&](double reach) {
-    return may_come_within(reach + still * widest_,
-                           motion_[static_cast<std::size_t>(first)],
-                           motion_[static_cast<std::size_t>(second)]);
-  };
-  double reach = (1 + stays) * thick;
-  if (!within(reach)) return false;
-  if (!wider(first, second)) {
-    reach = thick;
-    if (!within(reach)) return false;
-  }
+  const double away = least - still * widest_;
+  if (!(away <= far) || (!(away <= thick) && !wider(first, second))) return false;
   const MovingPieces pieces = moving(first, second);
-  const std::optional<PieceTouch> at = touch(pieces, reach);
+  std::optional<PieceTouch> at = touch(pieces, far);
   if (!at) return false;
   found = {first, second, *at};
+  if (gap_now(found) >= 0 && !wider(first, second)) {
+    at = touch(pieces, thick);
+    if (!at) return false;
+    found.at = *at;
+  }
   // An end may slip around another piece within a step: it is held where it came from.
   const double before = std::min(thick, distance(pieces.from));
   if (gap_before(found) + thick < before - other_side * thick) {
@@ -223,11 +229,18 @@ const std::vector<PieceSearch::Found>& PieceSearch::find(
   found_of_.resize((near_.size() + group - 1) / group);
   loop(found_of_.size(), [&](std::size_t g) {
     found_of_[g].clear();
+    std::array<BoxPairs::Pair, group> pairs;
+    std::array<double, group> least;
+    std::size_t count = 0;
     for (std::size_t i = g * group; i < std::min(near_.size(), (g + 1) * group); ++i) {
-      const auto [first, second] = near_[i];
-      if (moved_[strand_of(first)] == 0 && moved_[strand_of(second)] == 0) continue;
+      const auto [first, second] = pairs[count] = near_[i];
+      count += moved_[strand_of(first)] != 0 || moved_[strand_of(second)] != 0 ? 1 : 0;
+    }
+    least_approaches(motion_, std::span(pairs).first(count), least);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [first, second] = pairs[i];
       Found found{};
-      if (look(first, second, wider, found)) found_of_[g].push_back(found);
+      if (look(first, second, least[i], wider, found)) found_of_[g].push_back(found);
     }
   });
   for (std::size_t k = 0; k < moved_.size(); ++k) {

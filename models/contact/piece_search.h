@@ -8,6 +8,7 @@
 
 #include "contract/system.h"
 #include "models/contact/box_pairs.h"
+#include "models/contact/piece_approach.h"
 #include "models/contact/piece_touch.h"
 
 namespace tress::models {
@@ -85,9 +86,9 @@ class PieceSearch {
   void make_room(std::size_t piece);
   void gather(const Loop& loop);
   void gather_moved(const Loop& loop);
-  bool may_touch(int first, int second) const;
-  bool look(int first, int second, const std::function<bool(int, int)>& wider,
-            Found& found) const;
+  void sift(std::vector<BoxPairs::Pair>& pairs) const;
+  bool look(int first, int second, double least,
+            const std::function<bool(int, int)>& wider, Found& found) const;
 
   bool own_;
   double thickness_;

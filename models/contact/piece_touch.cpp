@@ -118,35 +118,6 @@ PieceTouch first_touch(const MovingPieces& p, double reach) {
   return found;
 }
 
-PieceMotion::PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1,
-                         const Vec& to1)
-    : middle(0.25 * (from0 + to0 + from1 + to1)),
-      half(0.25 * (from1 + to1 - from0 - to0)),
-      moved(0.5 * (to0 - from0 + to1 - from1)),
-      length(norm(half)),
-      turned(0.5 * norm(to1 - from1 - (to0 - from0))) {}
-
-bool may_come_within(double reach, const PieceMotion& p, const PieceMotion& q) {
-  const double far = reach + 0.5 * (norm(p.moved - q.moved) + p.turned + q.turned);
-  const Vec between = p.middle - q.middle;
-  // Most are farther apart along the common normal of their lines, or beside one of them,
-  // which takes no division.
-  const Vec normal = cross(p.half, q.half);
-  const double square = dot(normal, normal), along = dot(between, normal);
-  if (along * along > far * far * square) return false;
-  const double sine = std::sqrt(square);
-  for (const PieceMotion* piece : {&p, &q}) {
-    const Vec beside = cross(between, piece->half);
-    const double most = sine + far * piece->length;
-    if (dot(beside, beside) > most * most) return false;
-  }
-  const StraightPiece first(p.middle - p.half, p.middle + p.half),
-      second(q.middle - q.half, q.middle + q.half);
-  const NearestPoints near = nearest(first, second);
-  const Vec gap = first.at(near.of_first) - second.at(near.of_second);
-  return dot(gap, gap) <= far * far;
-}
-
 std::optional<PieceTouch> touch(const MovingPieces& p, double reach) {
   const std::array<double, 4> y{volume(at(p, 0)), volume(at(p, 1.0 / 3)),
                                 volume(at(p, 2.0 / 3)), volume(at(p, 1))};

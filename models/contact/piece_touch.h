@@ -12,19 +12,6 @@ struct MovingPieces {
   std::array<Vec, 4> from, to;  // m
 };
 
-/// What bounds need to know of a piece during a step: its middle and half of its edge at
-/// half of the step, how its middle moves, and how much farther its ends do.
-struct PieceMotion {
-  PieceMotion() = default;
-  PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1, const Vec& to1);
-  Vec middle, half, moved;        // m
-  double length = 0, turned = 0;  // of half, m
-};
-
-/// False: they are never nearer to each other than `reach` (m). A bound, by where they
-/// are at half of the step and how far they move relative to each other.
-bool may_come_within(double reach, const PieceMotion& first, const PieceMotion& second);
-
 /// Where the pieces touch, and the direction from the second to the first one there.
 struct PieceTouch {
   double s, t;  // of the first, of the second piece, in [0, 1]

@@ -117,7 +117,8 @@ void StrandFriction::begin(double t, double h, In from, In to, In u) {
   h_ = h;
   search_.begin(from, to);
   u_.assign(u.begin(), u.end());
-  before_ = std::exchange(known_, {});
+  std::swap(before_, known_);
+  known_.clear();
   for (Touched& strand : strands_) {
     for (const int point : strand.touched) {
       strand.place[static_cast<std::size_t>(point)] = -1;
@@ -365,7 +366,7 @@ void StrandFriction::solve(const Loop& loop) {
     known_[i].force = contacts[i].force;
     known_[i].world = contacts[i].force * contacts[i].axes;
   }
-  loop(touching_.size(), [&](std::size_t i) { take_forces(strands_[touching_[i]]); });
+  for (const std::size_t k : touching_) take_forces(strands_[k]);
   moved_.clear();
   std::ranges::copy_if(touching_, std::back_inserter(moved_),
                        [this](std::size_t k) { return strands_[k].moved; });

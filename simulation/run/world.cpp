@@ -1,6 +1,7 @@
 #include "simulation/run/world.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "integrators/error_indicator.h"
 
@@ -41,7 +42,8 @@ void World::restore(const Snapshot& snapshot) {
     body.gave_up = false;
   }
   failure_.clear();
-  x_.done = u_.done = false;
+  x_.forget();
+  u_.forget();
   if (rubbing_) rubbing_->restart(snapshot.rubs);
   if (mesh_) mesh_->recall(snapshot.mesh);
   exchange();
@@ -163,14 +165,13 @@ Loop World::loop() {
 }
 
 void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
-  if (to.done) return;
+  if (std::ranges::find(to.done, 0) == to.done.end()) return;
   crew_.run(bodies_.size(), [&](std::size_t k) {
     const std::size_t count = 3 * bodies_[k].points;
-    if (count > 0) {
+    if (std::exchange(to.done[k], 1) == 0 && count > 0) {
       read(bodies_[k], Out(to.values).subspan(3 * bodies_[k].first_point, count));
     }
   });
-  to.done = true;
 }
 
 }  // namespace tress::simulation

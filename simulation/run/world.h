@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -178,7 +179,9 @@ class World {
   /// Coordinates of all points at the present state.
   struct Read {
     std::vector<double> values;  // (3 points)
-    bool done = false;
+    std::vector<char> done;      // of each body: that of the present state
+
+    void forget() { std::ranges::fill(done, 0); }
   };
   void look(const std::function<void(Body&, Out)>& read, Read& to);
   void exchange();

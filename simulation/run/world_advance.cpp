@@ -72,7 +72,8 @@ Status World::advance(double t_end) {
     if (rubbing_) rubbing_->before_step(positions());
     crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
     t_ = t;
-    x_.done = u_.done = false;
+    x_.forget();
+    u_.forget();
     for (const Body& body : bodies_) {
       if (body.status == Status::ok) continue;
       failure_ = failure_of(body);
@@ -90,9 +91,9 @@ Status World::rub(double h) {
   const Status done = rubbing_->after_step(t_, h, positions(), velocities(), loop());
   for (const std::size_t k : rubbing_->friction().touching()) {
     bodies_[k].keep(t_, bodies_[k].integrator->q(), bodies_[k].integrator->v());
+    x_.done[k] = u_.done[k] = 0;
   }
   if (done != Status::ok) failure_ = rubbing_->failure();
-  x_.done = u_.done = false;
   return done;
 }
 

@@ -109,7 +109,8 @@ bool World::pass(double begin, double end, const std::function<void(Body&)>& run
     run(body);
   });
   t_ = end;
-  x_.done = u_.done = false;
+  x_.forget();
+  u_.forget();
   return std::ranges::all_of(bodies_,
                              [](const Body& body) { return body.status == Status::ok; });
 }

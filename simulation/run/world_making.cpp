@@ -235,6 +235,8 @@ void World::ready(const Scene& scene) {
   const std::size_t points = bodies_.back().first_point + bodies_.back().points;
   x_.values.resize(3 * points);
   u_.values.resize(3 * points);
+  x_.done.resize(bodies_.size());
+  u_.done.resize(bodies_.size());
   restore(begin);
   if (!mesh_) return;
   mesh_->tie(positions());

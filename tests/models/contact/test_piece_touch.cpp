@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
+#include "models/contact/piece_approach.h"
 #include "models/contact/piece_touch.h"
 #include "tests/models/contact/random_contacts.h"
 
@@ -96,6 +99,46 @@ TEST(PieceTouch, OfPiecesThatPassEachOthersEndsIsNone) {
     (*x)[1].x += 0.8;
   }
   EXPECT_FALSE(touch(p, 0.05).has_value());
+}
+
+/// The bound holds at all times, and is the distance where nothing moves; pieces of no
+/// length and parallel ones are among them, and numbers of pairs that fill no lanes.
+TEST(LeastApproaches, AreNoFartherThanPiecesComeInTheStep) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 400; ++i) {
+    const bool moves = i % 2 == 1;
+    std::vector<std::array<Vec, 4>> ends;  // at the start and at the end of the step
+    std::vector<PieceMotion> motion;
+    for (int k = 0; k < 6; ++k) {
+      const Vec x = random_vec(random);
+      Vec y = random_vec(random);
+      if (k == 1) y = x + 0.7 * (ends[0][1] - ends[0][0]);
+      if (k == 2) y = x;
+      const Vec by = moves ? 0.3 * random_vec(random) : Vec{},
+                other = moves ? 0.3 * random_vec(random) : Vec{};
+      ends.push_back({x, y, x + by, y + other});
+      motion.emplace_back(x, x + by, y, y + other);
+    }
+    std::vector<std::pair<int, int>> pairs;
+    for (int k = 0; k < 1 + i % 7; ++k) pairs.emplace_back(k % 3, 3 + (k + i) % 3);
+    std::vector<double> least(pairs.size());
+    least_approaches(motion, pairs, least);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto& a = ends[static_cast<std::size_t>(pairs[k].first)];
+      const auto& b = ends[static_cast<std::size_t>(pairs[k].second)];
+      for (const double part : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+        const auto at = [part](const Vec& from, const Vec& to) {
+          return (1 - part) * from + part * to;
+        };
+        const double now =
+            distance({at(a[0], a[2]), at(a[1], a[3]), at(b[0], b[2]), at(b[1], b[3])});
+        EXPECT_LE(least[k], now + 1e-12) << i;
+        if (!moves) {
+          EXPECT_NEAR(least[k], now, 1e-12) << i;
+        }
+      }
+    }
+  }
 }
 
 /// Pieces that come nearer than a reach are apart by it along the normal at the start:

@@ -1,0 +1,106 @@
+// How the contacts of a ContactProblem are divided among threads.
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "models/contact/contact_problem.h"
+
+namespace tress::models {
+namespace {
+
+// Parts are not worth a thread with fewer contacts; more parts have more between them.
+constexpr std::size_t least_part = 500, most_parts = 4;
+// A thread that waits takes some 60 us to wake up, in which another makes half as many
+// visits.
+constexpr std::size_t least_visits = 1000;
+// Contacts that have settled cost a visit this part of one.
+constexpr std::size_t settled_per_visit = 32;
+// Pairs of parts, so that two that follow each other share none.
+constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}, {0, 2},
+                                                                  {1, 3}, {0, 3}, {1, 2}};
+
+}  // namespace
+
+/// Parts of neighbours: bodies in the order in which contacts lead from one to the next,
+/// as many for each part as have an equal share of the contacts.
+void ContactProblem::divide() {
+  const std::size_t count =
+      std::clamp<std::size_t>(contacts_.size() / least_part, 1, most_parts);
+  rounds_ = {count};
+  if (count == most_parts) rounds_.insert(rounds_.end(), {2, 2, 2});
+  if (count < most_parts) rounds_.resize(1 + count * (count - 1) / 2, 1);
+  parts_.resize(std::accumulate(rounds_.begin(), rounds_.end(), std::size_t{0}));
+  for (Part& part : parts_) part.contacts.clear();
+  std::size_t part_between[most_parts][most_parts] = {};
+  std::size_t between = count;
+  for (const auto& [a, b] : pairs_of_parts) {
+    if (b < count) part_between[a][b] = part_between[b][a] = between++;
+  }
+  const auto bodies_of = [](const Contact& contact) {
+    return std::pair(static_cast<std::size_t>(contact.ends[0].body),
+                     static_cast<std::size_t>(contact.ends[2].body));
+  };
+  std::vector<std::size_t> part_of(used_, 0);
+  if (count > 1) {
+    // Neighbours of body b: neighbours[start[b] ... start[b + 1]).
+    std::vector<std::size_t> start(used_ + 2, 0);
+    for (const Contact& contact : contacts_) {
+      const auto [a, b] = bodies_of(contact);
+      ++start[a + 2];
+      ++start[b + 2];
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<std::size_t> neighbours(start.back());
+    for (const Contact& contact : contacts_) {
+      const auto [a, b] = bodies_of(contact);
+      neighbours[start[a + 1]++] = b;
+      neighbours[start[b + 1]++] = a;
+    }
+    std::vector<std::size_t> order;
+    std::vector<char> met(used_, 0);
+    std::size_t ends = 0;
+    for (std::size_t root = 0; root < used_; ++root) {
+      if (met[root] != 0) continue;
+      met[root] = 1;
+      order.push_back(root);
+      for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
+        const std::size_t body = order[next];
+        part_of[body] = std::min(count - 1, ends * count / neighbours.size());
+        ends += start[body + 1] - start[body];
+        for (std::size_t i = start[body]; i < start[body + 1]; ++i) {
+          if (std::exchange(met[neighbours[i]], 1) == 0) order.push_back(neighbours[i]);
+        }
+      }
+    }
+  }
+  for (Contact& contact : contacts_) {
+    const auto [a, b] = bodies_of(contact);
+    const std::size_t first = part_of[a], second = part_of[b];
+    Solved& solved = parts_[first == second ? first : part_between[first][second]]
+                         .contacts.emplace_back();
+    solved.contact = &contact;
+    solved.bodies[0].body = &bodies_[a];
+    solved.bodies[1].body = a == b ? nullptr : &bodies_[b];
+    for (std::size_t i = 0; i < contact.ends.size(); ++i) {
+      const End& end = contact.ends[i];
+      solved.change[i] = &bodies_[static_cast<std::size_t>(end.body)]
+                              .change[static_cast<std::size_t>(end.point)];
+    }
+  }
+}
+
+/// `act` may change velocities of the bodies of a part.
+void ContactProblem::each_part(const Loop& loop, const std::function<void(Part&)>& act) {
+  std::size_t first = 0;
+  for (const std::size_t count : rounds_) {
+    std::size_t visits = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      visits += parts_[i].visits + parts_[i].contacts.size() / settled_per_visit;
+    }
+    const auto of_part = [&](std::size_t i) { act(parts_[first + i]); };
+    visits < least_visits ? one_by_one(count, of_part) : loop(count, of_part);
+    first += count;
+  }
+}
+
+}  // namespace tress::models
