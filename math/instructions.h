@@ -2,6 +2,14 @@
 
 namespace tress {
 
+/// Of a kernel into which all is inlined that it calls. Not where every access is checked
+/// by a sanitizer: with the checks inlined, too, a kernel takes the compiler minutes.
+#ifdef __SANITIZE_ADDRESS__
+#define TRESS_FLATTEN
+#else
+#define TRESS_FLATTEN [[gnu::flatten]]
+#endif
+
 /// Sets of vector instructions. A program is compiled for the first, which it needs to
 /// run at all; kernels run by another one where the machine has it.
 enum class Instructions { base, avx512 };

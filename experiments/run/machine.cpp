@@ -1,5 +1,6 @@
 #include "experiments/run/machine.h"
 
+#include <H5public.h>
 #include <fmt/format.h>
 #include <gsl/gsl_version.h>
 #include <klu.h>
@@ -17,7 +18,6 @@
 #include <nlohmann/json.hpp>
 
 #include "math/instructions.h"
-#include "simulation/export/hdf5_file.h"
 
 namespace tress::experiments {
 namespace {
@@ -110,7 +110,7 @@ Versions library_versions() {
       {"gsl", gsl_version},
       {"fmt", dotted(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"cli11", CLI11_VERSION},
-      {"hdf5", simulation::hdf5_version()},
+      {"hdf5", dotted(H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE)},
       {"tomlplusplus", dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
       {"nlohmann_json", dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
                                NLOHMANN_JSON_VERSION_PATCH)}};

@@ -4,6 +4,7 @@
 
 #include "contract/system.h"
 #include "math/gauss_legendre.h"
+#include "math/instructions.h"
 #include "models/head/point_loads.h"
 
 namespace tress::models {
@@ -136,8 +137,8 @@ class ReducedKernel {
   /// One linear solve per step h (SemiImplicitStep) in two parts, between which loads of
   /// effects are found: motion at q + h v and v in `scratch`; then q and v (elements) are
   /// updated. The first returns what the second needs.
-  [[gnu::flatten]] Motion move(const Material& m, const Motion& root, double h,
-                               const Vec* q, const Vec* v, Scratch* scratch) const {
+  TRESS_FLATTEN Motion move(const Material& m, const Motion& root, double h, const Vec* q,
+                            const Vec* v, Scratch* scratch) const {
     const T step(h);
     for (int i = 0; i < elements_; ++i) scratch[i].q = q[i] + step * v[i];
     Motion at = root;
@@ -148,10 +149,10 @@ class ReducedKernel {
   }
   /// `end`: what move() returned. `loads`: of an element null or its loads; null if there
   /// are none.
-  [[gnu::flatten]] void semi_implicit_step(const Material& m, const Motion& end,
-                                           const LoadSums<T>* const* loads,
-                                           const Vec* rest, double h, Vec* q, Vec* v,
-                                           Scratch* scratch) const {
+  TRESS_FLATTEN void semi_implicit_step(const Material& m, const Motion& end,
+                                        const LoadSums<T>* const* loads, const Vec* rest,
+                                        double h, Vec* q, Vec* v,
+                                        Scratch* scratch) const {
     const T step(h);
     backward(m, rest, v, {1, h, h * h}, end, loads, scratch);
     solve(scratch, [&](int i, const Vec& a) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "math/instructions.h"
 #include "models/head/chain_strand.h"
 #include "models/head/helix_strand.h"
 #include "models/head/semidefinite.h"
@@ -30,7 +31,7 @@ auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element*
 // Flat: functions of its own that another source has, too, compiled with fused products,
 // could be taken from there.
 template <class Kind>
-[[gnu::flatten]] void ReducedLoads<Kind>::place(const Element* elements) {
+TRESS_FLATTEN void ReducedLoads<Kind>::place(const Element* elements) {
   Start at{block_.from, block_.frame, {}};
   const T length(units_.length);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -45,8 +46,8 @@ template <class Kind>
 
 /// Whether some of its points have a load, which is in sums_ then.
 template <class Kind>
-[[gnu::flatten]] bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
-                                                  const Element& e, bool others) {
+TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
+                                               const Element& e, bool others) {
   const OnElement points(e.kept, e.q, rate, block_.material->length);
   bool ready = false;
   const auto prepare = [&] {
@@ -103,8 +104,8 @@ bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
 ///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
 ///     phi.
 template <class Kind>
-[[gnu::flatten]] void ReducedLoads<Kind>::look_for(const NearBody& body,
-                                                   std::span<char> near) const {
+TRESS_FLATTEN void ReducedLoads<Kind>::look_for(const NearBody& body,
+                                                std::span<char> near) const {
   const T length = T(units_.length) * block_.material->length;
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
@@ -147,8 +148,8 @@ void ReducedLoads<Kind>::touch(const NearBody& body, const Shape& shape, std::si
 
 /// Effects other than bodies, strand by strand.
 template <class Kind>
-[[gnu::flatten]] void ReducedLoads<Kind>::take_others(const Vec3T* v,
-                                                      const Element* elements) {
+TRESS_FLATTEN void ReducedLoads<Kind>::take_others(const Vec3T* v,
+                                                   const Element* elements) {
   const std::size_t all = n_ * points_;
   others_.assign(all, {});
   some_.assign(all, T(0));

@@ -1,5 +1,6 @@
 #include "models/head/reduced_places.h"
 
+#include "math/instructions.h"
 #include "math/lanes.h"
 #include "models/head/chain_strand.h"
 #include "models/head/helix_strand.h"
@@ -8,8 +9,8 @@ namespace tress::models {
 
 // Flat as functions of ReducedLoads.
 template <class Kind>
-[[gnu::flatten]] void ReducedPlaces<Kind>::write(std::size_t strands, std::span<double> x,
-                                                 std::span<double> v) const {
+TRESS_FLATTEN void ReducedPlaces<Kind>::write(std::size_t strands, std::span<double> x,
+                                              std::span<double> v) const {
   const FrameOf<T> axes{pose.frame.e0, pose.frame.e1, pose.frame.e2};
   FrameOf<T> at_frame = axes * frame;
   Vec3<T> at = axes * from, velocity = root.v, omega = root.omega;

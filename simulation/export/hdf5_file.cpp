@@ -266,13 +266,6 @@ void Hdf5File::sync() {
   }
 }
 
-std::string hdf5_version() {
-  start();
-  unsigned major = 0, minor = 0, release = 0;
-  if (H5get_libversion(&major, &minor, &release) < 0) return {};
-  return fmt::format("{}.{}.{}", major, minor, release);
-}
-
 void shuffle(std::span<const char> from, std::size_t number_size, std::span<char> to) {
   const std::size_t count = from.size() / number_size;
   for (std::size_t byte = 0; byte < number_size; ++byte) {

@@ -92,8 +92,6 @@ class Hdf5File {
   mutable Hdf5Handle handle_;  // kept open after a failure, as closing it is a flush
 };
 
-std::string hdf5_version();
-
 /// The bytes of HDF5's shuffle filter: the first bytes of all numbers, then the second.
 void shuffle(std::span<const char> from, std::size_t number_size, std::span<char> to);
 

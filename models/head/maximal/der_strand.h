@@ -4,6 +4,7 @@
 
 #include "contract/system.h"
 #include "math/frame.h"
+#include "math/instructions.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
@@ -76,10 +77,10 @@ class DerStrand {
   /// correction = S^-1 r at (q, v, a). Returns its size per lane: the largest of
   /// displacements over edges, angles, speeds over rate times edges, angular speeds over
   /// rate; NaN unless all are finite. `placed` and `factors` (edges) then serve again().
-  [[gnu::flatten]] T newton(const DerMaterial<T>& m, const DerEdge<T>* edges,
-                            const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
-                            const T* a, T* correction, Placed* placed,
-                            Factor* factors) const {
+  TRESS_FLATTEN T newton(const DerMaterial<T>& m, const DerEdge<T>* edges,
+                         const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
+                         const T* a, T* correction, Placed* placed,
+                         Factor* factors) const {
     place<true>(m, edges, clamp, w, q, v, a, placed);
     Elimination::run(n_, m, w, placed, factors);
     return substitute(m, w, placed, factors, correction);
@@ -87,10 +88,10 @@ class DerStrand {
 
   /// The same by the matrix of the last newton() at another state. `now` (edges):
   /// scratch.
-  [[gnu::flatten]] T again(const DerMaterial<T>& m, const DerEdge<T>* edges,
-                           const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
-                           const T* a, T* correction, const Placed* placed,
-                           Factor* factors, Placed* now) const {
+  TRESS_FLATTEN T again(const DerMaterial<T>& m, const DerEdge<T>* edges,
+                        const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
+                        const T* a, T* correction, const Placed* placed, Factor* factors,
+                        Placed* now) const {
     place<false>(m, edges, clamp, w, q, v, a, now);
     Vec f_x{}, f_omega{}, from_behind{};
     for (int i = n_ - 1; i >= 0; --i) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "math/instructions.h"
 #include "models/head/head.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
@@ -55,16 +56,16 @@ class EdgeModel {
   }
 
   template <class Strand>
-  [[gnu::flatten]] Clamp clamp(const Strand& strand, const RootPose& pose) const {
+  TRESS_FLATTEN Clamp clamp(const Strand& strand, const RootPose& pose) const {
     const V from = frame_of(pose.frame) * strand.root.from, omega(pose.omega);
     return {frame_of(pose.frame) * strand.root.frame, V(pose.v) + cross(omega, from),
             omega};
   }
   /// The first edge starts at the root, wherever that has gone.
   template <class Strand>
-  [[gnu::flatten]] void predict(const Strand& strand, const RootPose& from,
-                                const RootPose& to, double h, const Real* q,
-                                const Real* v, Real* q_bar) const {
+  TRESS_FLATTEN void predict(const Strand& strand, const RootPose& from,
+                             const RootPose& to, double h, const Real* q, const Real* v,
+                             Real* q_bar) const {
     for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
     const Frame turned{to.frame.e0 - from.frame.e0, to.frame.e1 - from.frame.e1,
                        to.frame.e2 - from.frame.e2};
@@ -72,7 +73,7 @@ class EdgeModel {
     store3(load3(q_bar) - moved, q_bar);
   }
   template <class Use>
-  [[gnu::flatten]] void velocities(const Clamp& clamp, const Real* v, Use use) const {
+  TRESS_FLATTEN void velocities(const Clamp& clamp, const Real* v, Use use) const {
     use(0, clamp.v);
     V at{};  // the first rate is that of a place, not of an edge
     for (std::size_t i = 0; i < n_; ++i) {
@@ -81,8 +82,8 @@ class EdgeModel {
     }
   }
   template <class Strand, class Use>
-  [[gnu::flatten]] void positions(const Strand& strand, const Frame& head, const Real* q,
-                                  Use use) const {
+  TRESS_FLATTEN void positions(const Strand& strand, const Frame& head, const Real* q,
+                               Use use) const {
     V at = root_at(strand, head);
     use(0, at);
     for (std::size_t i = 0; i < n_; ++i) {

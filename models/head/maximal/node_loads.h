@@ -23,10 +23,10 @@ class NodeLoads {
   /// Of the ends of edges, or null; from the motion at the step's end, whose length is h
   /// (s). `root`: from the head's position, in its units as `length` of an edge, its
   /// `drag` on the velocity, q and v.
-  [[gnu::flatten]] const NodeLoad<T>* find(std::span<const NearBody> bodies,
-                                           const HeadUnits& units, double h, Vec3T root,
-                                           const T& length, const T& drag, const T* q,
-                                           const T* v) {
+  TRESS_FLATTEN const NodeLoad<T>* find(std::span<const NearBody> bodies,
+                                        const HeadUnits& units, double h, Vec3T root,
+                                        const T& length, const T& drag, const T* q,
+                                        const T* v) {
     if (bodies.empty()) return nullptr;
     Vec3T rate{};
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -59,8 +59,8 @@ class NodeLoads {
   T part(std::size_t i) const { return T(i + 1 < x_.size() ? 1 : 0.5); }
 
   template <class Shape>
-  [[gnu::flatten]] void touch(const NearBody& body, const Shape& shape,
-                              const HeadUnits& units, double h, const T& length) {
+  TRESS_FLATTEN void touch(const NearBody& body, const Shape& shape,
+                           const HeadUnits& units, double h, const T& length) {
     const T o(0), one(1);
     const BodyTouch<T, Shape> of_body(body, shape,
                                       {{one, o, o}, {o, one, o}, {o, o, one}}, h);

@@ -2,6 +2,7 @@
 
 #include "contract/system.h"
 #include "math/frame.h"
+#include "math/instructions.h"
 #include "math/lane_math.h"
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
@@ -91,20 +92,20 @@ class SpringStrand {
 
   /// correction = S^-1 r at (q, v, a), with the loads of effects on the ends of edges, or
   /// null. Returns 0, NaN in lanes where it is not finite.
-  [[gnu::flatten]] T newton(const SpringMaterial<T>& m, const SpringEdge<T>* edges,
-                            const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
-                            const T* a, const NodeLoad<T>* loads, T* correction,
-                            Placed* placed, Factor* factors) const {
+  TRESS_FLATTEN T newton(const SpringMaterial<T>& m, const SpringEdge<T>* edges,
+                         const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
+                         const T* a, const NodeLoad<T>* loads, T* correction,
+                         Placed* placed, Factor* factors) const {
     place(m, edges, clamp, w, q, v, a, loads, placed);
     eliminate(m, w, loads, placed, factors);
     return substitute(placed, factors, correction);
   }
 
   /// At (q, v); `at`: of the root, seen from the head's position.
-  [[gnu::flatten]] LaneEnergies<T> energies(const SpringMaterial<T>& m,
-                                            const SpringEdge<T>* edges,
-                                            const LaneClamp<T>& clamp, Vec at, const T* q,
-                                            const T* v) const {
+  TRESS_FLATTEN LaneEnergies<T> energies(const SpringMaterial<T>& m,
+                                         const SpringEdge<T>* edges,
+                                         const LaneClamp<T>& clamp, Vec at, const T* q,
+                                         const T* v) const {
     const auto moves = [&](const T& mass, const Vec& u) {
       return T(0.5) * mass * dot(u, u);
     };
