@@ -195,15 +195,14 @@ int quadrature_points(double angle) {
 // average out of mass integrals as much, keep some 1e-8; motion may wind an element by
 // more.
 int clothoid_points(double angle) {
-  const int points = angle <= 1    ? 8
-                     : angle <= 4  ? 12
-                     : angle <= 8  ? 16
-                     : angle <= 12 ? 20
-                                   : 4 * static_cast<int>(std::ceil((angle + 8) / 4));
   refuse_if(!(angle <= most_clothoid_winding),
             "an element of linear curvature winds by more than 24 rad",
             "natural or initial shape", "use more elements, or less curvature and twist");
-  return points;
+  return angle <= 1    ? 8
+         : angle <= 4  ? 12
+         : angle <= 8  ? 16
+         : angle <= 12 ? 20
+                       : 4 * static_cast<int>(std::ceil((angle + 8) / 4));
 }
 
 ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
