@@ -55,11 +55,11 @@ class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h / 2, v_);
     const Weights w{1, h / 2, h * h / 4};
-    stage_.leave(t, q_);
     Status s = Status::ok;
     if (h_before_ == 0) {
       std::ranges::copy(a_, a_last_.begin());
       std::ranges::copy(lambda_, lambda_last_.begin());
+      stage_.leave(t, q_);
       s = stage_.solve(t + h / 2, q_bar_, v_, w, a_, lambda_);
     } else {
       const double ahead = (h + h_last_) / (h_last_ + h_before_);

@@ -25,7 +25,6 @@ class SemiImplicitStep {
   /// From (q, v) at time t to q(), v() at t + h.
   Status take(double t, double h, In q, In v, InOut lambda) noexcept {
     shifted(q_bar_, q, h, v);
-    stage_.leave(t, q);
     std::swap(a_, a_last_);
     std::ranges::fill(a_, 0.0);
     return stage_.single_step(t + h, q_bar_, v, {1, h, h * h}, a_last_, a_, lambda);

@@ -253,7 +253,6 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
 Status Stage::single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                           InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
-  take_stresses(t, true);
   const Status s = dynamics_.linearize(t, q_, v_, a_matrix, lambda, w);
   if (s != Status::ok) return s;
   double correction = 0;

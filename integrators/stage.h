@@ -74,9 +74,7 @@ class Stage {
   void leave(double t, In q) noexcept;
 
   /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
-  /// with the matrix at acceleration a_matrix. Its stresses are those of the state that
-  /// was left: at der's guess for a long step, q + h v, edges are stretched so much that
-  /// the matrix is that of another strand.
+  /// with the matrix at acceleration a_matrix.
   Status single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                      InOut lambda) noexcept;
 

@@ -10,6 +10,13 @@ template <class Strain>
 constexpr bool at_wall = requires(Strain s, Frame f) {
   s.place(f);
 };
+/// Only lengths take stresses from elsewhere: second derivatives of angles grow without
+/// bound where a strand is straight, and so does their product with a stress that is not
+/// that of the same state.
+template <class Strain>
+constexpr bool is_length = false;
+template <int n>
+constexpr bool is_length<Chord<n>> = true;
 template <class Strain>
 constexpr bool has_metric = requires(const Strain s, const Vec* e,
                                      EdgeMatrix<Strain::edges>& m) {
@@ -89,8 +96,10 @@ void add_exact(const Spring<Strain>& spring, const Stretched<Strain>& now,
       s.add_outer(i, j, pos * spring.friction, now.slope[i], slope_of_speed[j]);
     }
   }
-  const double stress =
-      p.origin == nullptr ? now.stress : now.stress_from(spring, *p.origin);
+  double stress = now.stress;
+  if constexpr (is_length<Strain>) {
+    if (p.origin != nullptr) stress = now.stress_from(spring, *p.origin);
+  }
   for (int i = 0; i < size; ++i) {
     for (int j = 0; j < size; ++j) s.m[i][j] += pos * stress * h.m[i][j];
   }

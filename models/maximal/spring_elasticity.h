@@ -48,7 +48,10 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   StrainForm* strain_form() override { return this; }
-  bool takes_stresses() const override { return tangent_ == SpringTangent::exact; }
+  bool takes_stresses() const override {
+    return tangent_ == SpringTangent::exact &&
+           !(std::get<0>(springs_).empty() && std::get<1>(springs_).empty());
+  }
 
  private:
   std::vector<ComplianceForm::Block> strain_blocks() const override;

@@ -64,13 +64,13 @@ TEST_P(StiffStresses, DoNotTakeBackCorrections) {
   }
   std::printf("%s: %g iterations, %g without the stresses of the corrections\n",
               GetParam(), iterations[1], iterations[0]);
-  EXPECT_LE(iterations[1], 0.8 * iterations[0]);
+  EXPECT_LE(iterations[1], 0.5 * iterations[0]);
   // Every step ends by the same tolerance, and damps what those before it left.
   EXPECT_LE(largest(plus(ends[1], -1, ends[0])), 100 * options.newton_tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Maximal, StiffStresses,
-                         testing::Values("der", "mass_spring", "corde", "dynamic_spline"),
+                         testing::Values("der", "mass_spring", "corde"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace tress::test_stiff_stresses
