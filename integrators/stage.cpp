@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "linear/vector_ops.h"
 
@@ -183,6 +184,15 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
     std::ranges::copy(a_guess_, a.begin());
     std::ranges::copy(lambda_guess_, lambda.begin());
     s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
+  }
+  if (s == Status::retry && stresses_ != nullptr) {
+    // Those left may be far from the solution's too: a rope that is first pulled has
+    // none.
+    StressForm* const form = std::exchange(stresses_, nullptr);
+    std::ranges::copy(a_guess_, a.begin());
+    std::ranges::copy(lambda_guess_, lambda.begin());
+    s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
+    stresses_ = form;
   }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
   if (effort == Effort::plain && s != Status::ok) return s;
