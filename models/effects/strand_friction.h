@@ -7,7 +7,7 @@
 
 #include "contract/parameters.h"
 #include "models/contact/contact_problem.h"
-#include "models/contact/piece_search.h"
+#include "models/contact/pieces/piece_search.h"
 #include "models/effects/obstacle.h"
 
 namespace tress::models {

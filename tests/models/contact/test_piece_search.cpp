@@ -7,7 +7,7 @@
 #include <random>
 #include <thread>
 
-#include "models/contact/piece_search.h"
+#include "models/contact/pieces/piece_search.h"
 #include "tests/models/contact/random_contacts.h"
 
 namespace tress::test_piece_search {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/contact/piece_approach.h"
-#include "models/contact/piece_touch.h"
+#include "models/contact/pieces/piece_approach.h"
+#include "models/contact/pieces/piece_touch.h"
 #include "tests/models/contact/random_contacts.h"
 
 namespace tress::test_piece_touch {

@@ -1,5 +1,5 @@
 // Compiled without errno, so that the roots of all lanes are one instruction.
-#include "models/contact/piece_approach.h"
+#include "models/contact/pieces/piece_approach.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "models/contact/piece_touch.h"
+#include "models/contact/pieces/piece_touch.h"
 
 #include <cmath>
 

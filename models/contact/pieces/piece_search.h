@@ -8,8 +8,8 @@
 
 #include "contract/system.h"
 #include "models/contact/box_pairs.h"
-#include "models/contact/piece_approach.h"
-#include "models/contact/piece_touch.h"
+#include "models/contact/pieces/piece_approach.h"
+#include "models/contact/pieces/piece_touch.h"
 
 namespace tress::models {
 

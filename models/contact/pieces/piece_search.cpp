@@ -1,4 +1,4 @@
-#include "models/contact/piece_search.h"
+#include "models/contact/pieces/piece_search.h"
 
 #include <algorithm>
 #include <cmath>
