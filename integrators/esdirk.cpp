@@ -171,11 +171,11 @@ bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
                           Effort effort) noexcept {
   look_back(t);
+  stage_.leave(t, q);
   impact_ = stopped(t, q, v, gently);
   if (impact_) return impact(t, h, q, v);
   t_ = t;
   h_ = h;
-  stage_.leave(t, q);
   std::ranges::copy(v, v_[0].begin());
   std::ranges::copy(a, a_[0].begin());
   std::ranges::copy(lambda, lambda_.begin());

@@ -94,7 +94,7 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
   if (s != Status::ok) return s;
   ++dynamics_.stats.newton_iterations;
   if (updates_) updates_->improve(r_);
-  std::ranges::copy(q_, q_corrected_.begin());
+  if (stresses_ != nullptr) std::ranges::copy(q_, q_corrected_.begin());
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= r_[i];
   for (std::size_t k = 0; k < lambda.size(); ++k) lambda[k] -= c_[k];
   place(q_bar, v_bar, w, a);
@@ -103,6 +103,7 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
 }
 
 void Stage::leave(double t, In q) noexcept {
+  if (stresses_ == nullptr) return;
   t_left_ = t;
   left_ = true;
   std::ranges::copy(q, q_left_.begin());
@@ -180,18 +181,17 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, refresh_, matrix, a, lambda);
-  if (s == Status::retry && refresh_ != Refresh::every_iteration) {
+  const auto newton_again = [&] {
     std::ranges::copy(a_guess_, a.begin());
     std::ranges::copy(lambda_guess_, lambda.begin());
-    s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
-  }
+    return newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
+  };
+  if (s == Status::retry && refresh_ != Refresh::every_iteration) s = newton_again();
   if (s == Status::retry && stresses_ != nullptr) {
     // Those left may be far from the solution's too: a rope that is first pulled has
     // none.
     StressForm* const form = std::exchange(stresses_, nullptr);
-    std::ranges::copy(a_guess_, a.begin());
-    std::ranges::copy(lambda_guess_, lambda.begin());
-    s = newton(t, q_bar, v_bar, w, Refresh::every_iteration, Matrix::own, a, lambda);
+    s = newton_again();
     stresses_ = form;
   }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);

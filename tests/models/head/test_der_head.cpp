@@ -4,6 +4,7 @@
 #include "integrators/catalogue.h"
 #include "tests/models/head/der_strands.h"
 #include "tests/support/apart.h"
+#include "tests/support/bare_system.h"
 
 namespace tress::test_der_head {
 
@@ -37,29 +38,6 @@ void advance(Head& all, int steps, double h, std::size_t together = 100) {
   }
 }
 
-/// A strand whose tangent has the stresses of the state, as those of a head have: with
-/// those that corrections found (StressForm), a step of a strand without friction ends at
-/// another of its solutions.
-class OwnStresses final : public System {
- public:
-  explicit OwnStresses(System& original) : original_(original) {}
-  Layout layout() const override { return original_.layout(); }
-  Traits traits() const override { return original_.traits(); }
-  void initial_state(Out q, Out v) const override { original_.initial_state(q, v); }
-  void scale(Out q, Out v) const override { original_.scale(q, v); }
-  Status residual(double t, In q, In v, In a, Out r) noexcept override {
-    return original_.residual(t, q, v, a, r);
-  }
-  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    return original_.linearize(t, q, v, a, w);
-  }
-  Status solve(In b, Out x) noexcept override { return original_.solve(b, x); }
-  History* history() override { return original_.history(); }
-
- private:
-  System& original_;
-};
-
 /// A strand by itself after the same steps: points, coordinates in the head's order.
 struct Alone {
   std::vector<double> q, v, x;
@@ -78,7 +56,9 @@ Alone alone(const RodCase& c, HeadMethod method, std::size_t k, int steps, doubl
   }
   Options options;
   options.step = h;
-  OwnStresses iterated(*system);
+  // Lanes have no stresses of corrections: with them, a step of a strand without friction
+  // ends at another of its solutions.
+  BareSystem iterated(*system);
   const auto method_of = make_integrator(
       newton ? "backward_euler" : "semi_implicit_euler", iterated, options);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);

@@ -6,6 +6,7 @@
 
 #include "integrators/catalogue.h"
 #include "simulation/run/simulation.h"
+#include "tests/support/bare_system.h"
 #include "tests/support/catalogue_cases.h"
 
 namespace tress::test_stiff_stresses {
@@ -14,26 +15,6 @@ using namespace integrators;
 using namespace simulation;
 
 using namespace testing_support;
-
-/// Of a strand without its stresses as unknowns.
-class Bare final : public System {
- public:
-  explicit Bare(System& original) : original_(original) {}
-  Layout layout() const override { return original_.layout(); }
-  Traits traits() const override { return original_.traits(); }
-  void initial_state(Out q, Out v) const override { original_.initial_state(q, v); }
-  void scale(Out q, Out v) const override { original_.scale(q, v); }
-  Status residual(double t, In q, In v, In a, Out r) noexcept override {
-    return original_.residual(t, q, v, a, r);
-  }
-  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    return original_.linearize(t, q, v, a, w);
-  }
-  Status solve(In b, Out x) noexcept override { return original_.solve(b, x); }
-
- private:
-  System& original_;
-};
 
 class StiffStresses : public testing::TestWithParam<const char*> {};
 
@@ -51,7 +32,7 @@ TEST_P(StiffStresses, DoNotTakeBackCorrections) {
   Options options;
   options.step = 1.0 / 60;
   for (const bool stressed : {false, true}) {
-    Bare bare(*system);
+    BareSystem bare(*system);
     System& seen = stressed ? *system : bare;
     States s(seen);
     system->reset();
