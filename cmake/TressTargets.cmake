@@ -90,8 +90,8 @@ function(tress_program target)
   tress_warnings(${target})
 endfunction()
 
-# tress_test(name source... [SHARDS n]): an executable whose GoogleTest cases ctest runs one
-# by one, or in n parts: thousands of cases that take a millisecond each are all start-up.
+# tress_test(name source... [SHARDS n]): an executable of GoogleTest cases, of which ctest runs
+# name_0, name_1, ... n parts: of cases that take milliseconds, one process each is all start-up.
 function(tress_test name)
   if(NOT TARGET tress_test_headers)
     tress_headers(tress_test_headers <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <random>
@@ -111,15 +111,14 @@ function(tress_test name)
   tress_in_batches(test_${name})
   tress_warnings(test_${name})
   if(NOT arg_SHARDS)
-    gtest_discover_tests(test_${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
-    return()
+    set(arg_SHARDS 1)
   endif()
   math(EXPR last "${arg_SHARDS} - 1")
   foreach(shard RANGE ${last})
     set(report ${CMAKE_CURRENT_BINARY_DIR}/${name}_${shard}.xml)
     add_test(NAME ${name}_${shard}
              COMMAND test_${name} --gtest_brief=1 --gtest_output=xml:${report})
-    set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT 300 ENVIRONMENT
+    set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT 900 ENVIRONMENT
       "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
     list(APPEND shards ${name}_${shard})
     list(APPEND reports ${report})
