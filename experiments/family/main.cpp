@@ -31,7 +31,7 @@ constexpr Parameter settings[] = {
      .min = 1e-8,
      .max = 0.1},
     {.name = "most_calls",
-     .help = "of the model in a run by tolerance, 0: 4e5, with --quick 6.4e4",
+     .help = "of the model in a run by tolerance, 0: 4e6, with --quick 6.4e4",
      .number = 0,
      .min = 0,
      .max = 1e12},
@@ -65,8 +65,8 @@ std::vector<Column> columns_of_table() {
         "largest stable step (s), or elements"},
        {"maximal", "the same of der"},
        {"horizon_s",
-        "time from which on two independent methods part, so that the error is "
-        "up to there; empty: they agree to the end"},
+        "last time at which two independent methods agree, so that the error is up to "
+        "there; empty: they agree to the end"},
        {"growth",
         "of a deviation of the strand to that of its tip, where an error is beyond "
         "the tolerance"},
@@ -101,7 +101,7 @@ std::vector<Hair> hairs_of(const CommandLine& line, const Parameters& own,
 
 double calls_of(const CommandLine& line, const Parameters& own) {
   if (own.number("most_calls") > 0) return own.number("most_calls");
-  return line.quick ? 6.4e4 : 4e5;
+  return line.quick ? 6.4e4 : 4e6;
 }
 
 void add_cases(const CommandLine& line, const Parameters& own, const Study& study,
