@@ -90,6 +90,22 @@ export const known_tables = {
     program: 'family',
     optional: true,
   },
+  family_tolerance: {
+    title: 'Runs by tolerance on a family of hairs',
+    required: ['claim', 'hair', 'model', 'tolerance', 'value', 'holds', 'status'],
+    numeric: ['hair', 'tolerance', 'value', 'growth', 'horizon_s', 'gap', 'work', 'fixed_work'],
+    command: 'family --set study=tolerance --models super_helix,articulated_chain,der --out results/family_tolerance.csv',
+    program: 'family',
+    optional: true,
+  },
+  family_tolerance_summary: {
+    title: 'Runs by tolerance on a family of hairs, distribution',
+    required: ['claim', 'model', 'integrator', 'hairs', 'holds_share', 'median'],
+    numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
+    command: 'family --set study=tolerance --models super_helix,articulated_chain,der --out results/family_tolerance.csv',
+    program: 'family',
+    optional: true,
+  },
   constraint_drift: {
     title: 'Constraint drift',
     required: [
