@@ -64,12 +64,7 @@ struct Falling {
 ContactProblem::Compliance compliance_of(std::string_view model) {
   Falling strand(model);
   if (strand.assemble() != Status::ok) return {};
-  std::vector<Mat3> all;
-  for (std::size_t i = 0; i < strand.blocks.size(); i += 9) {
-    const double* row = &strand.blocks[i];
-    all.push_back({load3(row), load3(row + 3), load3(row + 6)});
-  }
-  return ContactProblem::Compliance(all);
+  return ContactProblem::Compliance(strand.blocks);
 }
 
 void assembly(benchmark::State& state, std::string_view model) {

@@ -1,6 +1,7 @@
 #include "experiments/hard_cases/course.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -44,7 +45,8 @@ Simulation run_rubbing(Integrator& method, Situation& s, const Course& c,
   };
   s.system->reset();
   Status status = method.start(0, s.start.q, s.start.v);
-  s.rubbing->add(*s.system, method, c.options);
+  const std::array<System*, 1> alone{s.system.get()};
+  s.rubbing->add(alone, method, c.options);
   double t = 0;
   const double end = c.stops.back();
   const double count = std::max(1.0, std::ceil(end / c.options.step - 1e-9));

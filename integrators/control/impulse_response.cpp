@@ -4,27 +4,13 @@
 #include <array>
 #include <utility>
 
-#include "contract/input_error.h"
-
 namespace tress::integrators {
-namespace {
-
-Impulsive& impulsive(Integrator& method) {
-  auto* able = dynamic_cast<Impulsive*>(&method);
-  if (able != nullptr) return *able;
-  throw InputError("the method cannot go on after the impulses of strands that rub",
-                   "effects.strand_friction",
-                   "use semi_implicit_euler or backward_euler");
-}
-
-}  // namespace
-
-ImpulseResponse::ImpulseResponse(System& system, Integrator& method,
-                                 const Options& options)
-    : system_(system),
+ImpulseResponse::ImpulseResponse(System& strand, const Integrator& method,
+                                 const Options& options, std::size_t first)
+    : system_(strand),
       method_(method),
-      impulsive_(impulsive(method)),
-      dynamics_(system, options),
+      first_(first),
+      dynamics_(strand, options),
       linear_(true),
       a_(static_cast<std::size_t>(dynamics_.n())),
       lambda_(static_cast<std::size_t>(dynamics_.m())),
@@ -32,7 +18,7 @@ ImpulseResponse::ImpulseResponse(System& system, Integrator& method,
       c_(lambda_.size()),
       q_(a_.size()),
       v_(a_.size()) {
-  MaterialPoints& points = *system.material_points();
+  MaterialPoints& points = *strand.material_points();
   for (int i = 0; i < points.count(); ++i) {
     means_.push_back(points.mean(i));
     if (!means_.back()) linear_ = false;
@@ -44,8 +30,8 @@ ImpulseResponse::ImpulseResponse(System& system, Integrator& method,
 
 Status ImpulseResponse::prepare(double h, In v_before) noexcept {
   h_ = h;
-  std::ranges::copy(method_.q(), q_.begin());
-  std::ranges::copy(method_.v(), v_.begin());
+  std::ranges::copy(q_alone(), q_.begin());
+  std::ranges::copy(v_alone(), v_.begin());
   for (std::size_t i = 0; i < a_.size(); ++i) a_[i] = (v_[i] - v_before[i]) / h;
   differentiated_ = false;
   return dynamics_.linearize(method_.time(), q_, v_, a_, lambda_, {1, h, h * h});
@@ -107,7 +93,7 @@ Status ImpulseResponse::compliance(std::span<const int> points,
                                    std::vector<double>& blocks) {
   blocks.resize(9 * points.size() * points.size());
   if (dynamics_.m() == 0 &&
-      system_.material_points()->responses(method_.time(), method_.q(), points, blocks)) {
+      system_.material_points()->responses(method_.time(), q_alone(), points, blocks)) {
     for (double& entry : blocks) entry *= h_;
     return Status::ok;
   }
@@ -135,7 +121,7 @@ Status ImpulseResponse::compliance(std::span<const int> points,
 Status ImpulseResponse::respond(std::span<const int> points, In forces) noexcept {
   std::ranges::fill(r_, 0.0);
   std::ranges::fill(c_, 0.0);
-  if (!system_.material_points()->pull_back(method_.time(), method_.q(), points, forces,
+  if (!system_.material_points()->pull_back(method_.time(), q_alone(), points, forces,
                                             r_)) {
     differentiate();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -144,9 +130,10 @@ Status ImpulseResponse::respond(std::span<const int> points, In forces) noexcept
   }
   const Status s = dynamics_.solve(r_, c_);
   if (s != Status::ok) return s;
+  const In q = q_alone(), v = v_alone();
   for (std::size_t k = 0; k < r_.size(); ++k) {
-    v_[k] = method_.v()[k] + h_ * r_[k];
-    q_[k] = method_.q()[k] + h_ * h_ * r_[k];
+    v_[k] = v[k] + h_ * r_[k];
+    q_[k] = q[k] + h_ * h_ * r_[k];
   }
   return Status::ok;
 }

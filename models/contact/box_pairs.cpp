@@ -18,7 +18,8 @@ constexpr double coarse = 1.5;
 // run enlarges the cells and slows the search, but does not exhaust memory.
 constexpr double longest = 16;
 
-constexpr std::size_t group = 64;  // of buckets that one thread takes at a time
+constexpr std::size_t group = 64;            // of buckets that one thread takes at a time
+constexpr std::size_t placed_at_once = 512;  // boxes, by one thread
 
 double longest_side(const Box& box) {
   const Vec side = box.most - box.least;
@@ -73,7 +74,7 @@ void BoxPairs::each_cell(const Placed& box, F act) const {
   }
 }
 
-void BoxPairs::fill(std::span<const Box> boxes) {
+void BoxPairs::fill(std::span<const Box> boxes, const Loop& loop) {
   double sum = 0, most = 0;
   for (const Box& box : boxes) {
     if (!finite(box)) continue;
@@ -82,8 +83,11 @@ void BoxPairs::fill(std::span<const Box> boxes) {
   }
   inverse_cell_ = 1 / std::max({coarse * sum / static_cast<double>(boxes.size()),
                                 most / longest, 1e-100});
-  placed_.clear();
-  for (const Box& box : boxes) placed_.push_back(place(box));
+  placed_.resize(boxes.size());
+  loop((boxes.size() + placed_at_once - 1) / placed_at_once, [&](std::size_t g) {
+    const std::size_t end = std::min(boxes.size(), (g + 1) * placed_at_once);
+    for (std::size_t i = g * placed_at_once; i < end; ++i) placed_[i] = place(boxes[i]);
+  });
   const std::size_t buckets = std::bit_ceil(std::max(group, boxes.size()));
   mask_ = buckets - 1;
   // Counting sort by bucket; counts stand two places later, so that starts move into
@@ -151,7 +155,7 @@ void BoxPairs::search(std::size_t b, Group& to) const {
 const std::vector<BoxPairs::Pair>& BoxPairs::find(
     std::span<const Box> boxes, const Loop& loop,
     const std::function<void(std::vector<Pair>&)>& sift) {
-  fill(boxes);
+  fill(boxes, loop);
   groups_.resize((mask_ + 1) / group);
   loop(groups_.size(), [&](std::size_t g) {
     groups_[g].found.clear();

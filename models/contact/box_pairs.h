@@ -76,7 +76,7 @@ class BoxPairs {
   Placed place(const Box& box) const;
   template <class F>
   void each_cell(const Placed& box, F act) const;
-  void fill(std::span<const Box> boxes);
+  void fill(std::span<const Box> boxes, const Loop& loop);
   void search(std::size_t bucket, Group& to) const;
 
   double inverse_cell_ = 0;

@@ -22,7 +22,7 @@ constexpr int busy_sweeps = 10;
 constexpr double quieter = 0.1;
 
 // Fewer contacts are judged before another thread has woken up.
-constexpr std::size_t least_judged = 4000;
+constexpr std::size_t least_judged = 1000;
 
 // The contacts about the worst one, unless they are more than these, are solved at once
 // after so many sweeps; then after so many more where that solved them, else after twice
@@ -30,7 +30,6 @@ constexpr std::size_t least_judged = 4000;
 constexpr int first_joint = 2, next_joint = 10, joint_steps = 6;
 constexpr std::size_t most_joint = 32;
 
-Pack packed(const Vec& x) { return {x.x, x.y, x.z, 0}; }
 Vec first3(const Pack& x) { return {x[0], x[1], x[2]}; }
 
 bool is_zero(const Vec& a) { return a.x == 0 && a.y == 0 && a.z == 0; }
@@ -43,14 +42,14 @@ double weighed(const Vec& u, double friction) {
 
 }  // namespace
 
-void ContactProblem::Compliance::set(std::span<const Mat3> blocks) {
-  points_ = static_cast<std::size_t>(std::lround(std::sqrt(blocks.size())));
-  columns_.resize(3 * blocks.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Mat3 columns = transposed(blocks[i]);
-    columns_[3 * i] = packed(columns.r0);
-    columns_[3 * i + 1] = packed(columns.r1);
-    columns_[3 * i + 2] = packed(columns.r2);
+void ContactProblem::Compliance::set(In blocks) {
+  points_ = static_cast<std::size_t>(std::lround(std::sqrt(blocks.size() / 9)));
+  columns_.resize(blocks.size() / 3);
+  for (std::size_t i = 0; i < columns_.size(); i += 3) {
+    const double* const block = &blocks[3 * i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      columns_[i + k] = {block[k], block[3 + k], block[6 + k], 0};
+    }
   }
 }
 
@@ -255,18 +254,22 @@ double ContactProblem::largest_seen() const {
   return largest;
 }
 
-double ContactProblem::worst(const Loop& loop) {
-  const auto judge = [this](std::size_t i) {
+/// Contacts that obey the laws within the tolerance are left alone until their bodies
+/// change.
+double ContactProblem::worst(const Loop& loop, double tolerance) {
+  const auto judge = [this, tolerance](std::size_t i) {
     Part& part = parts_[i];
     part.violation = 0;
     part.worst = nullptr;
-    for (const Solved& solved : part.contacts) {
+    for (Solved& solved : part.contacts) {
       const Contact& contact = *solved.contact;
       if (trace(contact.local) == 0) continue;
-      const double violation = contact_violation(contact.local, velocity(solved),
-                                                 contact.force, contact.friction);
-      if (!(violation > part.violation)) continue;
-      part.violation = violation;
+      solved.seen = velocity(solved);
+      solved.left =
+          contact_violation(contact.local, solved.seen, contact.force, contact.friction);
+      if (solved.left <= tolerance) settle(solved);
+      if (!(solved.left > part.violation)) continue;
+      part.violation = solved.left;
       part.worst = &solved;
     }
   };
@@ -312,11 +315,11 @@ std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() con
   return all;
 }
 
-/// Whether they obey the laws then.
-bool ContactProblem::solve_jointly(const Loop& loop, double tolerance) {
-  worst(loop);
+/// Those about the worst one; too many are left as they are.
+ContactProblem::Joint ContactProblem::solve_jointly(const Loop& loop, double tolerance) {
+  worst(loop, tolerance);
   const std::vector<const Solved*> all = about_the_worst();
-  if (all.size() > most_joint) return false;
+  if (all.size() > most_joint) return {};
   joint_.resize(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Contact& contact = *all[i]->contact;
@@ -327,7 +330,7 @@ bool ContactProblem::solve_jointly(const Loop& loop, double tolerance) {
     }
     joint_.contacts()[i] = {contact.friction, free, contact.force};
   }
-  const bool solved = joint_.solve(tolerance, joint_steps) <= tolerance;
+  const double violation = joint_.solve(tolerance, joint_steps);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Contact& contact = *all[i]->contact;
     const Vec change = joint_.contacts()[i].force - contact.force;
@@ -335,7 +338,7 @@ bool ContactProblem::solve_jointly(const Loop& loop, double tolerance) {
     contact.force = joint_.contacts()[i].force;
     push(*all[i], change);
   }
-  return solved;
+  return {violation, all.size() == contacts_.size()};
 }
 
 ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
@@ -344,24 +347,29 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
   for (Body& body : std::span(bodies_).first(used_))
     std::ranges::fill(body.change, Pack(0));
   loop(parts_.size(), [&](std::size_t i) { combine(parts_[i], proximal); });
-  for (const Part& part : parts_) push_guesses(part);
+  each_part(loop, [](Part& part) { push_guesses(part); });
   double quiet = quiet_part * tolerance;
   Outcome outcome;
-  outcome.violation = worst(loop);
+  outcome.violation = worst(loop, tolerance);
   int wait = first_joint, joint = wait;  // sweeps
   while (outcome.violation > tolerance && outcome.sweeps < most_sweeps) {
     each_part(loop, [&](Part& part) { sweep(part, quiet); });
     ++outcome.sweeps;
     const double seen = largest_seen();
     if (seen > tolerance && outcome.sweeps >= joint) {
-      wait = solve_jointly(loop, tolerance) ? next_joint : 2 * wait;
+      const Joint about_worst = solve_jointly(loop, tolerance);
+      const bool solved = about_worst.violation <= tolerance;
+      wait = solved ? next_joint : 2 * wait;
       joint += wait;
-      outcome.violation = worst(loop);
+      if (solved) {
+        outcome.violation =
+            about_worst.all ? about_worst.violation : worst(loop, tolerance);
+      }
       continue;
     }
     // What each saw at its visit is an estimate; at the end it is what is left.
     if (seen > tolerance && outcome.sweeps < most_sweeps) continue;
-    outcome.violation = worst(loop);
+    outcome.violation = worst(loop, tolerance);
     if (outcome.violation <= tolerance || seen > quiet) continue;
     quiet *= quieter;
     for (Part& part : parts_) {

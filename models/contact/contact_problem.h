@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "contract/system.h"
 #include "math/mat3.h"
 #include "math/pack.h"
 #include "models/contact/box_pairs.h"
@@ -50,9 +52,9 @@ class ContactProblem {
   class Compliance {
    public:
     Compliance() = default;
-    /// 3x3 blocks, point by point of the forces.
-    explicit Compliance(std::span<const Mat3> blocks) { set(blocks); }
-    void set(std::span<const Mat3> blocks);
+    /// Row-major 3x3 blocks, point by point of the forces.
+    explicit Compliance(In blocks) { set(blocks); }
+    void set(In blocks);
 
    private:
     friend class ContactProblem;
@@ -122,6 +124,12 @@ class ContactProblem {
     const Solved* worst = nullptr;  // violates the laws most
   };
 
+  /// What some contacts solved at once violate the laws by, m/s.
+  struct Joint {
+    double violation = std::numeric_limits<double>::infinity();
+    bool all = false;  // there are no others
+  };
+
   static void one_by_one(std::size_t count,
                          const std::function<void(std::size_t)>& work) {
     for (std::size_t i = 0; i < count; ++i) work(i);
@@ -139,9 +147,9 @@ class ContactProblem {
   void sweep(Part& part, double quiet);
   Mat3 response(const Contact& contact, const Solved& to) const;
   std::vector<const Solved*> about_the_worst() const;
-  bool solve_jointly(const Loop& loop, double tolerance);
+  Joint solve_jointly(const Loop& loop, double tolerance);
   double largest_seen() const;
-  double worst(const Loop& loop);
+  double worst(const Loop& loop, double tolerance);
 
   std::vector<Body> bodies_;  // the first used_ are in use
   std::size_t used_ = 0;

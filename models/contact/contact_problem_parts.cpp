@@ -10,9 +10,8 @@ namespace {
 
 // Parts are not worth a thread with fewer contacts; more parts have more between them.
 constexpr std::size_t least_part = 500, most_parts = 4;
-// A thread that waits takes some 60 us to wake up, in which another makes half as many
-// visits.
-constexpr std::size_t least_visits = 1000;
+// Fewer visits are made before another thread has woken up.
+constexpr std::size_t least_visits = 300;
 // Contacts that have settled cost a visit this part of one.
 constexpr std::size_t settled_per_visit = 32;
 // Pairs of parts, so that two that follow each other share none.

@@ -48,7 +48,7 @@ void JointContacts::linearize() {
     if (!(m > 0)) continue;
     const Vec s = r - (1 / m) * velocity_[i];
     if (!(s.x > 0)) continue;
-    const double near = proximal * m, pull = std::hypot(s.y, s.z);
+    const double near = proximal * m, pull = std::sqrt(s.y * s.y + s.z * s.z);
     const double most = contact.friction * s.x;
     Active& active = active_.emplace_back();
     active.contact = i;
@@ -88,7 +88,7 @@ bool JointContacts::step() {
       active_.empty()
           ? 0
           : static_cast<Eigen::Index>(active_.back().first) + active_.back().unknowns;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  Eigen::MatrixXd matrix(size, size);
   Eigen::VectorXd unknown(size);
   for (const Active& on : active_) {
     for (int k = 0; k < on.unknowns; ++k) {

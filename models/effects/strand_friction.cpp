@@ -76,9 +76,9 @@ Mat3 axes_of(const Vec& normal) {
   return {normal, first, cross(normal, first)};
 }
 
-/// Order of contacts.
-constexpr auto by_pair = [](const auto& a, const auto& b) {
-  return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+/// By which contacts are ordered.
+constexpr auto pair_of = [](const auto& known) {
+  return std::pair(known.first, known.second);
 };
 
 }  // namespace
@@ -150,8 +150,7 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
         strand_of(i) != strand_of(found.first)) {
       continue;
     }
-    const Known from{{i, found.second - 1, {}}, {}, {}, {}};
-    auto at = std::lower_bound(all.begin(), all.end(), from, by_pair);
+    auto at = std::ranges::lower_bound(all, std::pair(i, found.second - 1), {}, pair_of);
     for (; at != all.end() && at->first == i && at->second <= found.second + 1; ++at) {
       if (strand_of(at->second) == strand_of(found.second) && one_place(*at, found)) {
         return at;
@@ -163,9 +162,9 @@ std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
 
 /// The contact of that pair in the last step; null: none.
 const StrandFriction::Known* StrandFriction::last_of(int first, int second) const {
-  const Known pair{{first, second, {}}, {}, {}, {}};
-  const auto last = std::lower_bound(before_.begin(), before_.end(), pair, by_pair);
-  return last != before_.end() && !by_pair(pair, *last) ? &*last : nullptr;
+  const std::pair pair(first, second);
+  const auto last = std::ranges::lower_bound(before_, pair, {}, pair_of);
+  return last != before_.end() && pair_of(*last) == pair ? &*last : nullptr;
 }
 
 /// Adds to found_ what is no contact yet.
@@ -177,7 +176,7 @@ void StrandFriction::admit(const PieceSearch::Found& at) {
     if (search_.gap_now(*same_place) <= search_.gap_now(found)) return;
     found_.erase(same_place);
   }
-  const bool again = std::binary_search(known_.begin(), known_.end(), found, by_pair);
+  const bool again = std::ranges::binary_search(known_, pair_of(found), {}, pair_of);
   if (again && search_.gap_now(found) >
                    -second_place * search_.thickness(found.first, found.second)) {
     return;
@@ -201,7 +200,7 @@ void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
     // A piece begins where the one before ends.
     for (int part = piece == first ? 0 : 1; part <= parts; ++part) {
       Known at{{piece, code(obstacle, part), {}}, {}, {}, {}};
-      if (std::binary_search(known_.begin(), known_.end(), at, by_pair)) continue;
+      if (std::ranges::binary_search(known_, pair_of(at), {}, pair_of)) continue;
       const Known* const last = last_of(at.first, at.second);
       const bool pushed = last != nullptr && dot(last->world, last->world) > 0;
       at.at.s = static_cast<double>(part) / parts;
@@ -256,7 +255,7 @@ bool StrandFriction::find(const Loop& loop) {
     return false;
   }
   known_.insert(known_.end(), found_.begin(), found_.end());
-  std::ranges::stable_sort(known_, by_pair);
+  std::ranges::stable_sort(known_, {}, pair_of);
   touch_points();
   return true;
 }
@@ -338,13 +337,7 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
 }
 
 void StrandFriction::respond(std::size_t strand, In compliance) {
-  std::vector<Mat3> blocks;
-  blocks.reserve(compliance.size() / 9);
-  for (std::size_t i = 0; i < compliance.size(); i += 9) {
-    const double* row = &compliance[i];
-    blocks.push_back({load3(row), load3(row + 3), load3(row + 6)});
-  }
-  strands_[strand].compliance.set(blocks);
+  strands_[strand].compliance.set(compliance);
 }
 
 void StrandFriction::solve(const Loop& loop) {

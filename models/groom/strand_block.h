@@ -25,9 +25,10 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
   Energetics* energetics() override;
   MaterialPoints* material_points() override { return this; }
 
- protected:
   std::size_t strands() const { return strands_.size(); }
   System& strand(std::size_t k) const { return *strands_[k]; }
+
+ protected:
   /// Number of coordinates before strand k.
   int first(std::size_t k) const { return first_[k]; }
   /// The entries of strand k.

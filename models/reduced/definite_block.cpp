@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "models/reduced/point_matrix.h"
+
 namespace tress::models {
 namespace {
 
@@ -15,10 +17,11 @@ bool definite(const Eigen::Matrix3d& m) {
 
 void make_semidefinite(InOut blocks) {
   for (std::size_t at = 0; at < blocks.size(); at += 9) {
+    if (is_multiple_of_unit(&blocks[at]) && blocks[at] >= 0) continue;
     Eigen::Map<Eigen::Matrix3d> block(&blocks[at]);
     const Eigen::Matrix3d symmetric = (block + block.transpose()) / 2;
     block = symmetric;
-    if (symmetric.isZero(0) || definite(symmetric) || !symmetric.allFinite()) continue;
+    if (definite(symmetric) || !symmetric.allFinite()) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> pairs(symmetric);
     block = pairs.eigenvectors() * pairs.eigenvalues().cwiseMax(0).asDiagonal() *
             pairs.eigenvectors().transpose();

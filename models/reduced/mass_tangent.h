@@ -117,6 +117,22 @@ void add_effect_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t
   }
 }
 
+/// Whether at each point of a segment the matrix of the effects is a number times the
+/// unit matrix, which then counts like mass.
+template <class Kernel, int modes>
+bool like_masses(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
+                 In matrices) {
+  using K = Kinematics<Kernel, modes>;
+  const auto& segment = kinematics.segments()[i];
+  for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+    for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+      const std::size_t point = K::first_point(b) + lane * kinematics.point_step();
+      if (!is_multiple_of_unit(&matrices[9 * point])) return false;
+    }
+  }
+  return true;
+}
+
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
 /// tangent of the semi-implicit step. The motion of its points and tip is linear in the
 /// acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]; the matrix is
@@ -135,7 +151,10 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   constexpr int t = S::translations, size = S::size;
   const auto& segment = kinematics.segments()[i];
   const auto& g = kinematics.geometry(i);
+  const bool effects_as_masses =
+      !of_effects.empty() && like_masses(kinematics, i, of_effects);
 
+  // m: w.acc times mass, and what counts like it.
   Pack mass(0);
   Vec3<Pack> first;                             // sum m P
   Pack second[3][3];                            // sum m P P^T, upper
@@ -144,7 +163,10 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   for (auto& row : second) std::fill(std::begin(row), std::end(row), Pack(0));
   for (auto& row : inner) std::fill(std::begin(row), std::end(row), Pack(0));
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
-    const Pack& m = kinematics.blocks()[b].mass;
+    Pack m = Pack(w.acc) * kinematics.blocks()[b].mass;
+    if (effects_as_masses) {
+      m += first_entries(&of_effects[9 * K::first_point(b)], kinematics.point_step());
+    }
     const auto& block = kinematics.block_geometry(b);
     const Vec3<Pack>& p = block.position;
     const Vec3<Pack> mp = m * p;
@@ -167,11 +189,11 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   }
 
   auto& local = tangent.local;
-  const Real acc(w.acc), total = acc * sum_over<Real>(mass);
-  const Vec3<Real> p = acc * sum_over<Real>(first);
+  const Real acc(w.acc), total = sum_over<Real>(mass);
+  const Vec3<Real> p = sum_over<Real>(first);
   Real pp[3][3];
   for (int r = 0; r < 3; ++r) {
-    for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = acc * sum_over<Real>(second[r][c]);
+    for (int c = r; c < 3; ++c) pp[r][c] = pp[c][r] = sum_over<Real>(second[r][c]);
   }
   const Real trace = pp[0][0] + pp[1][1] + pp[2][2];
   for (int c = 0; c < t; ++c) {
@@ -190,12 +212,12 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   }
   for (std::size_t k = 0; k < dofs; ++k) {
     const auto column = size + static_cast<int>(k);
-    Frames::put(acc * sum_over<Real>(momentum[k]), acc * sum_over<Real>(spin[k]),
+    Frames::put(sum_over<Real>(momentum[k]), sum_over<Real>(spin[k]),
                 column_of(local, column));
     for (int r = 0; r < size; ++r) local(column, r) = local(r, column);
     for (std::size_t l = k; l < dofs; ++l) {
       local(column, size + static_cast<int>(l)) =
-          local(size + static_cast<int>(l), column) = acc * sum_over<Real>(inner[k][l]);
+          local(size + static_cast<int>(l), column) = sum_over<Real>(inner[k][l]);
     }
     tangent.stiffness[static_cast<int>(k)] =
         dot(K::unit(static_cast<int>(k)), restoring(segment, w));
@@ -205,7 +227,9 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
     }
   }
 
-  if (!of_effects.empty()) add_effect_tangent(kinematics, i, of_effects, tangent);
+  if (!of_effects.empty() && !effects_as_masses) {
+    add_effect_tangent(kinematics, i, of_effects, tangent);
+  }
 
   auto& transfer = tangent.transfer;
   const auto& f = g.rotation;

@@ -32,4 +32,15 @@ struct PointMatrix {
   Vec3<Pack> column[3];
 };
 
+/// The first entry of each of four matrices, `step` points apart.
+inline Pack first_entries(const double* matrices, std::size_t step) {
+  return gather3(matrices, 9 * step).x;
+}
+
+/// As of drag. False for one that is not finite.
+inline bool is_multiple_of_unit(const double* m) {
+  return m[4] == m[0] && m[8] == m[0] && m[1] == 0 && m[2] == 0 && m[3] == 0 &&
+         m[5] == 0 && m[6] == 0 && m[7] == 0;
+}
+
 }  // namespace tress::models

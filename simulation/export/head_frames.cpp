@@ -139,16 +139,16 @@ std::size_t HeadFrames::at_once(std::size_t workers) {
 }
 
 void HeadFrames::take(Crew& crew, std::size_t first, std::span<const double> x) {
-  const std::size_t workers = crew.workers(), numbers = 3 * points_;
-  own_.resize(workers);
+  const std::size_t numbers = 3 * points_;
+  own_.resize(crew.workers());
   for (Own& own : own_) {
     own.raw.resize(numbers * each_ * static_cast<std::size_t>(stored_.bits) / 8);
     own.shuffled.resize(own.raw.size());
   }
   const std::size_t begin = first / each_, chunk = numbers * each_;
-  crew.run((x.size() + chunk - 1) / chunk, [&](std::size_t c) {
+  crew.run((x.size() + chunk - 1) / chunk, [&](std::size_t c, std::size_t worker) {
     take_chunk(begin + c, x.subspan(c * chunk, std::min(chunk, x.size() - c * chunk)),
-               own_[c % workers]);
+               own_[worker]);
   });
   if (std::ranges::count(sizes_, no_memory) > 0) {
     throw InputError("cannot compress a frame", stem_ + ".h5", "free memory");

@@ -61,9 +61,8 @@ std::vector<HeadRun::Blocks> HeadRun::pieces(
 
 template <class Use>
 void HeadRun::share(const std::vector<Blocks>& among, Use use) {
-  crew_.run(among.size(), [&](std::size_t i) {
-    use(among[i], *scratch_[i % crew_.workers()]);  // as Crew shares
-  });
+  crew_.run(among.size(),
+            [&](std::size_t i, std::size_t worker) { use(among[i], *scratch_[worker]); });
 }
 
 template <class Use>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "contract/input_error.h"
 
@@ -37,18 +38,47 @@ std::vector<std::shared_ptr<const Obstacle>> obstacles(const Effects& effects) {
   return all;
 }
 
+std::string no_response(std::size_t strand, double t) {
+  return fmt::format("strand {}: no response to the forces of others at t = {:.9g} s",
+                     strand, t);
+}
+
+Impulsive& impulsive(Integrator& method) {
+  auto* able = dynamic_cast<Impulsive*>(&method);
+  if (able != nullptr) return *able;
+  throw InputError("the method cannot go on after the impulses of strands that rub",
+                   "effects.strand_friction",
+                   "use semi_implicit_euler or backward_euler");
+}
+
 }  // namespace
 
 Rubbing::Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
                  const Effects& effects)
     : friction_(rubs, searched(strands), obstacles(effects)) {}
 
-void Rubbing::add(System& system, Integrator& method, const Options& options) {
-  strands_.push_back({&system,
-                      &method,
-                      std::make_unique<ImpulseResponse>(system, method, options),
-                      static_cast<std::size_t>(system.material_points()->count()),
-                      {}});
+void Rubbing::add(std::span<System* const> strands, Integrator& method,
+                  const Options& options) {
+  Group& group = groups_.emplace_back();
+  group.method = &method;
+  group.impulsive = &impulsive(method);
+  group.first = strands_.size();
+  std::size_t first = 0;  // coordinate
+  for (System* const strand : strands) {
+    const auto points = static_cast<std::size_t>(strand->material_points()->count());
+    strands_.push_back(
+        {strand,
+         std::make_unique<ImpulseResponse>(*strand, method, options, first),
+         points,
+         groups_.size() - 1,
+         first,
+         {},
+         {},
+         {}});
+    strands_.back().v_before.resize(
+        static_cast<std::size_t>(strand->layout().coordinates));
+    first += strands_.back().v_before.size();
+  }
 }
 
 void Rubbing::restart(In memory) {
@@ -60,7 +90,9 @@ void Rubbing::restart(In memory) {
 void Rubbing::before_step(In x) {
   x_before_.assign(x.begin(), x.end());
   for (Rubbed& strand : strands_) {
-    strand.v_before.assign(strand.method->v().begin(), strand.method->v().end());
+    const In v = groups_[strand.group].method->v();
+    std::ranges::copy(v.subspan(strand.first, strand.v_before.size()),
+                      strand.v_before.begin());
     strand.prepared = false;
   }
 }
@@ -73,9 +105,35 @@ Status Rubbing::each(std::span<const std::size_t> strands, double t, const Loop&
   });
   for (const std::size_t k : strands) {
     if (strands_[k].status == Status::ok) continue;
-    failure_ = fmt::format(
-        "strand {}: no response to the forces of others at t = {:.9g} s", k, t);
+    failure_ = no_response(k, t);
     return strands_[k].status;
+  }
+  return Status::ok;
+}
+
+/// Methods of strands that others touched, from the states that these have left.
+Status Rubbing::go_on(double t, const Loop& loop) {
+  for (const std::size_t k : friction_.touching()) {
+    const Rubbed& strand = strands_[k];
+    Group& group = groups_[strand.group];
+    if (!std::exchange(group.touched, true)) {
+      group.q.assign(group.method->q().begin(), group.method->q().end());
+      group.v.assign(group.method->v().begin(), group.method->v().end());
+    }
+    const auto first = static_cast<std::ptrdiff_t>(strand.first);
+    std::ranges::copy(strand.response->q(), group.q.begin() + first);
+    std::ranges::copy(strand.response->v(), group.v.begin() + first);
+  }
+  loop(groups_.size(), [&](std::size_t g) {
+    Group& group = groups_[g];
+    group.status = std::exchange(group.touched, false)
+                       ? group.impulsive->go_on(group.q, group.v)
+                       : Status::ok;
+  });
+  for (const Group& group : groups_) {
+    if (group.status == Status::ok) continue;
+    failure_ = no_response(group.first, t);
+    return group.status;
   }
   return Status::ok;
 }
@@ -85,15 +143,14 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
   while (friction_.find(loop)) {
     const Status known =
         each(friction_.stale(), t, loop, [&](Rubbed& strand, std::size_t k) {
-          std::vector<double> blocks;
           Status done = Status::ok;
           if (!std::exchange(strand.prepared, true)) {
             done = strand.response->prepare(h, strand.v_before);
           }
           if (done == Status::ok) {
-            done = strand.response->compliance(friction_.points_of(k), blocks);
+            done = strand.response->compliance(friction_.points_of(k), strand.blocks);
           }
-          friction_.respond(k, blocks);
+          friction_.respond(k, strand.blocks);
           return done;
         });
     if (known != Status::ok) return known;
@@ -102,9 +159,10 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
         each(friction_.moved(), t, loop, [&](Rubbed& strand, std::size_t k) {
           const Status done =
               strand.response->respond(friction_.points_of(k), friction_.forces(k));
-          std::vector<double> placed(3 * strand.points);
-          strand.system->material_points()->positions(t, strand.response->q(), placed);
-          friction_.place(k, placed);
+          strand.placed.resize(3 * strand.points);
+          strand.system->material_points()->positions(t, strand.response->q(),
+                                                      strand.placed);
+          friction_.place(k, strand.placed);
           return done;
         });
     if (moved != Status::ok) return moved;
@@ -115,8 +173,7 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
     stats_.contact_violation =
         std::max(stats_.contact_violation, friction_.outcome().violation);
   }
-  return each(friction_.touching(), t, loop,
-              [](Rubbed& strand, std::size_t) { return strand.response->go_on(); });
+  return go_on(t, loop);
 }
 
 }  // namespace tress::simulation

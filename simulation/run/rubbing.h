@@ -5,23 +5,24 @@
 #include <vector>
 
 #include "integrators/control/impulse_response.h"
+#include "integrators/control/impulsive.h"
 #include "models/effects/strand_friction.h"
 #include "models/strand/strand.h"
 
 namespace tress::simulation {
 
-/// Strands that touch exactly, each advanced by a method of its own: they move as if they
-/// were alone, then impulses at the end of the step keep them from passing through each
-/// other and through obstacles (StrandFriction). A step: before_step(), all methods
-/// advance by h, after_step().
+/// Strands that touch exactly, each or a few advanced by a method of their own: they move
+/// as if they were alone, then impulses at the end of the step keep them from passing
+/// through each other and through obstacles (StrandFriction). A step: before_step(), all
+/// methods advance by h, after_step().
 class Rubbing {
  public:
   /// Obstacles are found among the effects. Throws InputError on strands with branches.
   Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
           const Effects& effects);
-  /// The system and the method of the next strand, which must outlive this. Throws
-  /// InputError if the method cannot go on after impulses.
-  void add(System& system, Integrator& method, const Options& options);
+  /// The next strands, each as a system of its own, and the method that steps them, which
+  /// must outlive this. Throws InputError if it cannot go on after impulses.
+  void add(std::span<System* const> strands, Integrator& method, const Options& options);
 
   /// x: all points, 3 numbers each, strand after strand.
   void before_step(In x);
@@ -39,18 +40,28 @@ class Rubbing {
  private:
   struct Rubbed {
     System* system;
-    Integrator* method;
     std::unique_ptr<ImpulseResponse> response;
-    std::size_t points;
-    std::vector<double> v_before;
+    std::size_t points, group, first;  // first: coordinate, of those of its group
+    std::vector<double> v_before, blocks, placed;
     bool prepared = false;  // its matrix is that of this step
+    Status status = Status::ok;
+  };
+  /// Strands that one method steps, and their state after it and impulses.
+  struct Group {
+    Integrator* method;
+    Impulsive* impulsive;
+    std::size_t first;  // strand
+    std::vector<double> q, v;
+    bool touched = false;
     Status status = Status::ok;
   };
   Status each(std::span<const std::size_t> strands, double t, const Loop& loop,
               const std::function<Status(Rubbed&, std::size_t)>& act);
+  Status go_on(double t, const Loop& loop);
 
   StrandFriction friction_;
   std::vector<Rubbed> strands_;
+  std::vector<Group> groups_;
   std::vector<double> x_before_;
   Stats stats_;
   std::string failure_;

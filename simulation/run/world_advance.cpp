@@ -89,9 +89,13 @@ Status World::advance(double t_end) {
 
 Status World::rub(double h) {
   const Status done = rubbing_->after_step(t_, h, positions(), velocities(), loop());
+  std::size_t body = 0;
   for (const std::size_t k : rubbing_->friction().touching()) {
-    bodies_[k].keep(t_, bodies_[k].integrator->q(), bodies_[k].integrator->v());
-    x_.done[k] = u_.done[k] = 0;
+    while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
+    Body& touched = bodies_[body];
+    if (x_.done[body] == 0) continue;  // by another of its strands
+    touched.keep(t_, touched.integrator->q(), touched.integrator->v());
+    x_.done[body] = u_.done[body] = 0;
   }
   if (done != Status::ok) failure_ = rubbing_->failure();
   return done;

@@ -9,6 +9,7 @@
 #include "contract/natural_strains.h"
 #include "integrators/catalogue.h"
 #include "math/pack.h"
+#include "models/groom/strand_block.h"
 #include "simulation/run/memory.h"
 #include "simulation/run/world.h"
 
@@ -40,6 +41,15 @@ Effects metered(const Effects& effects,
     meters.push_back(std::make_shared<Metered>(effect));
     all.push_back(meters.back());
   }
+  return all;
+}
+
+/// The systems of its strands, or itself.
+std::vector<System*> strands_of(System& system) {
+  const auto* const block = dynamic_cast<StrandBlock*>(&system);
+  if (block == nullptr) return {&system};
+  std::vector<System*> all;
+  for (std::size_t k = 0; k < block->strands(); ++k) all.push_back(&block->strand(k));
   return all;
 }
 
@@ -137,8 +147,7 @@ Effects World::effects_on(std::size_t strand) const {
   return held_.empty() ? effects_ : supporting(effects_, held_[strand]);
 }
 
-/// Each strand separately, or up to four of equal discretisation together; strands that
-/// rub, separately.
+/// Each strand separately, or up to four of equal discretisation together.
 void World::build_strands(const Scene& scene, const Parameters* between) {
   if (between != nullptr) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
@@ -175,7 +184,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
            strands[end].segments.size() == strands[k].segments.size()) {
       ++end;
     }
-    if (scene.model->on_strands != nullptr && end > k + 1 && !rubbing_) {
+    if (scene.model->on_strands != nullptr && end > k + 1) {
       std::vector<Effects> effects;
       for (std::size_t i = k; i < end; ++i) effects.push_back(effects_of(i));
       auto system = scene.model->on_strands(std::span(strands).subspan(k, end - k),
@@ -228,7 +237,9 @@ void World::ready(const Scene& scene) {
   for (Body& body : bodies_) {
     body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
     body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
-    if (rubbing_) rubbing_->add(*body.system, *body.integrator, scene.options);
+    if (rubbing_) {
+      rubbing_->add(strands_of(*body.system), *body.integrator, scene.options);
+    }
     const Snapshot::OfStrand all = initial_state_of(*body.system);
     begin.add(all.q, all.v, all.memory, body.coordinates, body.memory);
   }

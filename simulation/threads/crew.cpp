@@ -1,37 +1,37 @@
 #include "simulation/threads/crew.h"
 
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
 #include <exception>
 
 namespace tress::simulation {
 
-Crew::Crew(int workers) : workers_(static_cast<std::size_t>(workers)), gate_(workers) {
-  for (std::size_t w = 1; w < workers_; ++w) {
-    threads_.emplace_back([this, w] {
-      while (true) {
-        gate_.arrive_and_wait();  // for work
-        if (work_ == nullptr) return;
-        share(w);
-        gate_.arrive_and_wait();  // for the others
-      }
-    });
-  }
-}
+struct Crew::Arena : tbb::task_arena {
+  using tbb::task_arena::task_arena;
+};
 
-Crew::~Crew() {
-  work_ = nullptr;
-  gate_.arrive_and_wait();
-}
+Crew::Crew(int workers)
+    : workers_(static_cast<std::size_t>(workers)),
+      arena_(workers > 1 ? std::make_unique<Arena>(workers) : nullptr) {}
+
+Crew::~Crew() = default;
 
 void Crew::run(std::size_t count, const std::function<void(std::size_t)>& work) {
-  count_ = count;
-  work_ = &work;
-  gate_.arrive_and_wait();
-  share(0);
-  gate_.arrive_and_wait();
+  if (arena_ == nullptr) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  arena_->execute([&] { tbb::parallel_for(std::size_t{0}, count, work); });
 }
 
-void Crew::share(std::size_t worker) {
-  for (std::size_t i = worker; i < count_; i += workers_) (*work_)(i);
+void Crew::run(std::size_t count,
+               const std::function<void(std::size_t, std::size_t)>& work) {
+  run(count, [&](std::size_t i) {
+    const int worker =
+        arena_ == nullptr ? 0 : tbb::this_task_arena::current_thread_index();
+    work(i, static_cast<std::size_t>(worker));
+  });
 }
 
 void in_parts(Crew& crew, std::size_t begin, std::size_t end, std::size_t parts,

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <barrier>
 #include <functional>
-#include <thread>
-#include <vector>
+#include <memory>
 
 #include "contract/layers.h"
 
 namespace tress::simulation {
 
-/// Thread pool for loops: run() calls work(i) once for every i < count, worker w with the
-/// indices w, w + workers, ... so the assignment does not depend on timing.
+/// So many threads of oneTBB, the caller among them, for loops. Which of them calls what
+/// depends on timing: what is called must not. A crew of one calls in turn.
 class Crew {
  public:
   explicit Crew(int workers);
@@ -18,18 +16,20 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// Returns when all is done. `work` must not throw.
+  /// Calls work(i) once for every i < count and returns when all is done. `work` must not
+  /// throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& work);
+  /// The same with the number of the worker, which no two calls have at the same time:
+  /// for memory that calls overwrite.
+  void run(std::size_t count,
+           const std::function<void(std::size_t i, std::size_t worker)>& work);
   std::size_t workers() const { return workers_; }
 
  private:
-  void share(std::size_t worker);
+  struct Arena;
 
   std::size_t workers_;
-  std::size_t count_ = 0;
-  const std::function<void(std::size_t)>* work_ = nullptr;  // null: threads exit
-  std::barrier<> gate_;
-  std::vector<std::jthread> threads_;  // all workers except the caller
+  std::unique_ptr<Arena> arena_;  // null: one worker
 };
 
 /// Calls use(k, part) for k in [begin, end), in so many parts that work at the same time.

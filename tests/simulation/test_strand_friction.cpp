@@ -20,6 +20,7 @@ using namespace simulation;
 
 struct Set {
   std::string model = "der";
+  std::string options = {};
   std::string integrator = "backward_euler";
   std::string strands = {};
   std::string effects = "[effects.gravity]\n";
@@ -37,12 +38,12 @@ std::string formulation_of(const std::string& model) {
 Scene scene(const Set& set) {
   const bool none = set.friction == "none";
   return parse_scene(
-      fmt::format("title = \"t\"\nduration_s = 1\nguard = false\n[model]\nid = \"{}\"\n"
+      fmt::format("title = \"t\"\nduration_s = 1\nguard = false\n[model]\nid = \"{}\"\n{}"
                   "[integrator]\nid = \"{}\"\ndt_s = {}\n{}[material]\n"
                   "name = \"hair.asian\"\n{}{}[root]\nmotion = \"{}\"\n{}{}",
-                  set.model, set.integrator, set.step, formulation_of(set.model),
-                  set.material, set.strands, set.root, set.effects,
-                  none ? "" : "[effects.strand_friction]\n" + set.friction),
+                  set.model, set.options, set.integrator, set.step,
+                  formulation_of(set.model), set.material, set.strands, set.root,
+                  set.effects, none ? "" : "[effects.strand_friction]\n" + set.friction),
       "t.toml");
 }
 
@@ -53,6 +54,17 @@ std::string crossing(const std::string& more = {}) {
          "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n" +
          more;
 }
+
+/// Two more: one falls onto the first as well, the other lies below.
+std::string four() {
+  return crossing() +
+         "[[strand]]\nlength_m = 0.06\nelements = 6\nposition_m = [0.03, -0.03, 0.006]\n"
+         "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n"
+         "[[strand]]\nlength_m = 0.06\nelements = 6\nposition_m = [0, 0, -0.01]\n"
+         "root_tangent = [1, 0, 0]\n";
+}
+
+constexpr const char* one_system = "tangent = \"stiff\"\nsolver = \"recursive\"\n";
 
 constexpr double earth = 9.81;  // m/s^2
 
@@ -378,9 +390,42 @@ TEST(StrandFriction, HoldsShakenGuidesApart) {
   EXPECT_LT(world.stats().contact_violation, 1e-3);
 }
 
+/// A few that are stepped as one system rub as they do where each is a system.
+TEST(StrandFriction, OfStrandsOfOneSystemIsThatOfEachAlone) {
+  constexpr double tolerance = 1e-9, span = 0.15;  // m/s, s
+  for (const char* const method : {"semi_implicit_euler", "backward_euler"}) {
+    const auto made = [&](const std::string& options) {
+      return scene(
+          {.model = "super_helix",
+           .options = options,
+           .integrator = method,
+           .strands = four(),
+           .friction = fmt::format("thickness_m = 1e-3\ntolerance_m_s = {}\n", tolerance),
+           .step = 5e-4});
+    };
+    World together(made(one_system)),
+        apart(made("tangent = \"stiff\"\nsolver = \"composite\"\n"));
+    ASSERT_EQ(together.systems(), 1u);
+    ASSERT_EQ(apart.systems(), 4u);
+    for (World* const world : {&together, &apart}) {
+      ASSERT_EQ(world->advance(span), Status::ok) << world->failure();
+      EXPECT_GT(world->friction()->contacts(), 0u);
+    }
+    // Both obey the law within the tolerance, in which they may part all the time.
+    for (std::size_t i = 0; i < together.positions().size(); ++i) {
+      EXPECT_NEAR(together.positions()[i], apart.positions()[i], 2 * tolerance * span);
+    }
+  }
+}
+
 TEST(StrandFriction, ContinuesASnapshotBitByBitOnAnyThreads) {
-  for (const char* const model : {"super_helix", "der"}) {
-    const Scene made = scene({.model = model, .strands = crossing()});
+  for (const Set& set : {Set{.model = "super_helix", .strands = crossing()},
+                         Set{.model = "super_helix",
+                         .options = one_system,
+                         .strands = four(),
+                         .step = 1e-3},
+                         Set{.model = "der", .strands = crossing()}}) {
+    const Scene made = scene(set);
     World whole(made), half(made, 2), rest(made, 3);
     for (int i = 1; i <= 20; ++i) {
       ASSERT_EQ(whole.advance(0.01 * i), Status::ok);
@@ -396,8 +441,8 @@ TEST(StrandFriction, ContinuesASnapshotBitByBitOnAnyThreads) {
       }
     }
     EXPECT_GT(whole.friction()->contacts(), 0u);
-    EXPECT_EQ(whole.positions(), rest.positions()) << model;
-    EXPECT_EQ(whole.friction()->deepest(), rest.friction()->deepest()) << model;
+    EXPECT_EQ(whole.positions(), rest.positions()) << set.model << whole.systems();
+    EXPECT_EQ(whole.friction()->deepest(), rest.friction()->deepest());
   }
 }
 

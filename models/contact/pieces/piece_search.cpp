@@ -121,9 +121,9 @@ MovingPieces PieceSearch::moving(int first, int second) const {
 }
 
 /// Those that have moved since they were looked at.
-void PieceSearch::place_pieces() {
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    if (moved_[k] == 0) continue;
+void PieceSearch::place_pieces(const Loop& loop) {
+  loop(moved_.size(), [&](std::size_t k) {
+    if (moved_[k] == 0) return;
     for (std::size_t i = first_[k] - k; i + k + 1 < first_[k + 1]; ++i) {
       const std::size_t at = 3 * (i + k);
       const Vec from0 = load3(&from_[at]), from1 = load3(&from_[at + 3]),
@@ -133,7 +133,7 @@ void PieceSearch::place_pieces() {
       boxes_[i] = box;
       motion_[i] = {from0, to0, from1, to1};
     }
-  }
+  });
 }
 
 /// Takes away pairs that do not touch in the step, wherever forces move both within their
@@ -224,7 +224,7 @@ bool PieceSearch::look(int first, int second, double least,
 
 const std::vector<PieceSearch::Found>& PieceSearch::find(
     const Loop& loop, const std::function<bool(int, int)>& wider) {
-  place_pieces();
+  place_pieces(loop);
   gathered_.empty() ? gather(loop) : gather_moved(loop);
   found_of_.resize((near_.size() + group - 1) / group);
   loop(found_of_.size(), [&](std::size_t g) {

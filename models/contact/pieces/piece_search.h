@@ -82,7 +82,7 @@ class PieceSearch {
 
  private:
   MovingPieces moving(int first, int second) const;
-  void place_pieces();
+  void place_pieces(const Loop& loop);
   void make_room(std::size_t piece);
   void gather(const Loop& loop);
   void gather_moved(const Loop& loop);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <random>
+#include <span>
 #include <vector>
 
 #include "models/contact/contact_problem.h"
@@ -28,13 +29,23 @@ inline Mat3 random_axes(std::mt19937& random) {
   return {n, t, cross(n, t)};
 }
 
+inline ContactProblem::Compliance compliance_of(std::span<const Mat3> blocks) {
+  std::vector<double> rows(9 * blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    store3(blocks[i].r0, &rows[9 * i]);
+    store3(blocks[i].r1, &rows[9 * i + 3]);
+    store3(blocks[i].r2, &rows[9 * i + 6]);
+  }
+  return ContactProblem::Compliance(rows);
+}
+
 /// Bodies of points that respond as one to each other (rank `rank` of 3 points), and
 /// contacts between random points of two of them.
 struct RandomContacts {
   struct Body {
     int points;
     std::vector<Mat3> compliance;
-    ContactProblem::Compliance response = ContactProblem::Compliance(compliance);
+    ContactProblem::Compliance response = compliance_of(compliance);
   };
   std::vector<Body> bodies;
   std::vector<ContactProblem::Contact> contacts;

@@ -126,7 +126,7 @@ void add_stiff_pair(ContactProblem& problem, const ContactProblem::Compliance& r
 TEST(ContactProblem, SolvesContactsThatBearEachOtherAtOnce) {
   constexpr double together = 0.999;
   const Mat3 one = identity(), both = together * one;
-  const ContactProblem::Compliance pair(std::vector<Mat3>{one, both, both, one});
+  const auto pair = compliance_of(std::vector<Mat3>{one, both, both, one});
   ContactProblem alone;
   add_stiff_pair(alone, pair);
   const auto outcome = alone.solve(1e-2, 1e-10, 100);
