@@ -4,172 +4,197 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "math/lanes.h"
 
 namespace tress::models {
 namespace {
 
-constexpr auto four = static_cast<std::size_t>(Pack::lanes);
+constexpr auto eight = static_cast<std::size_t>(points_of_group);
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN(),
                  infinity = std::numeric_limits<double>::infinity();
 // Of lengths that are compared to decide what to look at.
 constexpr double rounding = 1 + 1e-9;
 
-/// Segments at the last update, and how fast they move: ends at s = 0 and 1.
+/// Segments at the last update.
 struct Held {
   const StrandPartners& partners;
-  const StraightPiece& piece(int i) const { return partners.piece(i); }
-  Vec velocity(int i) const { return partners.velocity(i); }
+  const Vec& place(int i) const { return partners.place(i); }
+  double inverse(int i) const { return partners.inverse(i); }
+  const Vec& velocity(int i) const { return partners.velocity(i); }
 };
 /// A time after it.
 struct Moving {
   const PointMotion& motion;
   double elapsed;
-  StraightPiece piece(int i) const {
-    const auto at = static_cast<std::size_t>(i);
-    return {motion.place(at, elapsed), motion.place(at + 1, elapsed)};
-  }
+  Vec place(int i) const { return motion.place(static_cast<std::size_t>(i), elapsed); }
+  double inverse(int i) const { return StraightPiece(place(i), place(i + 1)).inverse; }
   Vec velocity(int i) const {
     return motion.velocity(static_cast<std::size_t>(i), elapsed);
   }
 };
 
-/// Of a number that is in memory: one instruction.
-Pack all(double x) { return {x, x, x, x}; }
-Vec3<Pack> all(const Vec& x) { return {all(x.x), all(x.y), all(x.z)}; }
+template <class P>
+P load(const GroupNumbers& x, std::size_t from) {
+  return P::load(&x[from]);
+}
+template <class P>
+Vec3<P> load(const GroupVectors& x, std::size_t from) {
+  return {load<P>(x.x, from), load<P>(x.y, from), load<P>(x.z, from)};
+}
+template <class P>
+void store(const P& x, std::size_t from, GroupNumbers& to) {
+  for (int lane = 0; lane < lanes<P>; ++lane) {
+    to[from + static_cast<std::size_t>(lane)] = x[lane];
+  }
+}
+template <class P>
+void store(const Vec3<P>& x, std::size_t from, GroupVectors& to) {
+  store(x.x, from, to.x);
+  store(x.y, from, to.y);
+  store(x.z, from, to.z);
+}
 
+/// Of a number in memory: one instruction, without a sum.
+template <class P>
+[[gnu::always_inline]] inline P all(double x) {
+  return [x]<int... lane>(std::integer_sequence<int, lane...>) {
+    const typename P::Vector one{x};
+    return P(__builtin_shufflevector(one, one, (0 * lane)...));
+  }
+  (std::make_integer_sequence<int, P::lanes>{});
+}
+template <class P>
+[[gnu::always_inline]] inline Vec3<P> all(const Vec& x) {
+  return {all<P>(x.x), all<P>(x.y), all<P>(x.z)};
+}
+
+template <class P>
 struct Nearest {
-  Pack s;
-  Vec3<Pack> gap;
+  P s;
+  Vec3<P> gap;
 };
-[[gnu::always_inline]] inline Nearest nearest(const Vec3<Pack>& x,
-                                              const StraightPiece& to) {
-  const Vec3<Pack> d = x - all(to.start), edge = all(to.edge);
-  const Pack s = larger(smaller(all(to.inverse) * dot(d, edge), Pack(1)), Pack(0));
+template <class P>
+[[gnu::always_inline]] inline Nearest<P> nearest(const Vec3<P>& x, const Vec3<P>& start,
+                                                 const Vec3<P>& edge, const P& inverse) {
+  const Vec3<P> d = x - start;
+  const P s = larger(smaller(inverse * dot(d, edge), P(1)), P(0));
   return {s, d - s * edge};
 }
 
-[[gnu::always_inline]] inline Vec3<Pack> choose(const Pack& x, const Pack& y,
-                                                const Vec3<Pack>& yes,
-                                                const Vec3<Pack>& no) {
+template <class P>
+[[gnu::always_inline]] inline Vec3<P> choose(const P& x, const P& y, const Vec3<P>& yes,
+                                             const Vec3<P>& no) {
   return {where_less(x, y, yes.x, no.x), where_less(x, y, yes.y, no.y),
           where_less(x, y, yes.z, no.z)};
 }
 
-bool there(const Vec3<Pack>& x, int lane) { return is_finite(lane_of(x, lane)); }
-
-/// Of lanes with a number; infinity if there is none.
-double smallest(const Pack& of) {
-  const Pack x = where_less(of, Pack(infinity), of, Pack(infinity));
-  return std::min(std::min(x[0], x[1]), std::min(x[2], x[3]));
+/// Calls work(from, pack) for the points of a group, pack by pack: eight together where
+/// registers are that wide.
+template <class F>
+void by_packs(Instructions instructions, const F& work) {
+  if (instructions == Instructions::avx512) {
+    by(instructions, [&] { work(std::size_t{0}, PackOf<double, 8>{}); });
+  } else {
+    for (std::size_t from = 0; from < eight; from += Pack::lanes) work(from, Pack{});
+  }
 }
 
 }  // namespace
 
-/// `still`: partners stay until the next update, and their drift is known.
-template <class Segments>
-[[gnu::always_inline]] inline void PointGroups::sum_loads(Group& group,
-                                                          const ContactLaw& law,
-                                                          const Segments& segments,
-                                                          const Vec3<Pack>& of_v,
-                                                          bool still, FourLoads& to) {
-  FourLoads sum{};
-  const Vec3<Pack> x = group.x;
-  const double reach = partners_->reach();
-  const Pack far(reach * reach), zero(0), one(1);
-  const auto used = static_cast<float>(group.used);
-  found_.resize(group.list.size());
-  for (auto candidate = group.list.begin(); candidate != group.list.end();) {
+/// Those of the points from `from` on.
+template <class P, class Segments>
+[[gnu::always_inline]] inline void PointGroups::add_up(
+    const Group& group, std::size_t from, const GroupVectors& of_v, const ContactLaw& law,
+    const Segments& segments, GroupLoads& to) {
+  const Vec3<P> x = load<P>(group.x, from), points_v = load<P>(of_v, from);
+  const double reach = law.reach();
+  const P far(reach * reach), zero(0), one(1);
+  Vec3<P> force{zero, zero, zero}, rows[3] = {force, force, force};
+  P by_velocity(0);
+  for (auto run = group.list.begin(); run != group.list.end();) {
     // The nearest point of one strand: on which of its segments within reach, and where.
-    Pack least(infinity), s(0), which(0);
-    int count = 0;
-    for (bool more = true; more; ++candidate) {
-      more = (candidate->segment & 1) == 0;
-      if (used < candidate->wake) continue;
-      const int segment = candidate->segment >> 1;
-      const Nearest at = nearest(x, segments.piece(segment));
-      const Pack square = dot(at.gap, at.gap);
-      if (!any_less(square, far)) {
-        if (still) candidate->wake = wakes_at(group, smallest(square));
-        continue;
+    const auto first = run;
+    P least = far, s(0), number(0), which(0);
+    for (bool more = true; more; ++run) {
+      more = !run->last;
+      const int end = run->first + static_cast<int>(run->count);
+      Vec3<P> start = all<P>(segments.place(run->first));
+      for (int i = run->first; i < end; ++i) {
+        const Vec3<P> next = all<P>(segments.place(i + 1));
+        const Nearest<P> at =
+            nearest(x, start, next - start, all<P>(segments.inverse(i)));
+        const P square = dot(at.gap, at.gap);
+        s = where_less(square, least, at.s, s);
+        which = where_less(square, least, number, which);
+        least = where_less(square, least, square, least);
+        number += one;
+        start = next;
       }
-      s = where_less(square, least, at.s, s);
-      which = where_less(square, least, Pack(static_cast<double>(count)), which);
-      least = where_less(square, least, square, least);
-      found_[static_cast<std::size_t>(count++)] = segment;
     }
-    if (count == 0) continue;
-    Vec3<Pack> start, edge, v, faster;
-    Pack inverse;
-    for (int k = 0; k < count; ++k) {
-      const int i = found_[static_cast<std::size_t>(k)];
-      const StraightPiece& piece = segments.piece(i);
-      const Vec here = segments.velocity(i), change = segments.velocity(i + 1) - here;
-      if (k == 0) {
-        start = all(piece.start);
-        edge = all(piece.edge);
-        inverse = all(piece.inverse);
-        v = all(here);
-        faster = all(change);
-        continue;
+    if (!any_less(least, far)) continue;
+    Vec3<P> start, edge, v, faster;
+    P inverse(0), before(-0.5);
+    for (auto part = first; part != run; ++part) {
+      const int end = part->first + static_cast<int>(part->count);
+      Vec3<P> here = all<P>(segments.place(part->first)),
+              here_v = all<P>(segments.velocity(part->first));
+      for (int i = part->first; i < end; ++i) {
+        const Vec3<P> next = all<P>(segments.place(i + 1)),
+                      next_v = all<P>(segments.velocity(i + 1));
+        start = choose(before, which, here, start);
+        edge = choose(before, which, next - here, edge);
+        inverse = where_less(before, which, all<P>(segments.inverse(i)), inverse);
+        v = choose(before, which, here_v, v);
+        faster = choose(before, which, next_v - here_v, faster);
+        before += one;
+        here = next;
+        here_v = next_v;
       }
-      const Pack before(k - 0.5);
-      start = choose(before, which, all(piece.start), start);
-      edge = choose(before, which, all(piece.edge), edge);
-      inverse = where_less(before, which, all(piece.inverse), inverse);
-      v = choose(before, which, all(here), v);
-      faster = choose(before, which, all(change), faster);
     }
     // Lanes out of reach get a gap without force.
-    const Vec3<Pack> gap =
-        choose(least, far, x - start - s * edge, Vec3<Pack>(Vec{2 * reach, 0, 0}));
-    const Vec3<Pack> u = choose(least, far, of_v - v - s * faster, Vec3<Pack>(Vec{}));
-    const ContactLaw::Factors<Pack> at = law.factors(gap);
-    sum.force = sum.force + at.push * gap - at.drag * u;
-    sum.by_velocity -= at.drag;
+    const Vec3<P> gap =
+        choose(least, far, x - start - s * edge, Vec3<P>(Vec{2 * reach, 0, 0}));
+    const Vec3<P> u = choose(least, far, points_v - v - s * faster, Vec3<P>(Vec{}));
+    const ContactLaw::Factors<P> at = law.factors(gap);
+    force = force + at.push * gap - at.drag * u;
+    by_velocity -= at.drag;
     // Between the ends of a segment its nearest point follows x: ds/dx = `along`.
-    const Pack follows = where_less(
-        least, far, where_less(zero, s, where_less(s, one, inverse, zero), zero), zero);
-    const Vec3<Pack> along = follows * edge;
-    const Vec3<Pack> column = at.push_slope * gap - at.drag_slope * u;
+    const P follows = where_less(zero, s * (one - s), inverse, zero);
+    const Vec3<P> along = follows * edge;
+    const Vec3<P> column = at.push_slope * gap - at.drag_slope * u;
     // Rows of push I + column d^T, less their product with ds/dx.
-    const Pack by_edge = dot(gap, edge);
-    const Vec3<Pack> by_s = at.push * edge + by_edge * column - at.drag * faster;
-    sum.by_place[0] = sum.by_place[0] + column.x * gap - by_s.x * along;
-    sum.by_place[1] = sum.by_place[1] + column.y * gap - by_s.y * along;
-    sum.by_place[2] = sum.by_place[2] + column.z * gap - by_s.z * along;
-    sum.by_place[0].x += at.push;
-    sum.by_place[1].y += at.push;
-    sum.by_place[2].z += at.push;
+    const P by_edge = dot(gap, edge);
+    const Vec3<P> by_s = at.push * edge + by_edge * column - at.drag * faster;
+    rows[0] = rows[0] + column.x * gap - by_s.x * along;
+    rows[1] = rows[1] + column.y * gap - by_s.y * along;
+    rows[2] = rows[2] + column.z * gap - by_s.z * along;
+    rows[0].x += at.push;
+    rows[1].y += at.push;
+    rows[2].z += at.push;
   }
-  to = sum;
+  store(force, from, to.force);
+  for (std::size_t i = 0; i < 3; ++i) store(rows[i], from, to.by_place[i]);
+  store(by_velocity, from, to.by_velocity);
 }
 
-/// The value of `used` up to which what is at a distance d (its square is given) stays
-/// out of reach r. A list knows no farther than it sees, r + room: up to there d - r is
-/// at least (d^2 - r^2)/(2 r + room). Less by what a float is rounded by.
-float PointGroups::wakes_at(const Group& group, double square) const {
-  constexpr double less = 1 - 1e-6;
-  const double reach = partners_->reach(),
-               away = (square - reach * reach) / (2 * reach + group.room);
-  return static_cast<float>(less *
-                            (group.used + std::min(away, group.room - group.used)));
-}
-
-PointGroups::PointGroups(const StrandPartners& partners, int strand)
-    : partners_(&partners), strand_(strand) {}
+PointGroups::PointGroups(const StrandPartners& partners, int strand,
+                         Instructions instructions)
+    : partners_(&partners), strand_(strand), instructions_(instructions) {}
 
 void PointGroups::ready(In x, In length) {
-  groups_.resize((length.size() + four - 1) / four);
+  groups_.resize((length.size() + eight - 1) / eight);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];
-    Vec3<Pack> now;
-    for (std::size_t lane = 0; lane < four; ++lane) {
-      const std::size_t i = four * g + lane;
+    GroupVectors now;
+    for (std::size_t lane = 0; lane < eight; ++lane) {
+      const std::size_t i = eight * g + lane;
       const bool there = i < length.size() && length[i] != 0;
       const Vec at = there ? load3(&x[3 * i]) : Vec{nowhere, nowhere, nowhere};
-      set_lane(now, static_cast<int>(lane), at);
+      now.x[lane] = at.x;
+      now.y[lane] = at.y;
+      now.z[lane] = at.z;
     }
     const bool held = holds(group, now);
     group.x = now;
@@ -180,32 +205,37 @@ void PointGroups::ready(In x, In length) {
 
 /// Whether all that is near now is listed. Since points were last looked at, they and
 /// what is near them have moved, but not nearer to each other than by as much as is left.
-bool PointGroups::holds(Group& group, const Vec3<Pack>& x) const {
+bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;
   Box drift{{0, 0, 0}, {0, 0, 0}};
   if (updates == 1) {
     drift = Box::none();
-    const Vec3<Pack> at_epoch = partners_->at_epoch(x);
     const Box* last = nullptr;
-    for (int lane = 0; lane < Pack::lanes; ++lane) {
-      if (!there(at_epoch, lane)) continue;
-      const Box& one = partners_->drift(lane_of(at_epoch, lane));
+    for (std::size_t lane = 0; lane < eight; ++lane) {
+      const Vec at = partners_->at_epoch(lane_of(x, lane));
+      if (!is_finite(at)) continue;
+      const Box& one = partners_->drift(at);
       if (&one == last || one.empty()) continue;
       drift.include(one);
       last = &one;
     }
     if (drift.empty()) return true;  // nothing is near
   }
-  const Vec3<Pack> before = updates == 1 ? partners_->before(x) : x;
-  const Vec3<Pack> moved =
-      before - group.x - Vec3<Pack>(0.5 * (drift.least + drift.most));
-  // Lanes without a point have not moved.
-  const Pack square = where_less(dot(x, x), Pack(infinity), dot(moved, moved), Pack(0));
+  const Vec middle = 0.5 * (drift.least + drift.most);
+  double most = 0;
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const Vec now = lane_of(x, lane),
+              before = updates == 1 ? partners_->before(now) : now;
+    const Vec moved = before - lane_of(group.x, lane) - middle;
+    const double square = dot(moved, moved);
+    // Lanes without a point have not moved.
+    if (std::isfinite(dot(now, now)) && !(square <= most)) most = square;
+  }
   group.used += 0.5 * norm(drift.most - drift.least);
   const double left = group.room - partners_->range() - group.used;
-  if (!(left >= 0) || !all_up_to(square, left * left)) return false;
-  group.used += std::sqrt(largest(square));
+  if (!(left >= 0) || !(most <= left * left)) return false;
+  group.used += std::sqrt(most);
   return true;
 }
 
@@ -216,68 +246,92 @@ void PointGroups::list(Group& group) {
   group.room = partners_->margin() + partners_->range();
   group.list.clear();
   const double wide = (partners_->reach() + group.room) * rounding;
-  const Vec3<Pack> at_epoch = partners_->at_epoch(group.x);
   Box box = Box::none();
-  for (int lane = 0; lane < Pack::lanes; ++lane) {
-    if (there(at_epoch, lane)) box.include(lane_of(at_epoch, lane));
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const Vec at = partners_->at_epoch(lane_of(group.x, lane));
+    if (is_finite(at)) box.include(at);
   }
   if (box.empty()) return;
   box.grow(wide + partners_->moved());
   const SegmentCells& segments = partners_->segments();
   segments.reaching_into(box, found_);
+  keep_near(group, wide);
+  for (const int i : segments.long_segments()) {
+    if (segments.polyline(i) != strand_) found_.push_back(i);
+  }
+  std::ranges::sort(found_);
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  for (const int i : found_) {
+    const bool next = !group.list.empty() &&
+                      segments.polyline(i) == segments.polyline(group.list.back().first);
+    if (next) {
+      Run& run = group.list.back();
+      if (i == run.first + static_cast<int>(run.count)) {
+        ++run.count;
+        continue;
+      }
+      run.last = 0;
+    }
+    group.list.push_back({i, 1, 1});
+  }
+}
+
+/// Drops what is farther from all points than that, and the own strand.
+void PointGroups::keep_near(const Group& group, double distance) {
+  const SegmentCells& segments = partners_->segments();
   const int own = segments.first(static_cast<std::size_t>(strand_)),
             other = segments.first(static_cast<std::size_t>(strand_) + 1);
   const auto is_own = [=](int i) { return i >= own && i < other; };
   std::size_t near = 0;
-  by(instructions_, [&] {
-    const Pack square(wide * wide);
+  const auto keep = [&](auto... packs) {
     for (const int i : found_) {
-      const Vec3<Pack> gap = nearest(group.x, partners_->piece(i)).gap;
+      const StraightPiece piece = partners_->piece(i);
+      const auto is_near = [&]<class P>(const Vec3<P>& x) {
+        const Vec3<P> gap =
+            nearest(x, all<P>(piece.start), all<P>(piece.edge), all<P>(piece.inverse))
+                .gap;
+        return any_less(dot(gap, gap), P(distance * distance));
+      };
       // Without a branch, which nobody could foresee.
       found_[near] = i;
-      near += any_less(dot(gap, gap), square) && !is_own(i) ? 1 : 0;
+      near += !is_own(i) && (is_near(packs) | ...) ? 1 : 0;
     }
-  });
+  };
+  if (instructions_ == Instructions::avx512) {
+    by(instructions_, [&] { keep(load<PackOf<double, 8>>(group.x, 0)); });
+  } else {
+    keep(load<Pack>(group.x, 0), load<Pack>(group.x, Pack::lanes));
+  }
   found_.resize(near);
-  for (const int i : segments.long_segments()) {
-    if (!is_own(i)) found_.push_back(i);
-  }
-  std::ranges::sort(found_);
-  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  group.list.reserve(found_.size());
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    const bool last = k + 1 == found_.size() ||
-                      segments.polyline(found_[k]) != segments.polyline(found_[k + 1]);
-    group.list.push_back({2 * found_[k] + (last ? 1 : 0), 0});
-  }
 }
 
 void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double elapsed,
-                        FourLoads& to) {
-  Group& g = groups_[group];
-  to = {};
-  if (g.list.empty()) return;
-  Vec3<Pack> of_v{};
-  for (std::size_t lane = 0; lane < four; ++lane) {
-    const std::size_t i = four * group + lane;
-    if (3 * i < v.size()) set_lane(of_v, static_cast<int>(lane), load3(&v[3 * i]));
+                        GroupLoads& to) const {
+  const Group& g = groups_[group];
+  if (g.list.empty()) {
+    to = {};
+    return;
   }
-  by(instructions_, [&] {
+  GroupVectors of_v{};
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const std::size_t i = eight * group + lane;
+    if (3 * i >= v.size()) break;
+    of_v.x[lane] = v[3 * i];
+    of_v.y[lane] = v[3 * i + 1];
+    of_v.z[lane] = v[3 * i + 2];
+  }
+  by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
     if (elapsed == 0) {
-      const bool still =
-          partners_->range() == 0 && partners_->segments().long_segments().empty();
-      sum_loads(g, law, Held{*partners_}, of_v, still, to);
+      add_up<P>(g, from, of_v, law, Held{*partners_}, to);
     } else {
-      sum_loads(g, law, Moving{partners_->motion(), elapsed}, of_v, false, to);
+      add_up<P>(g, from, of_v, law, Moving{partners_->motion(), elapsed}, to);
     }
   });
 }
 
 std::size_t PointGroups::bytes() const {
   std::size_t sum = groups_.capacity() * sizeof(Group) + found_.capacity() * sizeof(int);
-  for (const Group& group : groups_) {
-    sum += group.list.capacity() * sizeof(Candidate);
-  }
+  for (const Group& group : groups_) sum += group.list.capacity() * sizeof(Run);
   return sum;
 }
 

@@ -27,7 +27,7 @@ class StrandPartners {
   void extrapolate(double t, double end, In x, In v, const Loop& loop);
   void interpolate(double t, double end, In x, In v, In y, In w, const Loop& loop);
 
-  bool updated() const { return !pieces_.empty(); }
+  bool updated() const { return !nodes_.empty(); }
   long updates() const { return updates_; }
   long epochs() const { return epochs_; }
   double reach() const { return reach_; }
@@ -60,9 +60,19 @@ class StrandPartners {
   const SegmentCells& segments() const { return cells_; }
   /// At any time in its interval.
   const PointMotion& motion() const { return motion_; }
-  /// At the last update; the last point of a strand begins one of no length.
-  const StraightPiece& piece(int segment) const {
-    return pieces_[static_cast<std::size_t>(segment)].at;
+  /// At the last update; not of the last point of a strand, which begins none.
+  StraightPiece piece(int segment) const {
+    const auto i = static_cast<std::size_t>(segment);
+    StraightPiece piece;
+    piece.start = nodes_[i].x;
+    piece.edge = nodes_[i + 1].x - piece.start;
+    piece.inverse = nodes_[i].inverse;
+    return piece;
+  }
+  const Vec& place(int point) const { return nodes_[static_cast<std::size_t>(point)].x; }
+  /// 1/|edge|^2 of a segment, as of its piece.
+  double inverse(int segment) const {
+    return nodes_[static_cast<std::size_t>(segment)].inverse;
   }
   const Vec& velocity(int point) const { return v_[static_cast<std::size_t>(point)]; }
 
@@ -84,10 +94,11 @@ class StrandPartners {
 
   double reach_, margin_;
   SegmentCells cells_;
-  struct alignas(64) Line {  // of the cache
-    StraightPiece at;
+  struct alignas(32) Node {  // never in two lines of the cache
+    Vec x;
+    double inverse;  // of the segment that it begins
   };
-  std::vector<Line> pieces_;
+  std::vector<Node> nodes_;
   std::vector<Vec> v_;
   std::vector<Vec> before_;  // places at the epoch
   std::vector<Vec> moves_;   // displacements in the last step
