@@ -2,7 +2,9 @@
 #include "models/contact/point_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -70,17 +72,15 @@ template <class P>
   return {all<P>(x.x), all<P>(x.y), all<P>(x.z)};
 }
 
+/// Where on a segment is nearest to what is at d from its start.
 template <class P>
-struct Nearest {
-  P s;
-  Vec3<P> gap;
-};
+[[gnu::always_inline]] inline P nearest(const Vec3<P>& d, const Vec3<P>& edge,
+                                        const P& inverse) {
+  return larger(smaller(inverse * dot(d, edge), P(1)), P(0));
+}
 template <class P>
-[[gnu::always_inline]] inline Nearest<P> nearest(const Vec3<P>& x, const Vec3<P>& start,
-                                                 const Vec3<P>& edge, const P& inverse) {
-  const Vec3<P> d = x - start;
-  const P s = larger(smaller(inverse * dot(d, edge), P(1)), P(0));
-  return {s, d - s * edge};
+[[gnu::always_inline]] inline P square_of(const Vec3<P>& d) {
+  return dot(d, d);
 }
 
 template <class P>
@@ -98,6 +98,30 @@ void by_packs(Instructions instructions, const F& work) {
     by(instructions, [&] { work(std::size_t{0}, PackOf<double, 8>{}); });
   } else {
     for (std::size_t from = 0; from < eight; from += Pack::lanes) work(from, Pack{});
+  }
+}
+
+/// Sorts them, ascending, but for those that equal an earlier one, which may become -1.
+/// Few are sorted without branches: as many as are less come before.
+void sort(std::vector<int>& numbers) {
+  using Ints __attribute__((vector_size(32))) = int;
+  constexpr std::size_t width = 8, few = 160;
+  const std::size_t count = numbers.size();
+  if (count > few) {
+    std::ranges::sort(numbers);
+    return;
+  }
+  alignas(sizeof(Ints)) std::array<int, few> all, rank;
+  std::ranges::copy(numbers, all.begin());
+  for (std::size_t i = 0; i < count; i += width) {
+    Ints these, less{};
+    std::memcpy(&these, &all[i], sizeof these);
+    for (std::size_t k = 0; k < count; ++k) less -= all[k] < these;
+    std::memcpy(&rank[i], &less, sizeof less);
+  }
+  std::ranges::fill(numbers, -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    numbers[static_cast<std::size_t>(rank[i])] = all[i];
   }
 }
 
@@ -123,10 +147,10 @@ template <class P, class Segments>
       Vec3<P> start = all<P>(segments.place(run->first));
       for (int i = run->first; i < end; ++i) {
         const Vec3<P> next = all<P>(segments.place(i + 1));
-        const Nearest<P> at =
-            nearest(x, start, next - start, all<P>(segments.inverse(i)));
-        const P square = dot(at.gap, at.gap);
-        s = where_less(square, least, at.s, s);
+        const Vec3<P> d = x - start, edge = next - start;
+        const P here = nearest(d, edge, all<P>(segments.inverse(i))),
+                square = square_of(d - here * edge);
+        s = where_less(square, least, here, s);
         which = where_less(square, least, number, which);
         least = where_less(square, least, square, least);
         number += one;
@@ -208,12 +232,19 @@ void PointGroups::ready(In x, In length) {
 bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;
+  GroupVectors at_epoch, moved;
+  by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
+    const Vec3<P> now = load<P>(x, from),
+                  before = updates == 1 ? partners_->before(now) : now;
+    store(partners_->at_epoch(now), from, at_epoch);
+    store(before - load<P>(group.x, from), from, moved);
+  });
   Box drift{{0, 0, 0}, {0, 0, 0}};
   if (updates == 1) {
     drift = Box::none();
     const Box* last = nullptr;
     for (std::size_t lane = 0; lane < eight; ++lane) {
-      const Vec at = partners_->at_epoch(lane_of(x, lane));
+      const Vec at = lane_of(at_epoch, lane);
       if (!is_finite(at)) continue;
       const Box& one = partners_->drift(at);
       if (&one == last || one.empty()) continue;
@@ -225,12 +256,10 @@ bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const Vec middle = 0.5 * (drift.least + drift.most);
   double most = 0;
   for (std::size_t lane = 0; lane < eight; ++lane) {
-    const Vec now = lane_of(x, lane),
-              before = updates == 1 ? partners_->before(now) : now;
-    const Vec moved = before - lane_of(group.x, lane) - middle;
-    const double square = dot(moved, moved);
+    const Vec off = lane_of(moved, lane) - middle;
+    const double square = dot(off, off);
     // Lanes without a point have not moved.
-    if (std::isfinite(dot(now, now)) && !(square <= most)) most = square;
+    if (is_finite(lane_of(x, lane)) && !(square <= most)) most = square;
   }
   group.used += 0.5 * norm(drift.most - drift.least);
   const double left = group.room - partners_->range() - group.used;
@@ -259,21 +288,22 @@ void PointGroups::list(Group& group) {
   for (const int i : segments.long_segments()) {
     if (segments.polyline(i) != strand_) found_.push_back(i);
   }
-  std::ranges::sort(found_);
-  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  sort(found_);
+  runs_.clear();
   for (const int i : found_) {
-    const bool next = !group.list.empty() &&
-                      segments.polyline(i) == segments.polyline(group.list.back().first);
-    if (next) {
-      Run& run = group.list.back();
-      if (i == run.first + static_cast<int>(run.count)) {
+    if (!runs_.empty()) {
+      Run& run = runs_.back();
+      const int next = run.first + static_cast<int>(run.count);
+      if (i < next) continue;  // one of those before
+      if (i == next) {
         ++run.count;
         continue;
       }
-      run.last = 0;
+      run.last = segments.polyline(run.first) != segments.polyline(i) ? 1 : 0;
     }
-    group.list.push_back({i, 1, 1});
+    runs_.push_back({i, 1, 1});
   }
+  group.list = runs_;
 }
 
 /// Drops what is farther from all points than that, and the own strand.
@@ -287,10 +317,9 @@ void PointGroups::keep_near(const Group& group, double distance) {
     for (const int i : found_) {
       const StraightPiece piece = partners_->piece(i);
       const auto is_near = [&]<class P>(const Vec3<P>& x) {
-        const Vec3<P> gap =
-            nearest(x, all<P>(piece.start), all<P>(piece.edge), all<P>(piece.inverse))
-                .gap;
-        return any_less(dot(gap, gap), P(distance * distance));
+        const Vec3<P> d = x - all<P>(piece.start), edge = all<P>(piece.edge);
+        const P s = nearest(d, edge, all<P>(piece.inverse));
+        return any_less(square_of(d - s * edge), P(distance * distance));
       };
       // Without a branch, which nobody could foresee.
       found_[near] = i;

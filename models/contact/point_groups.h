@@ -75,6 +75,7 @@ class PointGroups {
   Instructions instructions_;
   std::vector<Group> groups_;
   std::vector<int> found_;  // of a search
+  std::vector<Run> runs_;   // the same
   long made_ = 0;
 };
 
