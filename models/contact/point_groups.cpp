@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "math/lanes.h"
+#include "models/contact/strand_meetings.h"
 
 namespace tress::models {
 namespace {
@@ -36,59 +37,6 @@ struct Moving {
     return motion.velocity(static_cast<std::size_t>(i), elapsed);
   }
 };
-
-template <class P>
-P load(const GroupNumbers& x, std::size_t from) {
-  return P::load(&x[from]);
-}
-template <class P>
-Vec3<P> load(const GroupVectors& x, std::size_t from) {
-  return {load<P>(x.x, from), load<P>(x.y, from), load<P>(x.z, from)};
-}
-template <class P>
-void store(const P& x, std::size_t from, GroupNumbers& to) {
-  for (int lane = 0; lane < lanes<P>; ++lane) {
-    to[from + static_cast<std::size_t>(lane)] = x[lane];
-  }
-}
-template <class P>
-void store(const Vec3<P>& x, std::size_t from, GroupVectors& to) {
-  store(x.x, from, to.x);
-  store(x.y, from, to.y);
-  store(x.z, from, to.z);
-}
-
-/// Of a number in memory: one instruction, without a sum.
-template <class P>
-[[gnu::always_inline]] inline P all(double x) {
-  return [x]<int... lane>(std::integer_sequence<int, lane...>) {
-    const typename P::Vector one{x};
-    return P(__builtin_shufflevector(one, one, (0 * lane)...));
-  }
-  (std::make_integer_sequence<int, P::lanes>{});
-}
-template <class P>
-[[gnu::always_inline]] inline Vec3<P> all(const Vec& x) {
-  return {all<P>(x.x), all<P>(x.y), all<P>(x.z)};
-}
-
-/// Where on a segment is nearest to what is at d from its start.
-template <class P>
-[[gnu::always_inline]] inline P nearest(const Vec3<P>& d, const Vec3<P>& edge,
-                                        const P& inverse) {
-  return larger(smaller(inverse * dot(d, edge), P(1)), P(0));
-}
-template <class P>
-[[gnu::always_inline]] inline P square_of(const Vec3<P>& d) {
-  return dot(d, d);
-}
-
-template <class P>
-[[gnu::always_inline]] inline Vec3<P> choose(const P& x, const P& y, const Vec3<P>& yes,
-                                             const Vec3<P>& no) {
-  return {where_less(x, y, yes.x, no.x), where_less(x, y, yes.y, no.y),
-          where_less(x, y, yes.z, no.z)};
-}
 
 /// Calls work(from, pack) for the points of a group, pack by pack: eight together where
 /// registers are that wide.
@@ -127,82 +75,6 @@ void sort(std::vector<int>& numbers) {
 
 }  // namespace
 
-/// Those of the points from `from` on.
-template <class P, class Segments>
-[[gnu::always_inline]] inline void PointGroups::add_up(
-    const Group& group, std::size_t from, const GroupVectors& of_v, const ContactLaw& law,
-    const Segments& segments, GroupLoads& to) {
-  const Vec3<P> x = load<P>(group.x, from), points_v = load<P>(of_v, from);
-  const double reach = law.reach();
-  const P far(reach * reach), zero(0), one(1);
-  Vec3<P> force{zero, zero, zero}, rows[3] = {force, force, force};
-  P by_velocity(0);
-  for (auto run = group.list.begin(); run != group.list.end();) {
-    // The nearest point of one strand: on which of its segments within reach, and where.
-    const auto first = run;
-    P least = far, s(0), number(0), which(0);
-    for (bool more = true; more; ++run) {
-      more = !run->last;
-      const int end = run->first + static_cast<int>(run->count);
-      Vec3<P> start = all<P>(segments.place(run->first));
-      for (int i = run->first; i < end; ++i) {
-        const Vec3<P> next = all<P>(segments.place(i + 1));
-        const Vec3<P> d = x - start, edge = next - start;
-        const P here = nearest(d, edge, all<P>(segments.inverse(i))),
-                square = square_of(d - here * edge);
-        s = where_less(square, least, here, s);
-        which = where_less(square, least, number, which);
-        least = where_less(square, least, square, least);
-        number += one;
-        start = next;
-      }
-    }
-    if (!any_less(least, far)) continue;
-    Vec3<P> start, edge, v, faster;
-    P inverse(0), before(-0.5);
-    for (auto part = first; part != run; ++part) {
-      const int end = part->first + static_cast<int>(part->count);
-      Vec3<P> here = all<P>(segments.place(part->first)),
-              here_v = all<P>(segments.velocity(part->first));
-      for (int i = part->first; i < end; ++i) {
-        const Vec3<P> next = all<P>(segments.place(i + 1)),
-                      next_v = all<P>(segments.velocity(i + 1));
-        start = choose(before, which, here, start);
-        edge = choose(before, which, next - here, edge);
-        inverse = where_less(before, which, all<P>(segments.inverse(i)), inverse);
-        v = choose(before, which, here_v, v);
-        faster = choose(before, which, next_v - here_v, faster);
-        before += one;
-        here = next;
-        here_v = next_v;
-      }
-    }
-    // Lanes out of reach get a gap without force.
-    const Vec3<P> gap =
-        choose(least, far, x - start - s * edge, Vec3<P>(Vec{2 * reach, 0, 0}));
-    const Vec3<P> u = choose(least, far, points_v - v - s * faster, Vec3<P>(Vec{}));
-    const ContactLaw::Factors<P> at = law.factors(gap);
-    force = force + at.push * gap - at.drag * u;
-    by_velocity -= at.drag;
-    // Between the ends of a segment its nearest point follows x: ds/dx = `along`.
-    const P follows = where_less(zero, s * (one - s), inverse, zero);
-    const Vec3<P> along = follows * edge;
-    const Vec3<P> column = at.push_slope * gap - at.drag_slope * u;
-    // Rows of push I + column d^T, less their product with ds/dx.
-    const P by_edge = dot(gap, edge);
-    const Vec3<P> by_s = at.push * edge + by_edge * column - at.drag * faster;
-    rows[0] = rows[0] + column.x * gap - by_s.x * along;
-    rows[1] = rows[1] + column.y * gap - by_s.y * along;
-    rows[2] = rows[2] + column.z * gap - by_s.z * along;
-    rows[0].x += at.push;
-    rows[1].y += at.push;
-    rows[2].z += at.push;
-  }
-  store(force, from, to.force);
-  for (std::size_t i = 0; i < 3; ++i) store(rows[i], from, to.by_place[i]);
-  store(by_velocity, from, to.by_velocity);
-}
-
 PointGroups::PointGroups(const StrandPartners& partners, int strand,
                          Instructions instructions)
     : partners_(&partners), strand_(strand), instructions_(instructions) {}
@@ -224,6 +96,7 @@ void PointGroups::ready(In x, In length) {
     group.x = now;
     group.update = partners_->updates();
     if (!held) list(group);
+    for (const SegmentRun& run : group.list) partners_->fetch(run.first, run.count);
   }
 }
 
@@ -292,7 +165,7 @@ void PointGroups::list(Group& group) {
   runs_.clear();
   for (const int i : found_) {
     if (!runs_.empty()) {
-      Run& run = runs_.back();
+      SegmentRun& run = runs_.back();
       const int next = run.first + static_cast<int>(run.count);
       if (i < next) continue;  // one of those before
       if (i == next) {
@@ -351,16 +224,17 @@ void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double e
   }
   by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
     if (elapsed == 0) {
-      add_up<P>(g, from, of_v, law, Held{*partners_}, to);
+      set_loads<P>(g.x, of_v, g.list, from, law, Held{*partners_}, to);
     } else {
-      add_up<P>(g, from, of_v, law, Moving{partners_->motion(), elapsed}, to);
+      set_loads<P>(g.x, of_v, g.list, from, law, Moving{partners_->motion(), elapsed},
+                   to);
     }
   });
 }
 
 std::size_t PointGroups::bytes() const {
   std::size_t sum = groups_.capacity() * sizeof(Group) + found_.capacity() * sizeof(int);
-  for (const Group& group : groups_) sum += group.list.capacity() * sizeof(Run);
+  for (const Group& group : groups_) sum += group.list.capacity() * sizeof(SegmentRun);
   return sum;
 }
 
