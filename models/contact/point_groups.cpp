@@ -81,6 +81,9 @@ PointGroups::PointGroups(const StrandPartners& partners, int strand,
 
 void PointGroups::ready(In x, In length) {
   groups_.resize((length.size() + eight - 1) / eight);
+  // All of it was last needed a step ago.
+  fetch(groups_.data(), groups_.size());
+  for (const Group& group : groups_) fetch(group.list.data(), group.list.size());
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];
     GroupVectors now;
@@ -96,7 +99,8 @@ void PointGroups::ready(In x, In length) {
     group.x = now;
     group.update = partners_->updates();
     if (!held) list(group);
-    for (const SegmentRun& run : group.list) partners_->fetch(run.first, run.count);
+    for (const SegmentRun& run : group.list)
+      partners_->fetch_segments(run.first, run.count);
   }
 }
 
@@ -186,6 +190,7 @@ void PointGroups::keep_near(const Group& group, double distance) {
             other = segments.first(static_cast<std::size_t>(strand_) + 1);
   const auto is_own = [=](int i) { return i >= own && i < other; };
   std::size_t near = 0;
+  for (const int i : found_) partners_->fetch_place(i);
   const auto keep = [&](auto... packs) {
     for (const int i : found_) {
       const StraightPiece piece = partners_->piece(i);

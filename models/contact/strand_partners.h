@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "math/fetch.h"
 #include "models/contact/local_drift.h"
 #include "models/contact/point_motion.h"
 #include "models/contact/rigid_motion.h"
@@ -75,16 +76,14 @@ class StrandPartners {
     return nodes_[static_cast<std::size_t>(segment)].inverse;
   }
   const Vec& velocity(int point) const { return v_[static_cast<std::size_t>(point)]; }
-  /// Lets segments that are needed soon come into the cache.
-  void fetch(int first, unsigned count) const {
-    const auto lines = [count](const auto& of_first) {
-      const char* const begin = reinterpret_cast<const char*>(&of_first);
-      const std::size_t bytes = (count + 1) * sizeof of_first;
-      for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(begin + at);
-      __builtin_prefetch(begin + bytes - 1);
-    };
-    lines(nodes_[static_cast<std::size_t>(first)]);
-    lines(v_[static_cast<std::size_t>(first)]);
+  // What is needed soon is let come into the cache.
+  void fetch_segments(int first, unsigned count) const {
+    const auto i = static_cast<std::size_t>(first);
+    fetch(&nodes_[i], count + 1);
+    fetch(&v_[i], count + 1);
+  }
+  void fetch_place(int segment) const {
+    fetch(&nodes_[static_cast<std::size_t>(segment)], 2);
   }
 
   /// Sets `found` to the segments of strands other than `but` that may come within
