@@ -109,24 +109,27 @@ void PointGroups::ready(In x, In length) {
 bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;
-  GroupVectors at_epoch, moved;
+  GroupVectors moved;
+  alignas(GroupNumbers) std::array<int, eight> cells;
   by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
     const Vec3<P> now = load<P>(x, from),
                   before = updates == 1 ? partners_->before(now) : now;
-    store(partners_->at_epoch(now), from, at_epoch);
     store(before - load<P>(group.x, from), from, moved);
+    const auto of_lanes = partners_->cells(partners_->at_epoch(now));
+    std::ranges::copy(of_lanes, cells.begin() + from);
   });
+  std::array<bool, eight> there;
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    there[lane] = is_finite(lane_of(x, lane));
+  }
   Box drift{{0, 0, 0}, {0, 0, 0}};
   if (updates == 1) {
     drift = Box::none();
-    const Box* last = nullptr;
+    int last = -1;
     for (std::size_t lane = 0; lane < eight; ++lane) {
-      const Vec at = lane_of(at_epoch, lane);
-      if (!is_finite(at)) continue;
-      const Box& one = partners_->drift(at);
-      if (&one == last || one.empty()) continue;
-      drift.include(one);
-      last = &one;
+      if (!there[lane] || cells[lane] == last) continue;
+      last = cells[lane];
+      drift.include(partners_->drift(last));
     }
     if (drift.empty()) return true;  // nothing is near
   }
@@ -135,8 +138,7 @@ bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   for (std::size_t lane = 0; lane < eight; ++lane) {
     const Vec off = lane_of(moved, lane) - middle;
     const double square = dot(off, off);
-    // Lanes without a point have not moved.
-    if (is_finite(lane_of(x, lane)) && !(square <= most)) most = square;
+    if (there[lane] && !(square <= most)) most = square;
   }
   group.used += 0.5 * norm(drift.most - drift.least);
   const double left = group.room - partners_->range() - group.used;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -46,9 +47,14 @@ class StrandPartners {
     return step_.back(x);
   }
   /// Holds the last displacements x - before of all that may have come within a list's
-  /// distance of a place, but for long segments; least > most if nothing has. `at_epoch`:
-  /// of the place at the last update.
-  const Box& drift(const Vec& at_epoch) const { return drift_.near(at_epoch); }
+  /// distance of a place in the cell, but for long segments; least > most if nothing has.
+  const Box& drift(int cell) const { return drift_.near(cell); }
+  /// Of each lane; `at_epoch`: of the place at the last update. Places that are not
+  /// finite have some cell.
+  template <class P>
+  std::array<int, lanes<P>> cells(const Vec3<P>& at_epoch) const {
+    return drift_.cells(at_epoch);
+  }
 
   /// The epoch's place of what would have moved with the head to x.
   template <class T>
