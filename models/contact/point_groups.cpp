@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 #include "math/lanes.h"
 #include "models/contact/strand_meetings.h"
@@ -15,8 +14,7 @@ namespace tress::models {
 namespace {
 
 constexpr auto eight = static_cast<std::size_t>(points_of_group);
-constexpr double nowhere = std::numeric_limits<double>::quiet_NaN(),
-                 infinity = std::numeric_limits<double>::infinity();
+constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 // Of lengths that are compared to decide what to look at.
 constexpr double rounding = 1 + 1e-9;
 
@@ -99,8 +97,9 @@ void PointGroups::ready(In x, In length) {
     group.x = now;
     group.update = partners_->updates();
     if (!held) list(group);
-    for (const SegmentRun& run : group.list)
+    for (const SegmentRun& run : group.list) {
       partners_->fetch_segments(run.first, run.count);
+    }
   }
 }
 
