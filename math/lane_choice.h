@@ -25,9 +25,14 @@ template <class Number, int width>
 bool any_less(const PackOf<Number, width>& x, const PackOf<Number, width>& y) {
   const auto less = x.v < y.v;
 #ifdef __AVX__
+  using Four = PackOf<double, 4>::Vector;
   if constexpr (width == 4 && sizeof(Number) == sizeof(double)) {
-    return __builtin_ia32_movmskpd256(
-               reinterpret_cast<typename PackOf<Number, width>::Vector>(less)) != 0;
+    return __builtin_ia32_movmskpd256(reinterpret_cast<Four>(less)) != 0;
+  }
+  if constexpr (width == 8 && sizeof(Number) == sizeof(double)) {
+    const auto halves = __builtin_shufflevector(less, less, 0, 1, 2, 3) |
+                        __builtin_shufflevector(less, less, 4, 5, 6, 7);
+    return __builtin_ia32_movmskpd256(reinterpret_cast<Four>(halves)) != 0;
   }
 #endif
   auto any = less[0];

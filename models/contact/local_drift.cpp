@@ -11,18 +11,6 @@ constexpr std::size_t segments_of_cell = 2;  // at least, on average
 
 }  // namespace
 
-std::size_t LocalDrift::cell(const Vec& at) const noexcept {
-  const auto index = [this](double place, double corner, int count) {
-    const double i = inverse_side_ * (place - corner), last = count - 1;
-    return static_cast<std::size_t>(i > 0 ? i < last ? i : last : 0);
-  };
-  const auto number = [this](int axis) { return static_cast<std::size_t>(count_[axis]); };
-  return (index(at.z, corner_.z, count_[2]) * number(1) +
-          index(at.y, corner_.y, count_[1])) *
-             number(0) +
-         index(at.x, corner_.x, count_[0]);
-}
-
 void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
                       const Loop& loop) {
   const Box all = segments.extent();
@@ -47,7 +35,7 @@ void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
   in_parts(segments.points(), loop, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       segments.each_part(i, x, [&](std::size_t part, const Vec& middle) {
-        cell_of_[part] = static_cast<int>(cell(middle));
+        cell_of_[part] = this->cells(Vec3<Pack>(middle))[0];
       });
     }
   });

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "math/lane_choice.h"
+#include "math/lanes.h"
 #include "models/contact/box_pairs.h"
 #include "models/contact/segment_cells.h"
 
@@ -22,15 +26,16 @@ class LocalDrift {
   /// does not depend on who runs the loop's parts.
   void move(const SegmentCells& segments, std::span<const Vec> by, const Loop& loop);
 
-  /// Of the step; least > most where nothing is near. `at`: a finite place at the time of
-  /// fill().
-  const Box& near(const Vec& at) const { return near_[cell(at)]; }
+  /// Of the step; least > most where nothing is near.
+  const Box& near(int cell) const { return near_[static_cast<std::size_t>(cell)]; }
+  /// The cell of each lane's place at the time of fill(); of places that are not finite
+  /// some cell.
+  template <class P>
+  std::array<int, lanes<P>> cells(const Vec3<P>& at) const noexcept;
   /// Half the diagonal of that box, mean over all segments, m.
   double mean() const { return mean_; }
 
  private:
-  std::size_t cell(const Vec& at) const noexcept;
-
   double inverse_side_ = 1;
   Vec corner_;
   int count_[3] = {1, 1, 1};
@@ -40,5 +45,18 @@ class LocalDrift {
   std::vector<Box> near_, at_;  // of cells, and when extended along some axes
   double mean_ = 0;
 };
+
+template <class P>
+std::array<int, lanes<P>> LocalDrift::cells(const Vec3<P>& at) const noexcept {
+  using Ints __attribute__((vector_size(lanes<P> * sizeof(int)))) = int;
+  const auto index = [this](const P& place, double corner, int count) {
+    const P i = P(inverse_side_) * (place - P(corner)), last(count - 1), zero(0);
+    return __builtin_convertvector(where_less(zero, i, smaller(i, last), zero).v, Ints);
+  };
+  const Ints row =
+      index(at.z, corner_.z, count_[2]) * count_[1] + index(at.y, corner_.y, count_[1]);
+  return std::bit_cast<std::array<int, lanes<P>>>(row * count_[0] +
+                                                  index(at.x, corner_.x, count_[0]));
+}
 
 }  // namespace tress::models

@@ -23,6 +23,7 @@ constexpr std::size_t width = 8;  // parts that a search tests together
 constexpr double float_error = 1e-6;
 
 using Floats __attribute__((vector_size(width * sizeof(float)))) = float;
+using Ints __attribute__((vector_size(width * sizeof(int)))) = int;
 Floats load(const float* p) {
   Floats x;
   std::memcpy(&x, p, sizeof x);
@@ -141,7 +142,7 @@ SegmentCells::Range SegmentCells::cells(int axis, double from, double to) const 
 void SegmentCells::sort(In x, const Loop& loop) {
   const auto parts = static_cast<std::size_t>(part_.back());
   cell_of_.resize(parts);
-  segment_.resize(parts);
+  segment_.resize(parts + width);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     least_[axis].resize(parts + width);
     most_[axis].resize(parts + width);
@@ -221,6 +222,7 @@ void SegmentCells::reaching_into(const Box& box, std::vector<int>& found) const 
   const auto most = [wide](double at) { return Floats{} + float(at + wide); };
   const Floats x0 = least(a.x), x1 = most(b.x), y0 = least(a.y), y1 = most(b.y),
                z0 = least(a.z), z1 = most(b.z);
+  constexpr Ints numbers{0, 1, 2, 3, 4, 5, 6, 7};
   std::size_t count = 0;
   for (int z = zs.from; z <= zs.to; ++z) {
     for (int y = ys.from; y <= ys.to; ++y) {
@@ -235,10 +237,10 @@ void SegmentCells::reaching_into(const Box& box, std::vector<int>& found) const 
                            (load(&least_[1][i]) <= y1) & (load(&most_[1][i]) >= y0) &
                            (load(&least_[2][i]) <= z1) & (load(&most_[2][i]) >= z0);
         // Without branches, which nobody could foresee.
-        const std::size_t here = std::min<std::size_t>(width, end - i);
-        for (std::size_t k = 0; k < here; ++k) {
+        const Ints of_row = close & (numbers < static_cast<int>(end - i));
+        for (std::size_t k = 0; k < width; ++k) {
           found[count] = segment_[i + k];
-          count -= static_cast<std::size_t>(close[k] >> 31);
+          count -= static_cast<std::size_t>(of_row[k] >> 31);
         }
       }
     }

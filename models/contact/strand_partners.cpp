@@ -37,7 +37,7 @@ void StrandPartners::interpolate(double t, double end, In x, In v, In y, In w,
 
 /// `range`: how far a point goes until the next update.
 void StrandPartners::move(double range, In x, In v, const Loop& loop) {
-  const bool first = pieces_.empty();
+  const bool first = nodes_.empty();
   range_ = range;
   step_ = {};
   if (!first) {
@@ -46,9 +46,9 @@ void StrandPartners::move(double range, In x, In v, const Loop& loop) {
     for (std::size_t k = 0; k < cells_.polylines(); ++k) {
       const auto root = static_cast<std::size_t>(cells_.first(k));
       const Vec now = load3(&x[3 * root]);
-      if (!is_finite(now) || !is_finite(pieces_[root].at.start)) continue;
+      if (!is_finite(now) || !is_finite(nodes_[root].x)) continue;
       roots_.push_back(now);
-      roots_before_.push_back(pieces_[root].at.start);
+      roots_before_.push_back(nodes_[root].x);
     }
     step_ = rigid_motion(roots_before_, roots_);
     roots_before_.clear();
@@ -81,20 +81,20 @@ void StrandPartners::move(double range, In x, In v, const Loop& loop) {
 /// Takes the places of the points and their displacements; whether some had none before.
 bool StrandPartners::place(In x, In v, const Loop& loop) {
   const std::size_t count = cells_.points();
-  const bool first = pieces_.empty();
-  pieces_.resize(count);
+  const bool first = nodes_.empty();
+  nodes_.resize(count);
   v_.resize(count);
   moves_.resize(count);
   came_.assign(1 + count / loop_part, 0);
   in_parts(count, loop, [&](std::size_t from, std::size_t to) {
     bool came = false;
     for (std::size_t i = from; i < to; ++i) {
-      StraightPiece& piece = pieces_[i].at;
-      const Vec now = load3(&x[3 * i]), old = first ? now : piece.start;
+      Node& node = nodes_[i];
+      const Vec now = load3(&x[3 * i]), old = first ? now : node.x;
       moves_[i] = step_.back(now) - old;
       came = came || (is_finite(now) && !is_finite(old));
       const bool last = cells_.last(static_cast<int>(i));
-      piece = StraightPiece(now, last ? now : load3(&x[3 * i + 3]));
+      node = {now, last ? 0 : StraightPiece(now, load3(&x[3 * i + 3])).inverse};
       v_[i] = load3(&v[3 * i]);
     }
     came_[from / loop_part] = came ? 1 : 0;
@@ -108,7 +108,7 @@ double StrandPartners::displacement(const RigidMotion& head, const Loop& loop) {
   in_parts(before_.size(), loop, [&](std::size_t from, std::size_t to) {
     double most = 0;
     for (std::size_t i = from; i < to; ++i) {
-      const Vec moved = head.back(pieces_[i].at.start) - before_[i];
+      const Vec moved = head.back(nodes_[i].x) - before_[i];
       const double square = dot(moved, moved);
       // What is no place is near to nothing.
       if (square > most) most = square;
@@ -122,9 +122,9 @@ double StrandPartners::displacement(const RigidMotion& head, const Loop& loop) {
 /// over before; parts are as long as the cells say, and have moved since.
 void StrandPartners::begin_epoch(In x, const Loop& loop) {
   ++epochs_;
-  before_.resize(pieces_.size());
-  in_parts(pieces_.size(), loop, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) before_[i] = pieces_[i].at.start;
+  before_.resize(nodes_.size());
+  in_parts(nodes_.size(), loop, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) before_[i] = nodes_[i].x;
   });
   head_ = {};
   moved_ = 0;
@@ -151,7 +151,7 @@ double StrandPartners::best_margin() const {
 }
 
 std::size_t StrandPartners::bytes() const {
-  return cells_.bytes() + pieces_.capacity() * sizeof(Line) +
+  return cells_.bytes() + nodes_.capacity() * sizeof(Node) +
          (v_.capacity() + before_.capacity() + moves_.capacity() + roots_.capacity() +
           roots_before_.capacity()) *
              sizeof(Vec);

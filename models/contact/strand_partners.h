@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "math/fetch.h"
 #include "models/contact/local_drift.h"
 #include "models/contact/point_motion.h"
 #include "models/contact/rigid_motion.h"
@@ -27,7 +29,7 @@ class StrandPartners {
   void extrapolate(double t, double end, In x, In v, const Loop& loop);
   void interpolate(double t, double end, In x, In v, In y, In w, const Loop& loop);
 
-  bool updated() const { return !pieces_.empty(); }
+  bool updated() const { return !nodes_.empty(); }
   long updates() const { return updates_; }
   long epochs() const { return epochs_; }
   double reach() const { return reach_; }
@@ -45,9 +47,14 @@ class StrandPartners {
     return step_.back(x);
   }
   /// Holds the last displacements x - before of all that may have come within a list's
-  /// distance of a place, but for long segments; least > most if nothing has. `at_epoch`:
-  /// of the place at the last update.
-  const Box& drift(const Vec& at_epoch) const { return drift_.near(at_epoch); }
+  /// distance of a place in the cell, but for long segments; least > most if nothing has.
+  const Box& drift(int cell) const { return drift_.near(cell); }
+  /// Of each lane; `at_epoch`: of the place at the last update. Places that are not
+  /// finite have some cell.
+  template <class P>
+  std::array<int, lanes<P>> cells(const Vec3<P>& at_epoch) const {
+    return drift_.cells(at_epoch);
+  }
 
   /// The epoch's place of what would have moved with the head to x.
   template <class T>
@@ -60,11 +67,30 @@ class StrandPartners {
   const SegmentCells& segments() const { return cells_; }
   /// At any time in its interval.
   const PointMotion& motion() const { return motion_; }
-  /// At the last update; the last point of a strand begins one of no length.
-  const StraightPiece& piece(int segment) const {
-    return pieces_[static_cast<std::size_t>(segment)].at;
+  /// At the last update; not of the last point of a strand, which begins none.
+  StraightPiece piece(int segment) const {
+    const auto i = static_cast<std::size_t>(segment);
+    StraightPiece piece;
+    piece.start = nodes_[i].x;
+    piece.edge = nodes_[i + 1].x - piece.start;
+    piece.inverse = nodes_[i].inverse;
+    return piece;
+  }
+  const Vec& place(int point) const { return nodes_[static_cast<std::size_t>(point)].x; }
+  /// 1/|edge|^2 of a segment, as of its piece.
+  double inverse(int segment) const {
+    return nodes_[static_cast<std::size_t>(segment)].inverse;
   }
   const Vec& velocity(int point) const { return v_[static_cast<std::size_t>(point)]; }
+  // What is needed soon is let come into the cache.
+  void fetch_segments(int first, unsigned count) const {
+    const auto i = static_cast<std::size_t>(first);
+    fetch(&nodes_[i], count + 1);
+    fetch(&v_[i], count + 1);
+  }
+  void fetch_place(int segment) const {
+    fetch(&nodes_[static_cast<std::size_t>(segment)], 2);
+  }
 
   /// Sets `found` to the segments of strands other than `but` that may come within
   /// `radius` of a piece at its epoch's place, and some others, ascending.
@@ -84,10 +110,11 @@ class StrandPartners {
 
   double reach_, margin_;
   SegmentCells cells_;
-  struct alignas(64) Line {  // of the cache
-    StraightPiece at;
+  struct alignas(32) Node {  // never in two lines of the cache
+    Vec x;
+    double inverse;  // of the segment that it begins
   };
-  std::vector<Line> pieces_;
+  std::vector<Node> nodes_;
   std::vector<Vec> v_;
   std::vector<Vec> before_;  // places at the epoch
   std::vector<Vec> moves_;   // displacements in the last step

@@ -77,7 +77,7 @@ class StrandInteraction::OnStrand final : public Effect {
 
   void add_load(double t, const Points& p, InOut f) const noexcept override {
     look(t, p);
-    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
+    each_point(p, [&](std::size_t i, const GroupLoads& loads, std::size_t lane) {
       add_force(p.length[i], loads, lane, &f[3 * i]);
     });
   }
@@ -85,7 +85,7 @@ class StrandInteraction::OnStrand final : public Effect {
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override {
     look(t, p);
-    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
+    each_point(p, [&](std::size_t i, const GroupLoads& loads, std::size_t lane) {
       add_block(p.length[i], loads, lane, pos, vel, &blocks[9 * i]);
     });
   }
@@ -95,11 +95,11 @@ class StrandInteraction::OnStrand final : public Effect {
     if (!all_.partners_.updated()) return;
     groups_.ready(p.x, p.length);
     const double elapsed = all_.partners_.motion().elapsed(t);
-    FourLoads loads;
+    GroupLoads loads;
     for (std::size_t g = 0; g < groups_.groups(); ++g) {
       if (!groups_.feels(g)) continue;
       groups_.loads(g, all_.law_, p.v, elapsed, loads);
-      each_point_of(g, p, [&](std::size_t i, int lane) {
+      each_point_of(g, p, [&](std::size_t i, std::size_t lane) {
         add_force(p.length[i], loads, lane, &f[3 * i]);
         add_block(p.length[i], loads, lane, pos, vel, &blocks[9 * i]);
       });
@@ -114,7 +114,7 @@ class StrandInteraction::OnStrand final : public Effect {
   double power(double t, const Points& p) const noexcept override {
     look(t, p);
     double sum = 0;
-    each_point(p, [&](std::size_t i, const FourLoads& loads, int lane) {
+    each_point(p, [&](std::size_t i, const GroupLoads& loads, std::size_t lane) {
       sum += p.length[i] * dot(lane_of(loads.force, lane), load3(&p.v[3 * i]));
     });
     return sum;
@@ -147,21 +147,23 @@ class StrandInteraction::OnStrand final : public Effect {
   void each_point(const Points& p, F act) const {
     for (std::size_t g = 0; g < loads_.size(); ++g) {
       if (!groups_.feels(g)) continue;
-      each_point_of(g, p, [&](std::size_t i, int lane) { act(i, loads_[g], lane); });
+      each_point_of(g, p,
+                    [&](std::size_t i, std::size_t lane) { act(i, loads_[g], lane); });
     }
   }
   template <class F>
   static void each_point_of(std::size_t group, const Points& p, F act) {
-    for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
-      const std::size_t i = Pack::lanes * group + lane;
-      if (i < p.length.size()) act(i, static_cast<int>(lane));
-    }
+    const std::size_t first = points_of_group * group,
+                      count =
+                          std::min<std::size_t>(points_of_group, p.length.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane) act(first + lane, lane);
   }
-  static void add_force(double length, const FourLoads& loads, int lane, double* f) {
+  static void add_force(double length, const GroupLoads& loads, std::size_t lane,
+                        double* f) {
     store3(load3(f) + length * lane_of(loads.force, lane), f);
   }
-  static void add_block(double length, const FourLoads& loads, int lane, double pos,
-                        double vel, double* block) {
+  static void add_block(double length, const GroupLoads& loads, std::size_t lane,
+                        double pos, double vel, double* block) {
     for (std::size_t row = 0; row < 3; ++row, block += 3) {
       store3(load3(block) + (pos * length) * lane_of(loads.by_place[row], lane), block);
       block[row] += vel * length * loads.by_velocity[lane];
@@ -170,7 +172,7 @@ class StrandInteraction::OnStrand final : public Effect {
 
   const StrandInteraction& all_;
   mutable PointGroups groups_;
-  mutable std::vector<FourLoads> loads_;
+  mutable std::vector<GroupLoads> loads_;
   // Where they are those of.
   mutable std::vector<double> x_, v_;
   mutable double elapsed_ = 0;

@@ -29,7 +29,7 @@ std::span<const Parameter> strand_interaction_parameters();
 /// of the two strands. Contacts are resolved only if points are closer to each other than
 /// the inner radius.
 ///
-/// Four points of a strand share a kept list of the segments that may come near
+/// Eight points of a strand share a kept list of the segments that may come near
 /// (PointGroups), made when first asked for by whoever asks; load and derivatives at the
 /// same state come from one search. Cost: O(points in reach), whatever the number of
 /// strands; update() is O(points).

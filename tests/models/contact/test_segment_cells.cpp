@@ -139,7 +139,7 @@ TEST(LocalDrift, HoldsWhatMovesNearAPlaceAndLessThanAll) {
   long near = 0, out = 0;
   for (std::size_t at = 0; at < by.size(); at += 40) {
     const Vec place = load3(&strands.x[3 * at]);
-    const Box& box = drift.near(place);
+    const Box& box = drift.near(drift.cells(Vec3<Pack>(place))[0]);
     for (std::size_t i = 0; i < by.size(); ++i) {
       if (cells.last(static_cast<int>(i)) || !is_finite(by[i]) || !is_finite(by[i + 1])) {
         continue;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "math/lanes.h"
+#include "math/vec3.h"
+
+namespace tress::models {
+
+/// As many points of one strand are looked at together.
+inline constexpr int points_of_group = 8;
+struct alignas(64) GroupNumbers : std::array<double, points_of_group> {};
+using GroupVectors = Vec3<GroupNumbers>;
+inline Vec lane_of(const GroupVectors& x, std::size_t lane) {
+  return {x.x[lane], x.y[lane], x.z[lane]};
+}
+
+/// Load per length on the points of a group from the nearest point of every other strand,
+/// and its derivatives: rows of dF/dx, and dF/dv over the identity.
+struct GroupLoads {
+  GroupVectors force, by_place[3];
+  GroupNumbers by_velocity;
+};
+
+/// Segments of one strand, one after the other.
+struct SegmentRun {
+  int first;
+  unsigned count : 31;
+  unsigned last : 1;  // whether the next run is of another strand
+};
+
+template <class P>
+P load(const GroupNumbers& x, std::size_t from) {
+  return P::load(&x[from]);
+}
+template <class P>
+Vec3<P> load(const GroupVectors& x, std::size_t from) {
+  return {load<P>(x.x, from), load<P>(x.y, from), load<P>(x.z, from)};
+}
+template <class P>
+void store(const P& x, std::size_t from, GroupNumbers& to) {
+  for (int lane = 0; lane < lanes<P>; ++lane) {
+    to[from + static_cast<std::size_t>(lane)] = x[lane];
+  }
+}
+template <class P>
+void store(const Vec3<P>& x, std::size_t from, GroupVectors& to) {
+  store(x.x, from, to.x);
+  store(x.y, from, to.y);
+  store(x.z, from, to.z);
+}
+
+}  // namespace tress::models
