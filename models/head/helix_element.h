@@ -135,6 +135,15 @@ class HelixElement {
     return all;
   }
 
+  /// What kappa'' adds to the former, rho times P_kappa kappa''.
+  void add_second(const T& rho, const Vec& second, AlongHelix<T>& all) const {
+    const T along = rho * dot(k_, second);
+    all.A = all.A + rho * Vec{T(0), second.z, -second.y};
+    all.B = all.B + rho * along_l(second);
+    all.A1 = all.A1 + along * u_;
+    all.B1 = all.B1 + along * z_;
+  }
+
   struct Turn {
     Matrix rotation;  // E, from the components of the tip to those of the start
     Matrix turn;      // W: angular velocity of the tip = W kappa'

@@ -5,6 +5,7 @@
 #include "contract/system.h"
 #include "math/gauss_legendre.h"
 #include "math/instructions.h"
+#include "math/lane_choice.h"
 #include "models/head/point_loads.h"
 
 namespace tress::models {
@@ -77,11 +78,19 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///     Real                          // T
 ///     Kept                          // of an element, between sweeps: v, omega of its
 ///                                   // axes, position and rotation of its tip
-///     move(material, q, rate, motion, Kept)   // of its start, replaced by its tip's
+///     move<accelerated>(material, q, rate, acceleration, motion, Kept)   // of its
+///     start,
+///                                   // replaced by its tip's; `acceleration` is read if
+///                                   so
 ///     last(material, motion, acc)             // the sum that hangs on the last tip
-///     carry(kernel, material, Inertia, q, rate, sum, loads, Kept, Uneliminated)
-///                                   // that of its tip to its axes, with its own
+///     carry<accelerated>(kernel, material, Inertia, q, rate, acceleration, sum, loads,
+///     Kept,
+///                        Uneliminated)        // that of its tip to its axes, with its
+///                        own
 ///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
+///     hang(Kept, force, moment, unknown)      // a wrench at its tip as one in its axes,
+///                                   // less what it does to the unknowns
+///     hand_on(Kept, force, moment)  // that to the tip before
 ///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
 ///     leave(Kept, own, l, a)        // its axes, and to its tip
 ///     enter(Kept, frame)            // frames: from the tip before to its axes, and to
@@ -143,7 +152,7 @@ class ReducedKernel {
     for (int i = 0; i < elements_; ++i) scratch[i].q = q[i] + step * v[i];
     Motion at = root;
     for (int i = 0; i < elements_; ++i) {
-      Kind::move(m, scratch[i].q, v[i], at, scratch[i].kept);
+      Kind::template move<false>(m, scratch[i].q, v[i], {}, at, scratch[i].kept);
     }
     return at;
   }
@@ -154,11 +163,59 @@ class ReducedKernel {
                                         double h, Vec* q, Vec* v,
                                         Scratch* scratch) const {
     const T step(h);
-    backward(m, rest, v, {1, h, h * h}, end, loads, scratch);
+    backward<false>(
+        m, [&](int i) { return rest[i]; }, v, nullptr, {1, h, h * h}, end, loads,
+        scratch);
     solve(scratch, [&](int i, const Vec& a) {
       v[i] = v[i] + step * a;
       q[i] = q[i] + step * v[i];
     });
+  }
+
+  /// The first part at any state.
+  TRESS_FLATTEN Motion move(const Material& m, const Motion& root, const Vec* q,
+                            const Vec* v, const Vec* a, Scratch* scratch) const {
+    Motion at = root;
+    for (int i = 0; i < elements_; ++i) {
+      scratch[i].q = q[i];
+      Kind::template move<true>(m, q[i], v[i], a[i], at, scratch[i].kept);
+    }
+    return at;
+  }
+  /// The second: correction = S^-1 r. Returns the largest entry per lane, NaN unless all
+  /// are finite. `rest(i)`: of an element.
+  template <class Rest>
+  TRESS_FLATTEN T newton(const Material& m, const Motion& end,
+                         const LoadSums<T>* const* loads, Rest rest, Weights w,
+                         const Vec* v, const Vec* a, Vec* correction,
+                         Scratch* scratch) const {
+    backward<true>(m, rest, v, a, w, end, loads, scratch);
+    return corrections(scratch, correction);
+  }
+  /// The same by the matrix of the last newton(), whose scratch `factors` is, at the
+  /// state whose first part is in `now`.
+  template <class Rest>
+  TRESS_FLATTEN T again(const Material& m, const Motion& end,
+                        const LoadSums<T>* const* loads, Rest rest, Weights w,
+                        const Vec* v, const Vec* a, Vec* correction, Scratch* factors,
+                        Scratch* now) const {
+    const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
+    Sum hanging = Kind::last(m, end, inertia.acc);
+    Vec force, moment;
+    for (int i = elements_ - 1; i >= 0; --i) {
+      Uneliminated all;
+      carry<true>(m, inertia, w, i, rest(i), v, a, hanging, loads, now[i], all);
+      hanging = all.sum;
+      Kind::pass(m, inertia.acc, now[i].kept, hanging);
+      Scratch& e = factors[i];
+      e.unknown = all.unknown;
+      Kind::hang(e.kept, force, moment, e.unknown);
+      const Vec own = e.pivot * e.unknown;
+      force = force + e.of_force.back(own);
+      moment = moment + e.of_moment.back(own);
+      Kind::hand_on(e.kept, force, moment);
+    }
+    return corrections(factors, correction);
   }
 
   /// What weighs acceleration in S: of a length, and of a rotor.
@@ -174,7 +231,9 @@ class ReducedKernel {
   };
 
  private:
-  void backward(const Material& m, const Vec* rest, const Vec* v, Weights w,
+  /// `accelerated`: at accelerations a, else at none.
+  template <bool accelerated, class Rest>
+  void backward(const Material& m, Rest rest, const Vec* v, const Vec* a, Weights w,
                 const Motion& end, const LoadSums<T>* const* loads,
                 Scratch* scratch) const {
     const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
@@ -182,12 +241,32 @@ class ReducedKernel {
     for (int i = elements_ - 1; i >= 0; --i) {
       Scratch& e = scratch[i];
       Uneliminated all;
-      Kind::carry(*this, m, inertia, e.q, v[i], hanging,
-                  loads != nullptr ? loads[i] : nullptr, e.kept, all);
-      bend(m, w, i, rest[i], v[i], e, all);
+      carry<accelerated>(m, inertia, w, i, rest(i), v, a, hanging, loads, e, all);
       hanging = eliminate(all, e);
       Kind::pass(m, inertia.acc, e.kept, hanging);
     }
+  }
+  template <bool accelerated>
+  void carry(const Material& m, const Inertia& inertia, Weights w, int i, const Vec& rest,
+             const Vec* v, const Vec* a, const Sum& hanging,
+             const LoadSums<T>* const* loads, const Scratch& e, Uneliminated& all) const {
+    Kind::template carry<accelerated>(*this, m, inertia, e.q, v[i],
+                                      accelerated ? a[i] : Vec{}, hanging,
+                                      loads != nullptr ? loads[i] : nullptr, e.kept, all);
+    bend(m, w, i, rest, v[i], e, all);
+  }
+
+  /// Of what is eliminated; delta = -correction.
+  T corrections(const Scratch* scratch, Vec* correction) const {
+    T most(0), finite(0);  // the last: 0 or NaN
+    solve(scratch, [&](int i, const Vec& delta) {
+      correction[i] = Vec{} - delta;
+      const T all = delta.x + delta.y + delta.z;
+      finite += all - all;
+      most = larger(larger(most, magnitude(delta.x)),
+                    larger(magnitude(delta.y), magnitude(delta.z)));
+    });
+    return most + finite;
   }
 
   static void bend(const Material& m, Weights w, int i, const Vec& rest, const Vec& v,
