@@ -255,8 +255,8 @@ void measure(const Subject& subject, In reference, std::vector<Outcome>& outcome
 
 /// Rows of a subject without a reference: that a run has no solution is certain
 /// nevertheless.
-std::vector<Row> unconfirmed(const Row& row, const std::vector<Outcome>& outcomes,
-                             std::string_view reason) {
+std::vector<Row> unconfirmed(const Row& row, const std::vector<Outcome>& outcomes) {
+  constexpr std::string_view reason = "no two methods agree at all";
   std::vector<Row> rows;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Row one = described(row, by_tolerance[i], outcomes[i]);
@@ -375,7 +375,7 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
   }
   const Horizon known = horizon_of(subject);
   if (known.samples() > 0) return judged_until(subject, known, with, outcomes);
-  return unconfirmed(with, outcomes, "no two methods agree at all");
+  return unconfirmed(with, outcomes);
 }
 
 }  // namespace

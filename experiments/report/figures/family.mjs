@@ -29,8 +29,13 @@ const rows_of = (tables) =>
       verdict: is_set(row.holds) ? 'holds' : 'does not hold',
     }));
 
-export function family_findings({ family_summary: rows = [] }) {
-  return rows
+// Runs by tolerance of the whole family, where there are those, stand for those of --quick.
+export function family_findings({ family_summary = [], family_tolerance_summary = [] }) {
+  const whole = family_tolerance_summary.length > 0;
+  return [
+    ...family_summary.filter((row) => !whole || row.study !== 'tolerance'),
+    ...family_tolerance_summary,
+  ]
     .filter((row) => row.hairs > 0)
     .map(
       (row) =>

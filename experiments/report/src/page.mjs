@@ -41,7 +41,7 @@ const measurements = [
   {
     figure: 'family',
     findings: family_findings,
-    tables: ['family', 'family_summary'],
+    tables: ['family', 'family_summary', 'family_tolerance', 'family_tolerance_summary'],
   },
   { figure: 'drift_cost', findings: drift_findings, tables: ['constraint_drift'] },
   {

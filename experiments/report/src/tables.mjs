@@ -1,6 +1,13 @@
+const of_family_by_tolerance = {
+  command:
+    'family --set study=tolerance --models super_helix,articulated_chain,der ' +
+    '--out results/family_tolerance.csv',
+  program: 'family',
+  optional: true,
+};
+
 // The tables the page knows: which columns must exist, which hold numbers, how to make
 // the file.
-
 export const known_tables = {
   validation: {
     title: 'Validation',
@@ -89,6 +96,18 @@ export const known_tables = {
     command: './tress run',
     program: 'family',
     optional: true,
+  },
+  family_tolerance: {
+    title: 'Runs by tolerance on a family of hairs',
+    required: ['claim', 'hair', 'model', 'tolerance', 'value', 'holds', 'status'],
+    numeric: ['hair', 'tolerance', 'value', 'growth', 'horizon_s', 'gap', 'work', 'fixed_work'],
+    ...of_family_by_tolerance,
+  },
+  family_tolerance_summary: {
+    title: 'Runs by tolerance on a family of hairs, distribution',
+    required: ['claim', 'model', 'integrator', 'hairs', 'holds_share', 'median'],
+    numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
+    ...of_family_by_tolerance,
   },
   constraint_drift: {
     title: 'Constraint drift',

@@ -150,16 +150,17 @@ export const equal_curly_wind = (tables) => {
 export const gravito_bending = (tables) =>
   range(rows_of(tables, 'family').map((row) => row.gravito_bending));
 
-// Claims about runs by tolerance are made of every model and integrator.
+// Claims about runs by tolerance are made of every model and integrator; the whole family
+// has tables of its own, which --quick does not make.
 const tolerance_rows = (tables, claim) =>
-  rows_of(tables, 'family_summary', { study: 'tolerance', claim }).filter((row) => row.model);
+  rows_of(tables, 'family_tolerance_summary', { claim });
 
 const same_runs = (row) => ({ claim: row.claim, model: row.model, integrator: row.integrator });
 
 // Hairs of one model and integrator: all, within the tolerance, without a solution; the
 // latter two of those with internal friction, and of those without.
 const solved = (tables, row) => {
-  const rows = rows_of(tables, 'family', same_runs(row));
+  const rows = rows_of(tables, 'family_tolerance', same_runs(row));
   const count = (chosen) => ({
     all: chosen.length,
     within: chosen.filter((hair) => hair.holds === 'true').length,
@@ -180,7 +181,7 @@ export const tolerance_table = (tables) => {
   const met = tolerance_rows(tables, 'tolerance_met');
   if (met.length === 0) return `${not_stored}.`;
   const spread_of = (claim, row) => {
-    const found = rows_of(tables, 'family_summary', { ...same_runs(row), claim })[0];
+    const found = rows_of(tables, 'family_tolerance_summary', { ...same_runs(row), claim })[0];
     return found?.hairs > 0
       ? [found.decile_1, found.median, found.decile_9].map((x) => number(x)).join(', ')
       : '';
@@ -217,7 +218,7 @@ export const tolerance_table = (tables) => {
 
 // "Sensitive are hair 28 by super_helix (growth 11) ..."
 export const sensitive = (tables) => {
-  const rows = rows_of(tables, 'family', { claim: 'tolerance_met', status: 'sensitive' });
+  const rows = rows_of(tables, 'family_tolerance', { claim: 'tolerance_met', status: 'sensitive' });
   if (rows.length === 0) return 'None is among the stored hairs.';
   const named = (row) =>
     `hair ${row.hair} by \`${row.model}\`, \`${row.integrator}\` (growth ${number(row.growth)}, ` +
@@ -227,7 +228,7 @@ export const sensitive = (tables) => {
 
 // Hairs that neither method solves, by model.
 export const unsolved = (tables) => {
-  const rows = rows_of(tables, 'family', { claim: 'tolerance_met' });
+  const rows = rows_of(tables, 'family_tolerance', { claim: 'tolerance_met' });
   if (rows.length === 0) return not_stored;
   const of_model = (model) => {
     const own = rows.filter((row) => row.model === model);
@@ -248,7 +249,7 @@ export const tolerance = (tables) => {
   );
   if (rows.length === 0) return not_stored;
   const asked = distinct(
-    rows_of(tables, 'family', { claim: 'tolerance_met' }).map((row) => row.tolerance),
+    rows_of(tables, 'family_tolerance', { claim: 'tolerance_met' }).map((row) => row.tolerance),
   );
   const of_model = (row) => {
     const { within, all, damped, undamped } = solved(tables, row);
