@@ -140,6 +140,7 @@ class ReducedKernel {
   }
   int elements() const { return elements_; }
   int points() const { return points_; }
+  bool twist() const { return twist_; }
   double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
 
@@ -182,40 +183,43 @@ class ReducedKernel {
     }
     return at;
   }
-  /// The second: correction = S^-1 r. Returns the largest entry per lane, NaN unless all
-  /// are finite. `rest(i)`: of an element.
+  /// The residual r; `end`: what move() returned. `rest(i)`: of an element.
   template <class Rest>
-  TRESS_FLATTEN T newton(const Material& m, const Motion& end,
-                         const LoadSums<T>* const* loads, Rest rest, Weights w,
-                         const Vec* v, const Vec* a, Vec* correction,
-                         Scratch* scratch) const {
-    backward<true>(m, rest, v, a, w, end, loads, scratch);
-    return corrections(scratch, correction);
-  }
-  /// The same by the matrix of the last newton(), whose scratch `factors` is, at the
-  /// state whose first part is in `now`.
-  template <class Rest>
-  TRESS_FLATTEN T again(const Material& m, const Motion& end,
-                        const LoadSums<T>* const* loads, Rest rest, Weights w,
-                        const Vec* v, const Vec* a, Vec* correction, Scratch* factors,
-                        Scratch* now) const {
-    const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
-    Sum hanging = Kind::last(m, end, inertia.acc);
-    Vec force, moment;
+  TRESS_FLATTEN void residual(const Material& m, const Motion& end,
+                              const LoadSums<T>* const* loads, Rest rest, const Vec* v,
+                              const Vec* a, Vec* r, const Scratch* scratch) const {
+    const Inertia none{T(0), T(0)};
+    Sum hanging = Kind::last(m, end, none.acc);
     for (int i = elements_ - 1; i >= 0; --i) {
       Uneliminated all;
-      carry<true>(m, inertia, w, i, rest(i), v, a, hanging, loads, now[i], all);
-      hanging = all.sum;
-      Kind::pass(m, inertia.acc, now[i].kept, hanging);
-      Scratch& e = factors[i];
-      e.unknown = all.unknown;
-      Kind::hang(e.kept, force, moment, e.unknown);
-      const Vec own = e.pivot * e.unknown;
-      force = force + e.of_force.back(own);
-      moment = moment + e.of_moment.back(own);
-      Kind::hand_on(e.kept, force, moment);
+      carry<true>(m, none, {}, i, rest(i), v, a, hanging, loads, scratch[i], all);
+      r[i] = Vec{} - all.unknown;
+      // What hangs on the tip acts on the unknowns by its wrench alone.
+      hanging = {all.sum.force, all.sum.moment, {}, {}, {}};
+      Kind::pass(m, none.acc, scratch[i].kept, hanging);
     }
-    return corrections(factors, correction);
+  }
+
+  /// Elastic and viscous moments of an element, and their diagonal in S.
+  struct Bending {
+    Vec moment, tangent;
+  };
+  static Bending bending(const Material& m, Weights w, int i, const Vec& q,
+                         const Vec& rest, const Vec& v) {
+    Vec stiffness = m.stiffness;
+    T friction = m.friction;
+    if constexpr (Kind::first_stiffness != 1) {
+      const T times(i == 0 ? Kind::first_stiffness : 1);
+      stiffness = times * stiffness;
+      friction = times * friction;
+    }
+    const T pos(w.pos), damping = T(w.vel) * friction;
+    const Vec strain = q - rest;
+    return {
+        {stiffness.x * strain.x + friction * v.x, stiffness.y * strain.y + friction * v.y,
+         stiffness.z * strain.z + friction * v.z},
+        {pos * stiffness.x + damping, pos * stiffness.y + damping,
+         pos * stiffness.z + damping}};
   }
 
   /// What weighs acceleration in S: of a length, and of a rotor.
@@ -256,36 +260,13 @@ class ReducedKernel {
     bend(m, w, i, rest, v[i], e, all);
   }
 
-  /// Of what is eliminated; delta = -correction.
-  T corrections(const Scratch* scratch, Vec* correction) const {
-    T most(0), finite(0);  // the last: 0 or NaN
-    solve(scratch, [&](int i, const Vec& delta) {
-      correction[i] = Vec{} - delta;
-      const T all = delta.x + delta.y + delta.z;
-      finite += all - all;
-      most = larger(larger(most, magnitude(delta.x)),
-                    larger(magnitude(delta.y), magnitude(delta.z)));
-    });
-    return most + finite;
-  }
-
   static void bend(const Material& m, Weights w, int i, const Vec& rest, const Vec& v,
                    const Scratch& e, Uneliminated& all) {
-    Vec stiffness = m.stiffness;
-    T friction = m.friction;
-    if constexpr (Kind::first_stiffness != 1) {
-      const T times(i == 0 ? Kind::first_stiffness : 1);
-      stiffness = times * stiffness;
-      friction = times * friction;
-    }
-    const T pos(w.pos), damping = T(w.vel) * friction;
-    all.own.xx += pos * stiffness.x + damping;
-    all.own.yy += pos * stiffness.y + damping;
-    all.own.zz += pos * stiffness.z + damping;
-    const Vec strain = e.q - rest;
-    all.unknown = all.unknown - Vec{stiffness.x * strain.x + friction * v.x,
-                                    stiffness.y * strain.y + friction * v.y,
-                                    stiffness.z * strain.z + friction * v.z};
+    const Bending by = bending(m, w, i, e.q, rest, v);
+    all.own.xx += by.tangent.x;
+    all.own.yy += by.tangent.y;
+    all.own.zz += by.tangent.z;
+    all.unknown = all.unknown - by.moment;
   }
 
   Sum eliminate(const Uneliminated& from, Scratch& e) const {

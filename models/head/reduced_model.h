@@ -5,6 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "models/head/exact/exact_kernel.h"
+#include "models/head/exact/varied_helix.h"
+#include "models/head/exact/varied_link.h"
 #include "models/head/head_motion.h"
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
@@ -42,9 +45,10 @@ class ReducedModel {
   struct Scratch {
     explicit Scratch(const ReducedModel& model)
         : elements(model.elements()),
-          now(elements),
+          factors(model.elements()),
           loads(model.kernel_, model.units_, model.instructions_) {}
-    std::vector<typename Kernel::Scratch> elements, now;
+    std::vector<typename Kernel::Scratch> elements;
+    std::vector<typename ExactKernel<Kind>::Factors> factors;
     ReducedLoads<Kind> loads;
     // Of find_loads(): which may touch the strands, and how these lie.
     std::span<const NearBody> bodies;
@@ -62,6 +66,7 @@ class ReducedModel {
         n_(static_cast<std::size_t>(options.elements)),
         gravity_((units.time * units.time / units.length) * options.gravity),
         kernel_(options.elements, options.points, options.twist),
+        exact_(kernel_),
         energies_(kernel_) {}
 
   std::size_t elements() const { return n_; }
@@ -126,26 +131,44 @@ class ReducedModel {
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    const auto moved = move(strand, clamp, q, v, a, scratch, scratch.elements);
+    ReducedMotion<Real> end;
+    by(instructions_, [&] {
+      end = exact_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
+                        scratch.elements.data(), scratch.factors.data());
+    });
+    const ExactPoint<Real>* const* loads = nullptr;
+    if (!scratch.bodies.empty()) {
+      loads = scratch.loads.find_exact(block_of(strand, scratch), vectors(v),
+                                       scratch.elements.data());
+    }
     Real most;
     by(instructions_, [&] {
-      most = kernel_.newton(
-          strand.material, moved.end, moved.loads,
-          [&](int i) { return elements[i].rest; }, w, vectors(v), vectors(a),
-          vectors(correction), scratch.elements.data());
+      most = exact_.newton(
+          strand.material, end, loads, [&](int i) { return elements[i].rest; }, w,
+          vectors(q), vectors(v), vectors(a), vectors(correction),
+          scratch.factors.data());
     });
     return size(strand, w, most);
   }
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
-    const auto moved = move(strand, clamp, q, v, a, scratch, scratch.now);
+    ReducedMotion<Real> end;
+    by(instructions_, [&] {
+      end = kernel_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
+                         scratch.elements.data());
+    });
+    const LoadSums<Real>* const* loads = nullptr;
+    if (!scratch.bodies.empty()) {
+      loads = scratch.loads.find(block_of(strand, scratch), vectors(v),
+                                 scratch.elements.data());
+    }
     Real most;
     by(instructions_, [&] {
-      most = kernel_.again(
-          strand.material, moved.end, moved.loads,
-          [&](int i) { return elements[i].rest; }, w, vectors(v), vectors(a),
-          vectors(correction), scratch.elements.data(), scratch.now.data());
+      kernel_.residual(
+          strand.material, end, loads, [&](int i) { return elements[i].rest; },
+          vectors(v), vectors(a), vectors(correction), scratch.elements.data());
+      most = exact_.again(vectors(correction), scratch.factors.data());
     });
     return size(strand, w, most);
   }
@@ -174,36 +197,15 @@ class ReducedModel {
   }
 
  private:
-  struct Moved {
-    ReducedMotion<Real> end;
-    const LoadSums<Real>* const* loads;
-  };
-
   static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
   // Vec3 is three of them.
   static const V* vectors(const Real* x) { return reinterpret_cast<const V*>(x); }
   static V* vectors(Real* x) { return reinterpret_cast<V*>(x); }
 
-  Moved move(const Strand& strand, const Clamp& clamp, const Real* q, const Real* v,
-             const Real* a, Scratch& scratch,
-             std::vector<typename Kernel::Scratch>& elements) const {
-    Moved moved{{}, nullptr};
-    by(instructions_, [&] {
-      moved.end = kernel_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
-                               elements.data());
-    });
-    if (!scratch.bodies.empty()) {
-      moved.loads = scratch.loads.find({&strand.material,
-                                        scratch.from,
-                                        scratch.frame,
-                                        0,
-                                        scratch.h,
-                                        Vec{},
-                                        scratch.bodies,
-                                        {}},
-                                       vectors(v), elements.data());
-    }
-    return moved;
+  static typename ReducedLoads<Kind>::Block block_of(const Strand& strand,
+                                                     const Scratch& scratch) {
+    return {&strand.material, scratch.from, scratch.frame,  0,
+            scratch.h,        Vec{},        scratch.bodies, {}};
   }
   static Real size(const Strand& strand, Weights w, const Real& most) {
     return larger(Real(w.pos), Real(w.vel) * strand.time) * strand.by_scale * most;
@@ -234,6 +236,7 @@ class ReducedModel {
   std::size_t n_;
   Vec gravity_;
   Kernel kernel_;
+  ExactKernel<Kind> exact_;
   ReducedEnergies<Kind> energies_;
 };
 
