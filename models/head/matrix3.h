@@ -43,7 +43,7 @@ struct Matrix3 {
 
 /// x y^T.
 template <class T>
-Matrix3<T> outer(const Vec3<T>& x, const Vec3<T>& y) {
+Matrix3<T> dyad(const Vec3<T>& x, const Vec3<T>& y) {
   return {{x.x * y, x.y * y, x.z * y}};
 }
 /// a [p]x: what a does with cross(p, x).

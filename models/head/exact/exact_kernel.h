@@ -199,7 +199,7 @@ class ExactKernel {
 
   /// x to omega x (x x p) + x x (omega x p + 2 u).
   static Matrix turning_with(const Vec& omega, const Vec& p, const Vec& u) {
-    Matrix all = outer(omega, p) - outer(T(2) * p, omega) - cross_matrix(T(2) * u);
+    Matrix all = dyad(omega, p) - dyad(T(2) * p, omega) - cross_matrix(T(2) * u);
     const T along = dot(omega, p);
     all.row[0].x += along;
     all.row[1].y += along;

@@ -151,9 +151,9 @@ class VariedElement<HelixKind<T>> {
     const Vec a_p = times_p(m.sA, m.AA, m.AB), b_p = times_p(m.sB, m.AB, m.BB),
               a_r = times_r(m.AA1, m.AB1), b_r = times_r(m.BA1, m.BB1);
     const Matrix r_p =
-        outer(u, times_p(m.sA1, m.AA1, m.BA1)) + outer(z, times_p(m.sB1, m.AB1, m.BB1));
+        dyad(u, times_p(m.sA1, m.AA1, m.BA1)) + dyad(z, times_p(m.sB1, m.AB1, m.BB1));
     to.moved = points.momentum.back(rate);
-    to.moving = k_v * r_p + outer(l_v, b_p) + outer(u_v, a_p);
+    to.moving = k_v * r_p + dyad(l_v, b_p) + dyad(u_v, a_p);
 
     const T trace = r_p.row[0].x + r_p.row[1].y + r_p.row[2].z;
     const Vec of_k = r_p * omega + r_p.back(omega) - T(2) * trace * omega +

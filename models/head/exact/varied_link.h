@@ -110,7 +110,7 @@ class VariedElement<ChainKind<T>> {
                  t.x * s_t.y, t.x * s_t.z, t.y * s_t.z};
     to.momentum = first * slope;
     to.moved = first * moving;
-    to.moving = outer(moving, s_t);
+    to.moving = dyad(moving, s_t);
     const T along = dot(t, omega);
     for (int j = 0; j < 3; ++j) {
       const Vec& d = slope.row[j];
