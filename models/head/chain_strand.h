@@ -138,15 +138,6 @@ struct ChainKind {
            r * sum.la * r.transposed()};
   }
 
-  static void hang(const Kept& e, Vec& force, Vec& moment, Vec& unknown) {
-    moment = moment + cross(e.position, force);
-    unknown = unknown - e.turn * moment;
-  }
-  static void hand_on(const Kept& e, Vec& force, Vec& moment) {
-    force = e.rotation * force;
-    moment = e.rotation * moment;
-  }
-
   static void arrive(const Kept& e, Vec& l, Vec& a) {
     l = e.rotation.back(l);
     a = e.rotation.back(a);

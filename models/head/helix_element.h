@@ -61,6 +61,10 @@ struct AlongHelix {
     return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
            f.B2 * B2;
   }
+  /// at() less what is constant or linear.
+  Vec3<T> by_functions(const HelixFunctions<T>& f) const {
+    return f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 + f.B2 * B2;
+  }
   /// at() changes by this times kappa . dkappa through the functions.
   Vec3<T> slope(const HelixFunctions<T>& f) const {
     return f.A1 * A + f.B1 * B + f.A2 * A1 + f.B2 * B1 + f.A3 * A2 + f.B3 * B2;

@@ -153,14 +153,6 @@ struct HelixKind {
     sum.aa.xx += acc * m.rotor;
   }
 
-  static void hang(const Kept& e, Vec& force, Vec& moment, Vec& unknown) {
-    force = e.rotation * force;
-    moment = e.rotation * moment;
-    unknown = unknown - e.slope.back(force) - e.turn.back(moment);
-    moment = moment + cross(e.position, force);
-  }
-  static void hand_on(const Kept& /*e*/, Vec& /*force*/, Vec& /*moment*/) {}
-
   static void arrive(const Kept& /*e*/, Vec& /*l*/, Vec& /*a*/) {}
   static void leave(const Kept& e, const Vec& own, Vec& l, Vec& a) {
     l = e.rotation.back(l + cross(a, e.position) + e.slope * own);

@@ -88,9 +88,6 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///                        Uneliminated)        // that of its tip to its axes, with its
 ///                        own
 ///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
-///     hang(Kept, force, moment, unknown)      // a wrench at its tip as one in its axes,
-///                                   // less what it does to the unknowns
-///     hand_on(Kept, force, moment)  // that to the tip before
 ///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
 ///     leave(Kept, own, l, a)        // its axes, and to its tip
 ///     enter(Kept, frame)            // frames: from the tip before to its axes, and to

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "models/head/exact/exact_kernel.h"
-#include "models/head/exact/varied_helix.h"
-#include "models/head/exact/varied_link.h"
 #include "models/head/head_motion.h"
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
@@ -35,7 +33,7 @@ class ReducedModel {
     ReducedMaterial<Real> material;
     Real by_scale, time;  // 1 over a typical unknown, and a typical time
   };
-  struct Element {
+  struct Element {  // the rest shape alone: as many vectors as elements
     V rest;
     static constexpr std::size_t kept = 0;
     void keep(int /*lane*/, double* /*to*/) const {}
@@ -66,7 +64,7 @@ class ReducedModel {
         n_(static_cast<std::size_t>(options.elements)),
         gravity_((units.time * units.time / units.length) * options.gravity),
         kernel_(options.elements, options.points, options.twist),
-        exact_(kernel_),
+        exact_(kernel_, instructions),
         energies_(kernel_) {}
 
   std::size_t elements() const { return n_; }
@@ -131,46 +129,30 @@ class ReducedModel {
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    ReducedMotion<Real> end;
-    by(instructions_, [&] {
-      end = exact_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
-                        scratch.elements.data(), scratch.factors.data());
-    });
+    const auto end = move(strand, clamp, q, v, a, scratch);
     const ExactPoint<Real>* const* loads = nullptr;
     if (!scratch.bodies.empty()) {
       loads = scratch.loads.find_exact(block_of(strand, scratch), vectors(v),
                                        scratch.elements.data());
     }
-    Real most;
-    by(instructions_, [&] {
-      most = exact_.newton(
-          strand.material, end, loads, [&](int i) { return elements[i].rest; }, w,
-          vectors(q), vectors(v), vectors(a), vectors(correction),
-          scratch.factors.data());
-    });
-    return size(strand, w, most);
+    return size(strand, w,
+                exact_.newton(strand.material, end, loads, &elements->rest, w, vectors(q),
+                              vectors(v), vectors(a), vectors(correction),
+                              scratch.factors.data()));
   }
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
-    ReducedMotion<Real> end;
-    by(instructions_, [&] {
-      end = kernel_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
-                         scratch.elements.data());
-    });
+    const auto end = move(strand, clamp, q, v, a, scratch);
     const LoadSums<Real>* const* loads = nullptr;
     if (!scratch.bodies.empty()) {
       loads = scratch.loads.find(block_of(strand, scratch), vectors(v),
                                  scratch.elements.data());
     }
-    Real most;
-    by(instructions_, [&] {
-      kernel_.residual(
-          strand.material, end, loads, [&](int i) { return elements[i].rest; },
-          vectors(v), vectors(a), vectors(correction), scratch.elements.data());
-      most = exact_.again(vectors(correction), scratch.factors.data());
-    });
-    return size(strand, w, most);
+    return size(strand, w,
+                exact_.again(strand.material, end, loads, &elements->rest, vectors(v),
+                             vectors(a), vectors(correction), scratch.elements.data(),
+                             scratch.factors.data()));
   }
   double resolved(const Strand& strand, Weights w, int lane) const {
     constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
@@ -202,6 +184,11 @@ class ReducedModel {
   static const V* vectors(const Real* x) { return reinterpret_cast<const V*>(x); }
   static V* vectors(Real* x) { return reinterpret_cast<V*>(x); }
 
+  ReducedMotion<Real> move(const Strand& strand, const Clamp& clamp, const Real* q,
+                           const Real* v, const Real* a, Scratch& scratch) const {
+    return exact_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
+                       scratch.elements.data(), scratch.factors.data());
+  }
   static typename ReducedLoads<Kind>::Block block_of(const Strand& strand,
                                                      const Scratch& scratch) {
     return {&strand.material, scratch.from, scratch.frame,  0,

@@ -41,8 +41,12 @@ std::optional<NoHead> no_model(const Scene& scene) {
     return NoHead{"strands of a head bend in both directions",
                   "give [model] modes = \"bend_twist\" or \"bend\""};
   }
-  if (p.word("tangent") != "stiff") {
-    return no_option(p, "tangent", "give [model] tangent = \"stiff\"");
+  if (p.word("tangent") != (iterates(scene) ? "exact" : "stiff")) {
+    return no_option(p, "tangent",
+                     iterates(scene)
+                         ? "give [model] tangent = \"exact\" to backward_euler"
+                         : "give [model] tangent = \"stiff\", or [integrator] id = "
+                           "\"backward_euler\"");
   }
   if (p.word("solver") != "recursive") {
     return no_option(p, "solver", "leave out [model] solver");

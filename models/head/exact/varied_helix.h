@@ -76,7 +76,7 @@ class VariedElement<HelixKind<T>> {
       force_B2 = force_B2 + f.B2 * force;
       of_functions.add_force(weight * whole.slope(f), arc, f);
       for (int k = 0; k < 3; ++k) {
-        of_parts[k].add_force(weight * parts[k].at(arc, f), arc, f);
+        of_parts[k].add_force(weight * parts[k].by_functions(f), arc, f);
       }
     }
     of_functions.force_A = of_functions.force_A + of_points.force_A1;

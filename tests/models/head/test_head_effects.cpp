@@ -122,14 +122,18 @@ std::vector<Case> cases_of(const HairModel& model) {
   };
   all.push_back(interacts);
   for (Case& c : all) c.model = &model;
+  Case above = one("AboveAPlane", {body(Plane{}, {0.1, 0, 1.4})});
+  above.model = &model;
   const std::size_t once = all.size();
+  all.push_back(iterated(above));
   for (std::size_t i = 0; i < once; ++i) {
     const Case& c = all[i];
     const bool bodies_alone =
         !c.own && std::ranges::all_of(c.effects, [](const auto& effect) {
           return effect->rigid_contact() != nullptr || effect->viscosity();
         });
-    if (bodies_alone) all.push_back(iterated(c));
+    // What a plane cuts through is thrown out of it: such steps are shortened.
+    if (bodies_alone && c.name != "OnAPlane") all.push_back(iterated(c));
   }
   return all;
 }
