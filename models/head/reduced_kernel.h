@@ -78,15 +78,13 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///     Real                          // T
 ///     Kept                          // of an element, between sweeps: v, omega of its
 ///                                   // axes, position and rotation of its tip
-///     move<accelerated>(material, q, rate, acceleration, motion, Kept)   // of its
-///     start,
-///                                   // replaced by its tip's; `acceleration` is read if
-///                                   so
-///     last(material, motion, acc)             // the sum that hangs on the last tip
+///     move<accelerated>(material, q, rate, acceleration, motion, Kept)
+///                                   // motion: of its start, replaced by its tip's;
+///                                   // `acceleration` is read if so
+///     last(material, motion, acc)   // the sum that hangs on the last tip
 ///     carry<accelerated>(kernel, material, Inertia, q, rate, acceleration, sum, loads,
-///     Kept,
-///                        Uneliminated)        // that of its tip to its axes, with its
-///                        own
+///                        Kept, Uneliminated)
+///                                   // sum: of its tip, to its axes and with its own
 ///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
 ///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
 ///     leave(Kept, own, l, a)        // its axes, and to its tip
@@ -161,26 +159,16 @@ class ReducedKernel {
                                         double h, Vec* q, Vec* v,
                                         Scratch* scratch) const {
     const T step(h);
-    backward<false>(
-        m, [&](int i) { return rest[i]; }, v, nullptr, {1, h, h * h}, end, loads,
-        scratch);
+    backward(
+        m, [&](int i) { return rest[i]; }, v, {1, h, h * h}, end, loads, scratch);
     solve(scratch, [&](int i, const Vec& a) {
       v[i] = v[i] + step * a;
       q[i] = q[i] + step * v[i];
     });
   }
 
-  /// The first part at any state.
-  TRESS_FLATTEN Motion move(const Material& m, const Motion& root, const Vec* q,
-                            const Vec* v, const Vec* a, Scratch* scratch) const {
-    Motion at = root;
-    for (int i = 0; i < elements_; ++i) {
-      scratch[i].q = q[i];
-      Kind::template move<true>(m, q[i], v[i], a[i], at, scratch[i].kept);
-    }
-    return at;
-  }
-  /// The residual r; `end`: what move() returned. `rest(i)`: of an element.
+  /// The residual r at any state; `scratch` and `end`: what Kind::move made of it and of
+  /// the tip. `rest(i)`: of an element.
   template <class Rest>
   TRESS_FLATTEN void residual(const Material& m, const Motion& end,
                               const LoadSums<T>* const* loads, Rest rest, const Vec* v,
@@ -232,21 +220,20 @@ class ReducedKernel {
   };
 
  private:
-  /// `accelerated`: at accelerations a, else at none.
-  template <bool accelerated, class Rest>
-  void backward(const Material& m, Rest rest, const Vec* v, const Vec* a, Weights w,
-                const Motion& end, const LoadSums<T>* const* loads,
-                Scratch* scratch) const {
+  template <class Rest>
+  void backward(const Material& m, Rest rest, const Vec* v, Weights w, const Motion& end,
+                const LoadSums<T>* const* loads, Scratch* scratch) const {
     const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
     Sum hanging = Kind::last(m, end, inertia.acc);
     for (int i = elements_ - 1; i >= 0; --i) {
       Scratch& e = scratch[i];
       Uneliminated all;
-      carry<accelerated>(m, inertia, w, i, rest(i), v, a, hanging, loads, e, all);
+      carry<false>(m, inertia, w, i, rest(i), v, nullptr, hanging, loads, e, all);
       hanging = eliminate(all, e);
       Kind::pass(m, inertia.acc, e.kept, hanging);
     }
   }
+  /// `accelerated`: at accelerations a, else at none.
   template <bool accelerated>
   void carry(const Material& m, const Inertia& inertia, Weights w, int i, const Vec& rest,
              const Vec* v, const Vec* a, const Sum& hanging,

@@ -94,8 +94,9 @@ class ExactElimination {
     turn(by[acceleration], by[alpha]);
     for (std::size_t k = 0; k < 4; ++k) lift(by[k], e, to.state[k]);
   }
-  /// The same for displacements, which the tip's share but for the unknowns' own.
-  static void carry(const Hanging& hanging, const T& pos, Factors& e, Columns& to,
+  /// The same for displacements, which unknowns change by `pos` times how they move the
+  /// tip.
+  static void carry(const Hanging& hanging, const T& pos, const Factors& e, Columns& to,
                     Places& places) {
     std::array<Wrench, 2> by;
     const Matrix back = e.rotation.transposed();
@@ -103,11 +104,9 @@ class ExactElimination {
       by[k] = {e.rotation * hanging.place[k].force * back,
                e.rotation * hanging.place[k].moment * back};
     }
-    e.shift = pos * e.slope;
-    e.rotated = pos * e.turn;
     Column x = to.x;
-    lift({by[0].force * e.shift + by[1].force * e.rotated,
-          by[0].moment * e.shift + by[1].moment * e.rotated},
+    lift({pos * (by[0].force * e.slope + by[1].force * e.turn),
+          pos * (by[0].moment * e.slope + by[1].moment * e.turn)},
          e, x);
     put(hanging.placed, x, to.x);
     by[1].force = by[1].force - times_cross(by[0].force, e.position);
@@ -138,8 +137,10 @@ class ExactElimination {
     h.force = all.force;
     h.moment = all.moment;
   }
-  static void eliminate(const Places& places, Factors& e, Hanging& h) {
+  static void eliminate(const Places& places, const T& pos, Factors& e, Hanging& h) {
     h.placed = e.placed;
+    e.shift = pos * e.slope;
+    e.rotated = pos * e.turn;
     for (std::size_t k = 0; k < 2; ++k) {
       const Column& of = places[k];
       e.z_of_place[k] = e.pivot * of.own;

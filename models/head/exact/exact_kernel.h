@@ -10,7 +10,8 @@ namespace tress::models {
 ///
 /// The equations are those of models/reduced/exact_tangent.h. A frame's state is the
 /// variation of its velocity (v, omega) and acceleration (a, alpha) in its own
-/// components, in which gravity, inertia and linear drag know no displacement. Of an
+/// components, in which gravity, inertia and linear drag know no displacement; where
+/// bodies load what hangs on an element, of its displacement (d, phi) as well. Of an
 /// element with the state s at its start, unknowns x and the wrench w_tip on its tip
 ///
 ///     s_tip = A s + B x,    w = C s + D x + G w_tip,    r = R s + H x + J w_tip

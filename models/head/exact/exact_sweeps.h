@@ -52,7 +52,7 @@ TRESS_FLATTEN auto ExactKernel<Kind>::newton(const Material& m, const Motion& en
         element.add_loads(loads[i], e, columns, places);
       }
       Elimination::eliminate(columns, kernel_.twist(), e, hanging);
-      if (any_less(T(0), e.placed)) Elimination::eliminate(places, e, hanging);
+      if (any_less(T(0), e.placed)) Elimination::eliminate(places, T(w.pos), e, hanging);
     }
     most = Elimination::corrections(n, factors, correction);
   });

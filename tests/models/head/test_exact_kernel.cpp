@@ -141,8 +141,9 @@ class Loaded {
       }
     }
     Scratch scratch(elements);
-    const auto end = kernel_.move(material_, root_, moved[0].data(), moved[1].data(),
-                                  moved[2].data(), scratch.data());
+    std::vector<typename Exact::Factors> factors(elements);
+    const auto end = exact_.move(material_, root_, moved[0].data(), moved[1].data(),
+                                 moved[2].data(), scratch.data(), factors.data());
     find(scratch, moved[1]);
     std::vector<V> r(elements);
     kernel_.residual(
