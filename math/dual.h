@@ -4,6 +4,8 @@
 #include <cmath>
 #include <concepts>
 
+#include "math/vec3.h"
+
 namespace tress {
 
 /// Forward-mode dual number: a value with its derivatives along n directions. A kernel
@@ -83,5 +85,33 @@ struct Dual {
     return x.chain(root, T(0.5) / root);
   }
 };
+
+/// What may be multiplied with numbers of type T without derivatives of its own.
+template <class T>
+struct ConstantOf {
+  using Type = T;
+};
+template <int n, class T>
+struct ConstantOf<Dual<n, T>> {
+  using Type = T;
+};
+
+// Products of vectors with constants, whose derivatives are not multiplied.
+template <int n, class T>
+Vec3<Dual<n, T>> operator*(const T& s, const Vec3<Dual<n, T>>& x) {
+  return {s * x.x, s * x.y, s * x.z};
+}
+template <int n, class T>
+Vec3<Dual<n, T>> operator*(const Dual<n, T>& s, const Vec3<T>& x) {
+  return {s * x.x, s * x.y, s * x.z};
+}
+template <int n, class T>
+Vec3<Dual<n, T>> cross(const Vec3<T>& a, const Vec3<Dual<n, T>>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <int n, class T>
+Vec3<Dual<n, T>> cross(const Vec3<Dual<n, T>>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 }  // namespace tress

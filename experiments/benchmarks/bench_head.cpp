@@ -26,9 +26,11 @@ constexpr double length = reference_length, h = reference_step;  // m, s
 
 using Make = std::unique_ptr<Head> (*)(const models::HeadOptions&, const HeadPack&);
 
-std::unique_ptr<Head> head(std::size_t strands, HeadPack pack, double drag,
-                           Make make = models::helix_head) {
+std::unique_ptr<Head> head(
+    std::size_t strands, HeadPack pack, double drag, Make make = models::helix_head,
+    models::HeadMethod method = models::HeadMethod::semi_implicit_euler) {
   models::HeadOptions options;
+  options.method = method;
   options.elements = elements;
   options.drag = drag;
   options.longest = length;
@@ -80,10 +82,10 @@ std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
 struct Stepping {
   std::unique_ptr<Head> head;
   std::unique_ptr<Head::Scratch> scratch = head->scratch();
-  double t = 0;
+  double dt = h, t = 0;  // s
   void step() {
-    for (std::size_t b = 0; b < head->blocks(); ++b) head->step(b, t, h, *scratch);
-    t += h;
+    head->step(0, head->blocks(), t, dt, *scratch);
+    t += dt;
   }
 };
 
@@ -174,6 +176,37 @@ bool costs_met() {
   return met;
 }
 
+/// Steps of Newton's method with all derivatives of the residual: of an iteration.
+bool iterations_met() {
+  constexpr std::size_t strands = 64;
+  struct Kind {
+    std::string_view name;
+    HeadPack pack;
+    Make make = models::helix_head;
+  };
+  bool met = true;
+  for (const Kind& kind :
+       {Kind{"4 of 64 bits", {HeadNumber::float64, 4}},
+        {"8 of 64 bits", {HeadNumber::float64, 8}},
+        {"16 of 32 bits", {HeadNumber::float32, 16}},
+        {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, models::chain_head}}) {
+    Stepping of{
+        head(strands, kind.pack, 0, kind.make, models::HeadMethod::backward_euler)};
+    of.dt = 1.0 / 300;
+    ReferenceStrands kernel(strands);
+    const double step = time_ratio([&of] { of.step(); }, [&kernel] { kernel.step(); });
+    const models::HeadWork& work = of.scratch->work;
+    met = kept("heads",
+               fmt::format("{}, an iteration of backward_euler over the reference",
+                           kind.name),
+               step * static_cast<double>(work.steps) /
+                   static_cast<double>(work.iterations + work.again_iterations),
+               10) &&
+          met;
+  }
+  return met;
+}
+
 /// Hair that has come to rest on its head: a body over none, touching and 5 m away.
 bool bodies_met() {
   constexpr std::size_t strands = 256;
@@ -254,7 +287,7 @@ int main(int argc, char** argv) {
   register_all();
   const Measured measured = run_benchmarks(argc, argv);
   if (measured.exit_code != 0) return measured.exit_code;
-  const bool same = same_motion(), costs = costs_met(), bodies = bodies_met(),
-             whole = head_met();
-  return same && costs && bodies && whole ? 0 : 3;
+  const bool same = same_motion(), costs = costs_met(), iterations = iterations_met(),
+             bodies = bodies_met(), whole = head_met();
+  return same && costs && iterations && bodies && whole ? 0 : 3;
 }

@@ -90,6 +90,7 @@ constexpr OwnOption command_options[] = {
 constexpr Kind kinds[] = {
     {"super_helix", "semi_implicit_euler", models::helix_head,
      HeadMethod::semi_implicit_euler},
+    {"super_helix", "backward_euler", models::helix_head, HeadMethod::backward_euler},
     {"der", "semi_implicit_euler", models::der_head, HeadMethod::semi_implicit_euler},
     {"der", "backward_euler", models::der_head, HeadMethod::backward_euler}};
 

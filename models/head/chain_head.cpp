@@ -2,12 +2,15 @@
 #include "models/head/reduced_head.h"
 
 namespace tress::models {
+namespace {
+
+template <class T>
+using ChainHead = ReducedHead<ChainKind<T>>;
+
+}  // namespace
 
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack) {
-  check_for_reduced_head(options, "chains of rigid links");
-  return on_pack(pack, [&]<class T>(Instructions set) {
-    return std::make_unique<ReducedHead<ChainKind<T>>>(options, set);
-  });
+  return reduced_head<ChainKind, ChainHead>(options, pack);
 }
 
 }  // namespace tress::models

@@ -51,12 +51,15 @@ struct ChainKind {
     return angle + before.length / 2 * (before.*shape);
   }
 
-  static void move(const Material& m, const Vec& q, const Vec& rate, Motion& at,
-                   Kept& e) {
+  template <bool accelerated>
+  static void move(const Material& m, const Vec& q, const Vec& rate,
+                   const Vec& acceleration, Motion& at, Kept& e) {
     const auto joint = turn_of(q, rate);
     e.rotation = joint.rotation;
     e.turn = joint.turn;
-    at.alpha = e.rotation.back(at.alpha + joint.bias + cross(at.omega, joint.velocity));
+    Vec turning = joint.bias;
+    if constexpr (accelerated) turning = turning + e.turn * acceleration;
+    at.alpha = e.rotation.back(at.alpha + turning + cross(at.omega, joint.velocity));
     at.omega = e.rotation.back(at.omega + joint.velocity);
     at.v = e.rotation.back(at.v);
     at.a = e.rotation.back(at.a);
@@ -81,10 +84,10 @@ struct ChainKind {
     return {};
   }
 
-  template <class Kernel>
+  template <bool accelerated, class Kernel>
   static void carry(const Kernel& /*kernel*/, const Material& m,
                     const typename Kernel::Inertia& inertia, const Vec& /*q*/,
-                    const Vec& /*rate*/, const Sum& hanging,
+                    const Vec& /*rate*/, const Vec& /*acceleration*/, const Sum& hanging,
                     const LoadSums<T>* of_effects, const Kept& e,
                     typename Kernel::Uneliminated& to) {
     const T& l = m.length;

@@ -199,14 +199,14 @@ class Head {
 };
 
 /// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors
-/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent. Throws InputError if
-/// the options or the pack make no sense.
+/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent, or backward_euler
+/// with the exact one (models/head/exact/exact_kernel.h), which has gravity, linear drag
+/// and bodies. Throws InputError if the options or the pack make no sense.
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of chains of rigid links (models/head/chain_strand.h); coordinates are the
-/// rotation vectors of the joints (rad), 3 per link; semi_implicit_euler with the stiff
-/// tangent; `points` are those of a link at which effects act. Throws InputError as
-/// above.
+/// rotation vectors of the joints (rad), 3 per link; methods as above; `points` are those
+/// of a link at which effects act. Throws InputError as above.
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of discrete elastic rods (models/head/maximal/der_strand.h), `elements` edges

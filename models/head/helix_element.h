@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "math/dual.h"
 #include "math/helix.h"
 #include "models/head/matrix3.h"
 
@@ -60,6 +61,14 @@ struct AlongHelix {
     return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
            f.B2 * B2;
   }
+  /// at() less what is constant or linear.
+  Vec3<T> by_functions(const HelixFunctions<T>& f) const {
+    return f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 + f.B2 * B2;
+  }
+  /// at() changes by this times kappa . dkappa through the functions.
+  Vec3<T> slope(const HelixFunctions<T>& f) const {
+    return f.A1 * A + f.B1 * B + f.A2 * A1 + f.B2 * B1 + f.A3 * A2 + f.B3 * B2;
+  }
 };
 
 /// An element of constant Darboux vector kappa that changes at the rate kappa', in the
@@ -76,6 +85,7 @@ class HelixElement {
  public:
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
+  using Number = typename ConstantOf<T>::Type;
 
   HelixElement(const Vec& kappa, const Vec& rate)
       : k_(kappa),
@@ -89,6 +99,7 @@ class HelixElement {
         z_v_(cross(rate, u_) + cross(kappa, u_v_)),
         l_v_(along_l(rate)) {}
 
+  const Vec& k() const { return k_; }
   const Vec& u() const { return u_; }
   const Vec& z() const { return z_; }
 
@@ -98,34 +109,37 @@ class HelixElement {
   Matrix slope(const HelixFunctions<T>& f) const {
     const Vec r{f.B1 * z_.x, f.A1 * u_.y + f.B1 * z_.y, f.A1 * u_.z + f.B1 * z_.z};
     const T bx = f.B * k_.x, by = f.B * k_.y, bz = f.B * k_.z;
-    return Matrix::columns({k_.x * r.x, k_.x * r.y + by, k_.x * r.z + bz},
-                           {k_.y * r.x - T(2) * by, k_.y * r.y + bx, k_.y * r.z - f.A},
-                           {k_.z * r.x - T(2) * bz, k_.z * r.y + f.A, k_.z * r.z + bx});
+    return Matrix::columns(
+        {k_.x * r.x, k_.x * r.y + by, k_.x * r.z + bz},
+        {k_.y * r.x - Number(2) * by, k_.y * r.y + bx, k_.y * r.z - f.A},
+        {k_.z * r.x - Number(2) * bz, k_.z * r.y + f.A, k_.z * r.z + bx});
   }
   /// P'' at kappa'' = 0.
   Vec bias(const HelixFunctions<T>& f) const {
     const T a_v = f.A1 * k_v_, b_v = f.B1 * k_v_;  // A', B'
     const T a_vv = f.A2 * k_v_ * k_v_ + f.A1 * v_v_;
     const T b_vv = f.B2 * k_v_ * k_v_ + f.B1 * v_v_;
-    return b_vv * z_ + T(2) * b_v * z_v_ + f.B * z_vv() + a_vv * u_ + T(2) * a_v * u_v_;
+    return b_vv * z_ + Number(2) * b_v * z_v_ + f.B * z_vv() + a_vv * u_ +
+           Number(2) * a_v * u_v_;
   }
 
   /// rho times the acceleration plus c times the velocity of its points, seen from a
   /// start that moves with v, omega, a, alpha.
-  AlongHelix<T> inertial(const T& rho, const T& c, const Vec& v, const Vec& omega,
-                         const Vec& a, const Vec& alpha) const {
+  AlongHelix<T> inertial(const Number& rho, const Number& c, const Vec3<Number>& v,
+                         const Vec3<Number>& omega, const Vec3<Number>& a,
+                         const Vec3<Number>& alpha) const {
     // rho (a + alpha x P + omega x (omega x P + 2 P') + P'') + c (v + omega x P + P').
-    const Vec spin = rho * alpha + c * omega;
-    const auto carried = [&](const Vec& x) {
+    const Vec3<Number> spin = rho * alpha + c * omega;
+    const auto carried = [&](const auto& x) {
       return cross(spin, x) + cross(rho * omega, cross(omega, x));
     };
     const auto moved = [&](const Vec& x) {  // x: a constant of P'
-      return cross(T(2) * rho * omega, x) + c * x;
+      return cross(Number(2) * rho * omega, x) + c * x;
     };
-    const T twice = T(2) * rho * k_v_, square = rho * k_v_ * k_v_, own = rho * v_v_;
+    const T twice = Number(2) * rho * k_v_, square = rho * k_v_ * k_v_, own = rho * v_v_;
     AlongHelix<T> all;
     all.one = rho * a + c * v;
-    all.s = carried({T(1), T(0), T(0)});
+    all.s = carried(Vec3<Number>{Number(1), Number(0), Number(0)});
     all.A = carried(u_) + moved(u_v_);
     all.B = carried(z_) + moved(l_v_) + rho * z_vv();
     all.A1 = k_v_ * moved(u_) + own * u_ + twice * u_v_;
@@ -133,6 +147,15 @@ class HelixElement {
     all.A2 = square * u_;
     all.B2 = square * z_;
     return all;
+  }
+
+  /// What kappa'' adds to the former, rho times P_kappa kappa''.
+  void add_second(const Number& rho, const Vec& second, AlongHelix<T>& all) const {
+    const T along = rho * dot(k_, second);
+    all.A = all.A + rho * Vec{T(0), second.z, -second.y};
+    all.B = all.B + rho * along_l(second);
+    all.A1 = all.A1 + along * u_;
+    all.B1 = all.B1 + along * z_;
   }
 
   struct Turn {
@@ -153,16 +176,16 @@ class HelixElement {
 
   /// sum_j x_j l_j, and the three numbers l_j . b + m_j . a.
   Vec along_l(const Vec& x) const {
-    return {T(-2) * (k_.y * x.y + k_.z * x.z), k_.y * x.x + k_.x * x.y,
+    return {Number(-2) * (k_.y * x.y + k_.z * x.z), k_.y * x.x + k_.x * x.y,
             k_.z * x.x + k_.x * x.z};
   }
   Vec back(const Vec& b, const Vec& a) const {
-    return {k_.y * b.y + k_.z * b.z, k_.x * b.y - T(2) * k_.y * b.x - a.z,
-            k_.x * b.z - T(2) * k_.z * b.x + a.y};
+    return {k_.y * b.y + k_.z * b.z, k_.x * b.y - Number(2) * k_.y * b.x - a.z,
+            k_.x * b.z - Number(2) * k_.z * b.x + a.y};
   }
 
  private:
-  Vec z_vv() const { return T(2) * cross(v_, u_v_); }  // z''
+  Vec z_vv() const { return Number(2) * cross(v_, u_v_); }  // z''
   /// a I + b K + c K^2.
   Matrix of_cross(const T& a, const T& b, const T& c, const T& x2) const {
     const T &x = k_.x, &y = k_.y, &z = k_.z;
@@ -222,6 +245,27 @@ struct HelixSums {
   }
 };
 
+/// Sums of forces times functions.
+template <class T>
+struct HelixForces {
+  Vec3<T> s, A, B, A1, B1;
+};
+/// Their moment about the start, and what they do to the unknowns: sum P x f, sum d_j . f
+/// with d_j = dP/dkappa_j.
+template <class T>
+struct HelixWork {
+  Vec3<T> moment, unknown;
+
+  HelixWork(const HelixElement<T>& element, const HelixForces<T>& f) {
+    using Number = typename HelixElement<T>::Number;
+    const Vec3<Number> e0{Number(1), Number(0), Number(0)};
+    const Vec3<T>&u = element.u(), &z = element.z();
+    moment = cross(e0, f.s) + cross(u, f.A) + cross(z, f.B);
+    const T f_r = dot(u, f.A1) + dot(z, f.B1);
+    unknown = f_r * element.k() + element.back(f.B, f.A);
+  }
+};
+
 /// What the equations need of them. With d_j = dP/dkappa_j: moments of inertia w =
 /// weight.
 template <class T>
@@ -274,9 +318,10 @@ struct HelixMoments {
              xy * (r_r + m.BB) + k.x * g.y + k.y * g.x - m.AB * k.z,
              xz * (r_r + m.BB) + k.x * g.z + k.z * g.x + m.AB * k.y,
              yz * (r_r + T(4) * m.BB) + k.y * g.z + k.z * g.y};
-    moment = cross(e0, m.force_s) + cross(u, m.force_A) + cross(z, m.force_B);
-    const T f_r = dot(u, m.force_A1) + dot(z, m.force_B1);
-    unknown = f_r * k + element.back(m.force_B, m.force_A);
+    const HelixWork<T> work(element,
+                            {m.force_s, m.force_A, m.force_B, m.force_A1, m.force_B1});
+    moment = work.moment;
+    unknown = work.unknown;
   }
 };
 

@@ -56,10 +56,7 @@ class HelixHead final : public ReducedHead<HelixKind<T>>, public HelixSource {
 }  // namespace
 
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  check_for_reduced_head(options, "super-helices");
-  return on_pack(pack, [&]<class T>(Instructions set) {
-    return std::make_unique<HelixHead<T>>(options, set);
-  });
+  return reduced_head<HelixKind, HelixHead>(options, pack);
 }
 
 }  // namespace tress::models

@@ -36,8 +36,9 @@ struct HelixKind {
     return strand.segments[i].*shape;
   }
 
-  static void move(const Material& m, const Vec& q, const Vec& rate, Motion& at,
-                   Kept& e) {
+  template <bool accelerated>
+  static void move(const Material& m, const Vec& q, const Vec& rate,
+                   const Vec& acceleration, Motion& at, Kept& e) {
     e.v = at.v;
     e.omega = at.omega;
     e.a = at.a;
@@ -51,9 +52,14 @@ struct HelixKind {
     e.turn = turn.turn;
     e.rotation = turn.rotation;
     const Vec arm = cross(at.omega, e.position), moved = e.slope * rate;
-    at.a = e.rotation.back(at.a + cross(at.alpha, e.position) + element.bias(f) +
+    Vec own = element.bias(f), turning = turn.bias;
+    if constexpr (accelerated) {
+      own = own + e.slope * acceleration;
+      turning = turning + e.turn * acceleration;
+    }
+    at.a = e.rotation.back(at.a + cross(at.alpha, e.position) + own +
                            cross(at.omega, arm + T(2) * moved));
-    at.alpha = e.rotation.back(at.alpha + turn.bias + cross(at.omega, turn.velocity));
+    at.alpha = e.rotation.back(at.alpha + turning + cross(at.omega, turn.velocity));
     at.v = e.rotation.back(at.v + arm + moved);
     at.omega = e.rotation.back(at.omega + turn.velocity);
   }
@@ -67,16 +73,17 @@ struct HelixKind {
     return end;
   }
 
-  template <class Kernel>
+  template <bool accelerated, class Kernel>
   static void carry(const Kernel& kernel, const Material& m,
                     const typename Kernel::Inertia& weights, const Vec& q,
-                    const Vec& rate, const Sum& hanging, const LoadSums<T>* of_effects,
-                    const Kept& e, typename Kernel::Uneliminated& to) {
+                    const Vec& rate, const Vec& acceleration, const Sum& hanging,
+                    const LoadSums<T>* of_effects, const Kept& e,
+                    typename Kernel::Uneliminated& to) {
     const T& inertia = weights.of_length;
     const HelixElement<T> element(q, rate);
     const LaneFunctions<T> functions(q, m.length);
-    const AlongHelix<T> load =
-        element.inertial(m.density, m.drag, e.v, e.omega, e.a, e.alpha);
+    AlongHelix<T> load = element.inertial(m.density, m.drag, e.v, e.omega, e.a, e.alpha);
+    if constexpr (accelerated) element.add_second(m.density, acceleration, load);
     HelixSums<T> sums;
     for (int k = 0; k < kernel.points(); ++k) {
       const T arc = T(kernel.at(k)) * m.length, weight = T(kernel.weight(k)) * m.length;

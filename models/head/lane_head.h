@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,21 @@ inline void check_for_head(const Effect& effect) {
   if (const auto no = refused_by_heads(effect)) {
     throw InputError(no->reason, place_of_head, no->remedy);
   }
+}
+
+/// A length times this is no less than that of what T computes.
+template <class T>
+inline constexpr double rounded_up = 1 + (sizeof(typename T::Scalar) == 8 ? 1e-12 : 1e-5);
+
+/// How far points of elements of so much length (m) are from the chords of these points
+/// at most.
+inline double largest_bulge(std::span<const double> x, double length) {
+  double square = 0;
+  for (std::size_t i = 0; i + 3 < x.size(); i += 3) {
+    const Vec chord = load3(&x[i + 3]) - load3(&x[i]);
+    square = std::max(square, length * length - dot(chord, chord));
+  }
+  return 0.5 * std::sqrt(square);
 }
 
 /// What several threads find.

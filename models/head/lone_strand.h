@@ -18,6 +18,8 @@ class LoneStrand {
  public:
   using T = typename Model::Real;
   using PoseAt = std::function<RootPose(double part)>;  // of the step, 0 to 1
+  /// Finds loads of bodies that end one of so many parts there, from `work` as it is.
+  using Meet = std::function<void(double part, int parts)>;
 
   LoneStrand(const Model& model, double tolerance, int most_iterations,
              LaneWork<Model>& work)
@@ -28,14 +30,15 @@ class LoneStrand {
         n_(work.size()) {}
 
   /// h: without units, as the poses. True: work's q, v and a are the solution.
-  bool solve(const PoseAt& pose, double h) {
+  bool solve(const PoseAt& pose, const Meet& meet, double h) {
     const std::vector<T> start = work_.state;
     work_.begin(model_, pose(0), pose(1), h);
+    meet(1, 1);
     if (damped_from_anywhere(start, Start::zero)) return true;
     for (int parts = 2; parts <= most_parts; parts *= 2) {
       shortened = true;
       work_.state = start;
-      if (in_parts(pose, h, parts)) return true;
+      if (in_parts(pose, meet, h, parts)) return true;
     }
     return false;
   }
@@ -75,11 +78,12 @@ class LoneStrand {
     return verdict == NewtonVerdict::converged;
   }
 
-  bool in_parts(const PoseAt& pose, double h, int parts) {
+  bool in_parts(const PoseAt& pose, const Meet& meet, double h, int parts) {
     for (int i = 0; i < parts; ++i) {
       const std::vector<T> start = work_.state;
       work_.begin(model_, pose(static_cast<double>(i) / parts),
                   pose(static_cast<double>(i + 1) / parts), h / parts);
+      meet(static_cast<double>(i + 1) / parts, parts);
       if (!damped_from_anywhere(start, Start::guess)) return false;
       if (i + 1 == parts) return true;
       std::copy(work_.q.begin(), work_.q.end(), work_.q_n());

@@ -41,6 +41,11 @@ struct Matrix3 {
   }
 };
 
+/// x y^T.
+template <class T>
+Matrix3<T> dyad(const Vec3<T>& x, const Vec3<T>& y) {
+  return {{x.x * y, x.y * y, x.z * y}};
+}
 /// a [p]x: what a does with cross(p, x).
 template <class T>
 Matrix3<T> times_cross(const Matrix3<T>& a, const Vec3<T>& p) {
@@ -57,6 +62,14 @@ template <class T>
 Matrix3<T> cross_matrix(const Vec3<T>& p) {
   const T o(0);
   return {{{o, -p.z, p.y}, {p.z, o, -p.x}, {-p.y, p.x, o}}};
+}
+
+/// By cofactors.
+template <class T>
+Matrix3<T> inverse(const Matrix3<T>& m) {
+  const Vec3<T> x = cross(m.row[1], m.row[2]), y = cross(m.row[2], m.row[0]),
+                z = cross(m.row[0], m.row[1]);
+  return (T(1) / dot(m.row[0], x)) * Matrix3<T>::columns(x, y, z);
 }
 
 template <class T>

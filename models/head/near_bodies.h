@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/effects/body.h"
+#include "models/head/head_units.h"
 #include "models/head/point_loads.h"
 
 /// Bodies that strands of a head may touch: which reach the head, which some strands side
@@ -87,6 +88,48 @@ class BodyTouch {
   template <class Velocity>
   void touch(const Vec3T& x, const Velocity& velocity, const T& to_force,
              const T& to_block, PointLoad<T>& load, T& some) const {
+    touched(x, velocity, [&](const T& outside, const Vec3T& force, const auto& slopes) {
+      const T o(0);
+      const Mat3Of<T> b = T(-pos_) * slopes.by_x - slopes.by_u * by_place_;
+      const Symmetric3<T> symmetric{b.r0.x,
+                                    b.r1.y,
+                                    b.r2.z,
+                                    T(0.5) * (b.r0.y + b.r1.x),
+                                    T(0.5) * (b.r0.z + b.r2.x),
+                                    T(0.5) * (b.r1.z + b.r2.y)};
+      load.force =
+          load.force + where_less(outside, o, to_force * turn_.back(force), Vec3T{});
+      load.block =
+          load.block +
+          where_less(outside, o, to_block * congruent(turn_.transposed(), symmetric), {});
+      some = where_less(outside, o, T(1), some);
+    });
+  }
+  /// The same with derivatives by units of length and speed.
+  template <class Velocity>
+  void touch(const Vec3T& x, const Velocity& velocity, const T& to_force,
+             const HeadUnits& units, ExactLoad<T>& load, T& some) const {
+    touched(x, velocity, [&](const T& outside, const Vec3T& force, const auto& slopes) {
+      const T o(0);
+      const Matrix3<T> by_u{{slopes.by_u.r0, slopes.by_u.r1, slopes.by_u.r2}},
+          by_x{{slopes.by_x.r0, slopes.by_x.r1, slopes.by_x.r2}};
+      const auto add = [&](const T& by, const Matrix3<T>& m, Matrix3<T>& to) {
+        const Matrix3<T> turned = turn_.transposed() * m * turn_;
+        to = to - where_less(outside, o, by * turned, Matrix3<T>{});
+      };
+      load.force =
+          load.force + where_less(outside, o, to_force * turn_.back(force), Vec3T{});
+      add(to_force * T(units.length), by_x - times_cross(by_u, turns_), load.by_x);
+      add(to_force * T(units.speed()), by_u, load.by_u);
+      some = where_less(outside, o, T(1), some);
+    });
+  }
+
+ private:
+  /// use(outside, force, slopes) in the axes of the body, if outside < 0 in some lane:
+  /// loads are in those lanes.
+  template <class Velocity, class Use>
+  void touched(const Vec3T& x, const Velocity& velocity, const Use& use) const {
     const T o(0), reach(law_.offset);
     T bound(std::numeric_limits<typename T::Scalar>::lowest());
     if constexpr (requires { shape_.at_least(x); }) {
@@ -100,22 +143,9 @@ class BodyTouch {
     const Vec3T u = turn_ * velocity() - (moves_ + cross(turns_, x));
     ContactSlopesOf<T> slopes;
     const Vec3T force = law_.load(near.to, shape_.curvature(x, near), u, slopes);
-    const Mat3Of<T> b = T(-pos_) * slopes.by_x - slopes.by_u * by_place_;
-    const Symmetric3<T> symmetric{b.r0.x,
-                                  b.r1.y,
-                                  b.r2.z,
-                                  T(0.5) * (b.r0.y + b.r1.x),
-                                  T(0.5) * (b.r0.z + b.r2.x),
-                                  T(0.5) * (b.r1.z + b.r2.y)};
-    load.force =
-        load.force + where_less(outside, o, to_force * turn_.back(force), Vec3T{});
-    load.block =
-        load.block +
-        where_less(outside, o, to_block * congruent(turn_.transposed(), symmetric), {});
-    some = where_less(outside, o, T(1), some);
+    use(outside, force, slopes);
   }
 
- private:
   const BodyPose& pose_;
   const BodyContact& law_;
   const Shape& shape_;

@@ -13,6 +13,23 @@ struct PointLoad {
   Symmetric3<T> block;
 };
 
+/// The same with both derivatives apart, of any symmetry: -df/dx, where the velocity
+/// stays, and -df/du.
+template <class T>
+struct ExactLoad {
+  Vec3<T> force;
+  Matrix3<T> by_x, by_u;
+};
+/// At a point p of an element; `some`: 1 in lanes with a load, 0 in others.
+template <class T, class Load>
+struct LoadedPoint {
+  Vec3<T> p;  // from the start, in the element's axes
+  Load load;
+  T some;
+};
+template <class T>
+using ExactPoint = LoadedPoint<T, ExactLoad<T>>;
+
 using tress::where_less;  // not hidden by this one
 template <class T>
 Symmetric3<T> where_less(const T& x, const T& y, const Symmetric3<T>& yes,

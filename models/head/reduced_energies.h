@@ -16,9 +16,10 @@ class ReducedEnergies {
 
   explicit ReducedEnergies(const ReducedKernel<Kind>& kernel) : kernel_(kernel) {}
 
-  /// `at` and `frame`: of the root. O(elements points).
+  /// `at` and `frame`: of the root; `rest(i)`: of an element. O(elements points).
+  template <class Rest>
   LaneEnergies<T> operator()(const ReducedMaterial<T>& m, const ReducedMotion<T>& root,
-                             Vec at, FrameOf<T> frame, const Vec* rest, const Vec* q,
+                             Vec at, FrameOf<T> frame, Rest rest, const Vec* q,
                              const Vec* v) const {
     Vec velocity = root.v, omega = root.omega;
     LaneEnergies<T> sum{T(0.5 * Kind::rotors_of_root) * m.rotor * omega.x * omega.x, T(0),
@@ -37,7 +38,7 @@ class ReducedEnergies {
         mass += part;
       }
       sum.first = sum.first + mass * at + frame * places;
-      const Vec bent = q[i] - rest[i];
+      const Vec bent = q[i] - rest(i);
       sum.elastic += T(i == 0 ? 0.5 * Kind::first_stiffness : 0.5) *
                      (m.stiffness.x * bent.x * bent.x + m.stiffness.y * bent.y * bent.y +
                       m.stiffness.z * bent.z * bent.z);

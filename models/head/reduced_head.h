@@ -12,6 +12,8 @@
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
+#include "models/head/reduced_material.h"
+#include "models/head/reduced_model.h"
 #include "models/head/reduced_places.h"
 
 namespace tress::models {
@@ -72,33 +74,16 @@ class ReducedHead : public Head {
     const Vec from = strand.root.position - options_.motion.position;
     radius_ = std::max(radius_, norm(from) + static_cast<double>(n_) * first.length);
     const int own = static_cast<int>(lost_.size() % width);
-    const double unit = Kind::unit(units_.length);
     // The first strand of a block fills the lanes of those that may not come.
     for (int lane = own; lane < (opens ? T::lanes : own + 1); ++lane) {
       Root& root = roots_[block];
       set_lane(root.from, lane, (1 / units_.length) * from);
       set_lane(root.frame, lane, strand.root.frame);
-      ReducedMaterial<T>& m = materials_[block];
-      const double length = first.length / units_.length, bending = units_.stiffness(),
-                   moment = Kind::moment(length);
-      set_lane(m.length, lane, length);
-      set_lane(m.density, lane, density / units_.density);
-      set_lane(m.drag, lane,
-               (options_.drag + options_.mass_damping * density) * units_.time /
-                   units_.density);
-      set_lane(m.stiffness, lane, moment / bending * stiffness(strand.material, section));
-      set_lane(m.friction, lane,
-               moment * strand.material.internal_friction / (bending * units_.time));
-      const double polar = options_.rotary_inertia ? section.polar() : 0;
-      set_lane(m.rotor, lane,
-               length * strand.material.density * polar /
-                   (units_.density * units_.length * units_.length));
+      set_material<Kind>(strand, options_, units_, lane, materials_[block]);
       for (std::size_t i = 0; i < n_; ++i) {
-        const Vec rest = unit * Kind::at_rest(strand, i, &Segment::natural);
-        Vec initial = unit * Kind::at_rest(strand, i, &Segment::initial);
-        if (!options_.twist) initial.x = rest.x;  // held
-        set_lane(rest_[n_ * block + i], lane, rest);
-        set_lane(q_[n_ * block + i], lane, initial);
+        const ReducedStart start = start_of<Kind>(strand, options_, units_, i);
+        set_lane(rest_[n_ * block + i], lane, start.rest);
+        set_lane(q_[n_ * block + i], lane, start.initial);
         set_lane(v_[n_ * block + i], lane, Vec{});
       }
     }
@@ -179,7 +164,6 @@ class ReducedHead : public Head {
   /// sqrt(l^2 - c^2)/2; l allows for what chords are rounded by.
   void ahead(std::size_t block, double t, double h, std::span<double> x,
              std::span<double> bulge) const override {
-    constexpr double rounding = 1 + (sizeof(typename T::Scalar) == 8 ? 1e-12 : 1e-5);
     std::vector<Vec3<T>> q(n_);
     const T step(h / units_.time);
     for (std::size_t i = 0; i < n_; ++i) {
@@ -188,20 +172,13 @@ class ReducedHead : public Head {
     ReducedPlaces<Kind> next = places(block, t + h);
     next.q = q.data();
     next.write(strands_of(block), x, {});
-    if constexpr (Kind::straight) {
-      std::ranges::fill(bulge, 0.0);
-      return;
-    }
     for (std::size_t k = 0; k < strands_of(block); ++k) {
-      const double length = rounding * units_.length *
-                            lane_of(materials_[block].length, static_cast<int>(k));
-      double square = 0;
-      for (std::size_t i = 0; i < n_; ++i) {
-        const double* const from = &x[3 * (k * (n_ + 1) + i)];
-        const Vec chord = load3(from + 3) - load3(from);
-        square = std::max(square, length * length - dot(chord, chord));
-      }
-      bulge[k] = 0.5 * std::sqrt(square);
+      bulge[k] =
+          Kind::straight
+              ? 0
+              : largest_bulge(x.subspan(3 * (n_ + 1) * k, 3 * (n_ + 1)),
+                              rounded_up<T> * units_.length *
+                                  lane_of(materials_[block].length, static_cast<int>(k)));
     }
   }
   void state(std::size_t strand, std::span<double> q,
@@ -221,9 +198,10 @@ class ReducedHead : public Head {
     const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
     LaneEnergies<T> sums;
     by(instructions_, [&] {
-      sums = energies_(materials_[block], root_of(root, pose), head * root.from,
-                       head * root.frame, &rest_[n_ * block], &q_[n_ * block],
-                       &v_[n_ * block]);
+      sums = energies_(
+          materials_[block], root_of(root, pose), head * root.from, head * root.frame,
+          [rest = &rest_[n_ * block]](int i) { return rest[i]; }, &q_[n_ * block],
+          &v_[n_ * block]);
     });
     for (std::size_t k = 0; k < strands_of(block); ++k) {
       const auto lane = static_cast<int>(k);
@@ -400,15 +378,25 @@ class ReducedHead : public Head {
   std::vector<Effects> own_;  // of each strand, or empty
 };
 
-/// Throws InputError unless such a head can have these options; `of`: its hair.
-inline void check_for_reduced_head(const HeadOptions& options, const std::string& of) {
+/// Throws InputError unless such a head can have these options.
+inline void check_for_reduced_head(const HeadOptions& options) {
   check_for_head(options);
   refuse_if(options.points < 2 || options.points > most_points_of_element,
             std::to_string(options.points) + " points of an element", place_of_head,
             "use 2 to 16");
-  refuse_if(options.method != HeadMethod::semi_implicit_euler,
-            "a method that " + of + " do not have", place_of_head,
-            "use semi_implicit_euler");
+}
+
+/// A head of strands of this Kind by the method of the options: `Stepped` where one
+/// linear solve is a step.
+template <template <class> class Kind, template <class> class Stepped>
+std::unique_ptr<Head> reduced_head(const HeadOptions& options, const HeadPack& pack) {
+  check_for_reduced_head(options);
+  return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
+    if (options.method == HeadMethod::semi_implicit_euler) {
+      return std::make_unique<Stepped<T>>(options, set);
+    }
+    return std::make_unique<SteppingHead<ReducedModel<Kind<T>>>>(options, set);
+  });
 }
 
 }  // namespace tress::models

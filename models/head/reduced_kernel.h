@@ -5,6 +5,7 @@
 #include "contract/system.h"
 #include "math/gauss_legendre.h"
 #include "math/instructions.h"
+#include "math/lane_choice.h"
 #include "models/head/point_loads.h"
 
 namespace tress::models {
@@ -77,10 +78,13 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///     Real                          // T
 ///     Kept                          // of an element, between sweeps: v, omega of its
 ///                                   // axes, position and rotation of its tip
-///     move(material, q, rate, motion, Kept)   // of its start, replaced by its tip's
-///     last(material, motion, acc)             // the sum that hangs on the last tip
-///     carry(kernel, material, Inertia, q, rate, sum, loads, Kept, Uneliminated)
-///                                   // that of its tip to its axes, with its own
+///     move<accelerated>(material, q, rate, acceleration, motion, Kept)
+///                                   // motion: of its start, replaced by its tip's;
+///                                   // `acceleration` is read if so
+///     last(material, motion, acc)   // the sum that hangs on the last tip
+///     carry<accelerated>(kernel, material, Inertia, q, rate, acceleration, sum, loads,
+///                        Kept, Uneliminated)
+///                                   // sum: of its tip, to its axes and with its own
 ///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
 ///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
 ///     leave(Kept, own, l, a)        // its axes, and to its tip
@@ -131,6 +135,7 @@ class ReducedKernel {
   }
   int elements() const { return elements_; }
   int points() const { return points_; }
+  bool twist() const { return twist_; }
   double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
 
@@ -143,7 +148,7 @@ class ReducedKernel {
     for (int i = 0; i < elements_; ++i) scratch[i].q = q[i] + step * v[i];
     Motion at = root;
     for (int i = 0; i < elements_; ++i) {
-      Kind::move(m, scratch[i].q, v[i], at, scratch[i].kept);
+      Kind::template move<false>(m, scratch[i].q, v[i], {}, at, scratch[i].kept);
     }
     return at;
   }
@@ -154,11 +159,52 @@ class ReducedKernel {
                                         double h, Vec* q, Vec* v,
                                         Scratch* scratch) const {
     const T step(h);
-    backward(m, rest, v, {1, h, h * h}, end, loads, scratch);
+    backward(
+        m, [&](int i) { return rest[i]; }, v, {1, h, h * h}, end, loads, scratch);
     solve(scratch, [&](int i, const Vec& a) {
       v[i] = v[i] + step * a;
       q[i] = q[i] + step * v[i];
     });
+  }
+
+  /// The residual r at any state; `scratch` and `end`: what Kind::move made of it and of
+  /// the tip. `rest(i)`: of an element.
+  template <class Rest>
+  TRESS_FLATTEN void residual(const Material& m, const Motion& end,
+                              const LoadSums<T>* const* loads, Rest rest, const Vec* v,
+                              const Vec* a, Vec* r, const Scratch* scratch) const {
+    const Inertia none{T(0), T(0)};
+    Sum hanging = Kind::last(m, end, none.acc);
+    for (int i = elements_ - 1; i >= 0; --i) {
+      Uneliminated all;
+      carry<true>(m, none, {}, i, rest(i), v, a, hanging, loads, scratch[i], all);
+      r[i] = Vec{} - all.unknown;
+      // What hangs on the tip acts on the unknowns by its wrench alone.
+      hanging = {all.sum.force, all.sum.moment, {}, {}, {}};
+      Kind::pass(m, none.acc, scratch[i].kept, hanging);
+    }
+  }
+
+  /// Elastic and viscous moments of an element, and their diagonal in S.
+  struct Bending {
+    Vec moment, tangent;
+  };
+  static Bending bending(const Material& m, Weights w, int i, const Vec& q,
+                         const Vec& rest, const Vec& v) {
+    Vec stiffness = m.stiffness;
+    T friction = m.friction;
+    if constexpr (Kind::first_stiffness != 1) {
+      const T times(i == 0 ? Kind::first_stiffness : 1);
+      stiffness = times * stiffness;
+      friction = times * friction;
+    }
+    const T pos(w.pos), damping = T(w.vel) * friction;
+    const Vec strain = q - rest;
+    return {
+        {stiffness.x * strain.x + friction * v.x, stiffness.y * strain.y + friction * v.y,
+         stiffness.z * strain.z + friction * v.z},
+        {pos * stiffness.x + damping, pos * stiffness.y + damping,
+         pos * stiffness.z + damping}};
   }
 
   /// What weighs acceleration in S: of a length, and of a rotor.
@@ -174,39 +220,37 @@ class ReducedKernel {
   };
 
  private:
-  void backward(const Material& m, const Vec* rest, const Vec* v, Weights w,
-                const Motion& end, const LoadSums<T>* const* loads,
-                Scratch* scratch) const {
+  template <class Rest>
+  void backward(const Material& m, Rest rest, const Vec* v, Weights w, const Motion& end,
+                const LoadSums<T>* const* loads, Scratch* scratch) const {
     const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
     Sum hanging = Kind::last(m, end, inertia.acc);
     for (int i = elements_ - 1; i >= 0; --i) {
       Scratch& e = scratch[i];
       Uneliminated all;
-      Kind::carry(*this, m, inertia, e.q, v[i], hanging,
-                  loads != nullptr ? loads[i] : nullptr, e.kept, all);
-      bend(m, w, i, rest[i], v[i], e, all);
+      carry<false>(m, inertia, w, i, rest(i), v, nullptr, hanging, loads, e, all);
       hanging = eliminate(all, e);
       Kind::pass(m, inertia.acc, e.kept, hanging);
     }
   }
+  /// `accelerated`: at accelerations a, else at none.
+  template <bool accelerated>
+  void carry(const Material& m, const Inertia& inertia, Weights w, int i, const Vec& rest,
+             const Vec* v, const Vec* a, const Sum& hanging,
+             const LoadSums<T>* const* loads, const Scratch& e, Uneliminated& all) const {
+    Kind::template carry<accelerated>(*this, m, inertia, e.q, v[i],
+                                      accelerated ? a[i] : Vec{}, hanging,
+                                      loads != nullptr ? loads[i] : nullptr, e.kept, all);
+    bend(m, w, i, rest, v[i], e, all);
+  }
 
   static void bend(const Material& m, Weights w, int i, const Vec& rest, const Vec& v,
                    const Scratch& e, Uneliminated& all) {
-    Vec stiffness = m.stiffness;
-    T friction = m.friction;
-    if constexpr (Kind::first_stiffness != 1) {
-      const T times(i == 0 ? Kind::first_stiffness : 1);
-      stiffness = times * stiffness;
-      friction = times * friction;
-    }
-    const T pos(w.pos), damping = T(w.vel) * friction;
-    all.own.xx += pos * stiffness.x + damping;
-    all.own.yy += pos * stiffness.y + damping;
-    all.own.zz += pos * stiffness.z + damping;
-    const Vec strain = e.q - rest;
-    all.unknown = all.unknown - Vec{stiffness.x * strain.x + friction * v.x,
-                                    stiffness.y * strain.y + friction * v.y,
-                                    stiffness.z * strain.z + friction * v.z};
+    const Bending by = bending(m, w, i, e.q, rest, v);
+    all.own.xx += by.tangent.x;
+    all.own.yy += by.tangent.y;
+    all.own.zz += by.tangent.z;
+    all.unknown = all.unknown - by.moment;
   }
 
   Sum eliminate(const Uneliminated& from, Scratch& e) const {

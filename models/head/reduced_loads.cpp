@@ -1,6 +1,7 @@
 #include "models/head/reduced_loads.h"
 
 #include <algorithm>
+#include <concepts>
 
 #include "math/instructions.h"
 #include "models/head/chain_strand.h"
@@ -8,15 +9,32 @@
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
+/// Which elements each body may touch.
 template <class Kind>
-auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element* elements)
-    -> const LoadSums<T>* const* {
+void ReducedLoads<Kind>::look_around(const Block& block, const Element* elements) {
   block_ = block;
   by(instructions_, [&] { place(elements); });
   near_.resize(block_.bodies.size() * n_);
   for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
     look_for(block_.bodies[b], std::span(near_).subspan(b * n_, n_));
   }
+}
+
+template <class Kind>
+auto ReducedLoads<Kind>::find_exact(const Block& block, const Vec3T* v,
+                                    const Element* elements)
+    -> const ExactPoint<T>* const* {
+  look_around(block, elements);
+  by(instructions_, [&] {
+    for (std::size_t i = 0; i < n_; ++i) exact_[i] = exact(i, v[i], elements[i]);
+  });
+  return exact_.data();
+}
+
+template <class Kind>
+auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element* elements)
+    -> const LoadSums<T>* const* {
+  look_around(block, elements);
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
   if (others) take_others(v, elements);
@@ -66,10 +84,33 @@ TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
     if (near_[b * n_ + i] == 0) continue;
     const NearBody& body = block_.bodies[b];
     prepare();
-    std::visit([&](const auto& shape) { touch(body, shape, i, points); },
+    std::visit([&](const auto& shape) { touch(body, shape, i, points, at_.data()); },
                body.contact->body.shape());
   }
   return ready && add_up(i, points);
+}
+
+/// Null if none of its points has a load.
+template <class Kind>
+TRESS_FLATTEN auto ReducedLoads<Kind>::exact(std::size_t i, const Vec3T& rate,
+                                             const Element& e) -> const ExactPoint<T>* {
+  const OnElement points(e.kept, e.q, rate, block_.material->length);
+  ExactPoint<T>* const at = &exact_at_[points_ * i];
+  bool ready = false;
+  for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
+    if (near_[b * n_ + i] == 0) continue;
+    for (std::size_t k = 0; !ready && k < points_; ++k) {
+      at[k] = {points.position(arc_of(k)), {}, T(0)};
+    }
+    ready = true;
+    const NearBody& body = block_.bodies[b];
+    std::visit([&](const auto& shape) { touch(body, shape, i, points, at); },
+               body.contact->body.shape());
+  }
+  if (!ready) return nullptr;
+  const bool loaded = std::any_of(
+      at, at + points_, [](const auto& point) { return any_less(T(0), point.some); });
+  return loaded ? at : nullptr;
 }
 
 template <class Kind>
@@ -129,20 +170,24 @@ TRESS_FLATTEN void ReducedLoads<Kind>::look_for(const NearBody& body,
 }
 
 template <class Kind>
-template <class Shape>
+template <class Shape, class Load>
 void ReducedLoads<Kind>::touch(const NearBody& body, const Shape& shape, std::size_t i,
-                               const OnElement& points) {
-  const Start& at = starts_[i];
-  const BodyTouch<T, Shape> of_body(body, shape, at.frame, block_.h);
-  const Vec3T start = of_body.in_body(at.x);
+                               const OnElement& points, LoadedPoint<T, Load>* at) const {
+  const Start& start = starts_[i];
+  const BodyTouch<T, Shape> of_body(body, shape, start.frame, block_.h);
+  const Vec3T from = of_body.in_body(start.x);
   const T length(units_.length), speed(units_.speed());
   for (std::size_t k = 0; k < points_; ++k) {
-    Point& point = at_[k];
+    LoadedPoint<T, Load>& point = at[k];
     const auto velocity = [&] { return speed * points.velocity(arc_of(k), point.p); };
-    const T w = weight_of(k);
-    of_body.touch(start + of_body.turn() * (length * point.p), velocity,
-                  w * T(units_.length / units_.force()), w * T(1 / units_.density),
-                  point.load, point.some);
+    const Vec3T x = from + of_body.turn() * (length * point.p);
+    const T w = weight_of(k), to_force = w * T(units_.length / units_.force());
+    if constexpr (std::same_as<Load, ExactLoad<T>>) {
+      of_body.touch(x, velocity, to_force, units_, point.load, point.some);
+    } else {
+      of_body.touch(x, velocity, to_force, w * T(1 / units_.density), point.load,
+                    point.some);
+    }
   }
 }
 

@@ -31,8 +31,10 @@ class ReducedLoads {
         points_(static_cast<std::size_t>(kernel.points())),
         starts_(n_),
         at_(points_),
+        exact_at_(n_ * points_),
         sums_(n_),
-        loads_(n_) {}
+        loads_(n_),
+        exact_(n_) {}
 
   /// A block in one step: bodies that may touch it, and of each
   /// strand the other effects. `from`, `frame`: of the roots, seen from the head's
@@ -49,6 +51,9 @@ class ReducedLoads {
   /// Of each element its loads, or null; from the motion at the step's end.
   const LoadSums<T>* const* find(const Block& block, const Vec3T* v,
                                  const Element* elements);
+  /// The same by points, with all derivatives; bodies alone act.
+  const ExactPoint<T>* const* find_exact(const Block& block, const Vec3T* v,
+                                         const Element* elements);
 
  private:
   struct Start {
@@ -56,21 +61,19 @@ class ReducedLoads {
     FrameOf<T> frame;  // of the element's axes
     Vec3T chord;       // to the tip
   };
-  struct Point {
-    Vec3T p;  // from the start, in the element's axes
-    PointLoad<T> load;
-    T some;  // 1 in lanes with a load, 0 in others
-  };
+  using Point = LoadedPoint<T, PointLoad<T>>;
 
   using OnElement = typename Kind::Points;
 
+  void look_around(const Block& block, const Element* elements);
   void place(const Element* elements);
   bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
+  const ExactPoint<T>* exact(std::size_t i, const Vec3T& rate, const Element& e);
   bool add_up(std::size_t i, const OnElement& points);
   void look_for(const NearBody& body, std::span<char> near) const;
-  template <class Shape>
+  template <class Shape, class Load>
   void touch(const NearBody& body, const Shape& shape, std::size_t i,
-             const OnElement& points);
+             const OnElement& points, LoadedPoint<T, Load>* at) const;
   void take_others(const Vec3T* v, const Element* elements);
   void take_others(int lane);
   void put(std::size_t i, int lane);
@@ -90,8 +93,10 @@ class ReducedLoads {
   std::vector<Start> starts_;
   std::vector<char> near_;  // (bodies, elements) whether one may touch the other
   std::vector<Point> at_;   // of an element
+  std::vector<ExactPoint<T>> exact_at_;
   std::vector<LoadSums<T>> sums_;
   std::vector<const LoadSums<T>*> loads_;
+  std::vector<const ExactPoint<T>*> exact_;
   // Of effects other than bodies, by points.
   std::vector<PointLoad<T>> others_;
   std::vector<T> some_;

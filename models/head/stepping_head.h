@@ -26,15 +26,18 @@ namespace tress::models {
 ///     again(the same)                       // with the matrix of the last newton()
 ///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
 ///     positions(Strand, Element*, RootPose, q, use(i, Vec3<Real>))
-///     velocities(Clamp, v, use(i, Vec3<Real>))
+///     velocities(Strand, RootPose, q, v, use(i, Vec3<Real>))
 ///     energies(Strand, Element*, RootPose, q, v)   // LaneEnergies
 ///     mass(Strand, lane)
 ///     iterates                              // whether there is more than one step
+///     use_others                            // remedy for effects that it has not
+///     straight                              // whether elements are; else it has
+///     element_length(Strand)
 ///     takes_bodies                          // whether it has these, too:
 ///     root_at(Strand, Frame), length(Strand)   // from the head's position; of strands
 ///     most_stretched                        // their length over that
 ///     find_loads(Strand, bodies, RootPose, HeadUnits, h, q, v, Scratch&)  // for
-///     newton()
+///     newton() and again(), the latter two at their states; bodies outlive them
 ///
 /// and an Element has keep(lane, double*), recall(lane, const double*): `kept` numbers.
 ///
@@ -60,7 +63,7 @@ class SteppingHead final : public Head {
     for (const auto& effect : options_.effects) {
       check_for_head(*effect);
       refuse_if(!Model::takes_bodies || effect->rigid_contact() == nullptr,
-                on_this_model(*effect), place_of_head, use_others);
+                on_this_model(*effect), place_of_head, Model::use_others);
       bodies_.push_back(effect->rigid_contact());
     }
   }
@@ -79,7 +82,7 @@ class SteppingHead final : public Head {
     models::check(strand);
     check_for_head(strand, n_);
     refuse_if(!own.empty(), own.empty() ? "" : on_this_model(*own.front()), place_of_head,
-              use_others);
+              Model::use_others);
     units_.weigh(options_.line_density,
                  strand.material.density * strand.segments.front().section.area());
     if constexpr (Model::takes_bodies) {
@@ -159,14 +162,22 @@ class SteppingHead final : public Head {
     model_.predict(strands_[block], pose(t), pose(t + h), h / units_.time, q, q + size_,
                    next.data());
     place(block, t + h, next.data(), x);
-    std::ranges::fill(bulge, 0);  // edges are straight
+    for (std::size_t k = 0; k < strands_of(block); ++k) {
+      if constexpr (Model::straight) {
+        bulge[k] = 0;
+      } else {
+        bulge[k] = largest_bulge(
+            x.subspan(3 * (n_ + 1) * k, 3 * (n_ + 1)),
+            rounded_up<T> * units_.length *
+                lane_of(model_.element_length(strands_[block]), static_cast<int>(k)));
+      }
+    }
   }
   void motion(std::size_t block, double t, std::span<double> x,
               std::span<double> v) const override {
     positions(block, t, x);
-    const typename Model::Strand& strand = strands_[block];
-    const T* const rates = &state_[of_state_ * block] + size_;
-    model_.velocities(model_.clamp(strand, pose(t)), rates,
+    const T* const q = &state_[of_state_ * block];
+    model_.velocities(strands_[block], pose(t), q, q + size_,
                       [&](std::size_t i, const Vec3<T>& u) {
                         for (std::size_t k = 0; k < strands_of(block); ++k) {
                           store3(units_.speed() * lane_of(u, static_cast<int>(k)),
@@ -248,9 +259,6 @@ class SteppingHead final : public Head {
   static std::string on_this_model(const Effect& effect) {
     return "effect " + std::string(effect.name()) + " on this model";
   }
-  static constexpr const char* use_others =
-      "use super_helix, or run the strands one by one";
-
   /// Bodies that reach the ball in which all strands are at t, the step's end.
   void look_around(double t, Own& own) const {
     if (bodies_.empty() || own.t == t) return;
@@ -258,13 +266,24 @@ class SteppingHead final : public Head {
     own.head = options_.motion.at(t).x;
     bodies_around(bodies_, t, {own.head, radius_}, own.around);
   }
-  /// Those of them that reach strands of a block.
-  std::span<const NearBody> reached(std::size_t block, Own& own) const {
+  /// Those of them that reach strands, at this pose of the head.
+  std::span<const NearBody> reached(const typename Model::Strand& strand,
+                                    const RootPose& pose, Own& own) const {
     if (own.around.empty()) return {};
     const T unit(units_.length), longest(Model::most_stretched * units_.length);
-    bodies_near<T>(own.around, unit * model_.root_at(strands_[block], own.to.frame),
-                   longest * model_.length(strands_[block]), own.near);
+    bodies_near<T>(own.around, unit * model_.root_at(strand, pose.frame),
+                   longest * model_.length(strand), own.near);
     return own.near;
+  }
+  /// Loads on the strands that are worked on, of a step of h (s) to t.
+  void meet_bodies(double t, double h, Own& own) const {
+    if constexpr (Model::takes_bodies) {
+      look_around(t, own);
+      const RootPose at = pose(t);
+      LaneWork<Model>& work = own.work;
+      model_.find_loads(work.strand, reached(work.strand, at, own), at, units_, h,
+                        work.q.data(), work.v.data(), work.scratch);
+    }
   }
 
   void place(std::size_t block, double t, const T* q, std::span<double> x) const {
@@ -311,7 +330,7 @@ class SteppingHead final : public Head {
     model_.predict(strand, own.from, own.to, h, q, v, work.q_bar.data());
     std::fill_n(a, size_, T(0));
     if constexpr (Model::takes_bodies) {
-      model_.find_loads(strand, reached(block, own), own.to, units_, h_s,
+      model_.find_loads(strand, reached(strand, own.to, own), own.to, units_, h_s,
                         work.q_bar.data(), v, work.scratch);
     }
     const T size =
@@ -355,7 +374,6 @@ class SteppingHead final : public Head {
   /// Newton's iteration, damped iterations of the strands on which it fails, and those on
   /// which they fail one by one.
   void iterate(std::size_t first, std::size_t last, double t, double h_s, Own& own) {
-    const double h = h_s / units_.time;
     HeadWork& done = own.Scratch::work;
     for (std::size_t block = first; block < last; ++block) {
       done.steps += static_cast<long>(strands_of(block));
@@ -363,14 +381,14 @@ class SteppingHead final : public Head {
     PlainCourse<Model> plain(model_, options_.newton_tolerance,
                              options_.newton_iterations);
     own.failed.clear();
-    run({width * first, std::min(width * last, lost_.size())}, plain, h, own, own.failed,
-        done.iterations, done.lanes);
+    run({width * first, std::min(width * last, lost_.size())}, plain, t, h_s, own,
+        own.failed, done.iterations, done.lanes);
     if (own.failed.empty()) return;
     done.retried += static_cast<long>(own.failed.size());
     DampedCourse<Model> damped(model_, options_.newton_tolerance,
                                options_.newton_iterations);
     own.stuck.clear();
-    run({0, own.failed.size(), &own.failed}, damped, h, own, own.stuck,
+    run({0, own.failed.size(), &own.failed}, damped, t, h_s, own, own.stuck,
         done.again_iterations, done.again_lanes);
     done.again_iterations += damped.iterations;
     done.again_lanes += damped.lanes;
@@ -379,7 +397,7 @@ class SteppingHead final : public Head {
 
   /// Lanes that are done take the next strand of the queue.
   template <class Course>
-  void run(Queue queue, Course& course, double h, Own& own,
+  void run(Queue queue, Course& course, double t, double h_s, Own& own,
            std::vector<std::size_t>& failed, long& iterations, long& lanes) {
     LaneWork<Model>& work = own.work;
     Lanes home;
@@ -389,7 +407,8 @@ class SteppingHead final : public Head {
         const Lanes before = home;
         fill(home, queue, work);
         if (std::ranges::all_of(home, [](std::size_t k) { return k == none; })) break;
-        work.begin(model_, own.from, own.to, h);
+        work.begin(model_, own.from, own.to, h_s / units_.time);
+        meet_bodies(t + h_s, h_s, own);
         for (std::size_t k = 0; k < width; ++k) {
           if (before[k] == none) course.start(static_cast<int>(k), work);
         }
@@ -460,8 +479,10 @@ class SteppingHead final : public Head {
     for (int lane = 0; lane < T::lanes; ++lane) take(strand, own.work, lane);
     LoneStrand<Model> lone(model_, options_.newton_tolerance, options_.newton_iterations,
                            own.work);
-    const bool solved =
-        lone.solve([&](double part) { return pose(t + part * h_s); }, h_s / units_.time);
+    const bool solved = lone.solve(
+        [&](double part) { return pose(t + part * h_s); },
+        [&](double part, int parts) { meet_bodies(t + part * h_s, h_s / parts, own); },
+        h_s / units_.time);
     own.Scratch::work.alone += lone.iterations;
     own.Scratch::work.again_iterations += lone.iterations;
     own.Scratch::work.again_lanes += T::lanes * lone.iterations;

@@ -205,6 +205,20 @@ int clothoid_points(double angle) {
                        : 4 * static_cast<int>(std::ceil((angle + 8) / 4));
 }
 
+double reduced_scale(const Strand& strand, bool joints) {
+  return joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / strand.length();
+}
+
+double reduced_rate(const Strand& strand) {
+  const Material& material = strand.material;
+  const CrossSection& section = strand.segments.front().section;
+  const double length = strand.length();
+  // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
+  const double bending = 12.36 * material.youngs_modulus * section.inertia1() /
+                         (material.density * section.area() * std::pow(length, 4));
+  return std::sqrt(earth_gravity / length + bending);
+}
+
 ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
                              const ReducedOptions& options, Effects effects) {
   check(strand);
@@ -273,15 +287,9 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     reduced.to_tip = helix_turn(times(free, last.natural), last.length / 2);
   }
 
-  const CrossSection& section = strand.segments.front().section;
   reduced.length = strand.length();
-  // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
-  const double bending =
-      12.36 * material.youngs_modulus * section.inertia1() /
-      (material.density * section.area() * std::pow(reduced.length, 4));
-  reduced.rate = std::sqrt(earth_gravity / reduced.length + bending);
-  reduced.unknown_scale =
-      joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / reduced.length;
+  reduced.rate = reduced_rate(strand);
+  reduced.unknown_scale = reduced_scale(strand, joints);
   reduced.regular_mass = options.dofs < 3 || options.rotary_inertia;
   return reduced;
 }

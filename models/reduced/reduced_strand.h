@@ -94,11 +94,16 @@ struct ReducedStrand {
   Effects effects;
   ReducedTangent tangent = ReducedTangent::exact;
   TreeMethod method = TreeMethod::recursive;
-  double unknown_scale = 1;  // typical size of an unknown: one radian over the length
+  double unknown_scale = 1;  // reduced_scale()
   double length = 1;         // m
-  double rate = 1;  // 1/s, root of the summed squares of swinging and bending rates
+  double rate = 1;           // reduced_rate()
   bool regular_mass = true;
 };
+
+/// A typical unknown: one radian over the length, in joints over their number.
+double reduced_scale(const Strand& strand, bool joints);
+/// 1/s, root of the summed squares of swinging and bending rates.
+double reduced_rate(const Strand& strand);
 
 /// Throws InputError if modes and geometry are incompatible: a branched, twisted or
 /// laterally curved strand in the plane, a free root in the plane or with ball joints.

@@ -41,8 +41,12 @@ std::optional<NoHead> no_model(const Scene& scene) {
     return NoHead{"strands of a head bend in both directions",
                   "give [model] modes = \"bend_twist\" or \"bend\""};
   }
-  if (p.word("tangent") != "stiff") {
-    return no_option(p, "tangent", "give [model] tangent = \"stiff\"");
+  if (p.word("tangent") != (iterates(scene) ? "exact" : "stiff")) {
+    return no_option(p, "tangent",
+                     iterates(scene)
+                         ? "give [model] tangent = \"exact\" to backward_euler"
+                         : "give [model] tangent = \"stiff\", or [integrator] id = "
+                           "\"backward_euler\"");
   }
   if (p.word("solver") != "recursive") {
     return no_option(p, "solver", "leave out [model] solver");
@@ -55,9 +59,19 @@ std::optional<NoHead> no_model(const Scene& scene) {
 }
 
 std::optional<NoHead> no_method(const Scene& scene) {
-  if (scene.integrator != "semi_implicit_euler") {
-    return NoHead{fmt::format("{} does not step a head", scene.integrator),
-                  "use [integrator] id = \"semi_implicit_euler\""};
+  const bool known = scene.integrator == "semi_implicit_euler" ||
+                     (iterates(scene) && !steps_springs(scene));
+  if (!known) {
+    return NoHead{fmt::format("{} does not step a head{}", scene.integrator,
+                              steps_springs(scene) ? " of springs" : ""),
+                  steps_springs(scene)
+                      ? "use [integrator] id = \"semi_implicit_euler\""
+                      : "use [integrator] id = \"semi_implicit_euler\" or "
+                        "\"backward_euler\""};
+  }
+  if (iterates(scene) && scene.options.refresh != Refresh::every_iteration) {
+    return NoHead{"heads have a new matrix in every iteration",
+                  "leave out [integrator] refresh"};
   }
   if (scene.rest == RestStrains::inverse) {
     return NoHead{"strands of a head have the natural strains of their tables",
@@ -100,20 +114,31 @@ std::optional<NoHead> no_strands(const Scene& scene) {
   return {};
 }
 
+/// Heads with bodies alone, beside what all heads have; empty: it is no such head.
+std::string only_with_bodies(const Scene& scene) {
+  if (steps_springs(scene)) return "a head of springs";
+  return iterates(scene) ? "a head by backward_euler" : "";
+}
+std::string with_others(const Scene& scene) {
+  return steps_springs(scene) ? "leave it out, or use [model] id = \"super_helix\""
+                              : "leave it out, or use [integrator] id = "
+                                "\"semi_implicit_euler\"";
+}
+
 std::optional<NoHead> no_effects(const Scene& scene) {
+  const std::string bodies = only_with_bodies(scene);
   for (const EffectChoice& choice : scene.effects) {
     const auto effect = make_effect(scene, choice);
     if (effect != nullptr) {
       if (auto no = models::refused_by_heads(*effect))
         return NoHead{no->reason, no->remedy};
-      if (steps_springs(scene) && !effect->uniform_acceleration() &&
-          !effect->viscosity() && effect->rigid_contact() == nullptr) {
-        return NoHead{fmt::format("[effects.{}] on a head of springs", choice.entry->id),
-                      "leave it out, or use [model] id = \"super_helix\""};
+      if (!bodies.empty() && !effect->uniform_acceleration() && !effect->viscosity() &&
+          effect->rigid_contact() == nullptr) {
+        return NoHead{fmt::format("[effects.{}] on {}", choice.entry->id, bodies),
+                      with_others(scene)};
       }
-    } else if (steps_springs(scene) && &choice.parameters == scene.interaction()) {
-      return NoHead{"interaction on a head of springs",
-                    "leave it out, or use [model] id = \"super_helix\""};
+    } else if (!bodies.empty() && &choice.parameters == scene.interaction()) {
+      return NoHead{"interaction on " + bodies, with_others(scene)};
     } else if (&choice.parameters != scene.interaction()) {
       return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
                     "leave it out"};
@@ -128,6 +153,7 @@ std::optional<NoHead> no_effects(const Scene& scene) {
 }  // namespace
 
 bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
+bool iterates(const Scene& scene) { return scene.integrator == "backward_euler"; }
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 
 std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {

@@ -35,17 +35,4 @@ Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) 
   return all;
 }
 
-template <class T>
-Matrix3<T> inverse(const Matrix3<T>& h) {
-  const Vec3<T> c0 = cross(h.row[1], h.row[2]), c1 = cross(h.row[2], h.row[0]),
-                c2 = cross(h.row[0], h.row[1]);
-  const T by = T(1) / dot(h.row[0], c0);
-  return Matrix3<T>::columns(by * c0, by * c1, by * c2);
-}
-/// a b^T.
-template <class T>
-Matrix3<T> dyad(const Vec3<T>& a, const Vec3<T>& b) {
-  return {{a.x * b, a.y * b, a.z * b}};
-}
-
 }  // namespace tress::models

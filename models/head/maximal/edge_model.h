@@ -20,6 +20,9 @@ class EdgeModel {
   using Real = Pack;
   using V = Vec3<Real>;
   using Clamp = LaneClamp<Real>;
+  static constexpr bool straight = true;
+  static constexpr const char* use_others =
+      "use super_helix, or run the strands one by one";
 
   explicit EdgeModel(const HeadOptions& options)
       : n_(static_cast<std::size_t>(options.elements)),
@@ -72,9 +75,10 @@ class EdgeModel {
     const V moved = V(to.x - from.x) + frame_of(turned) * strand.root.from;
     store3(load3(q_bar) - moved, q_bar);
   }
-  template <class Use>
-  TRESS_FLATTEN void velocities(const Clamp& clamp, const Real* v, Use use) const {
-    use(0, clamp.v);
+  template <class Strand, class Use>
+  TRESS_FLATTEN void velocities(const Strand& strand, const RootPose& pose,
+                                const Real* /*q*/, const Real* v, Use use) const {
+    use(0, clamp(strand, pose).v);
     V at{};  // the first rate is that of a place, not of an edge
     for (std::size_t i = 0; i < n_; ++i) {
       at = at + load3(v + per_element * i);

@@ -35,6 +35,8 @@ inline constexpr HairModel helices{"Helices", helix_head, super_helix, 1e-12},
     chains{"Chains", chain_head, articulated_chain, 3e-11};
 inline constexpr const HairModel* hair_models[] = {&helices, &chains};
 
+inline constexpr double hair_step = 1e-4;  // s
+
 struct Case {
   std::string name;
   int elements = 10, points = 8;
@@ -45,12 +47,22 @@ struct Case {
   double drag = 2e-5, mass_damping = 0.5;
   Effects effects = {};                                 // on all strands
   std::function<Effects(std::size_t strand)> own = {};  // of each strand
+  HeadMethod method = HeadMethod::semi_implicit_euler;
+  double step = hair_step;  // s
   const HairModel* model = &helices;
   Effects own_of(std::size_t k) const { return own ? own(k) : Effects{}; }
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
-inline constexpr double hair_step = 1e-4;  // s
+/// The same by Newton's method, whose steps are longer, of hairs that are let go in their
+/// rest shape: sprung ones whirl so fast that such steps have no solution, or turn back.
+inline Case iterated(Case c) {
+  c.name += "Newton";
+  c.method = HeadMethod::backward_euler;
+  c.sprung = false;
+  c.step = 1e-3;
+  return c;
+}
 
 inline HeadOptions options(const Case& c) {
   HeadOptions o{.elements = c.elements,
@@ -61,6 +73,7 @@ inline HeadOptions options(const Case& c) {
                 .mass_damping = c.mass_damping,
                 .longest = 0.25,
                 .motion = {},
+                .method = c.method,
                 .effects = c.effects};
   o.motion.position = {0.01, 0.02, 1.5};
   if (c.moves) {
@@ -109,11 +122,23 @@ inline void advance(Head& all, int steps, double dt = hair_step) {
 /// The same strand by itself: coordinates in the head's order, and points.
 struct Alone {
   std::vector<double> q, v, x, u;  // u: velocities of points
+  double size = 0, rate = 0;       // System::scale of q and v
 };
+/// What Newton's method may leave in a step, over System::scale.
+inline double left_by_newton(const Case& c) {
+  return c.method == HeadMethod::backward_euler ? Options{}.newton_tolerance : 0;
+}
+/// A relative change of the start that makes no less than so many steps' errors do.
+inline double change_of_start(const Case& c, int steps) {
+  return c.model->rounding + steps * left_by_newton(c);
+}
 inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
   const Strand one = strand(c, k);
-  const ReducedOptions of_model{
-      .dofs = c.twist ? 3 : 2, .tangent = ReducedTangent::stiff, .quadrature = c.points};
+  const ReducedOptions of_model{.dofs = c.twist ? 3 : 2,
+                                .tangent = c.method == HeadMethod::backward_euler
+                                               ? ReducedTangent::exact
+                                               : ReducedTangent::stiff,
+                                .quadrature = c.points};
   const HeadOptions o = options(c);
   Effects effects = {std::make_shared<Gravity>(o.gravity),
                      std::make_shared<LinearDrag>(o.drag, o.mass_damping)};
@@ -129,15 +154,19 @@ inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
     q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + size[i]);
   }
   Options step;
-  step.step = hair_step;
-  const auto method_of = make_integrator("semi_implicit_euler", *system, step);
+  step.step = c.step;
+  const auto method_of = make_integrator(
+      c.method == HeadMethod::backward_euler ? "backward_euler" : "semi_implicit_euler",
+      *system, step);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);
-  EXPECT_EQ(method_of->advance(steps * hair_step), Status::ok);
+  EXPECT_EQ(method_of->advance(steps * c.step), Status::ok) << method_of->failure();
   Alone end;
+  end.size = size[0];
+  end.rate = of_rate[0];
   end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
   end.u.resize(end.x.size());
-  system->material_points()->positions(steps * hair_step, method_of->q(), end.x);
-  system->material_points()->velocities(steps * hair_step, method_of->q(), method_of->v(),
+  system->material_points()->positions(steps * c.step, method_of->q(), end.x);
+  system->material_points()->velocities(steps * c.step, method_of->q(), method_of->v(),
                                         end.u);
   const auto put = [&](In from, std::vector<double>& to) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {

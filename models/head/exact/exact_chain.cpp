@@ -1,0 +1,12 @@
+#include "models/head/exact/exact_sweeps.h"
+#include "models/head/exact/varied_link.h"
+
+namespace tress::models {
+
+template class ExactKernel<ChainKind<PackOf<double, 1>>>;
+template class ExactKernel<ChainKind<PackOf<double, 4>>>;
+template class ExactKernel<ChainKind<PackOf<double, 8>>>;
+template class ExactKernel<ChainKind<PackOf<float, 8>>>;
+template class ExactKernel<ChainKind<PackOf<float, 16>>>;
+
+}  // namespace tress::models

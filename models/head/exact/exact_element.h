@@ -1,0 +1,192 @@
+#pragma once
+
+#include "models/head/exact/exact_elimination.h"
+#include "models/head/exact/varied_element.h"
+
+namespace tress::models {
+
+/// The linearised equations of one element for ExactKernel: how its tip moves, and the
+/// wrenches and forces on unknowns by the state of its start and its unknowns.
+template <class Kind>
+class ExactElement {
+ public:
+  using Kernel = ReducedKernel<Kind>;
+  using T = typename Kind::Real;
+  using Vec = Vec3<T>;
+  using Matrix = Matrix3<T>;
+  using Material = ReducedMaterial<T>;
+  using Motion = ReducedMotion<T>;
+  using Elimination = ExactElimination<T>;
+  using Factors = typename Elimination::Factors;
+  using Column = typename Elimination::Column;
+  using Columns = typename Elimination::Columns;
+  using Places = typename Elimination::Places;
+  using Hanging = typename Elimination::Hanging;
+
+  ExactElement(const Kernel& kernel, const Material& m, Weights w, const Vec& q,
+               const Vec& v, const Vec& a)
+      : kernel_(kernel), m_(m), pos_(w.pos), element_(m, w, q, v, a) {}
+
+  /// What it does by itself and with the wrench on its tip: A, B, C, D, R and H.
+  void own(const Hanging& hanging, Factors& e, Columns& to) const {
+    const Motion& from = e.start;
+    const VariedTip<T> tip = element_.tip();
+    e.rotation = tip.rotation;
+    e.position = value_of(tip.position);
+    e.slope = value_of(tip.slope);
+    e.turn = value_of(tip.turn);
+    // By dq the tip turns by theta.
+    const Matrix theta = pos_ * e.turn;
+    move_tip(from, tip, theta, e);
+    const auto turned = [&](const Vec& x) {
+      return with_parts(x, cross(theta.column(0), x), cross(theta.column(1), x),
+                        cross(theta.column(2), x));
+    };
+    const VariedVec<T> force = turned(e.rotation * hanging.force),
+                       moment = turned(e.rotation * hanging.moment);
+    ElementSums<T> sums;
+    const VariedWrench<T> inertial = element_.inertial(kernel_, from, sums);
+    const VariedVec<T> all_force = inertial.force + force,
+                       all_moment = inertial.moment + moment + cross(tip.position, force),
+                       unknown = inertial.unknown + tip.slope.back(force) +
+                                 tip.turn.back(moment);
+    to.force = value_of(all_force);
+    to.moment = value_of(all_moment);
+    to.unknown = value_of(unknown);
+    to.x = {parts_of(all_force), parts_of(all_moment), parts_of(unknown)};
+    add_inertia(from, sums, to);
+  }
+
+  /// Elastic and viscous moments.
+  static void add_bending(const typename Kernel::Bending& bending, Columns& to) {
+    to.unknown = to.unknown + bending.moment;
+    to.x.own = to.x.own + diagonal(bending.tangent);
+  }
+
+  /// With the load f on a point P that moves with u, A = -df/dx and B = -df/du:
+  ///
+  ///     dF = phi x f + A (d + phi x P + dP) + B (dv + domega x P + du + phi x u)
+  void add_loads(const ExactPoint<T>* loads, Factors& e, Columns& to,
+                 Places& places) const {
+    T some(0);
+    Columns all = to;
+    VariedWrench<T> wrench;
+    for (int k = 0; k < kernel_.points(); ++k) {
+      const ExactPoint<T>& at = loads[k];
+      if (!any_less(T(0), at.some)) continue;
+      some = larger(some, at.some);
+      const VariedPoint<T> point = element_.point(T(kernel_.at(k)) * m_.length);
+      const Vec f = element_.in_start(at.load.force), p = value_of(point.position);
+      const Matrix by_x = element_.in_start(at.load.by_x),
+                   by_u = element_.in_start(at.load.by_u);
+      const VariedVec<T> u =
+          Vec(e.start.v) + cross(e.start.omega, point.position) + point.velocity;
+      const Matrix parts = by_x * parts_of(point.position) + by_u * parts_of(u);
+      const VariedVec<T> less =
+          with_parts(Vec{} - f, parts.column(0), parts.column(1), parts.column(2));
+      wrench.force = wrench.force + less;
+      wrench.moment = wrench.moment + cross(point.position, less);
+      wrench.unknown = wrench.unknown + point.slope.back(less);
+      const Matrix slope = value_of(point.slope).transposed();
+      const auto add = [&](const Matrix& force, Column& column) {
+        column.force = column.force + force;
+        column.moment = column.moment + cross_times(p, force);
+        column.own = column.own + slope * force;
+      };
+      const Matrix levered = times_cross(by_u, p);
+      add(by_x, places[0]);
+      add(Matrix{} - cross_matrix(f) - times_cross(by_x, p) -
+              times_cross(by_u, value_of(u)),
+          places[1]);
+      add(by_u, all.state[velocity]);
+      add(Matrix{} - levered, all.state[omega]);
+    }
+    all.force = all.force + value_of(wrench.force);
+    all.moment = all.moment + value_of(wrench.moment);
+    all.unknown = all.unknown + value_of(wrench.unknown);
+    Elimination::put(some, all.force, to.force);
+    Elimination::put(some, all.moment, to.moment);
+    Elimination::put(some, all.unknown, to.unknown);
+    Elimination::put(
+        some,
+        {all.x.force + parts_of(wrench.force), all.x.moment + parts_of(wrench.moment),
+         all.x.own + parts_of(wrench.unknown)},
+        to.x);
+    Elimination::put(some, all.state[velocity], to.state[velocity]);
+    Elimination::put(some, all.state[omega], to.state[omega]);
+    e.placed = larger(e.placed, some);
+  }
+
+ private:
+  using State = typename Elimination::State;
+  static constexpr State velocity = Elimination::velocity, omega = Elimination::omega,
+                         acceleration = Elimination::acceleration,
+                         alpha = Elimination::alpha;
+
+  static void move_tip(const Motion& from, const VariedTip<T>& tip, const Matrix& theta,
+                       Factors& e) {
+    const VariedVec<T> arm = cross(from.omega, tip.position);
+    const VariedVec<T> v = Vec(from.v) + arm + tip.velocity,
+                       w = Vec(from.omega) + tip.turning,
+                       a = Vec(from.a) + cross(from.alpha, tip.position) +
+                           tip.acceleration +
+                           cross(from.omega, arm + T(2) * tip.velocity),
+                       spin = Vec(from.alpha) + tip.spinning +
+                              cross(from.omega, tip.turning);
+    // d(E^T y) = E^T (dy + y x theta).
+    const auto columns = [&](const VariedVec<T>& y) {
+      return parts_of(y) + cross_times(value_of(y), theta);
+    };
+    e.tip = {columns(v), columns(w), columns(a), columns(spin)};
+    e.of_omega = turning_with(from.omega, e.position, value_of(tip.velocity));
+    e.of_turning = cross_matrix(Vec{} - value_of(tip.turning));
+  }
+
+  /// x to omega x (x x p) + x x (omega x p + 2 u).
+  static Matrix turning_with(const Vec& omega, const Vec& p, const Vec& u) {
+    Matrix all = dyad(omega, p) - dyad(T(2) * p, omega) - cross_matrix(T(2) * u);
+    const T along = dot(omega, p);
+    all.row[0].x += along;
+    all.row[1].y += along;
+    all.row[2].z += along;
+    return all;
+  }
+
+  /// The element's mass, drag, and centrifugal and Coriolis forces by state.
+  void add_inertia(const Motion& from, const ElementSums<T>& sums, Columns& to) const {
+    const Matrix lever = cross_matrix(sums.first);
+    const Matrix second = less_than_trace(full(sums.second));
+    const auto add = [&](const T& by, State shift, State turn) {
+      to.state[shift] = {times_one(by * sums.one), by * lever, by * sums.momentum};
+      to.state[turn] = {T(-1) * (by * lever), by * second, by * sums.spin};
+    };
+    add(m_.drag, velocity, omega);
+    add(m_.density, acceleration, alpha);
+    const Vec& w = from.omega;
+    Column& by_omega = to.state[omega];
+    by_omega.force =
+        by_omega.force + m_.density * turning_with(w, sums.first, sums.moved);
+    by_omega.moment =
+        by_omega.moment +
+        m_.density * (cross_matrix(sums.second * w) - cross_times(w, full(sums.second)) +
+                      T(2) * less_than_trace(sums.moving));
+    by_omega.own = by_omega.own + m_.density * sums.convective;
+  }
+
+  static Matrix diagonal(const Vec& x) {
+    const T o(0);
+    return {{{x.x, o, o}, {o, x.y, o}, {o, o, x.z}}};
+  }
+  static Matrix times_one(const T& x) { return diagonal({x, x, x}); }
+  /// (trace m) I - m.
+  static Matrix less_than_trace(const Matrix& m) {
+    return times_one(m.row[0].x + m.row[1].y + m.row[2].z) - m;
+  }
+
+  const Kernel& kernel_;
+  const Material& m_;
+  T pos_;
+  VariedElement<Kind> element_;
+};
+
+}  // namespace tress::models

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "models/head/exact/exact_elimination.h"
+
+namespace tress::models {
+
+/// Newton's step of ReducedKernel's strands with all derivatives of the residual:
+///
+///     x = S^-1 r,   S = w.pos dr/dq + w.vel dr/dv + w.acc dr/da
+///
+/// The equations are those of models/reduced/exact_tangent.h. A frame's state is the
+/// variation of its velocity (v, omega) and acceleration (a, alpha) in its own
+/// components, in which gravity, inertia and linear drag know no displacement; where
+/// bodies load what hangs on an element, of its displacement (d, phi) as well. Of an
+/// element with the state s at its start, unknowns x and the wrench w_tip on its tip
+///
+///     s_tip = A s + B x,    w = C s + D x + G w_tip,    r = R s + H x + J w_tip
+///
+/// What hangs on a tip answers with w_tip = L s_tip + beta [models/reduced/
+/// recursive_solver.h]; elimination of x from r = b passes to the start
+///
+///     L' = C + G L A - Y R',  Y = (D + G L B) H'^-1,  R' = R + J L A,  H' = H + J L B
+///     beta' = G beta + Y (b - J beta)
+///
+/// A and G are motions of a rigid body but for how omega enters accelerations, so they
+/// act by cross products, in the components of the start. x-columns are derivatives of
+/// the element's tip and wrench by varied numbers (VariedElement), s-columns closed sums
+/// over its points. H' is inverted as it stands, without the exchange of rows: Newton's
+/// iteration mends what that costs.
+///
+/// Compiled without fused products, whose choice depends on the number of lanes: the same
+/// bits for all.
+template <class Kind>
+class ExactKernel {
+ public:
+  using Kernel = ReducedKernel<Kind>;
+  using T = typename Kind::Real;
+  using Vec = Vec3<T>;
+  using Material = ReducedMaterial<T>;
+  using Motion = ReducedMotion<T>;
+  using Elimination = ExactElimination<T>;
+  using Scratch = typename Kernel::Scratch;
+  using Factors = typename Elimination::Factors;  // of an element, between sweeps
+
+  /// `kernel` must outlive it.
+  ExactKernel(const Kernel& kernel, Instructions instructions)
+      : kernel_(kernel), instructions_(instructions) {}
+
+  /// Motion at the state, for loads in `scratch`; returns what newton() and again() need.
+  Motion move(const Material& m, const Motion& root, const Vec* q, const Vec* v,
+              const Vec* a, Scratch* scratch, Factors* factors) const;
+  /// x in `correction`; returns its largest entry per lane, NaN unless all are finite.
+  /// `end`: what move() returned; `loads`: of an element null or its points, null if
+  /// there are none; `rest`, q, v, a, correction: (elements).
+  T newton(const Material& m, const Motion& end, const ExactPoint<T>* const* loads,
+           const Vec* rest, Weights w, const Vec* q, const Vec* v, const Vec* a,
+           Vec* correction, Factors* factors) const;
+  /// The same by the factors of the last newton(), at another state.
+  T again(const Material& m, const Motion& end, const LoadSums<T>* const* loads,
+          const Vec* rest, const Vec* v, const Vec* a, Vec* correction,
+          const Scratch* scratch, Factors* factors) const;
+
+ private:
+  const Kernel& kernel_;
+  Instructions instructions_;
+};
+
+}  // namespace tress::models

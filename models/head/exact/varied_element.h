@@ -1,0 +1,52 @@
+#pragma once
+
+#include "models/head/exact/varied.h"
+#include "models/head/reduced_kernel.h"
+
+namespace tress::models {
+
+/// The tip of an element seen from its start, in the components of the latter, with
+/// derivatives along the unknowns at weights w.
+template <class T>
+struct VariedTip {
+  VariedVec<T> position, velocity, acceleration;
+  VariedVec<T> turning, spinning;  // angular velocity, its rate
+  Matrix3<Varied<T>> slope, turn;  // d position/d unknowns; turning = turn rates
+  Matrix3<T> rotation;             // from the components of the tip
+};
+
+/// A point seen likewise.
+template <class T>
+struct VariedPoint {
+  VariedVec<T> position, velocity;
+  Matrix3<Varied<T>> slope;
+};
+
+/// Of inertia and drag on an element about its start, in the components of the latter.
+template <class T>
+struct VariedWrench {
+  VariedVec<T> force, moment, unknown;
+};
+
+/// Sums over the length of an element of w, P its points, d_j = dP/dq_j, P' = sum q_j'
+/// d_j.
+template <class T>
+struct ElementSums {
+  T one;                 // w
+  Vec3<T> first;         // w P
+  Symmetric3<T> second;  // w P P^T
+  Matrix3<T> momentum;   // rows j: w d_j
+  Matrix3<T> spin;       // rows j: w P x d_j
+  Vec3<T> moved;         // w P'
+  Matrix3<T> moving;     // w P' P^T
+  /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j), by which
+  /// unknown j feels a change of the start's angular velocity omega through centrifugal
+  /// and Coriolis forces.
+  Matrix3<T> convective;
+};
+
+/// An element of this Kind; defined for each.
+template <class Kind>
+class VariedElement;
+
+}  // namespace tress::models

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "models/head/head.h"
+#include "models/head/head_units.h"
+#include "models/head/reduced_kernel.h"
+#include "models/strand/strand.h"
+
+namespace tress::models {
+
+/// What elements of this Kind of a strand have in common, of a lane.
+template <class Kind>
+void set_material(const Strand& strand, const HeadOptions& options,
+                  const HeadUnits& units, int lane,
+                  ReducedMaterial<typename Kind::Real>& m) {
+  const Segment& first = strand.segments.front();
+  const double density = strand.material.density * first.section.area();
+  const double length = first.length / units.length, bending = units.stiffness(),
+               moment = Kind::moment(length);
+  set_lane(m.length, lane, length);
+  set_lane(m.density, lane, density / units.density);
+  set_lane(m.drag, lane,
+           (options.drag + options.mass_damping * density) * units.time / units.density);
+  set_lane(m.stiffness, lane,
+           moment / bending * stiffness(strand.material, first.section));
+  set_lane(m.friction, lane,
+           moment * strand.material.internal_friction / (bending * units.time));
+  const double polar = options.rotary_inertia ? first.section.polar() : 0;
+  set_lane(m.rotor, lane,
+           length * strand.material.density * polar /
+               (units.density * units.length * units.length));
+}
+
+/// Unknowns of element i: at rest, and at the start, in a head's units.
+struct ReducedStart {
+  Vec rest, initial;
+};
+template <class Kind>
+ReducedStart start_of(const Strand& strand, const HeadOptions& options,
+                      const HeadUnits& units, std::size_t i) {
+  const double unit = Kind::unit(units.length);
+  const Vec rest = unit * Kind::at_rest(strand, i, &Segment::natural);
+  Vec initial = unit * Kind::at_rest(strand, i, &Segment::initial);
+  if (!options.twist) initial.x = rest.x;  // held
+  return {rest, initial};
+}
+
+}  // namespace tress::models

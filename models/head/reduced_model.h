@@ -1,0 +1,230 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "models/head/exact/exact_kernel.h"
+#include "models/head/head_motion.h"
+#include "models/head/reduced_energies.h"
+#include "models/head/reduced_kernel.h"
+#include "models/head/reduced_loads.h"
+#include "models/head/reduced_material.h"
+#include "models/head/stepping_head.h"
+#include "models/reduced/reduced_strand.h"
+
+namespace tress::models {
+
+/// ReducedKernel as a Model of models/head/stepping_head.h, for methods that iterate.
+template <class Kind>
+class ReducedModel {
+ public:
+  using Real = typename Kind::Real;
+  using V = Vec3<Real>;
+  using Kernel = ReducedKernel<Kind>;
+  static constexpr bool iterates = true, takes_bodies = true, straight = Kind::straight;
+  static constexpr double most_stretched = 1;
+  static constexpr const char* use_others =
+      "use semi_implicit_euler, or run the strands one by one";
+
+  struct Strand {
+    LaneRoot<Real> root;
+    ReducedMaterial<Real> material;
+    Real by_scale, time;  // 1 over a typical unknown, and a typical time
+  };
+  struct Element {  // the rest shape alone: as many vectors as elements
+    V rest;
+    static constexpr std::size_t kept = 0;
+    void keep(int /*lane*/, double* /*to*/) const {}
+    void recall(int /*lane*/, const double* /*from*/) {}
+  };
+  using Clamp = ReducedMotion<Real>;
+  struct Scratch {
+    explicit Scratch(const ReducedModel& model)
+        : elements(model.elements()),
+          factors(model.elements()),
+          loads(model.kernel_, model.units_, model.instructions_) {}
+    std::vector<typename Kernel::Scratch> elements;
+    std::vector<typename ExactKernel<Kind>::Factors> factors;
+    ReducedLoads<Kind> loads;
+    // Of find_loads(): which may touch the strands, and how these lie.
+    std::span<const NearBody> bodies;
+    V from;
+    FrameOf<Real> frame;
+    double h = 0;  // s
+  };
+
+  /// `units`, which are whole with the first strand, must outlive it.
+  ReducedModel(const HeadOptions& options, const HeadUnits& units,
+               Instructions instructions)
+      : options_(options),
+        units_(units),
+        instructions_(instructions),
+        n_(static_cast<std::size_t>(options.elements)),
+        gravity_((units.time * units.time / units.length) * options.gravity),
+        kernel_(options.elements, options.points, options.twist),
+        exact_(kernel_, instructions),
+        energies_(kernel_) {}
+
+  std::size_t elements() const { return n_; }
+  std::size_t unknowns() const { return 3 * n_; }
+  double unit(const HeadUnits& units, std::size_t /*k*/) const {
+    return 1 / Kind::unit(units.length);
+  }
+  double mass(const Strand& strand, int lane) const {
+    return static_cast<double>(n_) *
+           lane_of(strand.material.density * strand.material.length, lane);
+  }
+  Real length(const Strand& strand) const {
+    return Real(static_cast<double>(n_)) * strand.material.length;
+  }
+  Real element_length(const Strand& strand) const { return strand.material.length; }
+  /// Seen from the head's position.
+  static V root_at(const Strand& strand, const Frame& head) {
+    return frame_of(head) * strand.root.from;
+  }
+
+  /// In the state in which ReducedHead starts.
+  void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
+                int lane, Strand& to, Element* elements, Real* q, Real* v) const {
+    set_lane(to.root.from, lane, (1 / units.length) * (strand.root.position - centre));
+    set_lane(to.root.frame, lane, strand.root.frame);
+    set_material<Kind>(strand, options_, units, lane, to.material);
+    const double scale = Kind::unit(units.length) * reduced_scale(strand, Kind::straight);
+    set_lane(to.by_scale, lane, 1 / scale);
+    set_lane(to.time, lane, 1 / (reduced_rate(strand) * units.time));
+    for (std::size_t i = 0; i < n_; ++i) {
+      const ReducedStart start = start_of<Kind>(strand, options_, units, i);
+      set_lane(elements[i].rest, lane, start.rest);
+      set_lane(vectors(q)[i], lane, start.initial);
+      set_lane(vectors(v)[i], lane, Vec{});
+    }
+  }
+
+  Clamp clamp(const Strand& strand, const RootPose& pose) const {
+    const auto in_head = [&](const Vec& x) { return pose.frame.back(x); };
+    return root_motion<Real>(
+        strand.root, {in_head(pose.v), in_head(pose.omega), in_head(pose.a - gravity_),
+                      in_head(pose.alpha)});
+  }
+  /// There are no reference frames.
+  void renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
+             Real* /*v*/) const {}
+  void predict(const Strand& /*strand*/, const RootPose& /*from*/, const RootPose& /*to*/,
+               double h, const Real* q, const Real* v, Real* q_bar) const {
+    for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
+  }
+
+  /// Which they are; newton() and again() find the loads at their states.
+  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
+                  const RootPose& pose, const HeadUnits& units, double h,
+                  const Real* /*q*/, const Real* /*v*/, Scratch& scratch) const {
+    scratch.bodies = bodies;
+    scratch.from = Real(units.length) * root_at(strand, pose.frame);
+    scratch.frame = frame_of(pose.frame) * strand.root.frame;
+    scratch.h = h;
+  }
+
+  Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
+              Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
+              Scratch& scratch) const {
+    const auto end = move(strand, clamp, q, v, a, scratch);
+    const ExactPoint<Real>* const* loads = nullptr;
+    if (!scratch.bodies.empty()) {
+      loads = scratch.loads.find_exact(block_of(strand, scratch), vectors(v),
+                                       scratch.elements.data());
+    }
+    return size(strand, w,
+                exact_.newton(strand.material, end, loads, &elements->rest, w, vectors(q),
+                              vectors(v), vectors(a), vectors(correction),
+                              scratch.factors.data()));
+  }
+  Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
+             const Real* q, const Real* v, const Real* a, Real* correction,
+             Scratch& scratch) const {
+    const auto end = move(strand, clamp, q, v, a, scratch);
+    const LoadSums<Real>* const* loads = nullptr;
+    if (!scratch.bodies.empty()) {
+      loads = scratch.loads.find(block_of(strand, scratch), vectors(v),
+                                 scratch.elements.data());
+    }
+    return size(strand, w,
+                exact_.again(strand.material, end, loads, &elements->rest, vectors(v),
+                             vectors(a), vectors(correction), scratch.elements.data(),
+                             scratch.factors.data()));
+  }
+  double resolved(const Strand& strand, Weights w, int lane) const {
+    constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
+    return eps * std::max(1.0, w.vel / w.pos * lane_of(strand.time, lane));
+  }
+
+  template <class Use>
+  void positions(const Strand& strand, const Frame& head, const Real* q, Use use) const {
+    run_along(strand, head, {}, q, q,
+              [&](std::size_t i, const V& at, const V& /*u*/) { use(i, at); });
+  }
+  template <class Use>
+  void velocities(const Strand& strand, const RootPose& pose, const Real* q,
+                  const Real* v, Use use) const {
+    run_along(strand, pose.frame, clamp(strand, pose), q, v,
+              [&](std::size_t i, const V& /*at*/, const V& u) { use(i, u); });
+  }
+  LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
+                              const RootPose& pose, const Real* q, const Real* v) const {
+    return energies_(
+        strand.material, clamp(strand, pose), root_at(strand, pose.frame),
+        frame_of(pose.frame) * strand.root.frame, [&](int i) { return elements[i].rest; },
+        vectors(q), vectors(v));
+  }
+
+ private:
+  static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
+  // Vec3 is three of them.
+  static const V* vectors(const Real* x) { return reinterpret_cast<const V*>(x); }
+  static V* vectors(Real* x) { return reinterpret_cast<V*>(x); }
+
+  ReducedMotion<Real> move(const Strand& strand, const Clamp& clamp, const Real* q,
+                           const Real* v, const Real* a, Scratch& scratch) const {
+    return exact_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
+                       scratch.elements.data(), scratch.factors.data());
+  }
+  static typename ReducedLoads<Kind>::Block block_of(const Strand& strand,
+                                                     const Scratch& scratch) {
+    return {&strand.material, scratch.from, scratch.frame,  0,
+            scratch.h,        Vec{},        scratch.bodies, {}};
+  }
+  static Real size(const Strand& strand, Weights w, const Real& most) {
+    return larger(Real(w.pos), Real(w.vel) * strand.time) * strand.by_scale * most;
+  }
+
+  template <class Use>
+  void run_along(const Strand& strand, const Frame& head, const Clamp& root,
+                 const Real* q, const Real* v, Use use) const {
+    FrameOf<Real> frame = frame_of(head) * strand.root.frame;
+    V at = root_at(strand, head), velocity = root.v, omega = root.omega;
+    use(0, at, frame * velocity);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const SeenTip<Real> tip =
+          typename Kind::Shape(vectors(q)[i], vectors(v)[i], strand.material.length)
+              .tip();
+      at = at + frame * tip.position;
+      frame = frame * FrameOf<Real>{tip.rotation.column(0), tip.rotation.column(1),
+                                    tip.rotation.column(2)};
+      velocity = tip.rotation.back(velocity + cross(omega, tip.position) + tip.velocity);
+      omega = tip.rotation.back(omega + tip.turning);
+      use(i + 1, at, frame * velocity);
+    }
+  }
+
+  HeadOptions options_;
+  const HeadUnits& units_;
+  Instructions instructions_;
+  std::size_t n_;
+  Vec gravity_;
+  Kernel kernel_;
+  ExactKernel<Kind> exact_;
+  ReducedEnergies<Kind> energies_;
+};
+
+}  // namespace tress::models
