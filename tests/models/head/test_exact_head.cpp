@@ -4,7 +4,7 @@
 
 #include "models/head/chain_strand.h"
 #include "models/head/helix_strand.h"
-#include "models/head/reduced_model.h"
+#include "models/head/reduced/reduced_model.h"
 #include "tests/models/head/hairs.h"
 #include "tests/support/apart.h"
 

@@ -9,11 +9,11 @@
 
 #include "models/head/head_motion.h"
 #include "models/head/lane_head.h"
+#include "models/head/reduced/reduced_model.h"
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
 #include "models/head/reduced_material.h"
-#include "models/head/reduced_model.h"
 #include "models/head/reduced_places.h"
 
 namespace tress::models {

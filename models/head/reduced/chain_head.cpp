@@ -1,5 +1,5 @@
 #include "models/head/chain_strand.h"
-#include "models/head/reduced_head.h"
+#include "models/head/reduced/reduced_head.h"
 
 namespace tress::models {
 namespace {

@@ -2,7 +2,7 @@
 #include "models/head/helix_source.h"
 #include "models/head/helix_strand.h"
 #include "models/head/lane_numbers.h"
-#include "models/head/reduced_head.h"
+#include "models/head/reduced/reduced_head.h"
 
 namespace tress::models {
 namespace {
