@@ -1,8 +1,10 @@
 #include "simulation/threads/crew.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <exception>
 
 namespace tress::simulation {
@@ -11,9 +13,11 @@ struct Crew::Arena : tbb::task_arena {
   using tbb::task_arena::task_arena;
 };
 
-Crew::Crew(int workers)
-    : workers_(static_cast<std::size_t>(workers)),
-      arena_(workers > 1 ? std::make_unique<Arena>(workers) : nullptr) {}
+Crew::Crew(int threads)
+    : workers_(
+          static_cast<std::size_t>(std::min(threads, tbb::info::default_concurrency()))),
+      arena_(workers_ > 1 ? std::make_unique<Arena>(static_cast<int>(workers_))
+                          : nullptr) {}
 
 Crew::~Crew() = default;
 

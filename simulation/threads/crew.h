@@ -7,11 +7,12 @@
 
 namespace tress::simulation {
 
-/// So many threads of oneTBB, the caller among them, for loops. Which of them calls what
-/// depends on timing: what is called must not. A crew of one calls in turn.
+/// So many threads of oneTBB, the caller among them, for loops, but no more than there
+/// are processors. Which of them calls what depends on timing: what is called must not. A
+/// crew of one calls in turn.
 class Crew {
  public:
-  explicit Crew(int workers);
+  explicit Crew(int threads);
   ~Crew();
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;

@@ -6,7 +6,11 @@ import { succeeded } from '../../src/tables.mjs';
 import { number, rows_of, table } from '../markdown.mjs';
 
 const all = (tables) => rows_of(tables, 'heads').filter(succeeded);
-const all_heads = (tables) => all(tables).filter((row) => row.model !== 'der');
+/// Heads of super-helices by one solve a step.
+const all_heads = (tables) =>
+  all(tables).filter(
+    (row) => row.model === 'super_helix' && row.integrator === 'semi_implicit_euler',
+  );
 const heads = (tables) => all_heads(tables).filter((row) => (row.effects ?? 'drag') === 'drag');
 const largest = (tables) => {
   const rows = heads(tables);
@@ -101,10 +105,11 @@ export const two_threads = (tables) =>
     })
     .join(' and ');
 
-/// Discrete rods, one thread.
+/// Discrete rods, and Newton's method; one thread.
 export const rods_table = (tables) =>
   table(
     [
+      'model',
       'method',
       'step, ms',
       'hairs',
@@ -121,10 +126,15 @@ export const rods_table = (tables) =>
       'checksum of the states',
     ],
     all(tables)
-      .filter((row) => row.model === 'der' && Number(row.threads) === 1)
+      .filter(
+        (row) =>
+          (row.model === 'der' || row.integrator === 'backward_euler') &&
+          Number(row.threads) === 1,
+      )
       .map((row) => {
         const newton = row.integrator === 'backward_euler';
         return [
+          row.model,
           row.integrator,
           number(1e3 * row.dt_s),
           row.strands,
