@@ -202,7 +202,7 @@ void PointGroups::keep_near(const Group& group, double distance) {
       };
       // Without a branch, which nobody could foresee.
       found_[near] = i;
-      near += !is_own(i) && (is_near(packs) | ...) ? 1 : 0;
+      near += !is_own(i) && (static_cast<int>(is_near(packs)) | ...) != 0 ? 1 : 0;
     }
   };
   if (instructions_ == Instructions::avx512) {
