@@ -1,9 +1,28 @@
 #pragma once
 
+#include "math/helix.h"
 #include "models/head/exact/varied.h"
 #include "models/head/reduced_kernel.h"
 
 namespace tress::models {
+
+/// Functions of arc length, which depend on unknowns by what is along them: kappa times
+/// its weight.
+template <class T>
+HelixFunctions<Varied<T>> varied_functions(const HelixFunctions<T>& f,
+                                           const Vec3<T>& along) {
+  const auto of = [&](const T& x, const T& slope) { return varied(x, slope * along); };
+  // The derivative of S is not asked for: that of a rotation follows from its turn.
+  return {.S = Varied<T>(f.S),
+          .A = of(f.A, f.A1),
+          .B = of(f.B, f.B1),
+          .A1 = of(f.A1, f.A2),
+          .B1 = of(f.B1, f.B2),
+          .A2 = of(f.A2, f.A3),
+          .B2 = of(f.B2, f.B3),
+          .A3 = {},
+          .B3 = {}};
+}
 
 /// The tip of an element seen from its start, in the components of the latter, with
 /// derivatives along the unknowns at weights w.

@@ -26,7 +26,8 @@ class VariedElement<HelixKind<T>> {
         element_(varied_alike(q, T(w.pos)), rate_) {}
 
   VariedTip<T> tip() const {
-    const HelixFunctions<Varied<T>> f = varied_functions(functions_.at(m_.length));
+    const HelixFunctions<Varied<T>> f =
+        varied_functions(functions_.at(m_.length), along_);
     const auto turn =
         element_.turn(Varied<T>(m_.length), f, varied(functions_.x2(), T(2) * along_));
     VariedTip<T> tip;
@@ -42,7 +43,7 @@ class VariedElement<HelixKind<T>> {
   }
 
   VariedPoint<T> point(const T& arc) const {
-    const HelixFunctions<Varied<T>> f = varied_functions(functions_.at(arc));
+    const HelixFunctions<Varied<T>> f = varied_functions(functions_.at(arc), along_);
     const Matrix3<Varied<T>> slope = element_.slope(f);
     return {element_.position(Varied<T>(arc), f), slope * rate_, slope};
   }
@@ -89,20 +90,6 @@ class VariedElement<HelixKind<T>> {
 
  private:
   using Vector = VariedVec<T>;
-
-  HelixFunctions<Varied<T>> varied_functions(const HelixFunctions<T>& f) const {
-    const auto of = [&](const T& x, const T& slope) { return varied(x, slope * along_); };
-    // The derivative of S is not asked for: that of a rotation follows from its turn.
-    return {.S = Varied<T>(f.S),
-            .A = of(f.A, f.A1),
-            .B = of(f.B, f.B1),
-            .A1 = of(f.A1, f.A2),
-            .B1 = of(f.B1, f.B2),
-            .A2 = of(f.A2, f.A3),
-            .B2 = of(f.B2, f.B3),
-            .A3 = {},
-            .B3 = {}};
-  }
 
   template <class Take>
   static AlongHelix<T> each_of(const AlongHelix<Varied<T>>& x, Take take) {

@@ -84,21 +84,6 @@ class VariedElement<ChainKind<T>> {
   }
 
  private:
-  static HelixFunctions<Varied<T>> varied_functions(const HelixFunctions<T>& f,
-                                                    const Vec& along) {
-    const auto of = [&](const T& x, const T& slope) { return varied(x, slope * along); };
-    // The derivative of S is not asked for: that of a rotation follows from its turn.
-    return {.S = Varied<T>(f.S),
-            .A = of(f.A, f.A1),
-            .B = of(f.B, f.B1),
-            .A1 = of(f.A1, f.A2),
-            .B1 = of(f.B1, f.B2),
-            .A2 = {},
-            .B2 = {},
-            .A3 = {},
-            .B3 = {}};
-  }
-
   void add_up(const Vec& omega, const T& first, const T& second,
               ElementSums<T>& to) const {
     const Vec t = value_of(along_), moving = value_of(moving_);
