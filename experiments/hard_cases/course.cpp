@@ -45,8 +45,7 @@ Simulation run_rubbing(Integrator& method, Situation& s, const Course& c,
   };
   s.system->reset();
   Status status = method.start(0, s.start.q, s.start.v);
-  const std::array<System*, 1> alone{s.system.get()};
-  s.rubbing->add(alone, method, c.options);
+  s.rubbing->add(*s.system, method, c.options);
   double t = 0;
   const double end = c.stops.back();
   const double count = std::max(1.0, std::ceil(end / c.options.step - 1e-9));

@@ -25,7 +25,6 @@ ImpulseResponse::ImpulseResponse(System& strand, const Integrator& method,
   }
   u_.resize(3 * means_.size());
   u_rest_.resize(u_.size());
-  if (!linear_) jacobian_.resize(u_.size() * a_.size());
 }
 
 Status ImpulseResponse::prepare(double h, In v_before) noexcept {
@@ -42,6 +41,7 @@ void ImpulseResponse::differentiate() noexcept {
   if (linear_ || std::exchange(differentiated_, true)) return;
   MaterialPoints& points = *system_.material_points();
   const std::size_t n = a_.size();
+  jacobian_.resize(u_.size() * n);
   if (points.jacobian(method_.time(), q_, jacobian_)) return;
   std::ranges::fill(r_, 0.0);
   points.velocities(method_.time(), q_, r_, u_rest_);

@@ -8,16 +8,16 @@
 
 namespace tress::integrators {
 
-/// How a strand responds to forces f on its material points that act during a step of h
-/// and are known at its end:
+/// How a strand, or some as one system, responds to forces f on its material points that
+/// act during a step of h and are known at its end:
 ///
 ///     v = v* + h a,   q = q* + h^2 a,   S(1, h, h^2) a = J^T f,   J = du/dv
 ///
 /// S at the state (q*, v*) at the end of the step without them, with the acceleration
 /// that led there; constraints of the strand are held. A method may step several strands
-/// as one system. J comes from
-/// MaterialPoints::mean() or jacobian(), or column by column from velocities(), unless
-/// the model knows what is needed of it (pull_back(), responses()).
+/// as one system, of which this is a part or all. J comes from MaterialPoints::mean() or
+/// jacobian(), or column by column from velocities(), unless the model knows what is
+/// needed of it (pull_back(), responses()).
 class ImpulseResponse {
  public:
   /// `first`: the strand's first coordinate among those of the method.

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 #include "contract/natural_strains.h"
 #include "models/batch/packed_strands.h"
 #include "models/groom/strand_block.h"
+#include "models/reduced/contact_tangent.h"
 #include "models/reduced/recursive_solver.h"
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/transport_sweeps.h"
@@ -26,6 +31,12 @@ class RecursiveMechanics {
     return solver_.factor(tangent_.at(t, q, v, w));
   }
   Status solve(In b, Out x) { return solver_.solve(b, x); }
+
+  using Load = typename TreeSolver<MassShapeOf<Kernel, modes>>::Load;
+  /// How tips of a chain respond to loads on them.
+  bool respond(std::span<const Load> loads, Out blocks) {
+    return solver_.respond(loads, blocks);
+  }
 
  private:
   InverseDynamics<Kernel, modes>& dynamics_;
@@ -75,7 +86,14 @@ class ReducedBatch final : public StrandBlock,
         v_(unknowns()),
         a_(unknowns()),
         zero_(unknowns(), Pack(0)),
-        r_(unknowns()) {}
+        r_(unknowns()) {
+    int before = -1;
+    chains_ = std::ranges::all_of(kinematics_.segments(), [&](const auto& segment) {
+      return segment.parent == before++;
+    });
+  }
+
+  bool responds_at_once() const override { return can_respond && chains_; }
 
   Status residual(double t, In q, In v, In a, Out r) noexcept override {
     gather(q, q_);
@@ -88,6 +106,7 @@ class ReducedBatch final : public StrandBlock,
   Status linearize(double t, In q, In v, In, Weights w) noexcept override {
     gather(q, q_);
     gather(v, v_);
+    responses_.clear();
     return factored_ = mechanics_.linearize(t, q_, v_, w);
   }
 
@@ -133,6 +152,10 @@ class ReducedBatch final : public StrandBlock,
     return all;
   }
 
+  static constexpr bool can_respond = requires {
+    typename Mechanics<Kernel, modes>::Load;
+  };
+
   std::size_t unknowns() const { return static_cast<std::size_t>(first(1)); }  // each
 
   Status acceleration(double t, In q, In v, Out a) noexcept override {
@@ -168,36 +191,98 @@ class ReducedBatch final : public StrandBlock,
     return finite ? Status::ok : Status::retry;
   }
 
+  /// Material points of a strand: the root and the tips of all segments.
+  std::size_t points() const { return kinematics_.segments().size() + 1; }
+
   void positions(double t, In q, Out x) override {
     gather(q, q_);
-    kinematics_.move(t, q_, zero_, zero_);
-    scatter_points([](const auto& m) { return m.x; }, x);
+    scatter_points(
+        kinematics_.template tips<true>(t, q_, zero_),
+        [](const auto& tip) { return tip.x; }, x);
   }
   void velocities(double t, In q, In v, Out u) override {
     gather(q, q_);
     gather(v, v_);
-    kinematics_.move(t, q_, v_, zero_);
-    scatter_points([](const auto& m) { return m.frame * m.v; }, u);
+    scatter_points(
+        kinematics_.tips(t, q_, v_), [](const auto& tip) { return tip.frame * tip.v; },
+        u);
   }
-  /// Applies `of` to the motion of the root and of all tips.
-  template <class Of>
-  void scatter_points(Of of, Out x) const {
-    const std::size_t n = kinematics_.segments().size() + 1;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3<Pack> all =
-          of(i == 0 ? kinematics_.root() : kinematics_.motion(i - 1).tip);
+  template <class Tips, class Of>
+  void scatter_points(const Tips& tips, Of of, Out x) const {
+    for (std::size_t i = 0; i < points(); ++i) {
+      const Vec3<Pack> all = of(tips[i]);
       for (std::size_t lane = 0; lane < strands(); ++lane) {
         const int l = static_cast<int>(lane);
-        store3(Vec{all.x[l], all.y[l], all.z[l]}, &x[3 * (lane * n + i)]);
+        store3(Vec{all.x[l], all.y[l], all.z[l]}, &x[3 * (lane * points() + i)]);
       }
+    }
+  }
+
+  bool pull_back(double t, In q, std::span<const int> points, In f, InOut b) override {
+    if (!responds_at_once()) return false;
+    const std::size_t n = this->points();
+    all_points_.resize(n);
+    std::iota(all_points_.begin(), all_points_.end(), 0);
+    forces_.assign(3 * n, Pack(0));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t lane = static_cast<std::size_t>(points[i]) / n,
+                        point = static_cast<std::size_t>(points[i]) % n;
+      for (std::size_t d = 0; d < 3; ++d) {
+        forces_[3 * point + d].set(static_cast<int>(lane), f[3 * i + d]);
+      }
+    }
+    gather(q, q_);
+    std::ranges::fill(r_, Pack(0));
+    TipForces<Kernel, modes>(kinematics_, t, q_).pull_back(all_points_, forces_, r_);
+    for (std::size_t lane = 0; lane < strands(); ++lane) {
+      for (std::size_t k = 0; k < unknowns(); ++k) {
+        b[lane * unknowns() + k] += r_[k][static_cast<int>(lane)];
+      }
+    }
+    return true;
+  }
+
+  /// Those of all points are found at once, when the first are asked for.
+  bool responses(double t, In q, std::span<const int> points, Out blocks) override {
+    if (!responds_at_once() || factored_ != Status::ok) return false;
+    if (responses_.empty()) respond(t, q);
+    const std::size_t n = this->points();
+    double* to = blocks.data();
+    for (const int of : points) {
+      const auto first = static_cast<std::size_t>(of);
+      for (const int on : points) {
+        const auto second = static_cast<std::size_t>(on);
+        const Pack* const from = &responses_[9 * (first % n * n + second % n)];
+        const bool one_strand = first / n == second / n;
+        for (std::size_t k = 0; k < 9; ++k) {
+          *to++ = one_strand ? from[k][static_cast<int>(first / n)] : 0.0;
+        }
+      }
+    }
+    return true;
+  }
+  void respond([[maybe_unused]] double t, [[maybe_unused]] In q) {
+    if constexpr (can_respond) {
+      gather(q, q_);
+      const TipForces<Kernel, modes> forces(kinematics_, t, q_);
+      std::vector<typename Mechanics<Kernel, modes>::Load> loads;
+      for (int i = 0; i < static_cast<int>(points()); ++i) {
+        loads.push_back({i - 1, forces.units(i)});
+      }
+      responses_.resize(9 * points() * points());
+      mechanics_.respond(loads, responses_);
     }
   }
 
   Kinematics<Kernel, modes> kinematics_;
   InverseDynamics<Kernel, modes> dynamics_;
   Mechanics<Kernel, modes> mechanics_;
+  bool chains_ = true;
   Status factored_ = Status::retry;
   std::vector<Pack> q_, v_, a_, zero_, r_;
+  std::vector<Pack> responses_;  // empty: not asked for since linearize()
+  std::vector<Pack> forces_;     // scratch of pull_back()
+  std::vector<int> all_points_;
 };
 
 }  // namespace tress::models

@@ -147,7 +147,7 @@ void BoxPairs::search(std::size_t b, Group& to) const {
       // A pair counts in one of its cells: that of the least corner of its common part.
       const Cell &a = placed(i).from, &c = placed(j).from;
       const Cell corner{std::max(a.x, c.x), std::max(a.y, c.y), std::max(a.z, c.z)};
-      if (bucket(corner) == b) to.found.emplace_back(to.box[i], to.box[j]);
+      if (bucket(corner) == b) to.found.push_back({to.box[i], to.box[j]});
     }
   }
 }

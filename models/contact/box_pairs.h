@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "math/vec3.h"
@@ -46,11 +45,14 @@ inline bool apart(const Box& a, const Box& b) {
 /// takes about 0.5 us a box on shaken hair.
 class BoxPairs {
  public:
-  using Pair = std::pair<int, int>;  // the first before the second
+  struct Pair {
+    int first, second;    // the first before the second
+    double distance = 0;  // that they keep at least, m, if it is told
+  };
 
   /// Every pair of boxes that overlap, each once, in an order that boxes decide, without
-  /// those that sift(some pairs) takes away (called at once from several threads). Boxes
-  /// that are not finite overlap with none.
+  /// those that sift(some pairs) takes away (called at once from several threads), which
+  /// may tell the distances of the others. Boxes that are not finite overlap with none.
   const std::vector<Pair>& find(std::span<const Box> boxes, const Loop& loop,
                                 const std::function<void(std::vector<Pair>&)>& sift);
 

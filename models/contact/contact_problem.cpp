@@ -56,16 +56,44 @@ void ContactProblem::Compliance::set(In blocks) {
 void ContactProblem::clear() {
   used_ = 0;
   contacts_.clear();
+  solved_.clear();
+  columns_used_ = 0;
+}
+
+void ContactProblem::Body::respond_as(const Compliance& given) {
+  compliance = &given;
+  change.assign(given.points_, Pack(0));
+  forces.assign(given.points_, Vec());
+  renewed = true;
 }
 
 int ContactProblem::add_body(const Compliance& compliance) {
   if (used_ == bodies_.size()) bodies_.emplace_back();
-  Body& body = bodies_[used_];
-  body.compliance = &compliance;
-  body.change.assign(compliance.points_, Pack(0));
-  body.forces.assign(compliance.points_, Vec());
-  body.pushes = 0;
+  bodies_[used_].respond_as(compliance);
   return static_cast<int>(used_++);
+}
+
+void ContactProblem::renew_body(int body) {
+  Body& renewed = bodies_[static_cast<std::size_t>(body)];
+  renewed.respond_as(*renewed.compliance);
+}
+
+void ContactProblem::add(std::size_t count) {
+  contacts_.resize(contacts_.size() + count);
+  solved_.resize(contacts_.size());
+}
+
+void ContactProblem::add(const Contact& contact) {
+  add(1);
+  set(contacts_.size() - 1, contact);
+}
+
+void ContactProblem::set(std::size_t number, const Contact& contact) {
+  Solved& solved = solved_[number];
+  const Vec force = solved.solved ? contacts_[number].force : contact.force;
+  contacts_[number] = contact;
+  contacts_[number].force = force;
+  solved.given = true;
 }
 
 Vec ContactProblem::change(std::size_t body, std::size_t point) const {
@@ -95,82 +123,77 @@ Vec ContactProblem::velocity(const Solved& solved) {
   return contact.free + contact.axes * first3(change);
 }
 
-void ContactProblem::push(const Solved& solved, const Vec& force) {
+void ContactProblem::push(const Solved::Pushed& on, const Vec& force) {
   const Pack normal(force.x), first(force.y), second(force.z);
+  ++on.body->pushes;
+  const Pack* column = on.columns;
+  for (Pack& change : on.body->change) {
+    change += column[0] * normal + column[1] * first + column[2] * second;
+    column += 3;
+  }
+}
+
+void ContactProblem::push(const Solved& solved, const Vec& force) {
+  push(solved.bodies[0], force);
+  if (solved.bodies[1].body != nullptr) push(solved.bodies[1], force);
+}
+
+/// How the bodies of a contact, and the contact itself, respond to forces along its axes.
+void ContactProblem::combine(Solved& solved, double proximal) {
+  Contact& contact = *solved.contact;
+  const Mat3& axes = contact.axes;
+  Mat3 world{};  // by axes of the force, rows
   for (const Solved::Pushed& on : solved.bodies) {
     if (on.body == nullptr) break;
-    ++on.body->pushes;
-    const Pack* column = on.columns;
-    for (Pack& change : on.body->change) {
-      change += column[0] * normal + column[1] * first + column[2] * second;
-      column += 3;
+    Pack* const to = &columns_[on.first];
+    const std::size_t points = on.body->change.size();
+    const Pack* from[4];
+    double weight[4];
+    std::size_t ends = 0;
+    for (const End& end : contact.ends) {
+      if (&bodies_[static_cast<std::size_t>(end.body)] != on.body || end.weight == 0) {
+        continue;
+      }
+      from[ends] = on.body->compliance->columns_.data() +
+                   3 * points * static_cast<std::size_t>(end.point);
+      weight[ends++] = end.weight;
+    }
+    for (std::size_t k = 0; k < 3 * points; k += 3) {
+      Pack x(0), y(0), z(0);  // by components of the force
+      for (std::size_t end = 0; end < ends; ++end) {
+        const Pack* const column = from[end] + k;
+        x += Pack(weight[end]) * column[0];
+        y += Pack(weight[end]) * column[1];
+        z += Pack(weight[end]) * column[2];
+      }
+      to[k] = x * Pack(axes.r0.x) + y * Pack(axes.r0.y) + z * Pack(axes.r0.z);
+      to[k + 1] = x * Pack(axes.r1.x) + y * Pack(axes.r1.y) + z * Pack(axes.r1.z);
+      to[k + 2] = x * Pack(axes.r2.x) + y * Pack(axes.r2.y) + z * Pack(axes.r2.z);
+    }
+    for (const End& end : contact.ends) {
+      if (&bodies_[static_cast<std::size_t>(end.body)] != on.body) continue;
+      const Pack* const at = to + 3 * static_cast<std::size_t>(end.point);
+      world = world + end.weight * Mat3{first3(at[0]), first3(at[1]), first3(at[2])};
     }
   }
+  contact.local = axes * transposed(world);
+  const double size = trace(contact.local);
+  if (size == 0) contact.force = {};
+  const double near = proximal * size / 3;
+  solved.near = contact.local + diagonal({near, near, near});
+  solved.wake();
 }
 
-/// How bodies of contacts, and the contacts themselves, respond to forces along their
-/// axes.
-void ContactProblem::combine(Part& part, double proximal) {
-  std::size_t count = 0;
-  for (const Solved& solved : part.contacts) {
+/// Once on each body: one that was solved is not known to renewed bodies alone.
+void ContactProblem::push_guess(Solved& solved) {
+  if (!is_zero(solved.contact->force)) {
     for (const Solved::Pushed& on : solved.bodies) {
-      if (on.body != nullptr) count += 3 * on.body->change.size();
-    }
-  }
-  part.columns.resize(count);
-  Pack* to = part.columns.data();
-  for (Solved& solved : part.contacts) {
-    Contact& contact = *solved.contact;
-    const Mat3& axes = contact.axes;
-    Mat3 world{};  // by axes of the force, rows
-    for (Solved::Pushed& on : solved.bodies) {
       if (on.body == nullptr) break;
-      on.columns = to;
-      const std::size_t points = on.body->change.size();
-      const Pack* from[4];
-      double weight[4];
-      std::size_t ends = 0;
-      for (const End& end : contact.ends) {
-        if (&bodies_[static_cast<std::size_t>(end.body)] != on.body || end.weight == 0) {
-          continue;
-        }
-        from[ends] = on.body->compliance->columns_.data() +
-                     3 * points * static_cast<std::size_t>(end.point);
-        weight[ends++] = end.weight;
-      }
-      for (std::size_t k = 0; k < 3 * points; k += 3) {
-        Pack x(0), y(0), z(0);  // by components of the force
-        for (std::size_t end = 0; end < ends; ++end) {
-          const Pack* const column = from[end] + k;
-          x += Pack(weight[end]) * column[0];
-          y += Pack(weight[end]) * column[1];
-          z += Pack(weight[end]) * column[2];
-        }
-        to[k] = x * Pack(axes.r0.x) + y * Pack(axes.r0.y) + z * Pack(axes.r0.z);
-        to[k + 1] = x * Pack(axes.r1.x) + y * Pack(axes.r1.y) + z * Pack(axes.r1.z);
-        to[k + 2] = x * Pack(axes.r2.x) + y * Pack(axes.r2.y) + z * Pack(axes.r2.z);
-      }
-      for (const End& end : contact.ends) {
-        if (&bodies_[static_cast<std::size_t>(end.body)] != on.body) continue;
-        const Pack* const at = to + 3 * static_cast<std::size_t>(end.point);
-        world = world + end.weight * Mat3{first3(at[0]), first3(at[1]), first3(at[2])};
-      }
-      to += 3 * points;
+      if (on.body->renewed || !solved.solved) push(on, solved.contact->force);
     }
-    contact.local = axes * transposed(world);
-    const double size = trace(contact.local);
-    if (size == 0) contact.force = {};
-    const double near = proximal * size / 3;
-    solved.near = contact.local + diagonal({near, near, near});
-    solved.wake();
   }
-  part.visits = part.contacts.size();
-}
-
-void ContactProblem::push_guesses(const Part& part) {
-  for (const Solved& solved : part.contacts) {
-    if (!is_zero(solved.contact->force)) push(solved, solved.contact->force);
-  }
+  solved.given = false;
+  solved.solved = true;
 }
 
 /// Whether the velocities of its bodies are those of the visit at which it had settled.
@@ -196,6 +219,7 @@ void ContactProblem::Solved::wake() {
 /// weigh the normal part; up to `quiet` the force stays. Where that is seen without a
 /// solution, from how the velocity has changed since the last one, it is a bound.
 double ContactProblem::visit(Solved& solved, double quiet) {
+  solved.judged = false;
   Contact& contact = *solved.contact;
   const double friction = contact.friction;
   const Vec u = velocity(solved);
@@ -230,12 +254,12 @@ void ContactProblem::sweep(Part& part, double quiet) {
   part.busy.clear();
   part.violation = 0;
   part.visits = 0;
-  for (Solved& solved : part.contacts) {
-    if (settled(solved)) continue;
+  for (Solved* const solved : part.contacts) {
+    if (settled(*solved)) continue;
     ++part.visits;
-    const double seen = visit(solved, quiet);
+    const double seen = visit(*solved, quiet);
     part.violation = std::max(part.violation, seen);
-    if (seen > quiet) part.busy.push_back(&solved);
+    if (seen > quiet) part.busy.push_back(solved);
   }
   for (int i = 0; i < busy_sweeps && part.busy.size() < part.contacts.size() / 2; ++i) {
     double seen = 0;
@@ -261,16 +285,20 @@ double ContactProblem::worst(const Loop& loop, double tolerance) {
     Part& part = parts_[i];
     part.violation = 0;
     part.worst = nullptr;
-    for (Solved& solved : part.contacts) {
-      const Contact& contact = *solved.contact;
+    for (Solved* const solved : part.contacts) {
+      const Contact& contact = *solved->contact;
       if (trace(contact.local) == 0) continue;
-      solved.seen = velocity(solved);
-      solved.left =
-          contact_violation(contact.local, solved.seen, contact.force, contact.friction);
-      if (solved.left <= tolerance) settle(solved);
-      if (!(solved.left > part.violation)) continue;
-      part.violation = solved.left;
-      part.worst = &solved;
+      if (!solved->judged || !settled(*solved)) {
+        solved->judged = true;
+        solved->seen = velocity(*solved);
+        solved->violation = contact_violation(contact.local, solved->seen, contact.force,
+                                              contact.friction);
+        solved->left = solved->violation;
+        if (solved->left <= tolerance) settle(*solved);
+      }
+      if (!(solved->violation > part.violation)) continue;
+      part.violation = solved->violation;
+      part.worst = solved;
     }
   };
   contacts_.size() < least_judged ? one_by_one(parts_.size(), judge)
@@ -305,10 +333,10 @@ std::vector<const ContactProblem::Solved*> ContactProblem::about_the_worst() con
            (body == worst->bodies[0].body || body == worst->bodies[1].body);
   };
   for (const Part& part : parts_) {
-    for (const Solved& solved : part.contacts) {
-      if (is_zero(solved.contact->force) && &solved != worst) continue;
-      if (shares(solved.bodies[0].body) || shares(solved.bodies[1].body)) {
-        all.push_back(&solved);
+    for (const Solved* const solved : part.contacts) {
+      if (is_zero(solved->contact->force) && solved != worst) continue;
+      if (shares(solved->bodies[0].body) || shares(solved->bodies[1].body)) {
+        all.push_back(solved);
       }
     }
   }
@@ -343,11 +371,19 @@ ContactProblem::Joint ContactProblem::solve_jointly(const Loop& loop, double tol
 
 ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
                                               int most_sweeps, const Loop& loop) {
+  link();
   divide();
-  for (Body& body : std::span(bodies_).first(used_))
-    std::ranges::fill(body.change, Pack(0));
-  loop(parts_.size(), [&](std::size_t i) { combine(parts_[i], proximal); });
-  each_part(loop, [](Part& part) { push_guesses(part); });
+  loop(parts_.size(), [&](std::size_t i) {
+    for (Solved* const solved : parts_[i].contacts) {
+      if (solved->given) combine(*solved, proximal);
+    }
+  });
+  each_part(loop, [](Part& part) {
+    for (Solved* const solved : part.contacts) {
+      if (solved->given) push_guess(*solved);
+    }
+  });
+  for (Body& body : std::span(bodies_).first(used_)) body.renewed = false;
   double quiet = quiet_part * tolerance;
   Outcome outcome;
   outcome.violation = worst(loop, tolerance);
@@ -372,9 +408,7 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
     outcome.violation = worst(loop, tolerance);
     if (outcome.violation <= tolerance || seen > quiet) continue;
     quiet *= quieter;
-    for (Part& part : parts_) {
-      for (Solved& solved : part.contacts) solved.wake();
-    }
+    for (Solved& solved : solved_) solved.wake();
   }
   for (Body& body : std::span(bodies_).first(used_))
     std::ranges::fill(body.forces, Vec());

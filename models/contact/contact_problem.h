@@ -33,6 +33,10 @@ namespace tress::models {
 /// contact that has settled is left alone until the velocities of its bodies change, and
 /// not solved again until its own has. What contacts violate the laws by at the end is
 /// computed of all of them.
+///
+/// More contacts may be added to a problem that is solved, and bodies be touched at other
+/// points: the next solution starts from the last one and costs what is new, and what
+/// that disturbs.
 class ContactProblem {
  public:
   /// A point of a body, and its weight in the contact's velocity.
@@ -70,12 +74,13 @@ class ContactProblem {
   void clear();
   /// Returns its number. The compliance must outlive the use of the problem.
   int add_body(const Compliance& compliance);
-  void add(const Contact& contact) { contacts_.push_back(contact); }
-  /// So many contacts, to be set before solve(); valid until others are added.
-  std::span<Contact> add(std::size_t count) {
-    contacts_.resize(contacts_.size() + count);
-    return std::span(contacts_).last(count);
-  }
+  /// Its compliance is of other points now: contacts on it are to be set() again.
+  void renew_body(int body);
+  void add(const Contact& contact);
+  /// So many contacts more, to be set before solve().
+  void add(std::size_t count);
+  /// Safe for different contacts at once. The force of one that was solved stays.
+  void set(std::size_t number, const Contact& contact);
 
   /// Contacts of points that nothing moves hold no forces. Until no other contact
   /// violates the laws by more than `tolerance` (m/s), or so many sweeps.
@@ -97,28 +102,35 @@ class ContactProblem {
     std::vector<Pack> change;  // of its points, m/s
     std::vector<Vec> forces;   // N
     long pushes = 0;           // so often its velocities have changed
+    bool renewed = true;       // its change holds no forces yet
+
+    void respond_as(const Compliance& given);
   };
   /// What solve() knows of a contact.
   struct Solved {
     struct Pushed {
       Body* body = nullptr;
+      std::size_t first = 0;          // of columns, in columns_
       const Pack* columns = nullptr;  // changes of all points by unit forces along axes
       long pushes = -1;               // of the body when the contact had settled
     };
     std::array<Pushed, 2> bodies;  // the second is null if both are one
-    Contact* contact;
-    std::array<const Pack*, 4> change;  // of the velocities of its ends
-    Mat3 near;                          // its compliance with the proximal term
-    Vec seen;     // its velocity at the last visit, with the force found then, m/s
-    double left;  // by how much another solution would have changed that, m/s
+    Contact* contact = nullptr;
+    std::array<const Pack*, 4> change{};  // of the velocities of its ends
+    bool given = true;                    // since the last solution
+    bool solved = false;                  // its force is in the changes of its bodies
+    bool judged = false;                  // what it violates was computed when it settled
+    Mat3 near{};                          // its compliance with the proximal term
+    Vec seen;         // its velocity at the last visit, with the force found then, m/s
+    double left = 0;  // by how much another solution would have changed that, m/s
+    double violation = 0;  // when it was judged, m/s
 
     void wake();
   };
   /// Contacts that share no body with those of parts that are visited at once.
   struct Part {
-    std::vector<Solved> contacts;
+    std::vector<Solved*> contacts;
     std::vector<Solved*> busy;
-    std::vector<Pack> columns;
     double violation = 0;           // at the visits of the last sweep
     std::size_t visits = 0;         // of it, to contacts that had not settled
     const Solved* worst = nullptr;  // violates the laws most
@@ -137,10 +149,12 @@ class ContactProblem {
   static bool settled(const Solved& solved);
   static void settle(Solved& solved);
   static Vec velocity(const Solved& solved);
+  void link();
   void divide();
   void each_part(const Loop& loop, const std::function<void(Part&)>& act);
-  void combine(Part& part, double proximal);
-  static void push_guesses(const Part& part);
+  void combine(Solved& solved, double proximal);
+  static void push_guess(Solved& solved);
+  static void push(const Solved::Pushed& on, const Vec& force);
   static void push(const Solved& solved, const Vec& force);
   Vec change(const Contact& contact) const;
   double visit(Solved& solved, double quiet);
@@ -154,6 +168,9 @@ class ContactProblem {
   std::vector<Body> bodies_;  // the first used_ are in use
   std::size_t used_ = 0;
   std::vector<Contact> contacts_;
+  std::vector<Solved> solved_;  // of each contact
+  std::vector<Pack> columns_;   // of all; the first columns_used_ are in use
+  std::size_t columns_used_ = 0;
   JointContacts joint_;
   // Those within parts, then those between two parts: pairs that share none in turn.
   std::vector<Part> parts_;

@@ -20,6 +20,34 @@ constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}
 
 }  // namespace
 
+/// Where contacts find their bodies and columns, with room for those of contacts given
+/// since the last solution.
+void ContactProblem::link() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& contact = contacts_[i];
+    Solved& solved = solved_[i];
+    solved.contact = &contact;
+    const auto a = static_cast<std::size_t>(contact.ends[0].body),
+               b = static_cast<std::size_t>(contact.ends[2].body);
+    solved.bodies[0].body = &bodies_[a];
+    solved.bodies[1].body = a == b ? nullptr : &bodies_[b];
+    for (std::size_t k = 0; k < contact.ends.size(); ++k) {
+      const End& end = contact.ends[k];
+      solved.change[k] = &bodies_[static_cast<std::size_t>(end.body)]
+                              .change[static_cast<std::size_t>(end.point)];
+    }
+    for (Solved::Pushed& on : solved.bodies) {
+      if (!solved.given || on.body == nullptr) break;
+      on.first = columns_used_;
+      columns_used_ += 3 * on.body->change.size();
+    }
+  }
+  if (columns_.size() < columns_used_) columns_.resize(columns_used_);
+  for (Solved& solved : solved_) {
+    for (Solved::Pushed& on : solved.bodies) on.columns = &columns_[on.first];
+  }
+}
+
 /// Parts of neighbours: bodies in the order in which contacts lead from one to the next,
 /// as many for each part as have an equal share of the contacts.
 void ContactProblem::divide() {
@@ -29,7 +57,10 @@ void ContactProblem::divide() {
   if (count == most_parts) rounds_.insert(rounds_.end(), {2, 2, 2});
   if (count < most_parts) rounds_.resize(1 + count * (count - 1) / 2, 1);
   parts_.resize(std::accumulate(rounds_.begin(), rounds_.end(), std::size_t{0}));
-  for (Part& part : parts_) part.contacts.clear();
+  for (Part& part : parts_) {
+    part.contacts.clear();
+    part.visits = 0;
+  }
   std::size_t part_between[most_parts][most_parts] = {};
   std::size_t between = count;
   for (const auto& [a, b] : pairs_of_parts) {
@@ -72,19 +103,12 @@ void ContactProblem::divide() {
       }
     }
   }
-  for (Contact& contact : contacts_) {
-    const auto [a, b] = bodies_of(contact);
+  for (Solved& solved : solved_) {
+    const auto [a, b] = bodies_of(*solved.contact);
     const std::size_t first = part_of[a], second = part_of[b];
-    Solved& solved = parts_[first == second ? first : part_between[first][second]]
-                         .contacts.emplace_back();
-    solved.contact = &contact;
-    solved.bodies[0].body = &bodies_[a];
-    solved.bodies[1].body = a == b ? nullptr : &bodies_[b];
-    for (std::size_t i = 0; i < contact.ends.size(); ++i) {
-      const End& end = contact.ends[i];
-      solved.change[i] = &bodies_[static_cast<std::size_t>(end.body)]
-                              .change[static_cast<std::size_t>(end.point)];
-    }
+    Part& part = parts_[first == second ? first : part_between[first][second]];
+    part.contacts.push_back(&solved);
+    part.visits += solved.given ? 1 : 0;
   }
 }
 

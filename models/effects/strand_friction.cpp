@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace tress::models {
@@ -118,7 +119,10 @@ void StrandFriction::begin(double t, double h, In from, In to, In u) {
   search_.begin(from, to);
   u_.assign(u.begin(), u.end());
   std::swap(before_, known_);
-  known_.clear();
+  before_.list(search_.pieces());
+  known_.all.clear();
+  known_.list(search_.pieces());
+  problem_.clear();
   for (Touched& strand : strands_) {
     for (const int point : strand.touched) {
       strand.place[static_cast<std::size_t>(point)] = -1;
@@ -127,6 +131,7 @@ void StrandFriction::begin(double t, double h, In from, In to, In u) {
     strand.forces.clear();
     strand.body = -1;
   }
+  for (const std::size_t k : stale_) strands_[k].stale = false;
   touching_.clear();
   stale_.clear();
   moved_.clear();
@@ -141,42 +146,60 @@ bool StrandFriction::one_place(const Known& a, const Known& b) const {
          std::abs(search_.arc(a.second, a.at.t) - search_.arc(b.second, b.at.t)) < near;
 }
 
-/// The one of these, ordered by pair, that is the contact found; their end: none.
-std::vector<StrandFriction::Known>::iterator StrandFriction::seen(
-    const Known& found, std::vector<Known>& all) const {
-  for (int i = found.first - 1; i <= found.first + 1; ++i) {
-    // A piece before the first or after the last is that of another strand.
-    if (i < 0 || i == static_cast<int>(search_.pieces()) ||
-        strand_of(i) != strand_of(found.first)) {
-      continue;
-    }
-    auto at = std::ranges::lower_bound(all, std::pair(i, found.second - 1), {}, pair_of);
-    for (; at != all.end() && at->first == i && at->second <= found.second + 1; ++at) {
-      if (strand_of(at->second) == strand_of(found.second) && one_place(*at, found)) {
-        return at;
-      }
-    }
+void StrandFriction::Ordered::list(std::size_t pieces) {
+  first.assign(pieces + 1, 0);
+  for (const Known& known : all) ++first[static_cast<std::size_t>(known.first) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+}
+
+std::span<const StrandFriction::Known> StrandFriction::Ordered::of(int piece) const {
+  const auto i = static_cast<std::size_t>(piece);
+  return std::span(all).subspan(first[i], first[i + 1] - first[i]);
+}
+
+/// The one of these, of pieces next to its first one, that is the contact found; null:
+/// none.
+const StrandFriction::Known* StrandFriction::seen(const Known& found,
+                                                  std::span<const Known> some) const {
+  const auto same = [&](const Known& known) {
+    return known.second >= 0 && std::abs(known.second - found.second) <= 1 &&
+           strand_of(known.first) == strand_of(found.first) &&
+           strand_of(known.second) == strand_of(found.second) && one_place(known, found);
+  };
+  const auto at = std::ranges::find_if(some, same);
+  return at == some.end() ? nullptr : &*at;
+}
+
+/// Whether its first piece, or one next to that, has the contact found.
+bool StrandFriction::is_known(const Known& found) const {
+  const int last = std::min(found.first + 1, static_cast<int>(search_.pieces()) - 1);
+  for (int i = std::max(0, found.first - 1); i <= last; ++i) {
+    if (seen(found, known_.of(i)) != nullptr) return true;
   }
-  return all.end();
+  return false;
 }
 
 /// The contact of that pair in the last step; null: none.
 const StrandFriction::Known* StrandFriction::last_of(int first, int second) const {
-  const std::pair pair(first, second);
-  const auto last = std::ranges::lower_bound(before_, pair, {}, pair_of);
-  return last != before_.end() && pair_of(*last) == pair ? &*last : nullptr;
+  const std::span<const Known> all = before_.of(first);
+  const auto last = std::ranges::find(all, second, &Known::second);
+  return last == all.end() ? nullptr : &*last;
 }
 
 /// Adds to found_ what is no contact yet.
 void StrandFriction::admit(const PieceSearch::Found& at) {
   Known found{at, {}, {}, {}};
-  if (seen(found, known_) != known_.end()) return;
+  if (is_known(found)) return;
   // Of two pieces at a joint the nearer one has the normal; the other is met at its end.
-  if (const auto same_place = seen(found, found_); same_place != found_.end()) {
+  while (recent_ < found_.size() && found_[recent_].first < found.first - 1) ++recent_;
+  const auto recent = std::span<const Known>(found_).subspan(recent_);
+  if (const Known* const same_place = seen(found, recent); same_place != nullptr) {
     if (search_.gap_now(*same_place) <= search_.gap_now(found)) return;
-    found_.erase(same_place);
+    found_.erase(found_.begin() + (same_place - found_.data()));
   }
-  const bool again = std::ranges::binary_search(known_, pair_of(found), {}, pair_of);
+  const bool again = std::ranges::any_of(known_.of(found.first), [&](const Known& known) {
+    return known.second == found.second;
+  });
   if (again && search_.gap_now(found) >
                    -second_place * search_.thickness(found.first, found.second)) {
     return;
@@ -200,7 +223,8 @@ void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
     // A piece begins where the one before ends.
     for (int part = piece == first ? 0 : 1; part <= parts; ++part) {
       Known at{{piece, code(obstacle, part), {}}, {}, {}, {}};
-      if (std::ranges::binary_search(known_, pair_of(at), {}, pair_of)) continue;
+      const auto known = known_.of(piece);
+      if (std::ranges::find(known, at.second, &Known::second) != known.end()) continue;
       const Known* const last = last_of(at.first, at.second);
       const bool pushed = last != nullptr && dot(last->world, last->world) > 0;
       at.at.s = static_cast<double>(part) / parts;
@@ -228,7 +252,7 @@ void StrandFriction::find_on_obstacles(const Loop& loop) {
 
 /// Where the step ends.
 void StrandFriction::measure_depth() {
-  for (const Known& known : known_) {
+  for (const Known& known : known_.all) {
     if (known.second >= 0) deepest_ = std::max(deepest_, search_.depth(known));
   }
 }
@@ -239,6 +263,7 @@ bool StrandFriction::find(const Loop& loop) {
     return false;
   }
   found_.clear();
+  recent_ = 0;
   find_on_obstacles(loop);
   // A pair that pushed in the last step counts a little farther apart.
   const auto pushed = [this](int first, int second) {
@@ -249,13 +274,17 @@ bool StrandFriction::find(const Loop& loop) {
   for (const std::vector<Known>& found : on_obstacles_) {
     found_.insert(found_.end(), found.begin(), found.end());
   }
+  for (const std::size_t k : stale_) strands_[k].stale = false;
   stale_.clear();
   if (found_.empty()) {
     measure_depth();
     return false;
   }
-  known_.insert(known_.end(), found_.begin(), found_.end());
-  std::ranges::stable_sort(known_, {}, pair_of);
+  if (!obstacles_.empty()) std::ranges::sort(found_, {}, pair_of);
+  const auto old = static_cast<std::ptrdiff_t>(known_.all.size());
+  known_.all.insert(known_.all.end(), found_.begin(), found_.end());
+  std::ranges::inplace_merge(known_.all, known_.all.begin() + old, {}, pair_of);
+  known_.list(search_.pieces());
   touch_points();
   return true;
 }
@@ -293,6 +322,7 @@ void StrandFriction::touch_points() {
   }
   for (const std::size_t k : stale_) {
     Touched& strand = strands_[k];
+    strand.stale = true;
     std::ranges::sort(strand.touched);
     for (std::size_t i = 0; i < strand.touched.size(); ++i) {
       strand.place[static_cast<std::size_t>(strand.touched[i])] = static_cast<int>(i);
@@ -340,26 +370,45 @@ void StrandFriction::respond(std::size_t strand, In compliance) {
   strands_[strand].compliance.set(compliance);
 }
 
-void StrandFriction::solve(const Loop& loop) {
-  problem_.clear();
-  for (const std::size_t k : touching_) {
-    strands_[k].body = problem_.add_body(strands_[k].compliance);
+/// Those of the problem that are new, or of strands that are touched at other points now.
+void StrandFriction::set_contacts(const Loop& loop) {
+  for (const std::size_t k : stale_) {
+    int& body = strands_[k].body;
+    if (body >= 0) {
+      problem_.renew_body(body);
+    } else {
+      body = problem_.add_body(strands_[k].compliance);
+    }
   }
-  const std::span<ContactProblem::Contact> contacts = problem_.add(known_.size());
-  loop((known_.size() + contact_group - 1) / contact_group, [&](std::size_t g) {
+  const std::size_t old = problem_.contacts().size();
+  problem_.add(found_.size());
+  auto next = static_cast<int>(old);
+  for (Known& known : known_.all) {
+    if (known.contact < 0) known.contact = next++;
+  }
+  loop((known_.all.size() + contact_group - 1) / contact_group, [&](std::size_t g) {
     for (std::size_t i = g * contact_group;
-         i < std::min(known_.size(), (g + 1) * contact_group); ++i) {
-      contacts[i] = contact(known_[i]);
+         i < std::min(known_.all.size(), (g + 1) * contact_group); ++i) {
+      const Known& known = known_.all[i];
+      const auto number = static_cast<std::size_t>(known.contact);
+      const bool same = number < old && !strands_[strand_of(known.first)].stale &&
+                        (known.second < 0 || !strands_[strand_of(known.second)].stale);
+      if (!same) problem_.set(number, contact(known));
     }
   });
+}
+
+void StrandFriction::solve(const Loop& loop) {
+  set_contacts(loop);
   const ContactProblem::Outcome outcome =
       problem_.solve(proximal, law_.tolerance, law_.sweeps, loop);
   outcome_ = {outcome_.sweeps + outcome.sweeps, outcome.violation};
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    known_[i].force = contacts[i].force;
-    known_[i].world = contacts[i].force * contacts[i].axes;
+  for (Known& known : known_.all) {
+    const auto& contact = problem_.contacts()[static_cast<std::size_t>(known.contact)];
+    known.force = contact.force;
+    known.world = contact.force * contact.axes;
   }
-  for (const std::size_t k : touching_) take_forces(strands_[k]);
+  loop(touching_.size(), [&](std::size_t i) { take_forces(strands_[touching_[i]]); });
   moved_.clear();
   std::ranges::copy_if(touching_, std::back_inserter(moved_),
                        [this](std::size_t k) { return strands_[k].moved; });
@@ -394,15 +443,15 @@ void StrandFriction::add_loads(std::size_t strand, InOut f) const {
 
 std::vector<double> StrandFriction::friction_used() const {
   std::vector<double> used(search_.to().size() / 3);
-  for (std::size_t i = 0; i < known_.size(); ++i) {
+  for (const Known& known : known_.all) {
     // Before the first step there are forces without contacts (recall()).
-    if (i == problem_.contacts().size()) break;
-    const ContactProblem::Contact& contact = problem_.contacts()[i];
+    if (known.contact < 0) break;
+    const auto& contact = problem_.contacts()[static_cast<std::size_t>(known.contact)];
     const double most = contact.friction * contact.force.x;
     if (!(most > 0)) continue;
     const double part =
         std::min(1.0, std::hypot(contact.force.y, contact.force.z) / most);
-    const OnPoints on = on_points(known_[i]);
+    const OnPoints on = on_points(known);
     for (std::size_t end = 0; end < on.count; ++end) {
       used[on.point[end]] = std::max(used[on.point[end]], part);
     }
@@ -412,7 +461,7 @@ std::vector<double> StrandFriction::friction_used() const {
 
 std::vector<StrandFriction::Touch> StrandFriction::touches() const {
   std::vector<Touch> all;
-  for (const Known& known : known_) {
+  for (const Known& known : known_.all) {
     if (known.second < 0) continue;
     all.push_back({strand_of(known.first), strand_of(known.second),
                    search_.arc(known.first, known.at.s),
@@ -423,7 +472,7 @@ std::vector<StrandFriction::Touch> StrandFriction::touches() const {
 
 std::vector<double> StrandFriction::memory() const {
   std::vector<double> all{deepest_};
-  for (const Known& known : known_) {
+  for (const Known& known : known_.all) {
     const Vec& f = known.world;
     for (const double x : {static_cast<double>(known.first),
                            static_cast<double>(known.second), f.x, f.y, f.z}) {
@@ -434,13 +483,14 @@ std::vector<double> StrandFriction::memory() const {
 }
 
 void StrandFriction::recall(In memory) {
-  known_.clear();
+  known_.all.clear();
   deepest_ = memory.empty() ? 0 : memory[0];
   for (std::size_t i = 1; i < memory.size(); i += 5) {
-    known_.push_back({{static_cast<int>(memory[i]), static_cast<int>(memory[i + 1]), {}},
-                      {},
-                      load3(&memory[i + 2]),
-                      {}});
+    known_.all.push_back(
+        {{static_cast<int>(memory[i]), static_cast<int>(memory[i + 1]), {}},
+         {},
+         load3(&memory[i + 2]),
+         {}});
   }
 }
 

@@ -92,7 +92,7 @@ class StrandFriction {
   std::vector<Touch> touches() const;
 
   /// Pairs of segments that touched in the step.
-  std::size_t contacts() const { return known_.size(); }
+  std::size_t contacts() const { return known_.all.size(); }
 
   /// How far strands that touched have been in each other at the ends of steps so far, m;
   /// more than the thickness if they have passed through each other.
@@ -110,6 +110,7 @@ class StrandFriction {
     Vec force;              // in the contact's axes, N
     Vec world;              // the same there
     Obstacle::Plane plane;  // of an obstacle
+    int contact = -1;       // of the problem; -1: none yet
 
     void start_from(const Vec& last, const Vec& normal);
   };
@@ -132,12 +133,22 @@ class StrandFriction {
     ContactProblem::Compliance compliance;
     std::vector<double> forces;  // on them, N
     int body = -1;               // of the problem
+    bool stale = false;          // it is touched at points that its body does not know
     bool moved = false;          // by other forces than before
   };
 
   std::size_t strand_of(int piece) const { return search_.strand_of(piece); }
   bool one_place(const Known& a, const Known& b) const;
-  std::vector<Known>::iterator seen(const Known& found, std::vector<Known>& all) const;
+  /// Contacts ordered by pair, and where those of each piece as the first one begin.
+  struct Ordered {
+    std::vector<Known> all;
+    std::vector<std::size_t> first;
+
+    void list(std::size_t pieces);
+    std::span<const Known> of(int piece) const;
+  };
+  const Known* seen(const Known& found, std::span<const Known> some) const;
+  bool is_known(const Known& found) const;
   const Known* last_of(int first, int second) const;
   void admit(const PieceSearch::Found& found);
   void look(const Obstacle::Step& step, std::size_t obstacle, std::size_t strand,
@@ -145,6 +156,7 @@ class StrandFriction {
   void find_on_obstacles(const Loop& loop);
   OnPoints on_points(const Known& known) const;
   void touch_points();
+  void set_contacts(const Loop& loop);
   void measure_depth();
   ContactProblem::Contact contact(const Known& known) const;
   void take_forces(Touched& strand);
@@ -155,9 +167,10 @@ class StrandFriction {
   double t_ = 0, h_ = 0;
   int rounds_ = 0;
   std::vector<double> u_;
-  std::vector<Known> known_;   // of this step, by pair
-  std::vector<Known> before_;  // of the last one
-  std::vector<Known> found_;   // by this search
+  Ordered known_;             // of this step
+  Ordered before_;            // of the last one
+  std::vector<Known> found_;  // by this search
+  std::size_t recent_ = 0;    // of found_: the first that may share a joint with the next
   std::vector<std::shared_ptr<const Obstacle>> obstacles_;
   std::vector<int> parts_;                        // of a piece, by obstacle
   std::vector<std::vector<Known>> on_obstacles_;  // of each strand, found last

@@ -27,6 +27,9 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
 
   std::size_t strands() const { return strands_.size(); }
   System& strand(std::size_t k) const { return *strands_[k]; }
+  /// Whether pull_back() and responses() are known, and of all strands cost little more
+  /// than of one.
+  virtual bool responds_at_once() const { return false; }
 
  protected:
   /// Number of coordinates before strand k.

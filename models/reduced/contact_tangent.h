@@ -98,38 +98,48 @@ class ContactTangent {
 };
 
 /// World forces on tips of segments, as unknowns and wrenches feel them. Point 0 is the
-/// root, point i + 1 the tip of segment i.
+/// root, point i + 1 the tip of segment i. Forces and unknowns are packs if the kernel's
+/// scalar is one.
 template <class Kernel, int modes>
 class TipForces {
  public:
   using S = Space<modes>;
-  static constexpr int dofs = Kinematics<Kernel, modes>::dofs;
-  using Wrenches = Eigen::Matrix<double, S::size, 3>;
+  using K = Kinematics<Kernel, modes>;
+  using Real = typename K::Real;
+  using In = typename K::In;
+  using Vec = typename K::Vec;
+  using Frame = typename K::Frame;
+  static constexpr int dofs = K::dofs;
+  using Wrenches = Eigen::Matrix<Real, S::size, 3>;
 
   /// At q, whose shape the kinematics has or takes.
-  TipForces(Kinematics<Kernel, modes>& kinematics, double t, In q)
+  TipForces(K& kinematics, double t, In q)
       : kinematics_(kinematics), frames_(kinematics.frames(t, q)) {}
 
   /// The wrenches of unit forces on a point along the axes of the world, in its frame.
   Wrenches units(int point) const {
     const Frame& f = frames_[static_cast<std::size_t>(point)];
-    const double* const axes[3] = {&f.e0.x, &f.e1.x, &f.e2.x};
+    const Vec* const axes[3] = {&f.e0, &f.e1, &f.e2};
     Wrenches all = Wrenches::Zero();
     for (int i = 0; i < S::translations; ++i) {
-      for (int d = 0; d < 3; ++d) all(i, d) = axes[S::translation[i]][d];
+      const Vec& axis = *axes[S::translation[i]];
+      all(i, 0) = axis.x;
+      all(i, 1) = axis.y;
+      all(i, 2) = axis.z;
     }
     return all;
   }
 
   /// b += J^T f of forces (3 numbers each, N) on ascending points of a chain.
-  void pull_back(std::span<const int> points, In forces, InOut b) const {
+  void pull_back(std::span<const int> points, In forces, std::span<Real> b) const {
     // In the components of the tip, or start, that the sweep is at.
     Vec force, moment;
     const auto take = [&](int point) {
       if (points.empty() || points.back() != point) return;
       points = points.first(points.size() - 1);
-      force = force + frames_[static_cast<std::size_t>(point)].back(
-                          load3(&forces[3 * points.size()]));
+      const Real* const f = &forces[3 * points.size()];
+      force =
+          force + frames_[static_cast<std::size_t>(point)].back(Vec{f[0], f[1], f[2]});
     };
     for (int i = kinematics_.count() - 1; i >= 0; --i) {
       take(i + 1);
@@ -147,14 +157,16 @@ class TipForces {
       moment = of.mount * moment;
     }
     take(0);
-    if (!kinematics_.free()) return;
-    std::array<double, 6> at_root;
-    kinematics_.free_root().residual(force, moment, at_root);
-    for (std::size_t k = 0; k < 6; ++k) b[b.size() - 6 + k] += at_root[k];
+    if constexpr (lanes<Real> == 1) {
+      if (!kinematics_.free()) return;
+      std::array<double, 6> at_root;
+      kinematics_.free_root().residual(force, moment, at_root);
+      for (std::size_t k = 0; k < 6; ++k) b[b.size() - 6 + k] += at_root[k];
+    }
   }
 
  private:
-  Kinematics<Kernel, modes>& kinematics_;
+  K& kinematics_;
   const std::vector<Frame>& frames_;
 };
 

@@ -185,8 +185,9 @@ class Kinematics {
   /// before.
   template <bool at_rest = false>
   const std::vector<Tip>& tips(double t, In q, In v) {
-    static_assert(may_be_free);
-    if (free_root_) free_root_->place(q.last(6));
+    if constexpr (may_be_free) {
+      if (free_root_) free_root_->place(q.last(6));
+    }
     if constexpr (collocated) shape(q);
     const FrameMotion root = root_motion(t, q, v, v);
     tips_.resize(segments_.size() + 1);
@@ -218,10 +219,9 @@ class Kinematics {
 
   /// Frames of the root and of the tips of all segments; calls shape().
   const std::vector<Frame>& frames(double t, In q) {
-    static_assert(may_be_free);
     shape(q);
     frames_.resize(segments_.size() + 1);
-    frames_[0] = free_root_ ? free_root_->frame() : root_motion(t, q, q, q).frame;
+    frames_[0] = root_frame(t, q);
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       const Segment& segment = segments_[i];
       const Frame& parent = frames_[static_cast<std::size_t>(segment.parent + 1)];
@@ -294,6 +294,12 @@ class Kinematics {
     return {Real(0), p[0], Real(0)};
   }
 
+  Frame root_frame(double t, In q) {
+    if constexpr (may_be_free) {
+      if (free_root_) return free_root_->frame();
+    }
+    return root_motion(t, q, q, q).frame;
+  }
   FrameMotion root_motion(double t, In q, In v, In a) {
     if constexpr (may_be_free) {
       if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));

@@ -80,7 +80,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   }
 
   bool respond(std::span<const Load> loads, Out blocks) noexcept override {
-    if constexpr (Shape::symmetric && method == TreeMethod::recursive && may_be_free) {
+    if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
       return respond_of_chain(loads, blocks);
     }
     return false;
@@ -168,9 +168,11 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     using Response = Eigen::Matrix<Real, states, wrench>;
     const TreeTangent<Shape>& tangent = *tangent_;
     Response omega = Response::Zero();
-    if (tangent.free_root) {
-      const Eigen::Matrix<Real, 6, wrench> y = root_.solve(tangent.root.lift);
-      omega = product(tangent.root.transfer, y);
+    if constexpr (may_be_free) {
+      if (tangent.free_root) {
+        const Eigen::Matrix<Real, 6, wrench> y = root_.solve(tangent.root.lift);
+        omega = product(tangent.root.transfer, y);
+      }
     }
     reached_.resize(loads.size());
     std::size_t met = 0;

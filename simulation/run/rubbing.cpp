@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "models/groom/strand_block.h"
 
 namespace tress::simulation {
 namespace {
@@ -57,27 +58,39 @@ Rubbing::Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
                  const Effects& effects)
     : friction_(rubs, searched(strands), obstacles(effects)) {}
 
-void Rubbing::add(std::span<System* const> strands, Integrator& method,
-                  const Options& options) {
+void Rubbing::add_responder(System& system, std::size_t strands, std::size_t coordinate,
+                            const Options& options) {
+  const auto points = static_cast<std::size_t>(system.material_points()->count());
+  const std::size_t group = groups_.size() - 1, number = responders_.size();
+  Responder& all = responders_.emplace_back();
+  all.system = &system;
+  all.response = std::make_unique<ImpulseResponse>(system, *groups_.back().method,
+                                                   options, coordinate);
+  all.group = group;
+  all.first = responder_of_.size();
+  all.strands = strands;
+  all.coordinate = coordinate;
+  all.points = points / strands;
+  all.v_before.resize(static_cast<std::size_t>(system.layout().coordinates));
+  all.placed.resize(3 * points);
+  responder_of_.insert(responder_of_.end(), strands, number);
+}
+
+void Rubbing::add(System& strands, Integrator& method, const Options& options) {
   Group& group = groups_.emplace_back();
   group.method = &method;
   group.impulsive = &impulsive(method);
-  group.first = strands_.size();
-  std::size_t first = 0;  // coordinate
-  for (System* const strand : strands) {
-    const auto points = static_cast<std::size_t>(strand->material_points()->count());
-    strands_.push_back(
-        {strand,
-         std::make_unique<ImpulseResponse>(*strand, method, options, first),
-         points,
-         groups_.size() - 1,
-         first,
-         {},
-         {},
-         {}});
-    strands_.back().v_before.resize(
-        static_cast<std::size_t>(strand->layout().coordinates));
-    first += strands_.back().v_before.size();
+  group.first = responder_of_.size();
+  const auto* const block = dynamic_cast<StrandBlock*>(&strands);
+  if (block == nullptr || block->responds_at_once()) {
+    add_responder(strands, block == nullptr ? 1 : block->strands(), 0, options);
+    return;
+  }
+  std::size_t coordinate = 0;
+  for (std::size_t k = 0; k < block->strands(); ++k) {
+    System& strand = block->strand(k);
+    add_responder(strand, 1, coordinate, options);
+    coordinate += static_cast<std::size_t>(strand.layout().coordinates);
   }
 }
 
@@ -89,40 +102,94 @@ void Rubbing::restart(In memory) {
 
 void Rubbing::before_step(In x) {
   x_before_.assign(x.begin(), x.end());
-  for (Rubbed& strand : strands_) {
-    const In v = groups_[strand.group].method->v();
-    std::ranges::copy(v.subspan(strand.first, strand.v_before.size()),
-                      strand.v_before.begin());
-    strand.prepared = false;
+  for (Responder& responder : responders_) {
+    const In v = groups_[responder.group].method->v();
+    std::ranges::copy(v.subspan(responder.coordinate, responder.v_before.size()),
+                      responder.v_before.begin());
+    responder.prepared = false;
   }
 }
 
-Status Rubbing::each(std::span<const std::size_t> strands, double t, const Loop& loop,
-                     const std::function<Status(Rubbed&, std::size_t)>& act) {
-  loop(strands.size(), [&](std::size_t i) {
-    Rubbed& strand = strands_[strands[i]];
-    strand.status = act(strand, strands[i]);
+/// What responds of these strands, ascending, and which they are.
+Status Rubbing::each(Some strands, double t, const Loop& loop,
+                     const std::function<Status(Responder&, Some)>& act) {
+  std::vector<Some> of_responders;
+  for (std::size_t from = 0, to = 0; from < strands.size(); from = to) {
+    while (to < strands.size() &&
+           responder_of_[strands[to]] == responder_of_[strands[from]]) {
+      ++to;
+    }
+    of_responders.push_back(strands.subspan(from, to - from));
+  }
+  const auto of = [this](Some some) -> Responder& {
+    return responders_[responder_of_[some.front()]];
+  };
+  loop(of_responders.size(), [&](std::size_t i) {
+    Responder& responder = of(of_responders[i]);
+    responder.status = act(responder, of_responders[i]);
   });
-  for (const std::size_t k : strands) {
-    if (strands_[k].status == Status::ok) continue;
-    failure_ = no_response(k, t);
-    return strands_[k].status;
+  for (const Some some : of_responders) {
+    if (of(some).status == Status::ok) continue;
+    failure_ = no_response(some.front(), t);
+    return of(some).status;
   }
   return Status::ok;
+}
+
+Status Rubbing::give_compliance(Responder& responder, Some strands, double h) {
+  if (!std::exchange(responder.prepared, true)) {
+    const Status done = responder.response->prepare(h, responder.v_before);
+    if (done != Status::ok) return done;
+  }
+  for (const std::size_t k : strands) {
+    const auto first = static_cast<int>((k - responder.first) * responder.points);
+    responder.touched = friction_.points_of(k);
+    for (int& point : responder.touched) point += first;
+    const Status done =
+        responder.response->compliance(responder.touched, responder.blocks);
+    if (done != Status::ok) return done;
+    friction_.respond(k, responder.blocks);
+  }
+  return Status::ok;
+}
+
+/// To the forces on all its strands; only those that have moved are placed.
+Status Rubbing::respond(Responder& responder, Some moved, double t) {
+  responder.touched.clear();
+  responder.forces.clear();
+  for (std::size_t k = 0; k < responder.strands; ++k) {
+    const In forces = friction_.forces(responder.first + k);
+    if (forces.empty()) continue;
+    for (const int point : friction_.points_of(responder.first + k)) {
+      responder.touched.push_back(static_cast<int>(k * responder.points) + point);
+    }
+    responder.forces.insert(responder.forces.end(), forces.begin(), forces.end());
+  }
+  const Status done = responder.response->respond(responder.touched, responder.forces);
+  responder.system->material_points()->positions(t, responder.response->q(),
+                                                 responder.placed);
+  const std::size_t numbers = 3 * responder.points;
+  for (const std::size_t k : moved) {
+    friction_.place(
+        k, In(responder.placed).subspan((k - responder.first) * numbers, numbers));
+  }
+  return done;
 }
 
 /// Methods of strands that others touched, from the states that these have left.
 Status Rubbing::go_on(double t, const Loop& loop) {
   for (const std::size_t k : friction_.touching()) {
-    const Rubbed& strand = strands_[k];
-    Group& group = groups_[strand.group];
+    const Responder& responder = responders_[responder_of_[k]];
+    Group& group = groups_[responder.group];
     if (!std::exchange(group.touched, true)) {
       group.q.assign(group.method->q().begin(), group.method->q().end());
       group.v.assign(group.method->v().begin(), group.method->v().end());
     }
-    const auto first = static_cast<std::ptrdiff_t>(strand.first);
-    std::ranges::copy(strand.response->q(), group.q.begin() + first);
-    std::ranges::copy(strand.response->v(), group.v.begin() + first);
+    const std::size_t n = responder.v_before.size() / responder.strands,
+                      first = (k - responder.first) * n;
+    const auto to = static_cast<std::ptrdiff_t>(responder.coordinate + first);
+    std::ranges::copy(responder.response->q().subspan(first, n), group.q.begin() + to);
+    std::ranges::copy(responder.response->v().subspan(first, n), group.v.begin() + to);
   }
   loop(groups_.size(), [&](std::size_t g) {
     Group& group = groups_[g];
@@ -142,28 +209,14 @@ Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
   friction_.begin(t, h, x_before_, x, u);
   while (friction_.find(loop)) {
     const Status known =
-        each(friction_.stale(), t, loop, [&](Rubbed& strand, std::size_t k) {
-          Status done = Status::ok;
-          if (!std::exchange(strand.prepared, true)) {
-            done = strand.response->prepare(h, strand.v_before);
-          }
-          if (done == Status::ok) {
-            done = strand.response->compliance(friction_.points_of(k), strand.blocks);
-          }
-          friction_.respond(k, strand.blocks);
-          return done;
+        each(friction_.stale(), t, loop, [&](Responder& responder, Some strands) {
+          return give_compliance(responder, strands, h);
         });
     if (known != Status::ok) return known;
     friction_.solve(loop);
     const Status moved =
-        each(friction_.moved(), t, loop, [&](Rubbed& strand, std::size_t k) {
-          const Status done =
-              strand.response->respond(friction_.points_of(k), friction_.forces(k));
-          strand.placed.resize(3 * strand.points);
-          strand.system->material_points()->positions(t, strand.response->q(),
-                                                      strand.placed);
-          friction_.place(k, strand.placed);
-          return done;
+        each(friction_.moved(), t, loop, [&](Responder& responder, Some strands) {
+          return respond(responder, strands, t);
         });
     if (moved != Status::ok) return moved;
   }

@@ -11,7 +11,7 @@
 
 namespace tress::simulation {
 
-/// Strands that touch exactly, each or a few advanced by a method of their own: they move
+/// Strands that touch exactly, each or some advanced by a method of their own: they move
 /// as if they were alone, then impulses at the end of the step keep them from passing
 /// through each other and through obstacles (StrandFriction). A step: before_step(), all
 /// methods advance by h, after_step().
@@ -20,9 +20,10 @@ class Rubbing {
   /// Obstacles are found among the effects. Throws InputError on strands with branches.
   Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
           const Effects& effects);
-  /// The next strands, each as a system of its own, and the method that steps them, which
-  /// must outlive this. Throws InputError if it cannot go on after impulses.
-  void add(std::span<System* const> strands, Integrator& method, const Options& options);
+  /// The next strands, one or several as one system (StrandBlock), and the method that
+  /// steps them; both must outlive this. Throws InputError if the method cannot go on
+  /// after impulses.
+  void add(System& strands, Integrator& method, const Options& options);
 
   /// x: all points, 3 numbers each, strand after strand.
   void before_step(In x);
@@ -38,11 +39,15 @@ class Rubbing {
   void restart(In memory);
 
  private:
-  struct Rubbed {
+  /// Strands that respond to forces at once: one, or those of a block that can.
+  struct Responder {
     System* system;
     std::unique_ptr<ImpulseResponse> response;
-    std::size_t points, group, first;  // first: coordinate, of those of its group
-    std::vector<double> v_before, blocks, placed;
+    std::size_t group, first, strands;  // first: strand
+    std::size_t coordinate;             // the first one, of those of its group
+    std::size_t points;                 // of each strand
+    std::vector<double> v_before, blocks, forces, placed;
+    std::vector<int> touched;
     bool prepared = false;  // its matrix is that of this step
     Status status = Status::ok;
   };
@@ -55,12 +60,18 @@ class Rubbing {
     bool touched = false;
     Status status = Status::ok;
   };
-  Status each(std::span<const std::size_t> strands, double t, const Loop& loop,
-              const std::function<Status(Rubbed&, std::size_t)>& act);
+  using Some = std::span<const std::size_t>;  // strands
+  void add_responder(System& system, std::size_t strands, std::size_t coordinate,
+                     const Options& options);
+  Status each(Some strands, double t, const Loop& loop,
+              const std::function<Status(Responder&, Some)>& act);
+  Status give_compliance(Responder& responder, Some strands, double h);
+  Status respond(Responder& responder, Some moved, double t);
   Status go_on(double t, const Loop& loop);
 
   StrandFriction friction_;
-  std::vector<Rubbed> strands_;
+  std::vector<Responder> responders_;
+  std::vector<std::size_t> responder_of_;  // strand
   std::vector<Group> groups_;
   std::vector<double> x_before_;
   Stats stats_;

@@ -9,7 +9,6 @@
 #include "contract/natural_strains.h"
 #include "integrators/catalogue.h"
 #include "math/pack.h"
-#include "models/groom/strand_block.h"
 #include "simulation/run/memory.h"
 #include "simulation/run/world.h"
 
@@ -41,15 +40,6 @@ Effects metered(const Effects& effects,
     meters.push_back(std::make_shared<Metered>(effect));
     all.push_back(meters.back());
   }
-  return all;
-}
-
-/// The systems of its strands, or itself.
-std::vector<System*> strands_of(System& system) {
-  const auto* const block = dynamic_cast<StrandBlock*>(&system);
-  if (block == nullptr) return {&system};
-  std::vector<System*> all;
-  for (std::size_t k = 0; k < block->strands(); ++k) all.push_back(&block->strand(k));
   return all;
 }
 
@@ -237,9 +227,7 @@ void World::ready(const Scene& scene) {
   for (Body& body : bodies_) {
     body.integrator = make_integrator(scene.integrator, *body.system, scene.options);
     body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
-    if (rubbing_) {
-      rubbing_->add(strands_of(*body.system), *body.integrator, scene.options);
-    }
+    if (rubbing_) rubbing_->add(*body.system, *body.integrator, scene.options);
     const Snapshot::OfStrand all = initial_state_of(*body.system);
     begin.add(all.q, all.v, all.memory, body.coordinates, body.memory);
   }

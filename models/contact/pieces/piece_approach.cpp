@@ -68,19 +68,19 @@ PieceMotion::PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1,
       turned(0.5 * norm(to1 - from1 - (to0 - from0))) {}
 
 void least_approaches(std::span<const PieceMotion> motion,
-                      std::span<const std::pair<int, int>> pairs, std::span<double> to) {
+                      std::span<BoxPairs::Pair> pairs) {
   for (std::size_t at = 0; at < pairs.size(); at += four) {
     const std::size_t count = std::min(four, pairs.size() - at);
     const PieceMotion *first[four], *second[four];
     for (std::size_t lane = 0; lane < four; ++lane) {
       // Lanes beyond the last pair repeat it.
-      const auto& [one, other] = pairs[at + std::min(lane, count - 1)];
-      first[lane] = &motion[static_cast<std::size_t>(one)];
-      second[lane] = &motion[static_cast<std::size_t>(other)];
+      const BoxPairs::Pair& pair = pairs[at + std::min(lane, count - 1)];
+      first[lane] = &motion[static_cast<std::size_t>(pair.first)];
+      second[lane] = &motion[static_cast<std::size_t>(pair.second)];
     }
     const Pack least = least_approach(motions(first), motions(second));
     for (std::size_t lane = 0; lane < count; ++lane) {
-      to[at + lane] = least[static_cast<int>(lane)];
+      pairs[at + lane].distance = least[static_cast<int>(lane)];
     }
   }
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <utility>
 
 #include "math/vec3.h"
+#include "models/contact/box_pairs.h"
 
 namespace tress::models {
 
@@ -17,10 +17,10 @@ struct PieceMotion {
   double turned = 0;        // m
 };
 
-/// Sets to[i] to a distance (m) that the two pieces of pairs[i] keep at least during the
-/// step: that at half of it, less how far they move relative to each other until its
-/// ends. NaN if one is not finite. By lanes, about 10 ns a pair.
+/// Tells the distance (m) that the two pieces of each pair keep at least during the step:
+/// that at half of it, less how far they move relative to each other until its ends. NaN
+/// if one is not finite. By lanes, about 10 ns a pair.
 void least_approaches(std::span<const PieceMotion> motion,
-                      std::span<const std::pair<int, int>> pairs, std::span<double> to);
+                      std::span<BoxPairs::Pair> pairs);
 
 }  // namespace tress::models

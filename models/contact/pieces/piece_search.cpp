@@ -31,6 +31,8 @@ constexpr std::size_t most_one_by_one = 100;
 
 constexpr std::size_t group = 256;  // of pairs that one thread takes at a time
 
+constexpr double rounding = 1e-9;  // far above that of distances, relative to them
+
 constexpr auto pair_of = [](const PieceSearch::Found& found) {
   return std::pair(found.first, found.second);
 };
@@ -47,8 +49,8 @@ PieceSearch::PieceSearch(std::span<const Strand> strands, double thickness, bool
     if (!(thickness > 0)) widest_ = std::max(widest_, 2 * strands[k].radius);
   }
   room_ = more_room * widest_;
-  boxes_.resize(strand_.size());
   motion_.resize(strand_.size());
+  ends_.resize(strand_.size());
   roomy_.resize(strand_.size());
   arc_.resize(first_.back());
 }
@@ -75,6 +77,15 @@ void PieceSearch::place(std::size_t strand, In x) {
   for (std::size_t i = 0; i < x.size(); i += 3) {
     const Vec moved = load3(&x[i]) - load3(&looked_[first + i]);
     if (dot(moved, moved) > far * far) moved_[strand] = 1;
+  }
+  if (gathered_.empty()) return;
+  for (std::size_t i = 0; i + 3 < x.size(); i += 3) {
+    const std::size_t number = first_[strand] - strand + i / 3;
+    Gathered& piece = gathered_[number];
+    const Vec x0 = load3(&x[i]), x1 = load3(&x[i + 3]);
+    ends_[number] = {x0, x0, x1, x1};
+    const Vec one = x0 - piece.ends[0], other = x1 - piece.ends[1];
+    piece.moved = std::sqrt(std::max(dot(one, one), dot(other, other)));
   }
 }
 
@@ -120,22 +131,6 @@ MovingPieces PieceSearch::moving(int first, int second) const {
   return all;
 }
 
-/// Those that have moved since they were looked at.
-void PieceSearch::place_pieces(const Loop& loop) {
-  loop(moved_.size(), [&](std::size_t k) {
-    if (moved_[k] == 0) return;
-    for (std::size_t i = first_[k] - k; i + k + 1 < first_[k + 1]; ++i) {
-      const std::size_t at = 3 * (i + k);
-      const Vec from0 = load3(&from_[at]), from1 = load3(&from_[at + 3]),
-                to0 = load3(&now_[at]), to1 = load3(&now_[at + 3]);
-      Box box{from0, from0};
-      for (const Vec& x : {from1, to0, to1}) box.include(x);
-      boxes_[i] = box;
-      motion_[i] = {from0, to0, from1, to1};
-    }
-  });
-}
-
 /// Takes away pairs that do not touch in the step, wherever forces move both within their
 /// room, and those that are not looked for.
 void PieceSearch::sift(std::vector<BoxPairs::Pair>& pairs) const {
@@ -143,66 +138,98 @@ void PieceSearch::sift(std::vector<BoxPairs::Pair>& pairs) const {
     return strand_of(pair.first) == strand_of(pair.second) &&
            (!own_ || pair.second - pair.first < 2);
   });
-  std::vector<double> least(pairs.size());
-  least_approaches(motion_, pairs, least);
+  least_approaches(motion_, pairs);
   const double reach = (1 + stays) * widest_ + 2 * room_;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[kept] = pairs[i];
-    kept += least[i] <= reach ? 1 : 0;
+  for (const BoxPairs::Pair& pair : pairs) {  // without a branch
+    pairs[kept] = pair;
+    kept += pair.distance <= reach ? 1 : 0;
   }
   pairs.resize(kept);
 }
 
-/// The box of the step with what may touch it, and room.
-void PieceSearch::make_room(std::size_t piece) {
-  roomy_[piece] = boxes_[piece];
-  roomy_[piece].grow(0.5 * (1 + stays) * widest_ + room_);
+void PieceSearch::gather_piece(std::size_t piece) {
+  const std::size_t at = 3 * point_of(static_cast<int>(piece));
+  const Vec from0 = load3(&from_[at]), from1 = load3(&from_[at + 3]),
+            to0 = load3(&now_[at]), to1 = load3(&now_[at + 3]);
+  gathered_[piece] = {{to0, to1}};
+  motion_[piece] = {from0, to0, from1, to1};
+  ends_[piece] = {to0, to0, to1, to1};
+  Box& box = roomy_[piece];
+  box = {from0, from0};
+  for (const Vec& x : {from1, to0, to1}) box.include(x);
+  box.grow(0.5 * (1 + stays) * widest_ + room_);
 }
 
 void PieceSearch::gather(const Loop& loop) {
-  gathered_ = now_;
-  for (std::size_t i = 0; i < roomy_.size(); ++i) make_room(i);
+  gathered_.resize(pieces());
+  loop((pieces() + group - 1) / group, [&](std::size_t g) {
+    const std::size_t end = std::min(pieces(), (g + 1) * group);
+    for (std::size_t i = g * group; i < end; ++i) gather_piece(i);
+  });
   near_ = broad_.find(roomy_, loop,
                       [this](std::vector<BoxPairs::Pair>& pairs) { sift(pairs); });
 }
 
 /// Gathers pairs of those pieces again that forces have moved beyond their room.
 void PieceSearch::gather_moved(const Loop& loop) {
-  std::vector<std::size_t> beyond;
-  for (std::size_t i = 0; i < roomy_.size(); ++i) {
-    const std::size_t first = point_of(static_cast<int>(i));
-    for (const std::size_t k : {first, first + 1}) {
-      const Vec moved = load3(&now_[3 * k]) - load3(&gathered_[3 * k]);
-      if (dot(moved, moved) <= room_ * room_) continue;
-      beyond.push_back(i);
-      break;
-    }
+  const auto beyond = [this](int piece) {
+    return gathered_[static_cast<std::size_t>(piece)].moved > room_;
+  };
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(pieces()); ++i) {
+    if (beyond(i)) all.push_back(i);
   }
-  if (beyond.empty()) return;
-  if (beyond.size() > most_one_by_one) return gather(loop);
-  for (const std::size_t i : beyond) make_room(i);
+  if (all.empty()) return;
+  if (all.size() > most_one_by_one) return gather(loop);
+  std::erase_if(near_, [&](const BoxPairs::Pair& pair) {
+    return beyond(pair.first) || beyond(pair.second);
+  });
+  for (const int i : all) gather_piece(static_cast<std::size_t>(i));
   std::vector<BoxPairs::Pair> again;
-  for (const std::size_t i : beyond) {
-    const std::size_t at = 3 * point_of(static_cast<int>(i));
-    std::copy_n(&now_[at], 6, &gathered_[at]);
-    for (std::size_t k = 0; k < roomy_.size(); ++k) {
-      if (k == i || apart(roomy_[i], roomy_[k])) continue;
-      again.emplace_back(static_cast<int>(std::min(i, k)),
-                         static_cast<int>(std::max(i, k)));
+  for (const int i : all) {
+    const Box& box = roomy_[static_cast<std::size_t>(i)];
+    for (int k = 0; k < static_cast<int>(pieces()); ++k) {
+      if (k == i || apart(box, roomy_[static_cast<std::size_t>(k)])) continue;
+      // Of two that are gathered again the first one has the pair.
+      if (k < i && std::ranges::binary_search(all, k)) continue;
+      again.push_back({std::min(i, k), std::max(i, k)});
     }
   }
   sift(again);
   near_.insert(near_.end(), again.begin(), again.end());
 }
 
-/// `least`: how far they are apart at least.
-bool PieceSearch::look(int first, int second, double least,
-                       const std::function<bool(int, int)>& wider, Found& found) const {
+/// Pieces that keep a distance during the step do not pass through each other, and touch
+/// if they do at its end.
+void PieceSearch::look(std::span<const BoxPairs::Pair> pairs,
+                       const std::function<bool(int, int)>& wider,
+                       std::vector<Found>& found) const {
+  std::array<BoxPairs::Pair, group> during, at_end;
+  std::size_t count = 0;
+  for (const auto& [first, second, distance] : pairs) {
+    if (moved_[strand_of(first)] == 0 && moved_[strand_of(second)] == 0) continue;
+    const double thick = thickness(first, second);
+    const double away = distance - gathered_[static_cast<std::size_t>(first)].moved -
+                        gathered_[static_cast<std::size_t>(second)].moved;
+    if (!(away <= (1 + stays) * thick)) continue;
+    if (!(away <= thick) && !wider(first, second)) continue;
+    at_end[count] = during[count] = {first, second, away};
+    ++count;
+  }
+  least_approaches(ends_, std::span(at_end).first(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [first, second, away] = during[i];
+    const double far = (1 + stays) * thickness(first, second);
+    if (away > 0 && at_end[i].distance > (1 + rounding) * far) continue;
+    Found seen{};
+    if (look(first, second, wider, seen)) found.push_back(seen);
+  }
+}
+
+bool PieceSearch::look(int first, int second, const std::function<bool(int, int)>& wider,
+                       Found& found) const {
   const double thick = thickness(first, second), far = (1 + stays) * thick;
-  // A strand that is still has moved a little since its motion was taken.
-  const double away = least - still * widest_;
-  if (!(away <= far) || (!(away <= thick) && !wider(first, second))) return false;
   const MovingPieces pieces = moving(first, second);
   std::optional<PieceTouch> at = touch(pieces, far);
   if (!at) return false;
@@ -224,41 +251,24 @@ bool PieceSearch::look(int first, int second, double least,
 
 const std::vector<PieceSearch::Found>& PieceSearch::find(
     const Loop& loop, const std::function<bool(int, int)>& wider) {
-  place_pieces(loop);
   gathered_.empty() ? gather(loop) : gather_moved(loop);
   found_of_.resize((near_.size() + group - 1) / group);
   loop(found_of_.size(), [&](std::size_t g) {
     found_of_[g].clear();
-    std::array<BoxPairs::Pair, group> pairs;
-    std::array<double, group> least;
-    std::size_t count = 0;
-    for (std::size_t i = g * group; i < std::min(near_.size(), (g + 1) * group); ++i) {
-      const auto [first, second] = pairs[count] = near_[i];
-      count += moved_[strand_of(first)] != 0 || moved_[strand_of(second)] != 0 ? 1 : 0;
-    }
-    least_approaches(motion_, std::span(pairs).first(count), least);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [first, second] = pairs[i];
-      Found found{};
-      if (look(first, second, least[i], wider, found)) found_of_[g].push_back(found);
-    }
+    const std::size_t first = g * group, last = std::min(near_.size(), first + group);
+    look(std::span(near_).subspan(first, last - first), wider, found_of_[g]);
   });
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    if (std::exchange(moved_[k], 0) == 0) continue;
+  loop(moved_.size(), [&](std::size_t k) {
+    if (std::exchange(moved_[k], 0) == 0) return;
     const auto first = static_cast<std::ptrdiff_t>(3 * first_[k]);
     const auto last = static_cast<std::ptrdiff_t>(3 * first_[k + 1]);
     std::copy(now_.begin() + first, now_.begin() + last, looked_.begin() + first);
-  }
+  });
   found_.clear();
   for (const std::vector<Found>& some : found_of_) {
     found_.insert(found_.end(), some.begin(), some.end());
   }
-  // A pair gathered again is there twice.
   std::ranges::sort(found_, {}, pair_of);
-  const auto same = [](const Found& a, const Found& b) {
-    return pair_of(a) == pair_of(b);
-  };
-  found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
   return found_;
 }
 

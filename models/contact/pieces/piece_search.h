@@ -16,7 +16,7 @@ namespace tress::models {
 /// Which straight pieces of many polylines ("strands") touch or would pass through each
 /// other while their points move straight on during a step. Pairs that may touch are
 /// gathered once a step, with room for points to be moved by contact forces, and looked
-/// at again where these have moved them.
+/// at again where these may have moved them so near that they touch.
 ///
 /// Use: begin(), then find(), and place() and find() again while forces are sought.
 class PieceSearch {
@@ -82,13 +82,14 @@ class PieceSearch {
 
  private:
   MovingPieces moving(int first, int second) const;
-  void place_pieces(const Loop& loop);
-  void make_room(std::size_t piece);
+  void gather_piece(std::size_t piece);
   void gather(const Loop& loop);
   void gather_moved(const Loop& loop);
   void sift(std::vector<BoxPairs::Pair>& pairs) const;
-  bool look(int first, int second, double least,
-            const std::function<bool(int, int)>& wider, Found& found) const;
+  void look(std::span<const BoxPairs::Pair> pairs,
+            const std::function<bool(int, int)>& wider, std::vector<Found>& found) const;
+  bool look(int first, int second, const std::function<bool(int, int)>& wider,
+            Found& found) const;
 
   bool own_;
   double thickness_;
@@ -97,13 +98,19 @@ class PieceSearch {
   std::vector<std::size_t> first_;   // points of strands, and the number of all
   std::vector<std::size_t> strand_;  // of pieces
   std::vector<double> from_, to_, now_;
-  std::vector<double> arc_;          // of points, m
-  std::vector<PieceMotion> motion_;  // of pieces during the step
-  std::vector<Box> boxes_;           // the same
-  std::vector<Box> roomy_;           // with room
+  std::vector<double> arc_;  // of points, m
+  // Of pieces when their pairs were gathered: ends after the step, motion during it, and
+  // what it sweeps, with room.
+  struct Gathered {
+    std::array<Vec, 2> ends;
+    double moved = 0;  // how far an end has been moved since, m
+  };
+  std::vector<Gathered> gathered_;  // empty: not gathered in this step
+  std::vector<PieceMotion> motion_;
+  std::vector<PieceMotion> ends_;  // at the end of the step, with the forces, at rest
+  std::vector<Box> roomy_;
   BoxPairs broad_;
-  std::vector<BoxPairs::Pair> near_;  // may touch while points are up to room_ from
-  std::vector<double> gathered_;      // here; empty: not gathered in this step
+  std::vector<BoxPairs::Pair> near_;  // may touch while ends are moved up to room_
   double room_;                       // m
   std::vector<double> looked_;        // points when pairs were looked at last, m
   std::vector<char> moved_;           // strands since then

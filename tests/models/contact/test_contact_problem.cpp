@@ -215,6 +215,80 @@ TEST(ContactProblem, GoesOnFromForcesThatAreRight) {
   EXPECT_EQ(again.solve(1e-2, 1e-9, 2000).sweeps, 0);
 }
 
+/// Contacts that are added to a solved problem, some of them at points that their bodies
+/// did not have: the forces are those of all at once, which are unique here, and what
+/// they do to velocities is theirs alone.
+TEST(ContactProblem, GoesOnWithMoreContactsAtMorePoints) {
+  constexpr int points = 5, known = 3, contacts = 8;
+  double renewed_forces = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomContacts all = random_contacts(4, points, 40, contacts, seed);
+    // The first half touches the first points of bodies 0 to 2; the rest anything.
+    for (int c = 0; c < contacts / 2; ++c) {
+      for (int end = 0; end < 4; ++end) {
+        auto& at =
+            all.contacts[static_cast<std::size_t>(c)].ends[static_cast<std::size_t>(end)];
+        at.body = (c + end / 2) % 3;
+        at.point %= known;
+      }
+    }
+    ContactProblem at_once = all.problem();
+    ASSERT_LE(at_once.solve(1e-2, 1e-12, 5000).violation, 1e-12);
+
+    std::vector<ContactProblem::Compliance> responses;
+    responses.reserve(4);
+    ContactProblem problem;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<Mat3> first;
+      for (std::size_t of = 0; of < known; ++of) {
+        for (std::size_t on = 0; on < known; ++on) {
+          first.push_back(all.bodies[k].compliance[points * of + on]);
+        }
+      }
+      // Body 2 is touched at all points from the start.
+      responses.push_back(k == 2 ? all.bodies[k].response : compliance_of(first));
+      problem.add_body(responses.back());
+    }
+    const auto given = [&](int c) {
+      auto contact = all.contacts[static_cast<std::size_t>(c)];
+      contact.friction = 0.3;
+      return contact;
+    };
+    for (int c = 0; c < contacts / 2; ++c) problem.add(given(c));
+    ASSERT_LE(problem.solve(1e-2, 1e-12, 5000).violation, 1e-12);
+    for (std::size_t k = 0; k < 2; ++k) {
+      responses[k] = all.bodies[k].response;
+      problem.renew_body(static_cast<int>(k));
+      for (const Vec& force : problem.forces(k)) renewed_forces += norm(force);
+    }
+    responses.push_back(all.bodies[3].response);
+    problem.add_body(responses[3]);
+    for (int c = 0; c < contacts / 2; ++c) {
+      problem.set(static_cast<std::size_t>(c), given(c));  // all are on renewed bodies
+    }
+    for (int c = contacts / 2; c < contacts; ++c) problem.add(given(c));
+    EXPECT_LE(problem.solve(1e-2, 1e-12, 5000).violation, 1e-12) << seed;
+    for (std::size_t c = 0; c < contacts; ++c) {
+      const auto& contact = problem.contacts()[c];
+      EXPECT_LE(
+          contact_violation(contact.local, problem.velocity(contact), contact.force, 0.3),
+          1e-12);
+      EXPECT_LE(norm(contact.force - at_once.contacts()[c].force), 1e-9) << seed;
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t p = 0; p < points; ++p) {
+        Vec expected;
+        for (std::size_t of = 0; of < points; ++of) {
+          expected = expected +
+                     all.bodies[k].compliance[points * of + p] * problem.forces(k)[of];
+        }
+        EXPECT_LE(norm(problem.change(k, p) - expected), 1e-11 * (1 + norm(expected)));
+      }
+    }
+  }
+  EXPECT_EQ(renewed_forces, 0) << "they hold none until the next solution";
+}
+
 TEST(ContactProblem, OfManyContactsDoesNotDependOnWhoVisitsItsParts) {
   constexpr int bodies = 500, contacts = 2500;  // enough for several parts
   RandomContacts all = random_contacts(bodies, 4, 12, contacts, 5);

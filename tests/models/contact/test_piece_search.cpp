@@ -34,6 +34,13 @@ Box random_box(std::mt19937& random, double size) {
   return {at, at + size * Vec{std::abs(side.x), std::abs(side.y), std::abs(side.z)}};
 }
 
+template <class Found>
+std::vector<std::pair<int, int>> pairs_of(const std::vector<Found>& found) {
+  std::vector<std::pair<int, int>> all;
+  for (const Found& f : found) all.emplace_back(f.first, f.second);
+  return all;
+}
+
 TEST(BoxPairs, AreAllThatOverlapOnceEach) {
   std::mt19937 random(1);
   BoxPairs broad;
@@ -46,7 +53,7 @@ TEST(BoxPairs, AreAllThatOverlapOnceEach) {
     boxes[7].most.x = std::numeric_limits<double>::quiet_NaN();
     boxes[8].most.x = std::numeric_limits<double>::infinity();
     boxes[9] = {{1e300, 0, 0}, {1e300, 1, 1}};
-    std::vector<BoxPairs::Pair> all;
+    std::vector<std::pair<int, int>> all;
     for (int i = 0; i < 301; ++i) {
       for (int j = i + 1; j < 301; ++j) {
         if (i == 7 || i == 8 || j == 7 || j == 8) continue;
@@ -60,8 +67,9 @@ TEST(BoxPairs, AreAllThatOverlapOnceEach) {
         return (pair.first + pair.second) % 5 == 0;
       });
     };
-    std::vector<BoxPairs::Pair> found = broad.find(boxes, in_order, sift);
-    EXPECT_EQ(broad.find(boxes, backwards_on_threads, sift), found) << "same order";
+    auto found = pairs_of(broad.find(boxes, in_order, sift));
+    EXPECT_EQ(pairs_of(broad.find(boxes, backwards_on_threads, sift)), found)
+        << "same order";
     std::ranges::sort(found);
     EXPECT_EQ(found, all) << size;
     some += all.size();
@@ -113,12 +121,6 @@ std::vector<std::pair<int, int>> touching(const PieceSearch& search, const Tangl
       if (!bend) all.emplace_back(i, j);
     }
   }
-  return all;
-}
-
-std::vector<std::pair<int, int>> pairs_of(std::span<const PieceSearch::Found> found) {
-  std::vector<std::pair<int, int>> all;
-  for (const auto& f : found) all.emplace_back(f.first, f.second);
   return all;
 }
 

@@ -119,22 +119,21 @@ TEST(LeastApproaches, AreNoFartherThanPiecesComeInTheStep) {
       ends.push_back({x, y, x + by, y + other});
       motion.emplace_back(x, x + by, y, y + other);
     }
-    std::vector<std::pair<int, int>> pairs;
-    for (int k = 0; k < 1 + i % 7; ++k) pairs.emplace_back(k % 3, 3 + (k + i) % 3);
-    std::vector<double> least(pairs.size());
-    least_approaches(motion, pairs, least);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const auto& a = ends[static_cast<std::size_t>(pairs[k].first)];
-      const auto& b = ends[static_cast<std::size_t>(pairs[k].second)];
+    std::vector<BoxPairs::Pair> pairs;
+    for (int k = 0; k < 1 + i % 7; ++k) pairs.push_back({k % 3, 3 + (k + i) % 3});
+    least_approaches(motion, pairs);
+    for (const auto& [first, second, least] : pairs) {
+      const auto& a = ends[static_cast<std::size_t>(first)];
+      const auto& b = ends[static_cast<std::size_t>(second)];
       for (const double part : {0.0, 0.2, 0.5, 0.9, 1.0}) {
         const auto at = [part](const Vec& from, const Vec& to) {
           return (1 - part) * from + part * to;
         };
         const double now =
             distance({at(a[0], a[2]), at(a[1], a[3]), at(b[0], b[2]), at(b[1], b[3])});
-        EXPECT_LE(least[k], now + 1e-12) << i;
+        EXPECT_LE(least, now + 1e-12) << i;
         if (!moves) {
-          EXPECT_NEAR(least[k], now, 1e-12) << i;
+          EXPECT_NEAR(least, now, 1e-12) << i;
         }
       }
     }

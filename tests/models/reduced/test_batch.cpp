@@ -2,6 +2,7 @@
 
 #include "integrators/catalogue.h"
 #include "models/clothoid/super_clothoid.h"
+#include "models/groom/strand_block.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/force_transport.h"
 #include "models/reduced/super_helix.h"
@@ -127,6 +128,56 @@ TEST_P(Batch, TrajectoryIsThatOfTheStrands) {
         EXPECT_GT(apart(want, from), 1e-3 * q_typ[0]);
       },
       s.q, s.q_typ, end);
+}
+
+// Points of all strands but the first at once: a strand's own blocks are those of the
+// strand alone, and no strand feels another one's forces.
+TEST_P(Batch, RespondsToForcesOnPointsAsTheStrandsDo) {
+  States s(*batch);
+  s.shake(1);
+  std::vector<double> zero(s.n);
+  ASSERT_EQ(batch->linearize(t0, s.q, s.v, zero, backward_euler), Status::ok);
+  MaterialPoints& points = *batch->material_points();
+  const std::vector<int> own{1, 2, 4, segments};
+  std::vector<int> all;
+  for (int strand = alone.size() > 1 ? 1 : 0; strand < GetParam().strands; ++strand) {
+    for (const int point : own) all.push_back(strand * (segments + 1) + point);
+  }
+  std::vector<double> blocks(9 * all.size() * all.size()), f(3 * all.size());
+  const bool known = dynamic_cast<StrandBlock&>(*batch).responds_at_once();
+  EXPECT_EQ(known, GetParam().batch != force_transport_batch);
+  ASSERT_EQ(points.responses(t0, s.q, all, blocks), known);
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] = std::sin(1 + static_cast<double>(i));
+  std::vector<double> pulled(s.n);
+  ASSERT_EQ(points.pull_back(t0, s.q, all, f, pulled), known);
+  if (!known) return;
+  std::size_t first = 0;  // of the strand's points among all
+  for (std::size_t k = alone.size() > 1 ? 1 : 0; k < alone.size(); ++k) {
+    SCOPED_TRACE(k);
+    const In q = In(s.q).subspan(k * n, n), v = In(s.v).subspan(k * n, n);
+    ASSERT_EQ(alone[k]->linearize(t0, q, v, std::vector<double>(n), backward_euler),
+              Status::ok);
+    std::vector<double> want(9 * own.size() * own.size());
+    MaterialPoints& of_strand = *alone[k]->material_points();
+    ASSERT_TRUE(of_strand.responses(t0, q, own, want));
+    const double off = rounding * condition(inverse(*alone[k], n)) * largest(want);
+    EXPECT_GT(largest(want), 0);
+    for (std::size_t of = 0; of < all.size(); ++of) {
+      for (std::size_t on = 0; on < own.size(); ++on) {
+        const double* const got = &blocks[9 * (of * all.size() + first + on)];
+        const bool same = of >= first && of < first + own.size();
+        for (std::size_t e = 0; e < 9; ++e) {
+          const double wanted = same ? want[9 * ((of - first) * own.size() + on) + e] : 0;
+          EXPECT_NEAR(got[e], wanted, same ? off : 0);
+        }
+      }
+    }
+    std::vector<double> want_b(n);
+    ASSERT_TRUE(of_strand.pull_back(t0, q, own, In(f).subspan(3 * first, 3 * own.size()),
+                                    want_b));
+    EXPECT_LE(apart(want_b, In(pulled).subspan(k * n, n)), rounding * largest(want_b));
+    first += own.size();
+  }
 }
 
 TEST_P(Batch, PointsAndEnergiesAreThoseOfTheStrands) {

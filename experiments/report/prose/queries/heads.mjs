@@ -106,7 +106,7 @@ export const two_threads = (tables) =>
     .join(' and ');
 
 /// Discrete rods, and Newton's method; one thread.
-export const rods_table = (tables) =>
+export const other_heads_table = (tables) =>
   table(
     [
       'model',
