@@ -269,6 +269,9 @@ TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
   }
 }
 
+/// On stiffer bodies single corrections, of the world's strands as well, gain energy.
+constexpr const char* soft = "moves = \"head\"\nstiffness_n_m2 = 0.1\n";
+
 /// Integrators with the exact tangent, and the Newton's tolerances that a step of each
 /// leaves at most, of so many first steps (tests/models/head/exact_methods.h).
 struct Exact {
@@ -288,9 +291,9 @@ class HeadBy : public testing::TestWithParam<std::tuple<const char*, Exact, bool
     return {
         .count = 60,
         .model = fmt::format("id = \"{}\"\ntangent = \"exact\"\nquadrature = 8\n", model),
-        .integrator = fmt::format("id = \"{}\"\ndt_s = 0.002\n", method.integrator),
-        .more = std::string(air_and_weight) +
-                (touched ? std::string(ellipsoid) + "moves = \"head\"\n" : "")};
+        .integrator = fmt::format("id = \"{}\"\ndt_s = 0.001\n", method.integrator),
+        .more =
+            std::string(air_and_weight) + (touched ? std::string(ellipsoid) + soft : "")};
   }
 };
 
@@ -300,7 +303,7 @@ TEST_P(HeadBy, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
   const auto& [model, method, touched] = GetParam();
   const bool wide = model == std::string("articulated_chain") &&
                     method.integrator == std::string("linearly_implicit_midpoint");
-  expect_the_same_bits(parse_outline(text(own), "head.toml"), 20, 0.002,
+  expect_the_same_bits(parse_outline(text(own), "head.toml"), 20, 0.001,
                        std::span(all_numbers).first(wide ? 1 : 2),
                        [](const Head& head) { EXPECT_TRUE(head.losses().empty()); });
 }
@@ -313,7 +316,7 @@ TEST_P(HeadBy, MovesAsTheWorldOfTheSceneDoes) {
   const std::vector<double> want = by_world(scene, 0);
   run(toy, "--frames 64 --threads 2");
   const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
-  const double left = std::min(100, method.solved) * method.left * 1e-10;
+  const double left = std::min(200, method.solved) * method.left * 1e-10;
   EXPECT_LE(apart(all_of(file, HeadFrames::dataset(4)), want),
             apart(by_world(scene, rounding(scene) + left), want) + left * 0.1);
   // What it does and what touches it are seen.
