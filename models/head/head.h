@@ -218,11 +218,11 @@ std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pac
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of discrete elastic rods (models/head/maximal/der_strand.h), `elements` edges
-/// each: semi_implicit_euler with the stiff tangent, or backward_euler and tr_bdf2 with
-/// the exact one. Coordinates are, per edge, the vector along it (m, world axes) and the
-/// angle of its frame; the rate of the first edge is the velocity of its end. Without
-/// rotary_inertia angles have no inertia, and there is no tr_bdf2; `points` is not read.
-/// Throws InputError as above.
+/// each: semi_implicit_euler with the stiff tangent, or the other methods with the exact
+/// one but for slopes of friction, linearly_implicit_midpoint in 64 bits. Coordinates
+/// are, per edge, the vector along it (m, world axes) and the angle of its frame; the
+/// rate of the first edge is the velocity of its end. Without rotary_inertia angles have
+/// no inertia, and there is no tr_bdf2; `points` is not read. Throws InputError as above.
 std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of point masses and springs (models/head/maximal/spring_strand.h), `elements`

@@ -38,6 +38,15 @@ inline void check_start(const HeadOptions& options) {
       "leave rotary_inertia on, or use backward_euler");
 }
 
+/// Throws InputError if steps are single corrections of numbers of 32 bits, for strands
+/// in which their rounding errors grow.
+inline void check_mended(const HeadOptions& options, const HeadPack& pack) {
+  refuse_if(options.method == HeadMethod::linearly_implicit_midpoint &&
+                pack.number == HeadNumber::float32,
+            "32 bits, whose rounding a single correction does not mend", place_of_head,
+            "use 64 bits, or tr_bdf2");
+}
+
 /// Throws InputError unless the strand has `elements` segments of equal length and
 /// section, one after the other, and no free root.
 inline void check_for_head(const Strand& strand, std::size_t elements) {

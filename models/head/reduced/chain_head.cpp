@@ -11,11 +11,8 @@ using ChainHead = ReducedHead<ChainKind<T>>;
 
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack) {
   // Joints turn so freely in a step that of 32 bits no digit is left of some corrections:
-  // iterations mend that, one alone makes it grow from step to step.
-  refuse_if(options.method == HeadMethod::linearly_implicit_midpoint &&
-                pack.number == HeadNumber::float32,
-            "rigid links in 32 bits, whose rounding a single correction does not mend",
-            place_of_head, "use 64 bits, or tr_bdf2");
+  // rounding grows from step to step until strands are lost.
+  check_mended(options, pack);
   return reduced_head<ChainKind, ChainHead>(options, pack);
 }
 

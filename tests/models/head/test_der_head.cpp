@@ -19,7 +19,18 @@ constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                               {HeadNumber::float32, 8},
                               {HeadNumber::float32, 16}};
 using Method = HairMethod;
-constexpr Method methods[] = {one_solve, newton, tr_bdf2};
+constexpr Method methods[] = {one_solve, newton, midpoint, tr_bdf2};
+
+/// Single corrections need shorter steps, in the head or alone: a tenth of `h`.
+double step_of(const Method& method, double h) {
+  return method.method == HeadMethod::linearly_implicit_midpoint ? h / 10 : h;
+}
+
+/// Numbers that its head can have: single corrections have 64 bits.
+std::span<const HeadPack> packs_of(const Method& method) {
+  return std::span(packs).first(
+      method.method == HeadMethod::linearly_implicit_midpoint ? 3 : 5);
+}
 
 std::unique_ptr<Head> head(const RodCase& c, const Method& method, HeadPack pack,
                            std::size_t strands) {
@@ -78,14 +89,17 @@ class DerHead : public testing::TestWithParam<RodCase> {};
 // relative change of the initial state by 1e-11 makes, and by roundings of what they are.
 // The head renews references a step later: an angle that has just become 0 is left out.
 // By tr_bdf2 steps of these strands without friction have no solution after some 20 ms,
-// in the head or alone.
+// in the head or alone. By linearly_implicit_midpoint they are the ones that are
+// compared: the head's tangent lacks slopes of friction, which show where one correction
+// is a step; with friction test_head_methods.cpp has the order of the errors.
 TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
   const RodCase& c = GetParam();
   constexpr int steps = 100;
-  constexpr double h = 1e-3;
   constexpr std::size_t strands = 10;
   for (const Method& method : methods) {
     if (method.method == HeadMethod::tr_bdf2 && c.friction == 0) continue;
+    const double h = step_of(method, 1e-3);
+    if (h < 1e-3 && c.friction > 0) continue;
     SCOPED_TRACE(method.id);
     const auto all = head(c, method, {HeadNumber::float64, 8}, strands);
     advance(*all, steps, h);
@@ -168,8 +182,9 @@ TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
 TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const RodCase c{.name = "", .moves = true, .speed = 3};  // with new references
   for (const Method& method : methods) {
+    const double h = step_of(method, 1e-3);
     const auto first = head(c, method, {HeadNumber::float64, 8}, 11);
-    advance(*first, 20, 1e-3);
+    advance(*first, 20, h);
     std::vector<double> kept(11 * first->kept());
     first->keep(0, std::span(kept).first(8 * first->kept()));
     first->keep(1, std::span(kept).subspan(8 * first->kept()));
@@ -182,7 +197,7 @@ TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
     EXPECT_EQ(second->hash(), first->hash());
     for (Head* of : {first.get(), second.get()}) {
       const auto scratch = of->scratch();
-      for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * 1e-3, 1e-3, *scratch);
+      for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * h, h, *scratch);
     }
     EXPECT_EQ(second->hash(), first->hash());
   }
@@ -192,7 +207,7 @@ TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
   const RodCase& c = GetParam();
   for (const Method& method : methods) {
     SCOPED_TRACE(method.id);
-    const double h = method.left > 0 ? 1.0 / 120 : 1e-3;
+    const double h = method.left > 0 ? step_of(method, 1.0 / 120) : 1e-3;
     std::size_t want = 0;
     for (const int lanes : {1, 4, 8}) {
       for (const std::size_t together : {1, 2, 100}) {
@@ -205,6 +220,7 @@ TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
         }
       }
     }
+    if (packs_of(method).back().number == HeadNumber::float64) continue;
     const auto f8 = head(c, method, {HeadNumber::float32, 8}, 19),
                f16 = head(c, method, {HeadNumber::float32, 16}, 19);
     advance(*f8, 20, h);
@@ -232,6 +248,8 @@ INSTANTIATE_TEST_SUITE_P(
 // leaves is rounding here, and enters as what Newton's tolerance leaves does.
 TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
   for (const Method& method : methods) {
+    if (packs_of(method).back().number == HeadNumber::float64) continue;
+    SCOPED_TRACE(method.id);
     for (const int elements : {5, 20}) {
       const RodCase c{.name = "", .elements = elements, .sprung = false};
       const auto wide = head(c, method, {HeadNumber::float64, 8}, 16),
@@ -254,7 +272,8 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
   const RodCase c{""};
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
   for (const Method& method : methods) {
-    for (const HeadPack& pack : packs) {
+    SCOPED_TRACE(method.id);
+    for (const HeadPack& pack : packs_of(method)) {
       const auto sound = head(c, method, pack, 64);
       HeadOptions options = rod_options(c);
       options.method = method.method;
@@ -269,8 +288,8 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
         hurt->add(one);
       }
       ASSERT_EQ(failing, 11u);
-      advance(*sound, 10, 2e-3);
-      advance(*hurt, 10, 2e-3);
+      advance(*sound, 10, step_of(method, 2e-3));
+      advance(*hurt, 10, step_of(method, 2e-3));
       std::vector<double> q(40), v(40), want_q(40), want_v(40);
       for (std::size_t k = 0; k < 64; ++k) {
         EXPECT_EQ(hurt->lost(k), fails(k)) << k;
