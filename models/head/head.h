@@ -15,8 +15,14 @@
 
 namespace tress::models {
 
-/// How a step is computed, by the names of the integrators' catalogue.
-enum class HeadMethod { semi_implicit_euler, backward_euler };
+/// How a step is computed, by the names of the integrators' catalogue: the equations are
+/// theirs (models/head/lane_method.h), tr_bdf2 has equal steps.
+enum class HeadMethod {
+  semi_implicit_euler,
+  linearly_implicit_midpoint,
+  backward_euler,
+  tr_bdf2
+};
 
 /// What acts on every strand of a head, and how strands are discretised.
 struct HeadOptions {
@@ -137,8 +143,8 @@ class Head {
   };
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
-  /// One step of semi_implicit_euler of a block, from t to t + h (s). A strand whose
-  /// result is not finite stays as it was, at rest, from then on; others are the same
+  /// One step of a block, from t to t + h (s). A strand without a solution, or whose
+  /// result is not finite, stays as it was, at rest, from then on; others are the same
   /// bits with and without it. Effects cost where they reach: a body a test for each
   /// block, then one for each element, before any point is looked at. Safe for different
   /// blocks at once, each thread with its own scratch.
@@ -199,21 +205,24 @@ class Head {
 };
 
 /// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors
-/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent, or backward_euler
-/// with the exact one (models/head/exact/exact_kernel.h), which has gravity, linear drag
-/// and bodies. Throws InputError if the options or the pack make no sense.
+/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent, or the other methods
+/// with the exact one (models/head/exact/exact_kernel.h), which have gravity, linear drag
+/// and bodies. tr_bdf2 starts from the acceleration at the start, so that twist must have
+/// inertia. Throws InputError if the options or the pack make no sense.
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of chains of rigid links (models/head/chain_strand.h); coordinates are the
-/// rotation vectors of the joints (rad), 3 per link; methods as above; `points` are those
-/// of a link at which effects act. Throws InputError as above.
+/// rotation vectors of the joints (rad), 3 per link; methods as above, but
+/// linearly_implicit_midpoint needs numbers of 64 bits; `points` are those of a link at
+/// which effects act. Throws InputError as above.
 std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of discrete elastic rods (models/head/maximal/der_strand.h), `elements` edges
-/// each: semi_implicit_euler with the stiff tangent, or backward_euler. Coordinates are,
-/// per edge, the vector along it (m, world axes) and the angle of its frame; the rate of
-/// the first edge is the velocity of its end. Without rotary_inertia angles have no
-/// inertia; `points` is not read. Throws InputError as above.
+/// each: semi_implicit_euler with the stiff tangent, or the other methods with the exact
+/// one but for slopes of friction, linearly_implicit_midpoint in 64 bits. Coordinates
+/// are, per edge, the vector along it (m, world axes) and the angle of its frame; the
+/// rate of the first edge is the velocity of its end. Without rotary_inertia angles have
+/// no inertia, and there is no tr_bdf2; `points` is not read. Throws InputError as above.
 std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack);
 
 /// A head of point masses and springs (models/head/maximal/spring_strand.h), `elements`

@@ -30,6 +30,23 @@ inline void check_for_head(const HeadOptions& options) {
             "no tolerance or no iterations", place_of_head, "give positive ones");
 }
 
+/// Throws InputError if the method starts from an acceleration that strands do not have.
+inline void check_start(const HeadOptions& options) {
+  refuse_if(
+      options.method == HeadMethod::tr_bdf2 && options.twist && !options.rotary_inertia,
+      "no acceleration from which tr_bdf2 starts: twist has no inertia", place_of_head,
+      "leave rotary_inertia on, or use backward_euler");
+}
+
+/// Throws InputError if steps are single corrections of numbers of 32 bits, for strands
+/// in which their rounding errors grow.
+inline void check_mended(const HeadOptions& options, const HeadPack& pack) {
+  refuse_if(options.method == HeadMethod::linearly_implicit_midpoint &&
+                pack.number == HeadNumber::float32,
+            "32 bits, whose rounding a single correction does not mend", place_of_head,
+            "use 64 bits, or tr_bdf2");
+}
+
 /// Throws InputError unless the strand has `elements` segments of equal length and
 /// section, one after the other, and no free root.
 inline void check_for_head(const Strand& strand, std::size_t elements) {

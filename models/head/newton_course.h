@@ -33,6 +33,26 @@ struct NewtonRules {
   }
 };
 
+/// One whole correction, as Stage::single_step().
+template <class Model>
+class SingleCourse {
+ public:
+  using T = typename Model::Real;
+  using Verdicts = std::array<NewtonVerdict, static_cast<std::size_t>(T::lanes)>;
+
+  void start(int /*lane*/, const LaneWork<Model>& /*work*/) {}
+  Verdicts go_on(LaneWork<Model>& work, const T& size) {
+    work.move(T(1), work.step.data());
+    Verdicts all;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k] = std::isfinite(lane_of(size, static_cast<int>(k)))
+                   ? NewtonVerdict::converged
+                   : NewtonVerdict::failed;
+    }
+    return all;
+  }
+};
+
 /// Whole corrections, as Stage::newton().
 template <class Model>
 class PlainCourse {

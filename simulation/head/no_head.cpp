@@ -12,8 +12,15 @@ namespace tress::simulation {
 namespace {
 
 /// An option of the model that heads do not have.
-NoHead no_option(const Parameters& p, const char* key, const char* remedy) {
-  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)), remedy};
+NoHead no_option(const Parameters& p, const char* key, std::string remedy) {
+  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)),
+          std::move(remedy)};
+}
+
+/// Whether steps are solved with all derivatives of the residual.
+bool has_exact_tangent(const Scene& scene) {
+  const auto method = head_method(scene);
+  return method && *method != models::HeadMethod::semi_implicit_euler;
 }
 
 std::optional<NoHead> no_springs(const Parameters& p) {
@@ -41,12 +48,19 @@ std::optional<NoHead> no_model(const Scene& scene) {
     return NoHead{"strands of a head bend in both directions",
                   "give [model] modes = \"bend_twist\" or \"bend\""};
   }
-  if (p.word("tangent") != (iterates(scene) ? "exact" : "stiff")) {
+  if (p.word("tangent") != (has_exact_tangent(scene) ? "exact" : "stiff")) {
     return no_option(p, "tangent",
-                     iterates(scene)
-                         ? "give [model] tangent = \"exact\" to backward_euler"
+                     has_exact_tangent(scene)
+                         ? "give [model] tangent = \"exact\" to " + scene.integrator
                          : "give [model] tangent = \"stiff\", or [integrator] id = "
                            "\"backward_euler\"");
+  }
+  if (scene.integrator == "tr_bdf2" && p.word("modes") == "bend_twist" &&
+      p.word("rotary_inertia") == "off") {
+    return NoHead{
+        "a head by tr_bdf2 starts from an acceleration, which twist without "
+        "inertia does not have",
+        "give [model] rotary_inertia = \"on\" or modes = \"bend\""};
   }
   if (p.word("solver") != "recursive") {
     return no_option(p, "solver", "leave out [model] solver");
@@ -59,19 +73,22 @@ std::optional<NoHead> no_model(const Scene& scene) {
 }
 
 std::optional<NoHead> no_method(const Scene& scene) {
-  const bool known = scene.integrator == "semi_implicit_euler" ||
-                     (iterates(scene) && !steps_springs(scene));
-  if (!known) {
+  if (!head_method(scene) || (has_exact_tangent(scene) && steps_springs(scene))) {
     return NoHead{fmt::format("{} does not step a head{}", scene.integrator,
                               steps_springs(scene) ? " of springs" : ""),
                   steps_springs(scene)
                       ? "use [integrator] id = \"semi_implicit_euler\""
-                      : "use [integrator] id = \"semi_implicit_euler\" or "
-                        "\"backward_euler\""};
+                      : "use [integrator] id = \"semi_implicit_euler\", "
+                        "\"linearly_implicit_midpoint\", \"backward_euler\" or "
+                        "\"tr_bdf2\""};
   }
-  if (iterates(scene) && scene.options.refresh != Refresh::every_iteration) {
+  if (has_exact_tangent(scene) && scene.options.refresh != Refresh::every_iteration) {
     return NoHead{"heads have a new matrix in every iteration",
                   "leave out [integrator] refresh"};
+  }
+  if (scene.options.tolerance > 0) {
+    return NoHead{"strands of a head have equal steps",
+                  "give [integrator] dt_s instead of tolerance"};
   }
   if (scene.rest == RestStrains::inverse) {
     return NoHead{"strands of a head have the natural strains of their tables",
@@ -117,7 +134,7 @@ std::optional<NoHead> no_strands(const Scene& scene) {
 /// Heads with bodies alone, beside what all heads have; empty: it is no such head.
 std::string only_with_bodies(const Scene& scene) {
   if (steps_springs(scene)) return "a head of springs";
-  return iterates(scene) ? "a head by backward_euler" : "";
+  return has_exact_tangent(scene) ? "a head by " + scene.integrator : "";
 }
 std::string with_others(const Scene& scene) {
   return steps_springs(scene) ? "leave it out, or use [model] id = \"super_helix\""
@@ -153,8 +170,20 @@ std::optional<NoHead> no_effects(const Scene& scene) {
 }  // namespace
 
 bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
-bool iterates(const Scene& scene) { return scene.integrator == "backward_euler"; }
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
+
+std::optional<models::HeadMethod> head_method(const Scene& scene) {
+  using models::HeadMethod;
+  constexpr std::pair<std::string_view, HeadMethod> methods[] = {
+      {"semi_implicit_euler", HeadMethod::semi_implicit_euler},
+      {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint},
+      {"backward_euler", HeadMethod::backward_euler},
+      {"tr_bdf2", HeadMethod::tr_bdf2}};
+  for (const auto& [id, method] : methods) {
+    if (scene.integrator == id) return method;
+  }
+  return {};
+}
 
 std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
   const Scene& scene = outline.scene;
@@ -166,6 +195,12 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
   if (steps_springs(scene) && number != models::HeadNumber::float64) {
     return NoHead{"springs in 32 bits, which do not resolve their strains",
                   "give --bits 64"};
+  }
+  if (steps_chains(scene) && scene.integrator == "linearly_implicit_midpoint" &&
+      number != models::HeadNumber::float64) {
+    return NoHead{
+        "rigid links in 32 bits, whose rounding a single correction does not mend",
+        "give --bits 64, or [integrator] id = \"tr_bdf2\""};
   }
   if (auto no = no_method(scene)) return no;
   if (auto no = no_strands(scene)) return no;

@@ -22,7 +22,7 @@ std::optional<NoHead> no_head(const SceneOutline& outline,
 /// Of a scene that can be a head: of springs, of rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
 bool steps_chains(const Scene& scene);
-/// Whether Newton's method solves its steps.
-bool iterates(const Scene& scene);
+/// The head's method by the integrator's id; nothing: heads do not have it.
+std::optional<models::HeadMethod> head_method(const Scene& scene);
 
 }  // namespace tress::simulation

@@ -37,7 +37,7 @@ HeadOptions options_of(const Scene& scene) {
     options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
   }
   options.gravity = {};
-  if (iterates(scene)) options.method = models::HeadMethod::backward_euler;
+  options.method = head_method(scene).value();
   options.newton_tolerance = scene.options.newton_tolerance;
   options.newton_iterations = scene.options.newton_iterations;
   options.motion = scene.head;

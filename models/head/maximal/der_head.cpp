@@ -80,8 +80,8 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     }
   }
 
-  void renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
-    kernel_.renew(elements, clamp, q, v);
+  Real renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
+    return kernel_.renew(elements, clamp, q, v);
   }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
@@ -130,6 +130,10 @@ std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack)
   check_for_head(options);
   refuse_if(!options.twist, "a discrete elastic rod without twist", place_of_head,
             "leave twist on");
+  check_start(options);
+  // Stretching keeps what rounding puts into it: in a second strands are off by 6e-4 of
+  // their length.
+  check_mended(options, pack);
   if (options.method == HeadMethod::semi_implicit_euler) {
     return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
       return std::make_unique<SteppingHead<DerModel<T, false>>>(options, set);

@@ -116,8 +116,9 @@ class DerStrand {
 
   /// Takes the present frame of an edge as its reference if it has turned by more than 60
   /// degrees, as renew_reference() in models/maximal/rod_edge.h; a second call changes
-  /// nothing.
-  void renew(DerEdge<T>* edges, const LaneClamp<T>& clamp, T* q, T* v) const {
+  /// nothing. Returns > 0 in lanes where some has.
+  T renew(DerEdge<T>* edges, const LaneClamp<T>& clamp, T* q, T* v) const {
+    T some(0);
     for (int i = 0; i < n_; ++i) {
       const Vec e = load3(q + 4 * i);
       const T far = T(0.5) - dot(edges[i].tangent, e) * inverse_sqrt(dot(e, e));
@@ -126,7 +127,9 @@ class DerStrand {
       Vec rate = load3(v + 4 * i);
       if (i == 0) rate = rate - clamp.v;
       renew_lanes(edges[i], far, e, rate, q[4 * i + 3], v[4 * i + 3]);
+      some = larger(some, far);
     }
+    return some;
   }
 
   /// Frame of an edge as models/maximal/rod_edge.h's edge_frame().

@@ -76,8 +76,10 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
   }
 
   /// There are no reference frames.
-  void renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
-             Real* /*v*/) const {}
+  Real renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
+             Real* /*v*/) const {
+    return Real(0);
+  }
 
   Real length(const Strand& strand) const {
     return Real(static_cast<double>(this->elements())) * strand.material.length;
@@ -118,7 +120,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
 std::unique_ptr<Head> spring_head(const HeadOptions& options, const HeadPack& pack) {
   check_for_head(options);
   refuse_if(options.method != HeadMethod::semi_implicit_euler,
-            "a method that point masses and springs do not have", place_of_head,
+            "a method that iterates, with point masses and springs", place_of_head,
             "use semi_implicit_euler");
   // The strain of a hair under its weight is some 1e-6: 32 bits know it to 6 %.
   refuse_if(pack.number != HeadNumber::float64,

@@ -384,6 +384,7 @@ inline void check_for_reduced_head(const HeadOptions& options) {
   refuse_if(options.points < 2 || options.points > most_points_of_element,
             std::to_string(options.points) + " points of an element", place_of_head,
             "use 2 to 16");
+  check_start(options);
 }
 
 /// A head of strands of this Kind by the method of the options: `Stepped` where one

@@ -109,8 +109,10 @@ class ReducedModel {
                       in_head(pose.alpha)});
   }
   /// There are no reference frames.
-  void renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
-             Real* /*v*/) const {}
+  Real renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
+             Real* /*v*/) const {
+    return Real(0);
+  }
   void predict(const Strand& /*strand*/, const RootPose& /*from*/, const RootPose& /*to*/,
                double h, const Real* q, const Real* v, Real* q_bar) const {
     for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];

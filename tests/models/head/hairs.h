@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +14,7 @@
 #include "models/head/head.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/super_helix.h"
+#include "tests/models/head/exact_methods.h"
 
 namespace tress::testing_support {
 
@@ -47,18 +51,19 @@ struct Case {
   double drag = 2e-5, mass_damping = 0.5;
   Effects effects = {};                                 // on all strands
   std::function<Effects(std::size_t strand)> own = {};  // of each strand
-  HeadMethod method = HeadMethod::semi_implicit_euler;
+  const HairMethod* method = &one_solve;
   double step = hair_step;  // s
   const HairModel* model = &helices;
   Effects own_of(std::size_t k) const { return own ? own(k) : Effects{}; }
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
-/// The same by Newton's method, whose steps are longer, of hairs that are let go in their
-/// rest shape: sprung ones whirl so fast that such steps have no solution, or turn back.
-inline Case iterated(Case c) {
-  c.name += "Newton";
-  c.method = HeadMethod::backward_euler;
+/// The same with the exact tangent, whose steps are longer, of hairs that are let go in
+/// their rest shape: sprung ones whirl so fast that such steps have no solution, or turn
+/// back.
+inline Case exact(Case c, const HairMethod& method) {
+  c.name += method.name;
+  c.method = &method;
   c.sprung = false;
   c.step = 1e-3;
   return c;
@@ -73,7 +78,7 @@ inline HeadOptions options(const Case& c) {
                 .mass_damping = c.mass_damping,
                 .longest = 0.25,
                 .motion = {},
-                .method = c.method,
+                .method = c.method->method,
                 .effects = c.effects};
   o.motion.position = {0.01, 0.02, 1.5};
   if (c.moves) {
@@ -106,6 +111,11 @@ inline Strand strand(const Case& c, std::size_t k) {
   return made;
 }
 
+/// Numbers that its head can have: rigid links by single corrections have 64 bits.
+inline std::span<const HeadPack> packs_of(const Case& c) {
+  return std::span(packs).first(c.model == &chains && c.method == &midpoint ? 3 : 5);
+}
+
 inline std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {
   auto all = c.model->head(options(c), pack);
   for (std::size_t k = 0; k < strands; ++k) all->add(strand(c, k), c.own_of(k));
@@ -126,19 +136,20 @@ struct Alone {
 };
 /// What Newton's method may leave in a step, over System::scale.
 inline double left_by_newton(const Case& c) {
-  return c.method == HeadMethod::backward_euler ? Options{}.newton_tolerance : 0;
+  return c.method->left * Options{}.newton_tolerance;
 }
 /// A relative change of the start that makes no less than so many steps' errors do.
 inline double change_of_start(const Case& c, int steps) {
-  return c.model->rounding + steps * left_by_newton(c);
+  return c.model->rounding + c.method->left_after(steps);
 }
-inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
+/// After these times (s) one after the other, in steps of `step` at most.
+inline Alone alone(const Case& c, std::size_t k, std::span<const double> times,
+                   double step, double change) {
   const Strand one = strand(c, k);
-  const ReducedOptions of_model{.dofs = c.twist ? 3 : 2,
-                                .tangent = c.method == HeadMethod::backward_euler
-                                               ? ReducedTangent::exact
-                                               : ReducedTangent::stiff,
-                                .quadrature = c.points};
+  const ReducedOptions of_model{
+      .dofs = c.twist ? 3 : 2,
+      .tangent = c.method == &one_solve ? ReducedTangent::stiff : ReducedTangent::exact,
+      .quadrature = c.points};
   const HeadOptions o = options(c);
   Effects effects = {std::make_shared<Gravity>(o.gravity),
                      std::make_shared<LinearDrag>(o.drag, o.mass_damping)};
@@ -153,21 +164,21 @@ inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
   for (std::size_t i = 0; i < n; ++i) {
     q[i] += (i % 2 == 0 ? change : -change) * (std::abs(q[i]) + size[i]);
   }
-  Options step;
-  step.step = c.step;
-  const auto method_of = make_integrator(
-      c.method == HeadMethod::backward_euler ? "backward_euler" : "semi_implicit_euler",
-      *system, step);
+  Options in_steps;
+  in_steps.step = step;
+  const auto method_of = make_integrator(c.method->id, *system, in_steps);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);
-  EXPECT_EQ(method_of->advance(steps * c.step), Status::ok) << method_of->failure();
+  double t = 0;
+  for (const double time : times) {
+    EXPECT_EQ(method_of->advance(t += time), Status::ok) << method_of->failure();
+  }
   Alone end;
   end.size = size[0];
   end.rate = of_rate[0];
   end.x.resize(3 * static_cast<std::size_t>(c.elements + 1));
   end.u.resize(end.x.size());
-  system->material_points()->positions(steps * c.step, method_of->q(), end.x);
-  system->material_points()->velocities(steps * c.step, method_of->q(), method_of->v(),
-                                        end.u);
+  system->material_points()->positions(t, method_of->q(), end.x);
+  system->material_points()->velocities(t, method_of->q(), method_of->v(), end.u);
   const auto put = [&](In from, std::vector<double>& to) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {
       if (c.twist) {
@@ -180,6 +191,9 @@ inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
   put(method_of->q(), end.q);
   put(method_of->v(), end.v);
   return end;
+}
+inline Alone alone(const Case& c, std::size_t k, int steps, double change) {
+  return alone(c, k, std::array{steps * c.step}, c.step, change);
 }
 
 }  // namespace tress::testing_support

@@ -3,6 +3,7 @@
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "tests/models/head/der_strands.h"
+#include "tests/models/head/exact_methods.h"
 #include "tests/support/apart.h"
 #include "tests/support/bare_system.h"
 
@@ -17,13 +18,24 @@ constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
                               {HeadNumber::float64, 8},
                               {HeadNumber::float32, 8},
                               {HeadNumber::float32, 16}};
-constexpr HeadMethod methods[] = {HeadMethod::semi_implicit_euler,
-                                  HeadMethod::backward_euler};
+using Method = HairMethod;
+constexpr Method methods[] = {one_solve, newton, midpoint, tr_bdf2};
 
-std::unique_ptr<Head> head(const RodCase& c, HeadMethod method, HeadPack pack,
+/// Single corrections need shorter steps, in the head or alone: a tenth of `h`.
+double step_of(const Method& method, double h) {
+  return method.method == HeadMethod::linearly_implicit_midpoint ? h / 10 : h;
+}
+
+/// Numbers that its head can have: single corrections have 64 bits.
+std::span<const HeadPack> packs_of(const Method& method) {
+  return std::span(packs).first(
+      method.method == HeadMethod::linearly_implicit_midpoint ? 3 : 5);
+}
+
+std::unique_ptr<Head> head(const RodCase& c, const Method& method, HeadPack pack,
                            std::size_t strands) {
   HeadOptions options = rod_options(c);
-  options.method = method;
+  options.method = method.method;
   auto all = der_head(options, pack);
   for (std::size_t k = 0; k < strands; ++k) all->add(rod(c, k));
   return all;
@@ -42,10 +54,9 @@ void advance(Head& all, int steps, double h, std::size_t together = 100) {
 struct Alone {
   std::vector<double> q, v, x;
 };
-Alone alone(const RodCase& c, HeadMethod method, std::size_t k, int steps, double h,
+Alone alone(const RodCase& c, const Method& method, std::size_t k, int steps, double h,
             double change) {
-  const bool newton = method == HeadMethod::backward_euler;
-  const auto system = rod_alone(c, k, newton ? "exact" : "stiff");
+  const auto system = rod_alone(c, k, method.left > 0 ? "exact" : "stiff");
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
   std::vector<double> q(n), v(n);
   system->initial_state(q, v);
@@ -59,8 +70,7 @@ Alone alone(const RodCase& c, HeadMethod method, std::size_t k, int steps, doubl
   // Lanes have no stresses of corrections: with them, a step of a strand without friction
   // ends at another of its solutions.
   BareSystem iterated(*system);
-  const auto method_of = make_integrator(
-      newton ? "backward_euler" : "semi_implicit_euler", iterated, options);
+  const auto method_of = make_integrator(method.id, iterated, options);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);
   EXPECT_EQ(method_of->advance(steps * h), Status::ok) << method_of->failure();
   Alone end;
@@ -78,13 +88,19 @@ class DerHead : public testing::TestWithParam<RodCase> {};
 // add up some thousand of them, amplified alike. So strands differ by no more than a
 // relative change of the initial state by 1e-11 makes, and by roundings of what they are.
 // The head renews references a step later: an angle that has just become 0 is left out.
+// By tr_bdf2 steps of these strands without friction have no solution after some 20 ms,
+// in the head or alone. By linearly_implicit_midpoint they are the ones that are
+// compared: the head's tangent lacks slopes of friction, which show where one correction
+// is a step; with friction test_head_methods.cpp has the order of the errors.
 TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
   const RodCase& c = GetParam();
   constexpr int steps = 100;
-  constexpr double h = 1e-3;
   constexpr std::size_t strands = 10;
-  for (const HeadMethod method : methods) {
-    SCOPED_TRACE(static_cast<int>(method));
+  for (const Method& method : methods) {
+    if (method.method == HeadMethod::tr_bdf2 && c.friction == 0) continue;
+    const double h = step_of(method, 1e-3);
+    if (h < 1e-3 && c.friction > 0) continue;
+    SCOPED_TRACE(method.id);
     const auto all = head(c, method, {HeadNumber::float64, 8}, strands);
     advance(*all, steps, h);
     const auto n = static_cast<std::size_t>(c.elements);
@@ -108,7 +124,7 @@ TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
         v[i] = want.v[i];
       }
       // Newton's tolerance, over a step, as a change of the state.
-      const double solved = method == HeadMethod::backward_euler ? steps * 1e-10 : 1e-13;
+      const double solved = 1e-13 + method.left_after(steps);
       const double length = 0.25, rate = 60;
       EXPECT_LE(apart(q, want.q), apart(changed.q, want.q) + solved);
       EXPECT_LE(apart(v, want.v), apart(changed.v, want.v) + solved * rate);
@@ -126,7 +142,7 @@ TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
   const RodCase& c = GetParam();
   constexpr int steps = 20;
   constexpr double h = 1e-3, t = steps * h;
-  const HeadMethod method = HeadMethod::semi_implicit_euler;
+  const Method& method = one_solve;
   const auto n = static_cast<std::size_t>(c.elements);
   const auto all = head(c, method, {HeadNumber::float64, 8}, 8);
   advance(*all, steps, h);
@@ -165,9 +181,10 @@ TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
 
 TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const RodCase c{.name = "", .moves = true, .speed = 3};  // with new references
-  for (const HeadMethod method : methods) {
+  for (const Method& method : methods) {
+    const double h = step_of(method, 1e-3);
     const auto first = head(c, method, {HeadNumber::float64, 8}, 11);
-    advance(*first, 20, 1e-3);
+    advance(*first, 20, h);
     std::vector<double> kept(11 * first->kept());
     first->keep(0, std::span(kept).first(8 * first->kept()));
     first->keep(1, std::span(kept).subspan(8 * first->kept()));
@@ -180,7 +197,7 @@ TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
     EXPECT_EQ(second->hash(), first->hash());
     for (Head* of : {first.get(), second.get()}) {
       const auto scratch = of->scratch();
-      for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * 1e-3, 1e-3, *scratch);
+      for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * h, h, *scratch);
     }
     EXPECT_EQ(second->hash(), first->hash());
   }
@@ -188,8 +205,9 @@ TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
 
 TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
   const RodCase& c = GetParam();
-  for (const HeadMethod method : methods) {
-    const double h = method == HeadMethod::backward_euler ? 1.0 / 120 : 1e-3;
+  for (const Method& method : methods) {
+    SCOPED_TRACE(method.id);
+    const double h = method.left > 0 ? step_of(method, 1.0 / 120) : 1e-3;
     std::size_t want = 0;
     for (const int lanes : {1, 4, 8}) {
       for (const std::size_t together : {1, 2, 100}) {
@@ -202,6 +220,7 @@ TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
         }
       }
     }
+    if (packs_of(method).back().number == HeadNumber::float64) continue;
     const auto f8 = head(c, method, {HeadNumber::float32, 8}, 19),
                f16 = head(c, method, {HeadNumber::float32, 16}, 19);
     advance(*f8, 20, h);
@@ -225,9 +244,12 @@ INSTANTIATE_TEST_SUITE_P(
                     RodCase{.name = "Soft", .youngs_modulus = 1e8}),
     [](const auto& of) { return of.param.name; });
 
-// In units of length, gravity and mass; hairs let go by a head at rest.
+// In units of length, gravity and mass; hairs let go by a head at rest. What a step
+// leaves is rounding here, and enters as what Newton's tolerance leaves does.
 TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
-  for (const HeadMethod method : methods) {
+  for (const Method& method : methods) {
+    if (packs_of(method).back().number == HeadNumber::float64) continue;
+    SCOPED_TRACE(method.id);
     for (const int elements : {5, 20}) {
       const RodCase c{.name = "", .elements = elements, .sprung = false};
       const auto wide = head(c, method, {HeadNumber::float64, 8}, 16),
@@ -239,7 +261,7 @@ TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
       wide->positions(0, 1, std::span(x).first(8 * n));
       wide->positions(1, 1, std::span(x).last(8 * n));
       narrow->positions(0, 1, y);
-      EXPECT_LE(apart(x, y), 1e-5 * 0.25) << elements;
+      EXPECT_LE(apart(x, y), std::max(1.0, method.left) * 1e-5 * 0.25) << elements;
       EXPECT_GT(apart(x, y), 0) << elements;
     }
   }
@@ -249,11 +271,12 @@ TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
 TEST(DerHeadWithLosses, OtherStrandsGoOn) {
   const RodCase c{""};
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
-  for (const HeadMethod method : methods) {
-    for (const HeadPack& pack : packs) {
+  for (const Method& method : methods) {
+    SCOPED_TRACE(method.id);
+    for (const HeadPack& pack : packs_of(method)) {
       const auto sound = head(c, method, pack, 64);
       HeadOptions options = rod_options(c);
-      options.method = method;
+      options.method = method.method;
       const auto hurt = der_head(options, pack);
       std::size_t failing = 0;
       for (std::size_t k = 0; k < 64; ++k) {
@@ -265,8 +288,8 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
         hurt->add(one);
       }
       ASSERT_EQ(failing, 11u);
-      advance(*sound, 10, 2e-3);
-      advance(*hurt, 10, 2e-3);
+      advance(*sound, 10, step_of(method, 2e-3));
+      advance(*hurt, 10, step_of(method, 2e-3));
       std::vector<double> q(40), v(40), want_q(40), want_v(40);
       for (std::size_t k = 0; k < 64; ++k) {
         EXPECT_EQ(hurt->lost(k), fails(k)) << k;
@@ -291,9 +314,12 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
 }
 
 TEST(DerHeadMemory, IsTheState) {
-  const auto all = head({""}, HeadMethod::backward_euler, {HeadNumber::float64, 8}, 16);
-  // q, v, a, rest strain, reference axes of each edge; root and material.
-  EXPECT_LE(all->bytes(), 16u * (10 * (3 * 4 + 9) + 25) * sizeof(double));
+  // q, v, a, rest strain, reference axes of each edge; root and material. With two
+  // accelerations, when they were.
+  EXPECT_LE(head({""}, newton, {HeadNumber::float64, 8}, 16)->bytes(),
+            16U * (10 * (3 * 4 + 9) + 25) * sizeof(double));
+  EXPECT_LE(head({""}, tr_bdf2, {HeadNumber::float64, 8}, 16)->bytes(),
+            16U * (10 * (4 * 4 + 9) + 27) * sizeof(double));
 }
 
 TEST(DerHeadInput, IsRefusedWithTheReason) {
@@ -304,6 +330,11 @@ TEST(DerHeadInput, IsRefusedWithTheReason) {
   options.twist = true;
   options.newton_iterations = 0;
   EXPECT_THROW(der_head(options, {}), InputError);
+  HeadOptions weightless = rod_options(c);
+  weightless.rotary_inertia = false;
+  EXPECT_NO_THROW(der_head(weightless, {}));
+  weightless.method = HeadMethod::tr_bdf2;
+  EXPECT_THROW(der_head(weightless, {}), InputError);
   EXPECT_THROW(der_head(rod_options(c), {HeadNumber::float64, 16}), InputError);
 }
 

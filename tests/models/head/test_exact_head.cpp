@@ -63,7 +63,7 @@ TYPED_TEST(OfHair, CorrectionsAreThoseOfTheStrandAlone) {
   using Model = ReducedModel<TypeParam>;
   constexpr double t = 0.13, h = 1.0 / 300;
   Case c{.name = "", .moves = true, .model = &Hair<TypeParam>::model};
-  c.method = HeadMethod::backward_euler;
+  c.method = &testing_support::newton;
   const HeadOptions of_head = options(c);
   HeadUnits units = HeadUnits::of(of_head.longest);
   const Strand first = strand(c, 0);

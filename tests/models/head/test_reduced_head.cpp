@@ -13,13 +13,15 @@ using testing_support::alone;
 using testing_support::Case;
 using testing_support::chains;
 using testing_support::change_of_start;
+using testing_support::exact;
+using testing_support::exact_methods;
 using testing_support::hair_models;
+using testing_support::HairMethod;
 using testing_support::HairModel;
 using testing_support::head;
-using testing_support::iterated;
 using testing_support::left_by_newton;
 using testing_support::options;
-using testing_support::packs;
+using testing_support::packs_of;
 using testing_support::strand;
 
 class ReducedHead : public testing::TestWithParam<Case> {};
@@ -65,7 +67,7 @@ TEST_P(ReducedHead, StrandsMoveAsTheyDoAlone) {
 
 TEST_P(ReducedHead, LanesAndInstructionsGiveTheSameBits) {
   std::size_t want[2] = {};
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of(GetParam())) {
     for (const Instructions set : {Instructions::base, Instructions::avx512}) {
       if (!available(set)) continue;
       const auto all = head(GetParam(), {pack.number, pack.lanes, set}, 19);
@@ -102,7 +104,9 @@ std::vector<Case> cases() {
   all.push_back({.name = "Tightest", .curl = 8, .model = &chains});
   all.push_back({.name = "VeryUneven", .uneven = 8, .model = &chains});
   const std::size_t once = all.size();
-  for (std::size_t i = 0; i < once; ++i) all.push_back(iterated(all[i]));
+  for (const HairMethod* method : exact_methods) {
+    for (std::size_t i = 0; i < once; ++i) all.push_back(exact(all[i], *method));
+  }
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Cases, ReducedHead, testing::ValuesIn(cases()),
@@ -172,7 +176,7 @@ class HeadOfModel : public testing::TestWithParam<Case> {};
 TEST_P(HeadOfModel, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   Case c = GetParam();
   c.moves = true;
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of(c)) {
     const auto first = head(c, pack, 11);
     for (int s = 0; s < 20; ++s) {
       const auto scratch = first->scratch();
@@ -208,22 +212,27 @@ TEST_P(HeadOfModel, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   }
 }
 
-// In units of length, gravity and mass; hairs let go by a head at rest.
+// In units of length, gravity and mass; hairs let go by a head at rest. What a step
+// leaves is rounding here, and enters as what Newton's tolerance leaves does. By longer
+// steps single corrections end in hairs without a solution, of any numbers.
 TEST_P(HeadOfModel, In32BitsDiffersByAHundredThousandthOfALengthAfterASecond) {
+  if (packs_of(GetParam()).back().number == HeadNumber::float64) GTEST_SKIP();
+  const bool single = GetParam().method == &testing_support::midpoint;
+  const int steps = single ? 1000 : 500;
   for (const int elements : {5, 20}) {
     Case c = GetParam();
     c.elements = elements;
     c.sprung = false;
     const auto wide = head(c, {HeadNumber::float64, 8}, 16),
                narrow = head(c, {HeadNumber::float32, 16}, 16);
-    advance(*wide, 500, 2e-3);
-    advance(*narrow, 500, 2e-3);
+    advance(*wide, steps, 1.0 / steps);
+    advance(*narrow, steps, 1.0 / steps);
     const auto n = 3 * static_cast<std::size_t>(elements + 1);
     std::vector<double> x(16 * n), y(16 * n);
     wide->positions(0, 1, std::span(x).first(8 * n));
     wide->positions(1, 1, std::span(x).last(8 * n));
     narrow->positions(0, 1, y);
-    EXPECT_LE(apart(x, y), 1e-5 * 0.25) << elements;
+    EXPECT_LE(apart(x, y), std::max(1.0, c.method->left) * 1e-5 * 0.25) << elements;
     EXPECT_GT(apart(x, y), 0) << elements;
   }
 }
@@ -232,7 +241,7 @@ TEST_P(HeadOfModel, In32BitsDiffersByAHundredThousandthOfALengthAfterASecond) {
 TEST_P(HeadOfModel, GoesOnWithoutStrandsThatAreLost) {
   const Case& c = GetParam();
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of(c)) {
     const auto sound = head(c, pack, 64), hurt = c.model->head(options(c), pack);
     std::size_t failing = 0;
     for (std::size_t k = 0; k < 64; ++k) {
@@ -265,7 +274,7 @@ TEST_P(HeadOfModel, GoesOnWithoutStrandsThatAreLost) {
 // Even where its next step would be finite.
 TEST_P(HeadOfModel, WhatIsLostStaysWhereItIs) {
   const Case& c = GetParam();
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of(c)) {
     const auto sound = head(c, pack, 20), hurt = head(c, pack, 20);
     for (Head* all : {sound.get(), hurt.get()}) advance(*all, 10, c.step);
     hurt->lose(3);
@@ -286,10 +295,12 @@ TEST_P(HeadOfModel, MemoryIsTheStateAndTwentyNumbers) {
   const Case& c = GetParam();
   const auto all = head(c, {HeadNumber::float64, 8}, 16);
   EXPECT_EQ(all->blocks(), 2u);
-  // Of an element coordinates, rates and rest, and accelerations from which iterations
-  // start; the size of corrections takes two numbers more.
-  const bool iterates = c.method == HeadMethod::backward_euler;
-  const std::size_t numbers = iterates ? 10 * 12 + 23 : 10 * 9 + 21;
+  // Of an element coordinates, rates and rest; with the exact tangent accelerations from
+  // which steps go on, and the size of corrections, which takes two numbers more. Two of
+  // them have two numbers of when they were.
+  const std::size_t numbers = c.method == &testing_support::one_solve ? 10 * 9 + 21
+                              : c.method == &testing_support::newton  ? 10 * 12 + 23
+                                                                      : 10 * 15 + 25;
   EXPECT_LE(all->bytes(), 16u * numbers * sizeof(double));
 }
 
@@ -319,7 +330,7 @@ TEST_P(HeadOfModel, InputIsRefusedWithTheReason) {
 // Lanes that are done take strands of other blocks.
 TEST_P(HeadOfModel, BlocksInOneCallGiveTheSameBits) {
   const Case& c = GetParam();
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of(c)) {
     const auto apart = head(c, pack, 35), together = head(c, pack, 35);
     advance(*apart, 20, c.step);
     const auto scratch = together->scratch();
@@ -334,7 +345,8 @@ std::vector<Case> of_models() {
   std::vector<Case> all;
   for (const HairModel* model : hair_models) {
     const Case c{.name = std::string(model->name), .points = 4, .model = model};
-    all.insert(all.end(), {c, iterated(c)});
+    all.push_back(c);
+    for (const HairMethod* method : exact_methods) all.push_back(exact(c, *method));
   }
   return all;
 }

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "models/head/head.h"
+#include "models/head/lane_strands.h"
+#include "models/head/lone_strand.h"
+#include "models/head/newton_course.h"
+
+namespace tress::models {
+
+/// Steps of strands by the stages of a LaneMethod, stage by stage: Newton's iteration,
+/// damped iterations of the strands on which it fails, and those on which they fail one
+/// by one, in shorter steps where need be. Lanes that are done take the next strand.
+/// Decisions are taken lane by lane, so results are the same bits for any number of lanes
+/// and whatever strands are stepped together. Memory of one thread.
+template <class Model>
+class LaneSolver {
+ public:
+  using T = typename Model::Real;
+  using PoseAt = typename LoneStrand<Model>::PoseAt;
+  using Meet = typename LoneStrand<Model>::Meet;
+
+  /// `model` and `method` must outlive it.
+  LaneSolver(const Model& model, const LaneMethod& method, double tolerance,
+             int most_iterations)
+      : work(model, method),
+        model_(model),
+        method_(method),
+        tolerance_(tolerance),
+        iterations_(most_iterations) {}
+
+  LaneWork<Model> work;
+
+  struct Loss {
+    std::size_t strand;
+    std::string_view reason;
+  };
+
+  /// A step of h of the queue's strands that are not lost; without units, as poses.
+  /// Returns those that are from now on.
+  const std::vector<Loss>& step(LaneQueue all, LaneStrands<Model>& strands,
+                                const PoseAt& pose, const Meet& meet, double h,
+                                HeadWork& done) {
+    const Step now{strands, pose, meet, h, done};
+    lost_.clear();
+    stuck_.clear();
+    poses_.from = pose(0);
+    poses_.to = pose(1);
+    find_fresh(all, strands);
+    const LaneQueue fresh{0, fresh_.size(), &fresh_}, others{0, others_.size(), &others_};
+    if (method_.iterates) {
+      if (!fresh_.empty()) correct_once(now, fresh, "no acceleration at the start");
+      iterate(now, all);
+    } else {
+      if (!fresh_.empty()) iterate(now, fresh);
+      correct_once(now, fresh_.empty() ? all : others,
+                   "the result of the step is not finite");
+    }
+    return lost_;
+  }
+
+ private:
+  struct Step {
+    LaneStrands<Model>& strands;
+    const PoseAt& pose;
+    const Meet& meet;
+    double h;
+    HeadWork& done;
+  };
+
+  /// Which of these strands take first steps.
+  void find_fresh(const LaneQueue& all, const LaneStrands<Model>& strands) {
+    fresh_.clear();
+    others_.clear();
+    if (method_.first_steps == 0) return;
+    for (std::size_t k = all.next; k < all.end; ++k) {
+      (strands.fresh(k) ? fresh_ : others_).push_back(k);
+    }
+  }
+
+  /// One correction of the first stage, or the strand is lost.
+  void correct_once(const Step& now, const LaneQueue& queue, std::string_view reason) {
+    failed_.clear();
+    SingleCourse<Model> single;
+    run(now, queue, 0, single, failed_, now.done.iterations, now.done.lanes);
+    for (const std::size_t strand : failed_) lose(now, strand, reason);
+  }
+
+  void iterate(const Step& now, const LaneQueue& all) {
+    HeadWork& done = now.done;
+    for (std::size_t k = method_.first(); k < method_.stages.size(); ++k) {
+      PlainCourse<Model> plain(model_, tolerance_, iterations_);
+      failed_.clear();
+      run(now, all, k, plain, failed_, done.iterations, done.lanes);
+      if (failed_.empty()) continue;
+      done.retried += static_cast<long>(failed_.size());
+      DampedCourse<Model> damped(model_, tolerance_, iterations_);
+      again_.clear();
+      run(now, {0, failed_.size(), &failed_}, k, damped, again_, done.again_iterations,
+          done.again_lanes);
+      done.again_iterations += damped.iterations;
+      done.again_lanes += damped.lanes;
+      stuck_.insert(stuck_.end(), again_.begin(), again_.end());
+      std::ranges::sort(stuck_);
+    }
+    for (const std::size_t strand : stuck_) alone(now, strand);
+  }
+
+  /// A stage. Strands on which the course fails go to `failed`.
+  template <class Course>
+  void run(const Step& now, LaneQueue queue, std::size_t stage, Course& course,
+           std::vector<std::size_t>& failed, long& iterations, long& lanes) {
+    const LaneStage& of = method_.stages[stage];
+    poses_.at = now.pose(of.time);
+    constexpr std::size_t none = LaneStrands<Model>::none;
+    typename LaneStrands<Model>::Lanes home;
+    home.fill(none);
+    for (bool refill = true;;) {
+      if (refill) {
+        const auto before = home;
+        now.strands.fill(home, queue, stuck_, work);
+        if (std::ranges::all_of(home, [](std::size_t k) { return k == none; })) break;
+        T starts(0);
+        for (std::size_t k = 0; k < home.size(); ++k) {
+          if (before[k] == none) starts.set(static_cast<int>(k), 1);
+        }
+        work.begin(model_, stage, poses_, now.h, starts);
+        now.meet(of.time, of.gamma);
+        for (std::size_t k = 0; k < home.size(); ++k) {
+          if (before[k] == none) course.start(static_cast<int>(k), work);
+        }
+        refill = false;
+      }
+      const auto verdicts = course.go_on(work, work.newton(model_));
+      lanes += T::lanes;
+      bool ended = false;
+      for (std::size_t k = 0; k < home.size(); ++k) {
+        if (home[k] == none) continue;
+        ++iterations;
+        if (verdicts[k] == NewtonVerdict::go_on) continue;
+        if (verdicts[k] == NewtonVerdict::converged) {
+          if (!ended) work.end(model_, poses_);
+          ended = true;
+          now.strands.put_home(work, work.after, static_cast<int>(k), home[k]);
+        } else {
+          failed.push_back(home[k]);
+        }
+        home[k] = none;
+        refill = true;
+      }
+    }
+  }
+
+  void alone(const Step& now, std::size_t strand) {
+    for (int lane = 0; lane < T::lanes; ++lane) now.strands.take(strand, work, lane);
+    LoneStrand<Model> lone(model_, tolerance_, iterations_, work);
+    const bool solved = lone.solve(now.pose, now.meet, now.h);
+    now.done.alone += lone.iterations;
+    now.done.again_iterations += lone.iterations;
+    now.done.again_lanes += T::lanes * lone.iterations;
+    now.done.shortened += lone.shortened ? 1 : 0;
+    if (solved) {
+      now.strands.put_home(work, work.state, 0, strand);
+    } else {
+      lose(now, strand, "no solution for the step, nor for 64 parts of it");
+    }
+  }
+
+  void lose(const Step& now, std::size_t strand, std::string_view reason) {
+    now.strands.lose(strand);
+    lost_.push_back({strand, reason});
+  }
+
+  const Model& model_;
+  const LaneMethod& method_;
+  double tolerance_;
+  int iterations_;
+  StepPoses poses_;
+  std::vector<std::size_t> fresh_, others_;  // in first steps, and beyond them
+  std::vector<std::size_t> failed_, again_;  // at a stage; damped, too
+  std::vector<std::size_t> stuck_;           // at some stage, sorted
+  std::vector<Loss> lost_;
+};
+
+}  // namespace tress::models
