@@ -16,7 +16,7 @@ Mat3 transposed(const Mat3& a) {
 // Contacts whose force would change their velocities by less than this part of the
 // tolerance are left alone, for so many sweeps over the others: most settle at once, and
 // a few take long.
-constexpr double quiet_part = 0.25;
+constexpr double quiet_part = 0.5;
 constexpr int busy_sweeps = 10;
 // Where all are quiet and one violates the laws nevertheless, less is quiet.
 constexpr double quieter = 0.1;

@@ -31,8 +31,6 @@ constexpr std::size_t most_one_by_one = 100;
 
 constexpr std::size_t group = 256;  // of pairs that one thread takes at a time
 
-constexpr double rounding = 1e-9;  // far above that of distances, relative to them
-
 constexpr auto pair_of = [](const PieceSearch::Found& found) {
   return std::pair(found.first, found.second);
 };
@@ -50,7 +48,6 @@ PieceSearch::PieceSearch(std::span<const Strand> strands, double thickness, bool
   }
   room_ = more_room * widest_;
   motion_.resize(strand_.size());
-  ends_.resize(strand_.size());
   roomy_.resize(strand_.size());
   arc_.resize(first_.back());
 }
@@ -80,11 +77,9 @@ void PieceSearch::place(std::size_t strand, In x) {
   }
   if (gathered_.empty()) return;
   for (std::size_t i = 0; i + 3 < x.size(); i += 3) {
-    const std::size_t number = first_[strand] - strand + i / 3;
-    Gathered& piece = gathered_[number];
-    const Vec x0 = load3(&x[i]), x1 = load3(&x[i + 3]);
-    ends_[number] = {x0, x0, x1, x1};
-    const Vec one = x0 - piece.ends[0], other = x1 - piece.ends[1];
+    Gathered& piece = gathered_[first_[strand] - strand + i / 3];
+    const Vec one = load3(&x[i]) - piece.ends[0],
+              other = load3(&x[i + 3]) - piece.ends[1];
     piece.moved = std::sqrt(std::max(dot(one, one), dot(other, other)));
   }
 }
@@ -154,7 +149,6 @@ void PieceSearch::gather_piece(std::size_t piece) {
             to0 = load3(&now_[at]), to1 = load3(&now_[at + 3]);
   gathered_[piece] = {{to0, to1}};
   motion_[piece] = {from0, to0, from1, to1};
-  ends_[piece] = {to0, to0, to1, to1};
   Box& box = roomy_[piece];
   box = {from0, from0};
   for (const Vec& x : {from1, to0, to1}) box.include(x);
@@ -200,36 +194,13 @@ void PieceSearch::gather_moved(const Loop& loop) {
   near_.insert(near_.end(), again.begin(), again.end());
 }
 
-/// Pieces that keep a distance during the step do not pass through each other, and touch
-/// if they do at its end.
-void PieceSearch::look(std::span<const BoxPairs::Pair> pairs,
-                       const std::function<bool(int, int)>& wider,
-                       std::vector<Found>& found) const {
-  std::array<BoxPairs::Pair, group> during, at_end;
-  std::size_t count = 0;
-  for (const auto& [first, second, distance] : pairs) {
-    if (moved_[strand_of(first)] == 0 && moved_[strand_of(second)] == 0) continue;
-    const double thick = thickness(first, second);
-    const double away = distance - gathered_[static_cast<std::size_t>(first)].moved -
-                        gathered_[static_cast<std::size_t>(second)].moved;
-    if (!(away <= (1 + stays) * thick)) continue;
-    if (!(away <= thick) && !wider(first, second)) continue;
-    at_end[count] = during[count] = {first, second, away};
-    ++count;
-  }
-  least_approaches(ends_, std::span(at_end).first(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [first, second, away] = during[i];
-    const double far = (1 + stays) * thickness(first, second);
-    if (away > 0 && at_end[i].distance > (1 + rounding) * far) continue;
-    Found seen{};
-    if (look(first, second, wider, seen)) found.push_back(seen);
-  }
-}
-
-bool PieceSearch::look(int first, int second, const std::function<bool(int, int)>& wider,
-                       Found& found) const {
+bool PieceSearch::look(const BoxPairs::Pair& pair,
+                       const std::function<bool(int, int)>& wider, Found& found) const {
+  const auto [first, second, distance] = pair;
   const double thick = thickness(first, second), far = (1 + stays) * thick;
+  const double away = distance - gathered_[static_cast<std::size_t>(first)].moved -
+                      gathered_[static_cast<std::size_t>(second)].moved;
+  if (!(away <= far) || (!(away <= thick) && !wider(first, second))) return false;
   const MovingPieces pieces = moving(first, second);
   std::optional<PieceTouch> at = touch(pieces, far);
   if (!at) return false;
@@ -240,7 +211,7 @@ bool PieceSearch::look(int first, int second, const std::function<bool(int, int)
     found.at = *at;
   }
   // An end may slip around another piece within a step: it is held where it came from.
-  const double before = std::min(thick, distance(pieces.from));
+  const double before = std::min(thick, models::distance(pieces.from));
   if (gap_before(found) + thick < before - other_side * thick) {
     found.at = first_touch(pieces, thick);
   }
@@ -255,8 +226,14 @@ const std::vector<PieceSearch::Found>& PieceSearch::find(
   found_of_.resize((near_.size() + group - 1) / group);
   loop(found_of_.size(), [&](std::size_t g) {
     found_of_[g].clear();
-    const std::size_t first = g * group, last = std::min(near_.size(), first + group);
-    look(std::span(near_).subspan(first, last - first), wider, found_of_[g]);
+    for (std::size_t i = g * group; i < std::min(near_.size(), (g + 1) * group); ++i) {
+      const BoxPairs::Pair& pair = near_[i];
+      if (moved_[strand_of(pair.first)] == 0 && moved_[strand_of(pair.second)] == 0) {
+        continue;
+      }
+      Found found{};
+      if (look(pair, wider, found)) found_of_[g].push_back(found);
+    }
   });
   loop(moved_.size(), [&](std::size_t k) {
     if (std::exchange(moved_[k], 0) == 0) return;

@@ -86,9 +86,7 @@ class PieceSearch {
   void gather(const Loop& loop);
   void gather_moved(const Loop& loop);
   void sift(std::vector<BoxPairs::Pair>& pairs) const;
-  void look(std::span<const BoxPairs::Pair> pairs,
-            const std::function<bool(int, int)>& wider, std::vector<Found>& found) const;
-  bool look(int first, int second, const std::function<bool(int, int)>& wider,
+  bool look(const BoxPairs::Pair& pair, const std::function<bool(int, int)>& wider,
             Found& found) const;
 
   bool own_;
@@ -107,7 +105,6 @@ class PieceSearch {
   };
   std::vector<Gathered> gathered_;  // empty: not gathered in this step
   std::vector<PieceMotion> motion_;
-  std::vector<PieceMotion> ends_;  // at the end of the step, with the forces, at rest
   std::vector<Box> roomy_;
   BoxPairs broad_;
   std::vector<BoxPairs::Pair> near_;  // may touch while ends are moved up to room_
