@@ -266,6 +266,7 @@ class ReducedBatch final : public StrandBlock,
       gather(q, q_);
       const TipForces<Kernel, modes> forces(kinematics_, t, q_);
       std::vector<typename Mechanics<Kernel, modes>::Load> loads;
+      loads.reserve(points());
       for (int i = 0; i < static_cast<int>(points()); ++i) {
         loads.push_back({i - 1, forces.units(i)});
       }

@@ -16,7 +16,8 @@ void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
   const Box all = segments.extent();
   corner_ = all.least;
   const Vec width = all.most - all.least;
-  const double limit = 1 + static_cast<double>(segments.points() / segments_of_cell);
+  const std::size_t fewest = segments.points() / segments_of_cell;
+  const double limit = 1 + static_cast<double>(fewest);
   const auto number = [&](double along) {
     return std::max(1.0, std::ceil(inverse_side_ * along));
   };

@@ -143,11 +143,11 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
     interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
   }
   hold(scene);
-  std::vector<Strand> stiffened;
+  std::vector<Strand> stiffer_strands;
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    stiffened.push_back(stiffer(scene.strands[k], held_[k]));
+    stiffer_strands.push_back(stiffer(scene.strands[k], held_[k]));
   }
-  const std::vector<Strand>& strands = held_.empty() ? scene.strands : stiffened;
+  const std::vector<Strand>& strands = held_.empty() ? scene.strands : stiffer_strands;
   if (const Parameters* mesh = scene.mesh(); mesh != nullptr) {
     mesh_ = std::make_unique<ControlMesh>(*mesh, segment_lengths(strands));
   }
