@@ -82,15 +82,14 @@ class ReducedBatch final : public StrandBlock,
                     std::move(packed.roots), std::nullopt, 0),
         dynamics_(kinematics_, std::move(packed.effects)),
         mechanics_(kinematics_, dynamics_),
+        chains_(kinematics_.is_chain()),
         q_(unknowns()),
         v_(unknowns()),
         a_(unknowns()),
         zero_(unknowns(), Pack(0)),
-        r_(unknowns()) {
-    int before = -1;
-    chains_ = std::ranges::all_of(kinematics_.segments(), [&](const auto& segment) {
-      return segment.parent == before++;
-    });
+        r_(unknowns()),
+        all_points_(points()) {
+    std::iota(all_points_.begin(), all_points_.end(), 0);
   }
 
   bool responds_at_once() const override { return can_respond && chains_; }
@@ -221,8 +220,6 @@ class ReducedBatch final : public StrandBlock,
   bool pull_back(double t, In q, std::span<const int> points, In f, InOut b) override {
     if (!responds_at_once()) return false;
     const std::size_t n = this->points();
-    all_points_.resize(n);
-    std::iota(all_points_.begin(), all_points_.end(), 0);
     forces_.assign(3 * n, Pack(0));
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t lane = static_cast<std::size_t>(points[i]) / n,
@@ -278,12 +275,12 @@ class ReducedBatch final : public StrandBlock,
   Kinematics<Kernel, modes> kinematics_;
   InverseDynamics<Kernel, modes> dynamics_;
   Mechanics<Kernel, modes> mechanics_;
-  bool chains_ = true;
+  bool chains_;
   Status factored_ = Status::retry;
   std::vector<Pack> q_, v_, a_, zero_, r_;
   std::vector<Pack> responses_;  // empty: not asked for since linearize()
   std::vector<Pack> forces_;     // scratch of pull_back()
-  std::vector<int> all_points_;
+  std::vector<int> all_points_;  // 0, 1, ... of a strand
 };
 
 }  // namespace tress::models

@@ -131,9 +131,7 @@ void StrandFriction::begin(double t, double h, In from, In to, In u) {
     strand.forces.clear();
     strand.body = -1;
   }
-  for (const std::size_t k : stale_) strands_[k].stale = false;
   touching_.clear();
-  stale_.clear();
   moved_.clear();
   rounds_ = 0;
   outcome_ = {};
@@ -155,6 +153,13 @@ void StrandFriction::Ordered::list(std::size_t pieces) {
 std::span<const StrandFriction::Known> StrandFriction::Ordered::of(int piece) const {
   const auto i = static_cast<std::size_t>(piece);
   return std::span(all).subspan(first[i], first[i + 1] - first[i]);
+}
+
+/// The first one of that pair; null: none.
+const StrandFriction::Known* StrandFriction::Ordered::of(int piece, int second) const {
+  const std::span<const Known> some = of(piece);
+  const auto at = std::ranges::find(some, second, &Known::second);
+  return at == some.end() ? nullptr : &*at;
 }
 
 /// The one of these, of pieces next to its first one, that is the contact found; null:
@@ -179,13 +184,6 @@ bool StrandFriction::is_known(const Known& found) const {
   return false;
 }
 
-/// The contact of that pair in the last step; null: none.
-const StrandFriction::Known* StrandFriction::last_of(int first, int second) const {
-  const std::span<const Known> all = before_.of(first);
-  const auto last = std::ranges::find(all, second, &Known::second);
-  return last == all.end() ? nullptr : &*last;
-}
-
 /// Adds to found_ what is no contact yet.
 void StrandFriction::admit(const PieceSearch::Found& at) {
   Known found{at, {}, {}, {}};
@@ -197,14 +195,12 @@ void StrandFriction::admit(const PieceSearch::Found& at) {
     if (search_.gap_now(*same_place) <= search_.gap_now(found)) return;
     found_.erase(found_.begin() + (same_place - found_.data()));
   }
-  const bool again = std::ranges::any_of(known_.of(found.first), [&](const Known& known) {
-    return known.second == found.second;
-  });
+  const bool again = known_.of(found.first, found.second) != nullptr;
   if (again && search_.gap_now(found) >
                    -second_place * search_.thickness(found.first, found.second)) {
     return;
   }
-  const Known* const last = last_of(found.first, found.second);
+  const Known* const last = before_.of(found.first, found.second);
   if (!again && last != nullptr) found.start_from(last->world, found.at.normal);
   found_.push_back(found);
 }
@@ -223,9 +219,8 @@ void StrandFriction::look(const Obstacle::Step& step, std::size_t obstacle,
     // A piece begins where the one before ends.
     for (int part = piece == first ? 0 : 1; part <= parts; ++part) {
       Known at{{piece, code(obstacle, part), {}}, {}, {}, {}};
-      const auto known = known_.of(piece);
-      if (std::ranges::find(known, at.second, &Known::second) != known.end()) continue;
-      const Known* const last = last_of(at.first, at.second);
+      if (known_.of(piece, at.second) != nullptr) continue;
+      const Known* const last = before_.of(at.first, at.second);
       const bool pushed = last != nullptr && dot(last->world, last->world) > 0;
       at.at.s = static_cast<double>(part) / parts;
       const auto plane =
@@ -267,7 +262,7 @@ bool StrandFriction::find(const Loop& loop) {
   find_on_obstacles(loop);
   // A pair that pushed in the last step counts a little farther apart.
   const auto pushed = [this](int first, int second) {
-    const Known* const last = last_of(first, second);
+    const Known* const last = before_.of(first, second);
     return last != nullptr && dot(last->world, last->world) > 0;
   };
   for (const PieceSearch::Found& at : search_.find(loop, pushed)) admit(at);

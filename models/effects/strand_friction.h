@@ -146,10 +146,10 @@ class StrandFriction {
 
     void list(std::size_t pieces);
     std::span<const Known> of(int piece) const;
+    const Known* of(int piece, int second) const;
   };
   const Known* seen(const Known& found, std::span<const Known> some) const;
   bool is_known(const Known& found) const;
-  const Known* last_of(int first, int second) const;
   void admit(const PieceSearch::Found& found);
   void look(const Obstacle::Step& step, std::size_t obstacle, std::size_t strand,
             std::vector<Known>& found) const;

@@ -100,6 +100,13 @@ class Kinematics {
     return segment.mounted ? mounted_[i] : parent_tip(segment);
   }
   const FrameMotion& root() const { return root_; }
+  /// Without branches.
+  bool is_chain() const {
+    int before = -1;
+    return std::ranges::all_of(segments_, [&before](const Segment& segment) {
+      return segment.parent == before++;
+    });
+  }
   bool free() const { return free_root_.has_value(); }
   FreeRootFrame& free_root() { return *free_root_; }
   const FreeRootFrame& free_root() const { return *free_root_; }

@@ -54,9 +54,7 @@ class ReducedSystem : public System,
     const auto n = static_cast<std::size_t>(kinematics_.unknowns());
     zero_.assign(n, 0.0);
     scratch_.assign(n, 0.0);
-    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      if (kinematics_.segments()[i].parent != static_cast<int>(i) - 1) chain_ = false;
-    }
+    chain_ = kinematics_.is_chain();
     if (!exact_) return;
     if (dynamics_.effect_needs().derivatives) {
       for (auto* x : {&by_position_, &by_velocity_}) {

@@ -39,9 +39,12 @@ std::vector<std::shared_ptr<const Obstacle>> obstacles(const Effects& effects) {
   return all;
 }
 
-std::string no_response(std::size_t strand, double t) {
-  return fmt::format("strand {}: no response to the forces of others at t = {:.9g} s",
-                     strand, t);
+/// Of strands that are solved as one system: any of them.
+std::string no_response(std::size_t first, std::size_t strands, double t) {
+  return fmt::format("strand{}: no response to the forces of others at t = {:.9g} s",
+                     strands == 1 ? fmt::format(" {}", first)
+                                  : fmt::format("s {} to {}", first, first + strands - 1),
+                     t);
 }
 
 Impulsive& impulsive(Integrator& method) {
@@ -82,12 +85,13 @@ void Rubbing::add(System& strands, Integrator& method, const Options& options) {
   group.impulsive = &impulsive(method);
   group.first = responder_of_.size();
   const auto* const block = dynamic_cast<StrandBlock*>(&strands);
+  group.strands = block == nullptr ? 1 : block->strands();
   if (block == nullptr || block->responds_at_once()) {
-    add_responder(strands, block == nullptr ? 1 : block->strands(), 0, options);
+    add_responder(strands, group.strands, 0, options);
     return;
   }
   std::size_t coordinate = 0;
-  for (std::size_t k = 0; k < block->strands(); ++k) {
+  for (std::size_t k = 0; k < group.strands; ++k) {
     System& strand = block->strand(k);
     add_responder(strand, 1, coordinate, options);
     coordinate += static_cast<std::size_t>(strand.layout().coordinates);
@@ -129,9 +133,10 @@ Status Rubbing::each(Some strands, double t, const Loop& loop,
     responder.status = act(responder, of_responders[i]);
   });
   for (const Some some : of_responders) {
-    if (of(some).status == Status::ok) continue;
-    failure_ = no_response(some.front(), t);
-    return of(some).status;
+    const Responder& responder = of(some);
+    if (responder.status == Status::ok) continue;
+    failure_ = no_response(responder.first, responder.strands, t);
+    return responder.status;
   }
   return Status::ok;
 }
@@ -199,7 +204,7 @@ Status Rubbing::go_on(double t, const Loop& loop) {
   });
   for (const Group& group : groups_) {
     if (group.status == Status::ok) continue;
-    failure_ = no_response(group.first, t);
+    failure_ = no_response(group.first, group.strands, t);
     return group.status;
   }
   return Status::ok;

@@ -55,7 +55,7 @@ class Rubbing {
   struct Group {
     Integrator* method;
     Impulsive* impulsive;
-    std::size_t first;  // strand
+    std::size_t first, strands;  // first: strand
     std::vector<double> q, v;
     bool touched = false;
     Status status = Status::ok;
