@@ -17,6 +17,7 @@ class BackwardEuler final : public FixedStep, public Impulsive {
 
  private:
   Status go_on(In q, In v) override { return replace(q, v); }
+  void lose_matrix() override { dynamics_.lose_matrix(); }
 
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h, v_);

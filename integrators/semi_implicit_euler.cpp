@@ -16,6 +16,7 @@ class SemiImplicitEuler final : public FixedStep, public Impulsive {
 
  private:
   Status go_on(In q, In v) override { return replace(q, v); }
+  void lose_matrix() override { dynamics_.lose_matrix(); }
 
   Status reset(double /*t*/) override {
     step_.reset();

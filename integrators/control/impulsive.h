@@ -12,6 +12,8 @@ class Impulsive {
   virtual ~Impulsive() = default;
   /// Goes on from (q, v) at the present time.
   virtual Status go_on(In q, In v) = 0;
+  /// Somebody else has used the system's matrix since the last step.
+  virtual void lose_matrix() = 0;
 };
 
 }  // namespace tress::integrators

@@ -98,6 +98,7 @@ PackedStrands packed(std::span<const Strand> all_strands, Unknown unknown,
   for (std::size_t lane = 0; lane < width; ++lane) {
     in_lanes.push_back(&strands[lane < strands.size() ? lane : 0]);
     all.roots.push_back(in_lanes.back()->root);
+    all.root_rotor.set(static_cast<int>(lane), in_lanes.back()->root_rotor);
   }
   all.effects = std::move(effects);
   for (std::size_t i = 0; i < strands.front().segments.size(); ++i) {

@@ -12,6 +12,7 @@ struct PackedStrands {
   std::vector<ReducedSegmentOf<Pack>> segments;
   std::vector<PointBlock> blocks;
   std::vector<RootMotion> roots;  // one per lane
+  Pack root_rotor;                // as ReducedStrand's
   std::vector<Effects> effects;   // one per strand
 };
 

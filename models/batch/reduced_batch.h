@@ -10,6 +10,7 @@
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/recursive_solver.h"
 #include "models/reduced/stiff_tangent.h"
+#include "models/reduced/strand_energies.h"
 #include "models/reduced/transport_sweeps.h"
 
 namespace tress::models {
@@ -79,7 +80,7 @@ class ReducedBatch final : public StrandBlock,
   ReducedBatch(PackedStrands packed, std::vector<std::unique_ptr<System>> strands)
       : StrandBlock(std::move(strands)),
         kinematics_(std::move(packed.segments), std::move(packed.blocks),
-                    std::move(packed.roots), std::nullopt, 0),
+                    std::move(packed.roots), std::nullopt, packed.root_rotor),
         dynamics_(kinematics_, std::move(packed.effects)),
         mechanics_(kinematics_, dynamics_),
         chains_(kinematics_.is_chain()),
@@ -188,6 +189,27 @@ class ReducedBatch final : public StrandBlock,
       }
     }
     return finite ? Status::ok : Status::retry;
+  }
+
+  Energy energy(double t, In q, In v) override {
+    gather(q, q_);
+    gather(v, v_);
+    kinematics_.move(t, q_, v_, zero_);
+    const auto own = strand_energies<Kernel, modes>(kinematics_, q_, v_);
+    const Needs wanted =
+        dynamics_.effect_needs() | Needs{.position = true, .velocity = true};
+    dynamics_.place(wanted);
+    Energy sum;
+    for (std::size_t k = 0; k < strands(); ++k) {
+      const auto lane = static_cast<int>(k);
+      sum.kinetic += own.kinetic[lane];
+      sum.potential += own.elastic[lane];
+      const Points points = dynamics_.points(k, wanted);
+      for (const auto& effect : dynamics_.effects(k)) {
+        sum.potential += effect->potential(t, points);
+      }
+    }
+    return sum;
   }
 
   /// Material points of a strand: the root and the tips of all segments.

@@ -95,19 +95,23 @@ bool JointContacts::step() {
       const auto row = static_cast<Eigen::Index>(on.first) + k;
       unknown[row] = on.known[k] - dot(on.row[k], contacts_[on.contact].free);
     }
-    for (const Active& of : active_) {
-      const Mat3& w = block(on.contact, of.contact);
-      for (int l = 0; l < of.unknowns; ++l) {
-        const Vec u = w * of.column[l];
-        for (int k = 0; k < on.unknowns; ++k) {
-          matrix(static_cast<Eigen::Index>(on.first) + k,
-                 static_cast<Eigen::Index>(of.first) + l) = dot(on.row[k], u);
+  }
+  for (const Active& of : active_) {
+    for (int l = 0; l < of.unknowns; ++l) {
+      double* const column = &matrix(0, static_cast<Eigen::Index>(of.first) + l);
+      for (const Active& on : active_) {
+        // Its first row is (1, 0, 0), and so on where it sticks.
+        const Vec u = block(on.contact, of.contact) * of.column[l];
+        double* const to = column + on.first;
+        to[0] = u.x;
+        if (on.unknowns == 3) {
+          to[1] = u.y;
+          to[2] = u.z;
+        } else {
+          to[1] = dot(on.row[1], u);
         }
       }
-    }
-    for (int k = 0; k < on.unknowns; ++k) {
-      const auto row = static_cast<Eigen::Index>(on.first) + k;
-      matrix(row, row) += on.own[k];
+      column[of.first + static_cast<std::size_t>(l)] += of.own[l];
     }
   }
   DenseLu lu(size);

@@ -77,6 +77,12 @@ Mat3 axes_of(const Vec& normal) {
   return {normal, first, cross(normal, first)};
 }
 
+/// Ascending, each once.
+void unique(std::vector<std::size_t>& strands) {
+  std::ranges::sort(strands);
+  strands.erase(std::unique(strands.begin(), strands.end()), strands.end());
+}
+
 /// By which contacts are ordered.
 constexpr auto pair_of = [](const auto& known) {
   return std::pair(known.first, known.second);
@@ -311,10 +317,8 @@ void StrandFriction::touch_points() {
     }
   }
   touching_.insert(touching_.end(), stale_.begin(), stale_.end());
-  for (auto* strands : {&stale_, &touching_}) {
-    std::ranges::sort(*strands);
-    strands->erase(std::unique(strands->begin(), strands->end()), strands->end());
-  }
+  unique(stale_);
+  unique(touching_);
   for (const std::size_t k : stale_) {
     Touched& strand = strands_[k];
     strand.stale = true;
@@ -487,6 +491,12 @@ void StrandFriction::recall(In memory) {
          load3(&memory[i + 2]),
          {}});
   }
+  touching_.clear();
+  for (const Known& known : known_.all) {
+    touching_.push_back(strand_of(known.first));
+    if (known.second >= 0) touching_.push_back(strand_of(known.second));
+  }
+  unique(touching_);
 }
 
 }  // namespace tress::models

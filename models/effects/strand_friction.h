@@ -70,7 +70,8 @@ class StrandFriction {
   /// Where all points of a strand are with the forces found, 3 numbers each.
   void place(std::size_t strand, In x);
 
-  /// Of the step: strands with contacts, ascending, and the forces (N) on points_of().
+  /// Of the step, or of that which was recalled: strands with contacts, ascending. Of the
+  /// step: the forces (N) on points_of().
   std::span<const std::size_t> touching() const { return touching_; }
   In forces(std::size_t strand) const { return strands_[strand].forces; }
   /// f += the forces on all points of a strand, 3 numbers each, N.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "linear/dense_factor.h"
 #include "models/reduced/composite_matrix.h"
-#include "models/reduced/dense_factor.h"
 #include "models/reduced/tree_solver.h"
 
 namespace tress::models {

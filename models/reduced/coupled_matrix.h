@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "models/reduced/dense_factor.h"
+#include "linear/dense_factor.h"
 #include "models/reduced/tree_tangent.h"
 
 namespace tress::models {

@@ -1,8 +1,8 @@
 #include "models/reduced/force_transport.h"
 
+#include "linear/dense_factor.h"
 #include "models/reduced/ball_chain.h"
 #include "models/reduced/composite_matrix.h"
-#include "models/reduced/dense_factor.h"
 #include "models/reduced/transport_sweeps.h"
 #include "models/strand/geometry.h"
 

@@ -71,7 +71,7 @@ class Kinematics {
   /// One root motion per strand: lanes<Real> of them.
   Kinematics(const std::vector<ReducedSegmentOf<Real>>& segments,
              std::vector<PointBlock> blocks, std::vector<RootMotion> roots,
-             const std::optional<FreeRootFrame>& free_root, double root_rotor)
+             const std::optional<FreeRootFrame>& free_root, const Real& root_rotor)
       : segments_(segments.begin(), segments.end()),
         blocks_(std::move(blocks)),
         rule_(rule_of(segments_.front(), blocks_)),
@@ -110,7 +110,7 @@ class Kinematics {
   bool free() const { return free_root_.has_value(); }
   FreeRootFrame& free_root() { return *free_root_; }
   const FreeRootFrame& free_root() const { return *free_root_; }
-  double root_rotor() const { return root_rotor_; }  // free root, kg m^2
+  const Real& root_rotor() const { return root_rotor_; }  // kg m^2
   bool moving_root() const {
     return !free_root_ && !std::ranges::all_of(root_motions_, &RootMotion::fixed);
   }
@@ -418,7 +418,7 @@ class Kinematics {
   [[no_unique_address]] Rule rule_;
   std::vector<RootMotion> root_motions_;
   std::optional<FreeRootFrame> free_root_;
-  double root_rotor_;
+  Real root_rotor_;
   std::vector<SegmentGeometry> geometry_;
   std::vector<BlockGeometry> block_geometry_;
   std::vector<SegmentMotion> motion_;

@@ -89,7 +89,7 @@ struct ReducedStrand {
   std::vector<PointBlock> blocks;
   RootMotion root;
   std::optional<FreeRoot> free_root;
-  double root_rotor = 0;  // as ReducedSegment::rotor, for a free root
+  double root_rotor = 0;  // as ReducedSegment::rotor, of the root
   Frame to_tip;  // from the frame of the last segment's tip to its section's, at rest
   Effects effects;
   ReducedTangent tangent = ReducedTangent::exact;

@@ -10,6 +10,7 @@
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
+#include "models/reduced/strand_energies.h"
 #include "models/reduced/tree_solver.h"
 #include "models/strand/not_finite.h"
 
@@ -236,9 +237,6 @@ class ReducedSystem : public System,
     return solved == Status::ok ? finite(a) : solved;
   }
 
-  static double rotor_energy(double inertia, const FrameMotion& m) {
-    return 0.5 * inertia * m.omega.x * m.omega.x;
-  }
   static Vec rotor_momentum(double inertia, const FrameMotion& m) {
     return (inertia * m.omega.x) * m.frame.e0;
   }
@@ -253,21 +251,8 @@ class ReducedSystem : public System,
 
   Energy energy(double t, In q, In v) override {
     kinematics_.move(t, q, v, zero_);
-    Energy e;
-    e.kinetic = rotor_energy(kinematics_.root_rotor(), kinematics_.root());
-    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
-      const auto& segment = kinematics_.segments()[i];
-      for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
-        const Vec3<Pack> u = kinematics_.velocity(i, b);
-        e.kinetic += 0.5 * sum(kinematics_.blocks()[b].mass * dot(u, u));
-      }
-      e.kinetic += rotor_energy(segment.rotor, kinematics_.motion(i).tip);
-      if constexpr (Kernel::functions == 2) {
-        e.kinetic += 0.5 * weighed_square(segment.inertia, K::components(v, i));
-      }
-      e.potential +=
-          0.5 * weighed_square(segment.stiffness, K::components(q, i) - segment.rest);
-    }
+    const auto own = strand_energies(kinematics_, q, v);
+    Energy e{own.kinetic, own.elastic};
     const Points points = placed();
     for (const auto& effect : dynamics_.effects(0)) {
       e.potential += effect->potential(t, points);

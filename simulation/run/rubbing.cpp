@@ -84,12 +84,15 @@ void Rubbing::add(System& strands, Integrator& method, const Options& options) {
   group.method = &method;
   group.impulsive = &impulsive(method);
   group.first = responder_of_.size();
+  group.first_responder = responders_.size();
   const auto* const block = dynamic_cast<StrandBlock*>(&strands);
   group.strands = block == nullptr ? 1 : block->strands();
+  group.responders = 1;
   if (block == nullptr || block->responds_at_once()) {
     add_responder(strands, group.strands, 0, options);
     return;
   }
+  group.responders = group.strands;
   std::size_t coordinate = 0;
   for (std::size_t k = 0; k < group.strands; ++k) {
     System& strand = block->strand(k);
@@ -100,6 +103,10 @@ void Rubbing::add(System& strands, Integrator& method, const Options& options) {
 
 void Rubbing::restart(In memory) {
   friction_.recall(memory);
+  for (Responder& responder : responders_) responder.touches = false;
+  for (const std::size_t k : friction_.touching()) {
+    responders_[responder_of_[k]].touches = true;
+  }
   stats_ = {};
   failure_.clear();
 }
@@ -110,8 +117,26 @@ void Rubbing::before_step(In x) {
     const In v = groups_[responder.group].method->v();
     std::ranges::copy(v.subspan(responder.coordinate, responder.v_before.size()),
                       responder.v_before.begin());
-    responder.prepared = false;
+    responder.prepared = {};
   }
+}
+
+void Rubbing::prepare(std::size_t k, double h) {
+  for (Responder& responder : of(groups_[k])) {
+    if (!std::exchange(responder.touches, false)) continue;
+    groups_[k].impulsive->lose_matrix();
+    // Of strands that respond together, the first question finds all answers.
+    if (prepare(responder, h) == Status::ok && responder.strands > 1) {
+      (void)responder.response->compliance({}, responder.blocks);
+    }
+  }
+}
+
+Status Rubbing::prepare(Responder& responder, double h) {
+  if (!responder.prepared) {
+    responder.prepared = responder.response->prepare(h, responder.v_before);
+  }
+  return *responder.prepared;
 }
 
 /// What responds of these strands, ascending, and which they are.
@@ -142,10 +167,7 @@ Status Rubbing::each(Some strands, double t, const Loop& loop,
 }
 
 Status Rubbing::give_compliance(Responder& responder, Some strands, double h) {
-  if (!std::exchange(responder.prepared, true)) {
-    const Status done = responder.response->prepare(h, responder.v_before);
-    if (done != Status::ok) return done;
-  }
+  if (const Status done = prepare(responder, h); done != Status::ok) return done;
   for (const std::size_t k : strands) {
     const auto first = static_cast<int>((k - responder.first) * responder.points);
     responder.touched = friction_.points_of(k);
@@ -184,7 +206,8 @@ Status Rubbing::respond(Responder& responder, Some moved, double t) {
 /// Methods of strands that others touched, from the states that these have left.
 Status Rubbing::go_on(double t, const Loop& loop) {
   for (const std::size_t k : friction_.touching()) {
-    const Responder& responder = responders_[responder_of_[k]];
+    Responder& responder = responders_[responder_of_[k]];
+    responder.touches = true;
     Group& group = groups_[responder.group];
     if (!std::exchange(group.touched, true)) {
       group.q.assign(group.method->q().begin(), group.method->q().end());

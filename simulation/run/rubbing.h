@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,10 @@ class Rubbing {
 
   /// x: all points, 3 numbers each, strand after strand.
   void before_step(In x);
+  /// Need not be called: what was added as the k-th, if it touched others in the last
+  /// step, finds how it responds to forces right after its step of h, while what that
+  /// needs is near in memory. Safe for different ones at once.
+  void prepare(std::size_t k, double h);
   /// After a step of h that ended at t, with points and their velocities there. Methods
   /// of friction().touching() then go on from new states. Not ok: failure() tells why.
   Status after_step(double t, double h, In x, In u, const Loop& loop);
@@ -48,7 +54,8 @@ class Rubbing {
     std::size_t points;                 // of each strand
     std::vector<double> v_before, blocks, forces, placed;
     std::vector<int> touched;
-    bool prepared = false;  // its matrix is that of this step
+    bool touches = false;            // others, in the last step
+    std::optional<Status> prepared;  // whether its matrix is that of this step
     Status status = Status::ok;
   };
   /// Strands that one method steps, and their state after it and impulses.
@@ -56,15 +63,20 @@ class Rubbing {
     Integrator* method;
     Impulsive* impulsive;
     std::size_t first, strands;  // first: strand
+    std::size_t first_responder, responders;
     std::vector<double> q, v;
     bool touched = false;
     Status status = Status::ok;
   };
   using Some = std::span<const std::size_t>;  // strands
+  std::span<Responder> of(const Group& group) {
+    return std::span(responders_).subspan(group.first_responder, group.responders);
+  }
   void add_responder(System& system, std::size_t strands, std::size_t coordinate,
                      const Options& options);
   Status each(Some strands, double t, const Loop& loop,
               const std::function<Status(Responder&, Some)>& act);
+  static Status prepare(Responder& responder, double h);
   Status give_compliance(Responder& responder, Some strands, double h);
   Status respond(Responder& responder, Some moved, double t);
   Status go_on(double t, const Loop& loop);

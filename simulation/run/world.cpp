@@ -135,22 +135,26 @@ double World::stretch() {
 }
 
 const std::vector<double>& World::positions() {
-  look(
-      [&](Body& body, Out of_strand) {
-        body.system->material_points()->positions(t_, body.integrator->q(), of_strand);
-      },
-      x_);
+  look(x_, &World::read_positions);
   return x_.values;
 }
 
 const std::vector<double>& World::velocities() {
-  look(
-      [&](Body& body, Out of_strand) {
-        body.system->material_points()->velocities(t_, body.integrator->q(),
-                                                   body.integrator->v(), of_strand);
-      },
-      u_);
+  look(u_, &World::read_velocities);
   return u_.values;
+}
+
+void World::read_positions(std::size_t k, double t) {
+  if (std::exchange(x_.done[k], 1) != 0 || bodies_[k].points == 0) return;
+  const Body& body = bodies_[k];
+  body.system->material_points()->positions(t, body.integrator->q(), x_.of(body));
+}
+
+void World::read_velocities(std::size_t k, double t) {
+  if (std::exchange(u_.done[k], 1) != 0 || bodies_[k].points == 0) return;
+  const Body& body = bodies_[k];
+  body.system->material_points()->velocities(t, body.integrator->q(),
+                                             body.integrator->v(), u_.of(body));
 }
 
 void World::exchange() {
@@ -164,14 +168,9 @@ Loop World::loop() {
   };
 }
 
-void World::look(const std::function<void(Body&, Out)>& read, Read& to) {
-  if (std::ranges::find(to.done, 0) == to.done.end()) return;
-  crew_.run(bodies_.size(), [&](std::size_t k) {
-    const std::size_t count = 3 * bodies_[k].points;
-    if (std::exchange(to.done[k], 1) == 0 && count > 0) {
-      read(bodies_[k], Out(to.values).subspan(3 * bodies_[k].first_point, count));
-    }
-  });
+void World::look(const Read& known, void (World::*read)(std::size_t, double)) {
+  if (std::ranges::find(known.done, 0) == known.done.end()) return;
+  crew_.run(bodies_.size(), [&](std::size_t k) { (this->*read)(k, t_); });
 }
 
 }  // namespace tress::simulation

@@ -182,8 +182,14 @@ class World {
     std::vector<char> done;      // of each body: that of the present state
 
     void forget() { std::ranges::fill(done, 0); }
+    Out of(const Body& body) {
+      return Out(values).subspan(3 * body.first_point, 3 * body.points);
+    }
   };
-  void look(const std::function<void(Body&, Out)>& read, Read& to);
+  void look(const Read& known, void (World::*read)(std::size_t, double));
+  /// Those of the points of a body, which is at t, unless they are known.
+  void read_positions(std::size_t k, double t);
+  void read_velocities(std::size_t k, double t);
   void exchange();
 
   Status rub(double h);

@@ -59,9 +59,9 @@ Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
-  const double count = interaction_ || rubbing_ || mesh_
-                           ? std::max(1.0, std::ceil(span / options_.step - 1e-9))
-                           : 1.0;
+  const bool exchanges = interaction_ || rubbing_ || mesh_;
+  const double count =
+      exchanges ? std::max(1.0, std::ceil(span / options_.step - 1e-9)) : 1.0;
   const double begin = t_;
   for (long i = 1; i <= static_cast<long>(count); ++i) {
     const double t = i == static_cast<long>(count)
@@ -70,10 +70,17 @@ Status World::advance(double t_end) {
     const bool last = i == static_cast<long>(count);
     const double h = t - t_;
     if (rubbing_) rubbing_->before_step(positions());
-    crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, last); });
-    t_ = t;
     x_.forget();
     u_.forget();
+    crew_.run(bodies_.size(), [&](std::size_t k) {
+      advance(bodies_[k], t, last);
+      // What an exchange asks for costs least while the strand is near in memory.
+      if (!exchanges || bodies_[k].status != Status::ok) return;
+      read_positions(k, t);
+      read_velocities(k, t);
+      if (rubbing_) rubbing_->prepare(k, h);
+    });
+    t_ = t;
     for (const Body& body : bodies_) {
       if (body.status == Status::ok) continue;
       failure_ = failure_of(body);

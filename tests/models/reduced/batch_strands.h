@@ -68,6 +68,16 @@ inline Strand strand(int lane, int dofs) {
   return made;
 }
 
+/// What gravity of effects() pulls it by at most, N.
+inline double weight(int lane) {
+  const Strand made = strand(lane, 3);
+  double mass = 0;
+  for (const Segment& segment : made.segments) {
+    mass += made.material.density * segment.section.area() * segment.length;
+  }
+  return mass * 10;
+}
+
 inline Effects effects(int lane) {
   const auto gravity = std::make_shared<Gravity>(Vec{0, 1, -9.81});
   const auto drag = std::make_shared<LinearDrag>(2e-5, 0.5);

@@ -1,8 +1,8 @@
-#include "models/reduced/dense_factor.h"
+#include "linear/dense_factor.h"
 
 #include <cmath>
 
-namespace tress::models {
+namespace tress {
 
 DenseFactor::DenseFactor(int size, bool symmetric)
     : matrix(size, size),
@@ -41,4 +41,4 @@ void add_dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
   c.noalias() += a * b;
 }
 
-}  // namespace tress::models
+}  // namespace tress

@@ -5,7 +5,7 @@
 #include "contract/system.h"
 #include "linear/dense_lu.h"
 
-namespace tress::models {
+namespace tress {
 
 /// A dense matrix of mixed units, scaled to unit diagonal and factored: Cholesky when it
 /// is symmetric, LU otherwise. `matrix` is written by the caller and destroyed by
@@ -29,4 +29,4 @@ class DenseFactor {
 void add_dense_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                        Eigen::MatrixXd& c);
 
-}  // namespace tress::models
+}  // namespace tress
