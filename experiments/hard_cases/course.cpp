@@ -52,7 +52,7 @@ Simulation run_rubbing(Integrator& method, Situation& s, const Course& c,
   for (double i = 1; i <= count && status == Status::ok; ++i) {
     const double next = end * i / count;
     points.positions(t, method.q(), x);
-    s.rubbing->before_step(x);
+    s.rubbing->before_step(x, loop);
     status = method.advance(next, {});
     if (status != Status::ok) break;
     points.positions(next, method.q(), x);

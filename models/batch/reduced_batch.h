@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "contract/natural_strains.h"
@@ -106,7 +107,7 @@ class ReducedBatch final : public StrandBlock,
   Status linearize(double t, In q, In v, In, Weights w) noexcept override {
     gather(q, q_);
     gather(v, v_);
-    responses_.clear();
+    responded_ = false;
     return factored_ = mechanics_.linearize(t, q_, v_, w);
   }
 
@@ -264,7 +265,7 @@ class ReducedBatch final : public StrandBlock,
   /// Those of all points are found at once, when the first are asked for.
   bool responses(double t, In q, std::span<const int> points, Out blocks) override {
     if (!responds_at_once() || factored_ != Status::ok) return false;
-    if (responses_.empty()) respond(t, q);
+    if (!std::exchange(responded_, true)) respond(t, q);
     const std::size_t n = this->points();
     double* to = blocks.data();
     for (const int of : points) {
@@ -300,7 +301,8 @@ class ReducedBatch final : public StrandBlock,
   bool chains_;
   Status factored_ = Status::retry;
   std::vector<Pack> q_, v_, a_, zero_, r_;
-  std::vector<Pack> responses_;  // empty: not asked for since linearize()
+  std::vector<Pack> responses_;
+  bool responded_ = false;       // they are those of the last linearize()
   std::vector<Pack> forces_;     // scratch of pull_back()
   std::vector<int> all_points_;  // 0, 1, ... of a strand
 };

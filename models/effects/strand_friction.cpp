@@ -313,15 +313,14 @@ void StrandFriction::touch_points() {
       if (strand.place[point] >= 0) continue;
       strand.place[point] = 0;
       strand.touched.push_back(static_cast<int>(point));
-      stale_.push_back(k);
+      if (!std::exchange(strand.stale, true)) stale_.push_back(k);
     }
   }
   touching_.insert(touching_.end(), stale_.begin(), stale_.end());
-  unique(stale_);
+  std::ranges::sort(stale_);
   unique(touching_);
   for (const std::size_t k : stale_) {
     Touched& strand = strands_[k];
-    strand.stale = true;
     std::ranges::sort(strand.touched);
     for (std::size_t i = 0; i < strand.touched.size(); ++i) {
       strand.place[static_cast<std::size_t>(strand.touched[i])] = static_cast<int>(i);

@@ -80,6 +80,9 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
       first_(first) {
   const auto count = points_ == nullptr ? 0 : static_cast<std::size_t>(points_->count());
   for (auto* list : {&x_, &u_, &tangent_, &load_}) list->resize(3 * count);
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    before_.push_back(points_->before(i));
+  }
 }
 
 void Guard::start(double t, In q, In v) {
@@ -153,8 +156,8 @@ Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
   const std::size_t count = strand.rest.size();
   for (std::size_t i = first; i < first + count; ++i) {
     const bool root = i == first;
-    const auto from = static_cast<std::size_t>(
-        root ? static_cast<int>(first) : points_->before(static_cast<int>(i)));
+    const auto from =
+        static_cast<std::size_t>(root ? static_cast<int>(first) : before_[i]);
     const Vec chord = load3(&x_[3 * (root ? i + 1 : i)]) - load3(&x_[3 * from]);
     store3((1 / norm(chord)) * chord, &tangent_[3 * i]);
   }
@@ -202,8 +205,7 @@ bool Guard::stretched(double t, In q) {
   double ratio = 0;
   for (const GuardedStrand& strand : strands_) {
     for (std::size_t i = 1; i < strand.rest.size(); ++i) {
-      const auto from =
-          static_cast<std::size_t>(points_->before(static_cast<int>(first + i)));
+      const auto from = static_cast<std::size_t>(before_[first + i]);
       const double chord = norm(load3(&x_[3 * (first + i)]) - load3(&x_[3 * from]));
       const double off = std::abs(chord / strand.rest[i] - 1);
       if (off <= ratio) continue;

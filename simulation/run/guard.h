@@ -109,6 +109,7 @@ class Guard {
   MaterialPoints* points_;
   std::vector<GuardedStrand> strands_;
   std::size_t first_;
+  std::vector<int> before_;                     // each point along its strand, -1: none
   std::vector<double> x_, u_, tangent_, load_;  // (3 points); u_: relative to the frame
   int steps_ = 0;                               // since judged
   Record record_;

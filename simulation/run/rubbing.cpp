@@ -111,14 +111,15 @@ void Rubbing::restart(In memory) {
   failure_.clear();
 }
 
-void Rubbing::before_step(In x) {
+void Rubbing::before_step(In x, const Loop& loop) {
   x_before_.assign(x.begin(), x.end());
-  for (Responder& responder : responders_) {
+  loop(responders_.size(), [&](std::size_t i) {
+    Responder& responder = responders_[i];
     const In v = groups_[responder.group].method->v();
     std::ranges::copy(v.subspan(responder.coordinate, responder.v_before.size()),
                       responder.v_before.begin());
     responder.prepared = {};
-  }
+  });
 }
 
 void Rubbing::prepare(std::size_t k, double h) {
@@ -205,25 +206,25 @@ Status Rubbing::respond(Responder& responder, Some moved, double t) {
 
 /// Methods of strands that others touched, from the states that these have left.
 Status Rubbing::go_on(double t, const Loop& loop) {
-  for (const std::size_t k : friction_.touching()) {
-    Responder& responder = responders_[responder_of_[k]];
-    responder.touches = true;
-    Group& group = groups_[responder.group];
-    if (!std::exchange(group.touched, true)) {
-      group.q.assign(group.method->q().begin(), group.method->q().end());
-      group.v.assign(group.method->v().begin(), group.method->v().end());
-    }
-    const std::size_t n = responder.v_before.size() / responder.strands,
-                      first = (k - responder.first) * n;
-    const auto to = static_cast<std::ptrdiff_t>(responder.coordinate + first);
-    std::ranges::copy(responder.response->q().subspan(first, n), group.q.begin() + to);
-    std::ranges::copy(responder.response->v().subspan(first, n), group.v.begin() + to);
-  }
+  const std::span<const std::size_t> touching = friction_.touching();
   loop(groups_.size(), [&](std::size_t g) {
     Group& group = groups_[g];
-    group.status = std::exchange(group.touched, false)
-                       ? group.impulsive->go_on(group.q, group.v)
-                       : Status::ok;
+    group.status = Status::ok;
+    const auto from = std::ranges::lower_bound(touching, group.first),
+               to = std::ranges::lower_bound(touching, group.first + group.strands);
+    if (from == to) return;
+    group.q.assign(group.method->q().begin(), group.method->q().end());
+    group.v.assign(group.method->v().begin(), group.method->v().end());
+    for (const std::size_t k : std::span(from, to)) {
+      Responder& responder = responders_[responder_of_[k]];
+      responder.touches = true;
+      const std::size_t n = responder.v_before.size() / responder.strands,
+                        first = (k - responder.first) * n;
+      const auto at = static_cast<std::ptrdiff_t>(responder.coordinate + first);
+      std::ranges::copy(responder.response->q().subspan(first, n), group.q.begin() + at);
+      std::ranges::copy(responder.response->v().subspan(first, n), group.v.begin() + at);
+    }
+    group.status = group.impulsive->go_on(group.q, group.v);
   });
   for (const Group& group : groups_) {
     if (group.status == Status::ok) continue;

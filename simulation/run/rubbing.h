@@ -28,7 +28,7 @@ class Rubbing {
   void add(System& strands, Integrator& method, const Options& options);
 
   /// x: all points, 3 numbers each, strand after strand.
-  void before_step(In x);
+  void before_step(In x, const Loop& loop);
   /// Need not be called: what was added as the k-th, if it touched others in the last
   /// step, finds how it responds to forces right after its step of h, while what that
   /// needs is near in memory. Safe for different ones at once.
@@ -65,7 +65,6 @@ class Rubbing {
     std::size_t first, strands;  // first: strand
     std::size_t first_responder, responders;
     std::vector<double> q, v;
-    bool touched = false;
     Status status = Status::ok;
   };
   using Some = std::span<const std::size_t>;  // strands

@@ -69,7 +69,7 @@ Status World::advance(double t_end) {
                          : begin + static_cast<double>(i) * (span / count);
     const bool last = i == static_cast<long>(count);
     const double h = t - t_;
-    if (rubbing_) rubbing_->before_step(positions());
+    if (rubbing_) rubbing_->before_step(positions(), loop());
     x_.forget();
     u_.forget();
     crew_.run(bodies_.size(), [&](std::size_t k) {
@@ -99,11 +99,13 @@ Status World::rub(double h) {
   std::size_t body = 0;
   for (const std::size_t k : rubbing_->friction().touching()) {
     while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
-    Body& touched = bodies_[body];
-    if (x_.done[body] == 0) continue;  // by another of its strands
-    touched.keep(t_, touched.integrator->q(), touched.integrator->v());
     x_.done[body] = u_.done[body] = 0;
   }
+  crew_.run(bodies_.size(), [&](std::size_t k) {
+    if (x_.done[k] != 0) return;
+    Body& touched = bodies_[k];
+    touched.keep(t_, touched.integrator->q(), touched.integrator->v());
+  });
   if (done != Status::ok) failure_ = rubbing_->failure();
   return done;
 }

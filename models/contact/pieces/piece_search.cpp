@@ -56,7 +56,7 @@ void PieceSearch::begin(In from, In to) {
   from_.assign(from.begin(), from.end());
   to_.assign(to.begin(), to.end());
   now_ = to_;
-  looked_ = to_;
+  looked_.resize(to_.size());  // set by the first find()
   moved_.assign(radius_.size(), 1);
   gathered_.clear();
   for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
