@@ -70,7 +70,8 @@ class HeadSceneRun {
     advance(outcome);
     made.frames = frames_;
     made.simulated_s = scene_.duration;
-    made.work.steps = steps_;
+    made.work = work();
+    made.rejected = made.work.rejected;
     const std::size_t state = run_->hash();
     set_outcome_of_ranks(outcome);
     if (!ranks_.first()) {
@@ -90,6 +91,23 @@ class HeadSceneRun {
     made.end = SceneRun::End::failed;
     made.reason = fmt::format("{} of {} strands were lost: {}.lost.csv", outcome.lost,
                               outcome.strands, options_.stem);
+  }
+
+  /// Steps of the head, or with a tolerance those of its strands.
+  Stats work() {
+    Stats all;
+    all.steps = steps_;
+    if (scene_.options.tolerance == 0) return all;
+    done_ += run_->work();
+    all.steps = 0;
+    for (const models::HeadWork& done : ranks_.of_each(done_)) {
+      all.steps += done.steps;
+      all.rejected_by_error += done.rejected_by_error;
+      all.rejected_by_newton += done.rejected_by_newton;
+      all.newton_iterations += done.iterations + done.again_iterations;
+    }
+    all.rejected = all.rejected_by_error + all.rejected_by_newton;
+    return all;
   }
 
   /// What the rank with most has, or has taken.
@@ -176,16 +194,18 @@ class HeadSceneRun {
       outcome.build_s += seconds_of([&] {
         auto anew = balanced(*run_, outline_, options_.pack, options_.threads, build_s_,
                              reading_->at_once());
-        if (anew) run_ = std::move(anew);
+        if (!anew) return;
+        done_ += run_->work();
+        run_ = std::move(anew);
       });
     }
   }
 
-  /// Equal steps of dt_s at most, from `done` on.
+  /// Equal ones, as long as longest_step() at most, from `done` on.
   void take_steps(std::size_t frame, std::size_t done, StopRequest& stop) {
     const double begin = scene_.time_of(frame - 1), end = scene_.time_of(frame),
-                 count =
-                     std::max(1.0, std::ceil((end - begin) / scene_.options.step - 1e-9)),
+                 count = std::max(1.0,
+                                  std::ceil((end - begin) / longest_step(scene_) - 1e-9)),
                  h = (end - begin) / count;
     for (std::size_t i = done; i < static_cast<std::size_t>(count); ++i) {
       if (ranks_.largest(stop.asked() ? 1 : 0) > 0) {
@@ -195,7 +215,7 @@ class HeadSceneRun {
       const double t = begin + static_cast<double>(i) * h;
       run_->step(t, h);
       ++steps_;
-      if (guard_) guard_->step(t, h);
+      if (guard_) guard_->step(t, h, scene_.options.step);
       for (const auto& loss : run_->lost()) lost_.lose({loss.strand, t + h});
     }
     fetch(h);
@@ -285,6 +305,7 @@ class HeadSceneRun {
   std::size_t losses_ = 0;                  // of all ranks
   std::optional<HeadGuard> guard_;
   long steps_ = 0;
+  models::HeadWork done_;  // by heads that others have taken the place of
 };
 
 }  // namespace

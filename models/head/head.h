@@ -16,7 +16,7 @@
 namespace tress::models {
 
 /// How a step is computed, by the names of the integrators' catalogue: the equations are
-/// theirs (models/head/lane_method.h), tr_bdf2 has equal steps.
+/// theirs (models/head/lane_method.h).
 enum class HeadMethod {
   semi_implicit_euler,
   linearly_implicit_midpoint,
@@ -40,6 +40,11 @@ struct HeadOptions {
   // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
   double newton_tolerance = 1e-10;
   int newton_iterations = 20;
+  /// By tr_bdf2 every strand takes steps of its own, as long as its own error allows, as
+  /// Options::tolerance; 0: equal steps. Newton's tolerance follows from it. See
+  /// models/head/controlled_steps.h.
+  double tolerance = 0;
+  double min_step = 0;  // s, with a tolerance: strands that need less are lost
   /// On every strand, in addition: gravity and linear drag join the numbers above, bodies
   /// are computed for all lanes at once, others strand by strand. Refused: effects that
   /// couple points (self_contact) or hold contact forces (friction_law = exact).
@@ -71,6 +76,9 @@ inline HeadPack widest_pack(HeadNumber number) {
   return {number, wide ? 16 : 8};
 }
 
+/// Whether numbers are long enough for strands that choose their steps by this tolerance.
+bool resolve(HeadNumber number, double tolerance);
+
 /// A strand without a solution: it stays where it was, the others go on.
 struct HeadLoss {
   std::size_t strand;
@@ -88,6 +96,8 @@ struct HeadWork {
   long again_iterations = 0, again_lanes = 0;  // of these, damped
   long alone = 0;      // of the last, iterations of one strand at a time
   long shortened = 0;  // steps of strands taken in shorter ones
+  // With a tolerance, steps of strands that were tried again with shorter ones.
+  long rejected_by_error = 0, rejected_by_newton = 0;
 
   HeadWork& operator+=(const HeadWork& more) {
     steps += more.steps;
@@ -98,6 +108,8 @@ struct HeadWork {
     again_lanes += more.again_lanes;
     alone += more.alone;
     shortened += more.shortened;
+    rejected_by_error += more.rejected_by_error;
+    rejected_by_newton += more.rejected_by_newton;
     return *this;
   }
 };
@@ -143,7 +155,8 @@ class Head {
   };
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
-  /// One step of a block, from t to t + h (s). A strand without a solution, or whose
+  /// One step of a block, from t to t + h (s), with a tolerance as many as each strand
+  /// needs, one at least. A strand without a solution, or whose
   /// result is not finite, stays as it was, at rest, from then on; others are the same
   /// bits with and without it. Effects cost where they reach: a body a test for each
   /// block, then one for each element, before any point is looked at. Safe for different
@@ -156,6 +169,8 @@ class Head {
                     Scratch& scratch) {
     for (std::size_t block = first; block < last; ++block) step(block, t, h, scratch);
   }
+  /// With so many blocks in a call few lanes are without a strand.
+  virtual std::size_t blocks_at_once() const { return 12; }
   virtual bool lost(std::size_t strand) const = 0;
   /// All but the first `known` that were found, by strand.
   virtual std::vector<HeadLoss> losses(std::size_t known) const = 0;

@@ -28,6 +28,14 @@ inline void check_for_head(const HeadOptions& options) {
             "give that of the longest strand, in m");
   refuse_if(!(options.newton_tolerance > 0) || options.newton_iterations < 1,
             "no tolerance or no iterations", place_of_head, "give positive ones");
+  refuse_if(!(options.tolerance >= 0 && options.tolerance < 1),
+            "a tolerance that is no part of a length", place_of_head,
+            "give one between 0 and 1");
+  refuse_if(!(options.min_step >= 0), "a shortest step below 0", place_of_head,
+            "give one in s, or leave it out");
+  refuse_if(options.tolerance > 0 && options.method != HeadMethod::tr_bdf2,
+            "a tolerance for equal steps", place_of_head,
+            "use tr_bdf2, or give no tolerance");
 }
 
 /// Throws InputError if the method starts from an acceleration that strands do not have.
@@ -36,6 +44,15 @@ inline void check_start(const HeadOptions& options) {
       options.method == HeadMethod::tr_bdf2 && options.twist && !options.rotary_inertia,
       "no acceleration from which tr_bdf2 starts: twist has no inertia", place_of_head,
       "leave rotary_inertia on, or use backward_euler");
+}
+
+/// Throws InputError if numbers are too short for the tolerance.
+inline void check_resolved(const HeadOptions& options, const HeadPack& pack) {
+  refuse_if(options.tolerance > 0 && !resolve(pack.number, options.tolerance),
+            "a tolerance that " +
+                std::string(pack.number == HeadNumber::float32 ? "32" : "64") +
+                " bits do not resolve",
+            place_of_head, "give a larger one, or use 64 bits");
 }
 
 /// Throws InputError if steps are single corrections of numbers of 32 bits, for strands
@@ -94,10 +111,11 @@ inline double largest_bulge(std::span<const double> x, double length) {
 /// What several threads find.
 class HeadLosses {
  public:
-  /// In the step from t to t + h (s).
-  void add(std::size_t strand, double t, double h, std::string_view reason) {
+  /// In the step from t to t + h (s), after this part of it.
+  void add(std::size_t strand, double t, double h, std::string_view reason,
+           double part = 0) {
     const std::scoped_lock lock(guard_);
-    all_.push_back({strand, std::lround(t / h) + 1, t, reason});
+    all_.push_back({strand, std::lround(t / h) + 1, t + part * h, reason});
   }
   /// See Head::losses().
   std::vector<HeadLoss> after(std::size_t known) const {

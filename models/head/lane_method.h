@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <span>
@@ -23,6 +24,16 @@ struct LaneStage {
   std::array<double, 2> rate{}, drift{};
 };
 
+/// What the last stage's state is off one of higher order from the same stages: h^2 times
+/// the sum of drift[i] a_i in q, h times that of rate[i] a_i in v. It falls as h^falls,
+/// and a step may have share tolerance^power of it in the norm of LaneError.
+struct LaneEstimate {
+  std::array<double, 3> rate, drift;
+  double falls, share, power;
+
+  double threshold(double tolerance) const { return share * std::pow(tolerance, power); }
+};
+
 /// A method by its stages. Where the first has gamma = 0 it is the last one of the step
 /// before, and is solved in a strand's first step alone. The step ends with the last
 /// stage's (q, v) if that is at its end, and else with
@@ -36,6 +47,7 @@ struct LaneMethod {
   std::size_t first_steps = 0;
   /// So many last accelerations are kept of a strand, with two the lengths of both steps.
   std::size_t accelerations = 0;
+  const LaneEstimate* estimate = nullptr;  // null: it has none
 
   /// The first stage that every step solves.
   std::size_t first() const { return stages[0].gamma == 0 ? 1 : 0; }
@@ -62,6 +74,17 @@ inline constexpr LaneStage tr_bdf2[] = {
     {.time = 0, .gamma = 0},
     {.time = 2 * d, .gamma = d, .rate = {d, 0}, .drift = {d / 2, 0}},
     {.time = 1, .gamma = d, .rate = {w, w}, .drift = {both, both}}};
+/// The comparison of order 3 of [Hosea, Shampine 1996, Appl. Numer. Math. 20, 21, table
+/// 1], share and power as integrators/tr_bdf2.cpp: its velocities enter q by the
+/// accelerations that made them, in which what cancels is left out.
+inline constexpr std::array<double, 3> off{w - (1 - w) / 3, w - (3 * w + 1) / 3,
+                                           d - d / 3};
+inline constexpr LaneEstimate tr_bdf2_estimate{
+    .rate = off,
+    .drift = {off[1] * d + off[2] * w, off[1] * d + off[2] * w, off[2] * d},
+    .falls = 3,
+    .share = 1.2,
+    .power = 1.25};
 
 }  // namespace lane_stages
 
@@ -79,7 +102,8 @@ inline LaneMethod lane_method(HeadMethod method) {
       return {.stages = lane_stages::tr_bdf2,
               .iterates = true,
               .first_steps = 1,
-              .accelerations = 2};
+              .accelerations = 2,
+              .estimate = &lane_stages::tr_bdf2_estimate};
     case HeadMethod::backward_euler:
       break;
   }

@@ -23,13 +23,14 @@ class LaneSolver {
   using PoseAt = typename LoneStrand<Model>::PoseAt;
   using Meet = typename LoneStrand<Model>::Meet;
 
-  /// `model` and `method` must outlive it.
-  LaneSolver(const Model& model, const LaneMethod& method, double tolerance,
+  /// `model` and `method` must outlive it. `left`: see PlainCourse.
+  LaneSolver(const Model& model, const LaneMethod& method, double tolerance, double left,
              int most_iterations)
       : work(model, method),
         model_(model),
         method_(method),
         tolerance_(tolerance),
+        left_(left),
         iterations_(most_iterations) {}
 
   LaneWork<Model> work;
@@ -38,6 +39,13 @@ class LaneSolver {
     std::size_t strand;
     std::string_view reason;
   };
+  struct Step {
+    LaneStrands<Model>& strands;
+    const PoseAt& pose;
+    const Meet& meet;
+    double h;
+    HeadWork& done;
+  };
 
   /// A step of h of the queue's strands that are not lost; without units, as poses.
   /// Returns those that are from now on.
@@ -45,14 +53,10 @@ class LaneSolver {
                                 const PoseAt& pose, const Meet& meet, double h,
                                 HeadWork& done) {
     const Step now{strands, pose, meet, h, done};
-    lost_.clear();
-    stuck_.clear();
-    poses_.from = pose(0);
-    poses_.to = pose(1);
-    find_fresh(all, strands);
+    begin(now, all);
     const LaneQueue fresh{0, fresh_.size(), &fresh_}, others{0, others_.size(), &others_};
     if (method_.iterates) {
-      if (!fresh_.empty()) correct_once(now, fresh, "no acceleration at the start");
+      if (!fresh_.empty()) start(now);
       iterate(now, all);
     } else {
       if (!fresh_.empty()) iterate(now, fresh);
@@ -62,23 +66,83 @@ class LaneSolver {
     return lost_;
   }
 
+  /// The same by whole corrections alone: strands on which they fail at a stage are
+  /// failed(strand, stage). At its end the step of the others is judged:
+  ///
+  ///     ended(poses)           // work.end() has been called
+  ///     judged(lane, strand)   // that of a lane
+  template <class Judge>
+  const std::vector<Loss>& attempt(const Step& now, const LaneQueue& all, Judge& judge) {
+    begin(now, all);
+    if (!fresh_.empty()) start(now);
+    for (std::size_t k = method_.first(); k < method_.stages.size(); ++k) {
+      failed_.clear();
+      PlainCourse<Model> plain(model_, tolerance_, left_, iterations_);
+      if (k + 1 < method_.stages.size()) {
+        run(now, all, k, plain, failed_, now.done.iterations, now.done.lanes);
+      } else {
+        run(now, all, k, plain, failed_, now.done.iterations, now.done.lanes, judge);
+      }
+      for (const std::size_t strand : failed_) judge.failed(strand, k);
+      stuck_.insert(stuck_.end(), failed_.begin(), failed_.end());
+      std::ranges::sort(stuck_);
+    }
+    return lost_;
+  }
+
+  /// A step of a strand by itself, in shorter ones where need be; false: it is lost.
+  bool alone(const Step& now, std::size_t strand) {
+    for (int lane = 0; lane < T::lanes; ++lane) now.strands.take(strand, work, lane);
+    LoneStrand<Model> lone(model_, tolerance_, iterations_, work);
+    const bool solved = lone.solve(now.pose, now.meet, now.h);
+    now.done.alone += lone.iterations;
+    now.done.again_iterations += lone.iterations;
+    now.done.again_lanes += T::lanes * lone.iterations;
+    now.done.shortened += lone.shortened ? 1 : 0;
+    if (solved) {
+      now.strands.put_home(work.elements, work.state, 0, strand);
+    } else {
+      now.strands.lose(strand);
+    }
+    return solved;
+  }
+
+  static constexpr std::string_view no_solution =
+      "no solution for the step, nor for 64 parts of it";
+
  private:
-  struct Step {
+  /// Strands that are solved go home.
+  struct Home {
     LaneStrands<Model>& strands;
-    const PoseAt& pose;
-    const Meet& meet;
-    double h;
-    HeadWork& done;
+    LaneWork<Model>& work;
+
+    void ended(const StepPoses& /*poses*/) {}
+    void judged(int lane, std::size_t strand) {
+      strands.put_home(work.elements, work.after, lane, strand);
+    }
   };
 
+  void begin(const Step& now, const LaneQueue& all) {
+    lost_.clear();
+    stuck_.clear();
+    poses_.from = now.pose(0);
+    poses_.to = now.pose(1);
+    find_fresh(all, now.strands);
+  }
+
   /// Which of these strands take first steps.
-  void find_fresh(const LaneQueue& all, const LaneStrands<Model>& strands) {
+  void find_fresh(LaneQueue all, const LaneStrands<Model>& strands) {
     fresh_.clear();
     others_.clear();
     if (method_.first_steps == 0) return;
-    for (std::size_t k = all.next; k < all.end; ++k) {
-      (strands.fresh(k) ? fresh_ : others_).push_back(k);
+    for (; all.next < all.end; ++all.next) {
+      (strands.fresh(all.strand()) ? fresh_ : others_).push_back(all.strand());
     }
+  }
+
+  /// Those of the fresh ones that have no acceleration are lost.
+  void start(const Step& now) {
+    correct_once(now, {0, fresh_.size(), &fresh_}, "no acceleration at the start");
   }
 
   /// One correction of the first stage, or the strand is lost.
@@ -92,7 +156,7 @@ class LaneSolver {
   void iterate(const Step& now, const LaneQueue& all) {
     HeadWork& done = now.done;
     for (std::size_t k = method_.first(); k < method_.stages.size(); ++k) {
-      PlainCourse<Model> plain(model_, tolerance_, iterations_);
+      PlainCourse<Model> plain(model_, tolerance_, left_, iterations_);
       failed_.clear();
       run(now, all, k, plain, failed_, done.iterations, done.lanes);
       if (failed_.empty()) continue;
@@ -106,13 +170,22 @@ class LaneSolver {
       stuck_.insert(stuck_.end(), again_.begin(), again_.end());
       std::ranges::sort(stuck_);
     }
-    for (const std::size_t strand : stuck_) alone(now, strand);
+    for (const std::size_t strand : stuck_) {
+      if (!alone(now, strand)) lost_.push_back({strand, no_solution});
+    }
   }
 
-  /// A stage. Strands on which the course fails go to `failed`.
   template <class Course>
-  void run(const Step& now, LaneQueue queue, std::size_t stage, Course& course,
+  void run(const Step& now, const LaneQueue& queue, std::size_t stage, Course& course,
            std::vector<std::size_t>& failed, long& iterations, long& lanes) {
+    Home home{now.strands, work};
+    run(now, queue, stage, course, failed, iterations, lanes, home);
+  }
+  /// A stage. Strands on which the course fails go to `failed`.
+  template <class Course, class Judge>
+  void run(const Step& now, LaneQueue queue, std::size_t stage, Course& course,
+           std::vector<std::size_t>& failed, long& iterations, long& lanes,
+           Judge& judge) {
     const LaneStage& of = method_.stages[stage];
     poses_.at = now.pose(of.time);
     constexpr std::size_t none = LaneStrands<Model>::none;
@@ -142,30 +215,18 @@ class LaneSolver {
         ++iterations;
         if (verdicts[k] == NewtonVerdict::go_on) continue;
         if (verdicts[k] == NewtonVerdict::converged) {
-          if (!ended) work.end(model_, poses_);
+          if (!ended) {
+            work.end(model_, poses_);
+            judge.ended(poses_);
+          }
           ended = true;
-          now.strands.put_home(work, work.after, static_cast<int>(k), home[k]);
+          judge.judged(static_cast<int>(k), home[k]);
         } else {
           failed.push_back(home[k]);
         }
         home[k] = none;
         refill = true;
       }
-    }
-  }
-
-  void alone(const Step& now, std::size_t strand) {
-    for (int lane = 0; lane < T::lanes; ++lane) now.strands.take(strand, work, lane);
-    LoneStrand<Model> lone(model_, tolerance_, iterations_, work);
-    const bool solved = lone.solve(now.pose, now.meet, now.h);
-    now.done.alone += lone.iterations;
-    now.done.again_iterations += lone.iterations;
-    now.done.again_lanes += T::lanes * lone.iterations;
-    now.done.shortened += lone.shortened ? 1 : 0;
-    if (solved) {
-      now.strands.put_home(work, work.state, 0, strand);
-    } else {
-      lose(now, strand, "no solution for the step, nor for 64 parts of it");
     }
   }
 
@@ -176,7 +237,7 @@ class LaneSolver {
 
   const Model& model_;
   const LaneMethod& method_;
-  double tolerance_;
+  double tolerance_, left_;
   int iterations_;
   StepPoses poses_;
   std::vector<std::size_t> fresh_, others_;  // in first steps, and beyond them

@@ -9,6 +9,7 @@
 #include "models/head/lane_method.h"
 #include "models/head/lane_numbers.h"
 #include "models/head/lane_work.h"
+#include "models/head/step_length.h"
 
 namespace tress::models {
 
@@ -20,7 +21,7 @@ struct LaneQueue {
 };
 
 /// The strands of a head in blocks of as many as a pack has lanes, and their ways into
-/// lanes of LaneWork and back. Model: see models/head/stepping_head.h. Strands of one
+/// lanes of LaneWork and back. Model: see models/head/stepped_model.h. Strands of one
 /// block must not be put back by several threads at once.
 template <class Model>
 class LaneStrands {
@@ -32,11 +33,13 @@ class LaneStrands {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   using Lanes = std::array<std::size_t, width>;  // the strand in each, or none
 
-  LaneStrands(const Model& model, const LaneMethod& method)
+  /// `controlled`: whether strands choose their steps.
+  LaneStrands(const Model& model, const LaneMethod& method, bool controlled)
       : n_(model.elements()),
         size_(model.unknowns()),
         of_state_(method.of_state(size_)),
-        needed_(method.first_steps) {}
+        needed_(method.first_steps),
+        controlled_(controlled) {}
 
   void reserve(std::size_t strands) {
     const std::size_t blocks = (strands + width - 1) / width;
@@ -44,6 +47,7 @@ class LaneStrands {
     elements_.reserve(n_ * blocks);
     state_.reserve(of_state_ * blocks);
     lost_.reserve(strands);
+    if (controlled_) lengths_.reserve(strands);
   }
   /// write(lane, Strand, Element*, q, v) of another strand.
   template <class Write>
@@ -65,6 +69,7 @@ class LaneStrands {
       copy_lane(q(block), 0, q(block), other, of_state_);
     }
     lost_.push_back(0);
+    if (controlled_) lengths_.emplace_back();
   }
 
   std::size_t size() const { return lost_.size(); }
@@ -75,7 +80,7 @@ class LaneStrands {
   }
   std::size_t bytes() const {
     return blocks() * (sizeof(Strand) + n_ * sizeof(Element) + of_state_ * sizeof(T)) +
-           size();
+           size() + lengths_.size() * sizeof(StepLength);
   }
 
   const Strand& strand(std::size_t block) const { return strands_[block]; }
@@ -113,8 +118,23 @@ class LaneStrands {
     }
   }
 
-  /// Numbers that steps change of a strand: state, reference frames, whether it is lost.
-  std::size_t kept() const { return of_state_ + Element::kept * n_ + 1; }
+  /// The step of h (without units) that it was to take ends here: the last known
+  /// acceleration, a_1, is that of the stage that ends at `time` of it, from which the
+  /// next trial's is interpolated.
+  void interrupt(std::size_t strand, double h, double time) {
+    T* const lengths = q(strand / width) + 4 * size_;
+    const auto lane = static_cast<int>(strand % width);
+    set_lane(lengths[0], lane, -time * h);
+    set_lane(lengths[1], lane, h);
+  }
+  /// Of a strand that chooses its steps.
+  StepLength& length(std::size_t strand) { return lengths_[strand]; }
+
+  /// Numbers that steps change of a strand: state, reference frames, whether it is lost,
+  /// and the length of its next step.
+  std::size_t kept() const {
+    return of_state_ + Element::kept * n_ + 1 + (controlled_ ? StepLength::kept : 0);
+  }
   void keep(std::size_t block, double* to) const {
     for (std::size_t k = 0; k < of(block); ++k) {
       const auto lane = static_cast<int>(k);
@@ -124,6 +144,7 @@ class LaneStrands {
         to += Element::kept;
       }
       *to++ = lost_[width * block + k];
+      if (controlled_) to = lengths_[width * block + k].keep(to);
     }
   }
   void recall(std::size_t block, const double* from) {
@@ -135,6 +156,7 @@ class LaneStrands {
         from += Element::kept;
       }
       lost_[width * block + k] = *from++ != 0 ? 1 : 0;
+      if (controlled_) from = lengths_[width * block + k].recall(from);
     }
   }
 
@@ -175,13 +197,13 @@ class LaneStrands {
     }
     copy_lane(q(block), from, work.state.data(), lane, of_state_);
   }
-  /// `state`: that of `work`, or what it has become.
-  void put_home(LaneWork<Model>& work, const std::vector<T>& state, int lane,
+  /// Those of `work`, or what they have become.
+  void put_home(std::vector<Element>& changed, const std::vector<T>& state, int lane,
                 std::size_t strand) {
     const std::size_t block = strand / width;
     const auto to = static_cast<int>(strand % width);
     for (std::size_t i = 0; i < n_; ++i) {
-      copy_lane<T>(work.elements[i], lane, elements(block)[i], to);
+      copy_lane<T>(changed[i], lane, elements(block)[i], to);
     }
     copy_lane(state.data(), lane, q(block), to, of_state_);
   }
@@ -189,10 +211,12 @@ class LaneStrands {
  private:
   std::size_t n_, size_, of_state_;  // per strand: elements, unknowns, numbers of state
   std::size_t needed_;               // steps behind a strand that is not fresh
+  bool controlled_;
   std::vector<Strand> strands_;      // (blocks)
   std::vector<Element> elements_;    // (blocks, elements)
   std::vector<T> state_;             // (blocks; as LaneWork's)
   std::vector<char> lost_;           // of each strand
+  std::vector<StepLength> lengths_;  // of each strand's next step, if it is controlled
 };
 
 }  // namespace tress::models

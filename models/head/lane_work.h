@@ -17,7 +17,7 @@ struct StepPoses {
 };
 
 /// The equations of a stage (models/head/lane_method.h) of as many strands as a pack has
-/// lanes. Model: see models/head/stepping_head.h.
+/// lanes. Model: see models/head/stepped_model.h.
 template <class Model>
 class LaneWork {
  public:
@@ -111,6 +111,20 @@ class LaneWork {
       lengths[0] = T(h_);
     }
     std::ranges::copy(a_, a_0);
+  }
+
+  /// After end() of the last stage, of the method's estimate.
+  void difference(T* dq, T* dv) const {
+    const LaneEstimate& by = *method_.estimate;
+    const T *const a_0 = state.data() + 2 * size_, *const a_1 = a_0 + size_;
+    const auto sum = [&](double scale, const std::array<double, 3>& of, std::size_t k) {
+      return T(scale * of[0]) * a_0[k] + T(scale * of[1]) * a_1[k] +
+             T(scale * of[2]) * a_[k];
+    };
+    for (std::size_t k = 0; k < size_; ++k) {
+      dq[k] = sum(h_ * h_, by.drift, k);
+      dv[k] = sum(h_, by.rate, k);
+    }
   }
 
   /// The size of corrections that are rounding errors of places.

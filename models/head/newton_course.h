@@ -22,12 +22,17 @@ enum class NewtonVerdict { go_on, converged, failed };
 /// The limits of integrators/stage.h.
 struct NewtonRules {
   double tolerance;  // of a correction
+  double left;       // of the error, by the rate at which corrections shrink
   double rounding;   // below it corrections that stop shrinking are rounding errors
   int iterations;
 
+  /// Of a tolerance that has no margin of its own: what is left is a tenth of it.
+  static constexpr double margin = 0.1;
+
   /// Numbers resolve corrections of a size `resolved` only.
-  static NewtonRules of(double tolerance, int iterations, double resolved) {
-    return {std::max(tolerance, resolved / 2),
+  static NewtonRules of(double tolerance, double left, int iterations, double resolved) {
+    const double seen = std::max(tolerance, resolved / 2);
+    return {seen, left * seen,
             std::max({tolerance, std::min(1e4 * tolerance, 1e-6), 4 * resolved}),
             iterations};
   }
@@ -60,12 +65,13 @@ class PlainCourse {
   using T = typename Model::Real;
   using Verdicts = std::array<NewtonVerdict, static_cast<std::size_t>(T::lanes)>;
 
-  PlainCourse(const Model& model, double tolerance, int iterations)
-      : model_(model), tolerance_(tolerance), iterations_(iterations) {}
+  /// `left`: the part of the tolerance that may be left.
+  PlainCourse(const Model& model, double tolerance, double left, int iterations)
+      : model_(model), tolerance_(tolerance), left_(left), iterations_(iterations) {}
 
   void start(int lane, const LaneWork<Model>& work) {
     of_lane_[static_cast<std::size_t>(lane)] = {
-        NewtonRules::of(tolerance_, iterations_, work.resolved(model_, lane))};
+        NewtonRules::of(tolerance_, left_, iterations_, work.resolved(model_, lane))};
   }
   Verdicts go_on(LaneWork<Model>& work, const T& size) {
     work.move(T(1), work.step.data());
@@ -89,7 +95,7 @@ class PlainCourse {
       const double rate = size / previous;
       // Of the error that is left the rate tells; the first correction has none yet.
       const double left = done > 0 && rate < 1 ? size * rate / (1 - rate) : size;
-      if (size <= rules.tolerance || left <= 0.1 * rules.tolerance ||
+      if (size <= rules.tolerance || left <= rules.left ||
           (rate > 0.5 && done >= 2 && size <= rules.rounding)) {
         return NewtonVerdict::converged;
       }
@@ -100,7 +106,7 @@ class PlainCourse {
   };
 
   const Model& model_;
-  double tolerance_;
+  double tolerance_, left_;
   int iterations_;
   std::array<OfLane, static_cast<std::size_t>(T::lanes)> of_lane_{};
 };
@@ -124,7 +130,7 @@ class DampedCourse {
 
   void start(int lane, const LaneWork<Model>& work) {
     of_lane_[static_cast<std::size_t>(lane)] = {
-        .rules = NewtonRules::of(tolerance_, patience * iterations_,
+        .rules = NewtonRules::of(tolerance_, NewtonRules::margin, patience * iterations_,
                                  work.resolved(model_, lane)),
         .runs = true};
   }

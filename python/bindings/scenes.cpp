@@ -123,17 +123,17 @@ class HeadOfHair {
     }
   }
 
-  /// In equal steps of at most dt_s.
+  /// In equal steps of at most dt_s; with a tolerance, in those that each strand needs.
   void advance(double t_end) {
     const double begin = t_,
                  count = std::max(
-                     1.0, std::ceil((t_end - begin) / scene_->options.step - 1e-9));
+                     1.0, std::ceil((t_end - begin) / longest_step(*scene_) - 1e-9));
     const double h = (t_end - begin) / count;
     for (double i = 0; i < count; ++i) {
       {
         const py::gil_scoped_release release;
         run_->step(begin + i * h, h);
-        if (guard_) guard_->step(begin + i * h, h);
+        if (guard_) guard_->step(begin + i * h, h, scene_->options.step);
       }
       look_for_signals();
       t_ = begin + (i + 1) * h;

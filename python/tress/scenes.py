@@ -282,7 +282,7 @@ class HeadRun:
         self._core = _core.HeadRun(scene._text, scene.file, bits, threads)
 
     def advance(self, t):
-        """To t (s) in equal steps of at most the scene's."""
+        """To t (s) in equal steps of at most the scene's, or as its tolerance asks."""
         self._core.advance(t)
 
     @property

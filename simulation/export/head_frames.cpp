@@ -75,7 +75,11 @@ HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, StrandCount 
   file_.set("title", scene.title);
   file_.set("model", std::string(scene.model->id));
   file_.set("integrator", scene.integrator);
-  file_.set("dt_s", scene.options.step);
+  if (scene.options.tolerance > 0) {
+    file_.set("tolerance", scene.options.tolerance);
+  } else {
+    file_.set("dt_s", scene.options.step);
+  }
   file_.set("columns", joined(stored_.columns));
   file_.set("strands", static_cast<double>(strands_));
   file_.set("points", static_cast<double>(points_));

@@ -34,8 +34,12 @@ HeadGuard::Bound HeadGuard::at(double t) const {
 
 void HeadGuard::start(double fastest) { speed_ = fastest + at(0).speed; }
 
-void HeadGuard::step(double t, double h) {
-  speed_ += h * std::max(at(t).growth, at(t + h).growth);
+void HeadGuard::step(double t, double h, double longest) {
+  const double parts = std::max(1.0, std::ceil(h / longest - 1e-9)), part = h / parts;
+  for (double i = 0; i < parts; ++i) {
+    const double from = t + i * part;
+    speed_ += part * std::max(at(from).growth, at(from + part).growth);
+  }
 }
 
 bool HeadGuard::breached(double t, const models::HeadEnergy& one) const {

@@ -31,8 +31,9 @@ class HeadGuard {
 
   /// fastest() of all strands at t = 0.
   void start(double fastest);
-  /// A step from t to t + h has been taken.
-  void step(double t, double h);
+  /// A step from t to t + h has been taken, in which the bound is looked at every
+  /// `longest` s at least.
+  void step(double t, double h, double longest);
   /// m/s, gathered so far.
   double speed() const { return speed_; }
   /// Whether a strand's energies at t are too large.

@@ -11,9 +11,9 @@
 namespace tress::simulation {
 namespace {
 
-// Of each worker, so that one that is held up does not hold up all; of so many blocks at
-// least that lanes without strands at the end of a part cost a few per cent.
-constexpr std::size_t parts_of_worker = 32, blocks_of_part = 12;
+// Of each worker, so that one that is held up does not hold up all; unless that leaves a
+// part fewer blocks than it fills lanes with (Head::blocks_at_once()).
+constexpr std::size_t parts_of_worker = 32;
 constexpr std::size_t hashed_at_once = 4096;
 
 }  // namespace
@@ -44,10 +44,11 @@ HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
 
 std::vector<HeadRun::Blocks> HeadRun::pieces(
     const std::function<bool(std::size_t)>& wanted) const {
-  const std::size_t blocks = head_->blocks(), workers = crew_.workers();
-  const std::size_t parts = std::max(
-      std::min(blocks, workers), std::min((blocks + blocks_of_part - 1) / blocks_of_part,
-                                          parts_of_worker * workers));
+  const std::size_t blocks = head_->blocks(), workers = crew_.workers(),
+                    at_once = head_->blocks_at_once();
+  const std::size_t parts =
+      std::max(std::min(blocks, workers),
+               std::min((blocks + at_once - 1) / at_once, parts_of_worker * workers));
   std::vector<Blocks> all;
   for (std::size_t b = 0; b < blocks; ++b) {
     if (!wanted(b)) continue;

@@ -86,10 +86,6 @@ std::optional<NoHead> no_method(const Scene& scene) {
     return NoHead{"heads have a new matrix in every iteration",
                   "leave out [integrator] refresh"};
   }
-  if (scene.options.tolerance > 0) {
-    return NoHead{"strands of a head have equal steps",
-                  "give [integrator] dt_s instead of tolerance"};
-  }
   if (scene.rest == RestStrains::inverse) {
     return NoHead{"strands of a head have the natural strains of their tables",
                   "leave out rest = \"inverse\""};
@@ -97,6 +93,11 @@ std::optional<NoHead> no_method(const Scene& scene) {
   const Options& options = scene.options;
   if (options.max_work > 0) {
     return NoHead{"a head does not count its work", "leave out [integrator] max_work"};
+  }
+  if (options.tolerance > 0) {
+    if (options.max_steps == Options{}.max_steps) return {};
+    return NoHead{"strands of a head that choose their steps are not stopped after some",
+                  "give [integrator] min_step_s instead of max_steps"};
   }
   if (1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
     return NoHead{"more than max_steps steps of dt_s from frame to frame",
@@ -203,6 +204,14 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
         "give --bits 64, or [integrator] id = \"tr_bdf2\""};
   }
   if (auto no = no_method(scene)) return no;
+  const double tolerance = scene.options.tolerance;
+  if (tolerance > 0 && !models::resolve(number, tolerance)) {
+    const bool narrow = number == models::HeadNumber::float32;
+    return NoHead{
+        fmt::format("tolerance = {:g} in {} bits, which do not resolve it", tolerance,
+                    narrow ? 32 : 64),
+        narrow ? "give --bits 64, or a larger tolerance" : "give a larger tolerance"};
+  }
   if (auto no = no_strands(scene)) return no;
   return no_effects(scene);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "contract/input_error.h"
@@ -40,6 +41,8 @@ HeadOptions options_of(const Scene& scene) {
   options.method = head_method(scene).value();
   options.newton_tolerance = scene.options.newton_tolerance;
   options.newton_iterations = scene.options.newton_iterations;
+  options.tolerance = scene.options.tolerance;
+  options.min_step = scene.options.min_step;
   options.motion = scene.head;
   options.effects = make_effects(scene);
   return with_uniform_effects(std::move(options));
@@ -197,6 +200,13 @@ SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads) {
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads,
                     Ranks& ranks, std::span<const double> cost) {
   return head_of(outline.scene, *outline.series, pack, threads, ranks, cost);
+}
+
+double longest_step(const Scene& scene) {
+  const Options& options = scene.options;
+  if (options.tolerance == 0) return options.step;
+  return options.max_step > 0 ? options.max_step
+                              : std::numeric_limits<double>::infinity();
 }
 
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,

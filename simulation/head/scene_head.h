@@ -42,6 +42,10 @@ SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads);
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads,
                     Ranks& ranks, std::span<const double> cost = {});
 
+/// Of a head of the scene (s): with a tolerance, of the intervals between frames that
+/// strands divide into steps of their own.
+double longest_step(const Scene& scene);
+
 /// Bytes that so many strands of a head take, known before it is made.
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
                        std::size_t strands);

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "contract/input_error.h"
+#include "models/head/lane_method.h"
 #include "models/motion/root_motion.h"
 #include "simulation/export/head_frames.h"
 #include "simulation/files/csv.h"
@@ -335,6 +336,86 @@ INSTANTIATE_TEST_SUITE_P(Methods, HeadBy,
                                               std::get<1>(of.param).integrator,
                                               std::get<2>(of.param) ? "_on_a_body" : "");
                          });
+
+Hair controlled(const char* model, double tolerance) {
+  return {.model = fmt::format("id = \"{}\"\nquadrature = 4\n", model),
+          .integrator = fmt::format("id = \"tr_bdf2\"\ntolerance = {}\n", tolerance),
+          .more = air_and_weight};
+}
+
+TEST(HeadWithATolerance, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
+  for (const char* model : models_in_all) {
+    Hair own = controlled(model, 1e-2);
+    own.count = 60;
+    own.root = turning;
+    own.more = std::string(air_and_weight) + ellipsoid + soft;
+    expect_the_same_bits(parse_outline(text(own), "head.toml"), 4, 0.05, all_numbers,
+                         [](const Head& head) { EXPECT_TRUE(head.losses().empty()); });
+  }
+}
+
+// Both take steps that leave share tolerance^power of the length at most each; those of
+// the head are a half at least of what the same control asks for, so at most twice as
+// many. What they leave grows as a change of the start does.
+TEST(HeadWithATolerance, MovesAsTheWorldOfTheSceneDoes) {
+  for (const char* model : models_in_all) {
+    SCOPED_TRACE(model);
+    constexpr double tolerance = 1e-4, length = 0.1;
+    Toy toy;
+    toy.write("head.toml", text(controlled(model, tolerance)));
+    const Scene scene = read_scene(path(toy, "head.toml"));
+    World world(scene);
+    for (std::size_t frame = 1; frame <= scene.last_frame(); ++frame) {
+      ASSERT_EQ(world.advance(scene.time_of(frame)), Status::ok);
+    }
+    const std::vector<double> want = world.positions();
+    constexpr double change = 1e-6;
+    const double grown =
+        std::max(1.0, apart(by_world(scene, change), want) / (change * length));
+    const double left = models::lane_stages::tr_bdf2_estimate.threshold(tolerance) *
+                        length * grown *
+                        static_cast<double>(std::ranges::max(world.steps()));
+    const Toy::Result result = run(toy, "--frames 64 --threads 2");
+    EXPECT_THAT(result.err, HasSubstr("rejected by their error"));
+    const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
+    const std::vector<double> end = all_of(file, HeadFrames::dataset(4));
+    EXPECT_LE(apart(end, want), 3 * left);
+    EXPECT_NE(apart(end, want), 0);
+    EXPECT_GT(apart(all_of(file, HeadFrames::dataset(0)), want), 10 * left);
+    // Steps of strands, whose mean is that of the world's or up to twice as many.
+    const auto meta = outcome(toy);
+    const long steps = meta.at("steps"), of_world = world.stats().steps;
+    EXPECT_GE(2 * steps, of_world);
+    EXPECT_LE(steps, 2 * of_world);
+    EXPECT_GT(meta.at("newton_iterations"), 2 * steps);
+    EXPECT_GE(meta.at("rejected_by_error"), 0);
+    EXPECT_EQ(meta.at("lost_strands"), 0);
+  }
+}
+
+TEST(HeadWithATolerance, IsTakenFromAThousandStrandsOn) {
+  Toy toy;
+  Hair many = controlled("super_helix", 1e-2);
+  many.count = 1000;
+  many.elements = 3;
+  toy.write("head.toml", text(many));
+  const auto result = toy.run("head.toml --out out --progress none");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(outcome(toy).at("strands"), 1000);
+  EXPECT_GE(outcome(toy).at("steps"), 4 * 1000);
+}
+
+TEST(HeadWithATolerance, NamesStrandsThatNeedShorterStepsThanAllowed) {
+  Toy toy;
+  Hair hair = controlled("super_helix", 1e-3);
+  hair.integrator += "min_step_s = 0.01\n";
+  toy.write("head.toml", text(hair));
+  run(toy, "", 3);
+  const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
+  EXPECT_GT(lost.rows.size(), 0U);
+  EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
+  EXPECT_GE(outcome(toy).at("rejected_by_error"), lost.rows.size());
+}
 
 // The same with what else acts; each of it moves the hairs by more than a micrometre.
 TEST(HeadOfHair, MovesAsTheWorldUnderItsEffects) {
@@ -676,7 +757,7 @@ TEST(HeadGuard, AllowsWhatGravityAndTheHeadCanGive) {
   };
   HeadGuard guard(reach);
   guard.start(fastest(std::vector{moving(0)}));
-  for (int i = 0; i < 100; ++i) guard.step(0.01 * i, 0.01);
+  for (int i = 0; i < 100; ++i) guard.step(0.01 * i, 0.01, 0.01);
   EXPECT_NEAR(guard.speed(), 10, 1e-12);
   EXPECT_FALSE(guard.breached(1, moving(10)));
   EXPECT_FALSE(guard.breached(1, moving(10.9)));
@@ -791,11 +872,21 @@ INSTANTIATE_TEST_SUITE_P(
                  .integrator = "id = \"linearly_implicit_midpoint\"\n"},
                 "--bits 32",
                 "give --bits 64"},
-        Refused{"Tolerance",
+        Refused{"NarrowTolerance",
                 {.model = "id = \"super_helix\"\n",
                  .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"},
+                "--bits 32",
+                "give --bits 64, or a larger tolerance"},
+        Refused{"ToleranceOfRounding",
+                {.model = "id = \"super_helix\"\n",
+                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-13\n"},
                 "",
-                "dt_s instead of tolerance"},
+                "give a larger tolerance"},
+        Refused{"ToleranceInSoManySteps",
+                {.model = "id = \"super_helix\"\n",
+                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\nmax_steps = 100\n"},
+                "",
+                "min_step_s instead of max_steps"},
         Refused{"KeptMatrix",
                 {.model = "id = \"super_helix\"\n",
                  .integrator = "id = \"tr_bdf2\"\nrefresh = \"every_step\"\n"},

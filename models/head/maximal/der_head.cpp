@@ -13,7 +13,7 @@
 namespace tress::models {
 namespace {
 
-/// DerStrand as a Model of models/head/stepping_head.h.
+/// DerStrand as a Model of models/head/stepped_model.h.
 template <class Pack, bool exact>
 class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
  public:
@@ -23,6 +23,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
   static constexpr bool iterates = true, takes_bodies = false;
+  static constexpr double newton_part = 1e-2;
   struct Strand {
     LaneRoot<Real> root;
     DerMaterial<Real> material;
@@ -105,6 +106,19 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     return size;
   }
 
+  /// Of nodes over edges, and of angles, as those of a strand by itself are counted.
+  Real coordinate_size(const Strand& strand, const Real* dq) const {
+    V node{};
+    Real far(0), turned(0);
+    for (std::size_t i = 0; i < this->elements(); ++i) {
+      node = node + load3(dq + 4 * i);
+      far = larger(larger(far, magnitude(node.x)),
+                   larger(magnitude(node.y), magnitude(node.z)));
+      turned = larger(turned, magnitude(dq[4 * i + 3]));
+    }
+    return larger(far / strand.material.length, turned);
+  }
+
   /// Places are known to a rounding of the longest strand, sizes are over edges.
   double resolved(const Strand& strand, Weights w, int lane) const {
     constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
@@ -134,6 +148,7 @@ std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack)
   // Stretching keeps what rounding puts into it: in a second strands are off by 6e-4 of
   // their length.
   check_mended(options, pack);
+  check_resolved(options, pack);
   if (options.method == HeadMethod::semi_implicit_euler) {
     return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
       return std::make_unique<SteppingHead<DerModel<T, false>>>(options, set);

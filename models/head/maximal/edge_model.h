@@ -10,7 +10,7 @@
 
 namespace tress::models {
 
-/// What Models of models/head/stepping_head.h have in common whose strands are chains of
+/// What Models of models/head/stepped_model.h have in common whose strands are chains of
 /// edges from the root on: `per_element` numbers of an edge, the first three the vector
 /// along it, in axes of the world. The rate of the first edge is that of its end. Flat as
 /// ReducedLoads.
@@ -52,6 +52,10 @@ class EdgeModel {
     return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
   }
 
+  template <class Strand>
+  Real element_length(const Strand& strand) const {
+    return strand.material.length;
+  }
   std::size_t elements() const { return n_; }
   std::size_t unknowns() const { return per_element * n_; }
   double unit(const HeadUnits& units, std::size_t k) const {

@@ -10,7 +10,7 @@
 namespace tress::models {
 namespace {
 
-/// SpringStrand as a Model of models/head/stepping_head.h.
+/// SpringStrand as a Model of models/head/stepped_model.h.
 template <class Pack>
 class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
  public:

@@ -392,6 +392,7 @@ inline void check_for_reduced_head(const HeadOptions& options) {
 template <template <class> class Kind, template <class> class Stepped>
 std::unique_ptr<Head> reduced_head(const HeadOptions& options, const HeadPack& pack) {
   check_for_reduced_head(options);
+  check_resolved(options, pack);
   return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
     if (options.method == HeadMethod::semi_implicit_euler) {
       return std::make_unique<Stepped<T>>(options, set);

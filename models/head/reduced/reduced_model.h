@@ -16,7 +16,7 @@
 
 namespace tress::models {
 
-/// ReducedKernel as a Model of models/head/stepping_head.h, for methods that iterate.
+/// ReducedKernel as a Model of models/head/stepped_model.h, for methods that iterate.
 template <class Kind>
 class ReducedModel {
  public:
@@ -25,6 +25,7 @@ class ReducedModel {
   using Kernel = ReducedKernel<Kind>;
   static constexpr bool iterates = true, takes_bodies = true, straight = Kind::straight;
   static constexpr double most_stretched = 1;
+  static constexpr double newton_part = 0.03;
   static constexpr const char* use_others =
       "use semi_implicit_euler, or run the strands one by one";
 
@@ -155,6 +156,11 @@ class ReducedModel {
                 exact_.again(strand.material, end, loads, &elements->rest, vectors(v),
                              vectors(a), vectors(correction), scratch.elements.data(),
                              scratch.factors.data()));
+  }
+  Real coordinate_size(const Strand& strand, const Real* dq) const {
+    Real most(0);
+    for (std::size_t k = 0; k < unknowns(); ++k) most = larger(most, magnitude(dq[k]));
+    return strand.by_scale * most;
   }
   double resolved(const Strand& strand, Weights w, int lane) const {
     constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();

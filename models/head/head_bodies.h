@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "models/head/near_bodies.h"
+#include "models/motion/root_motion.h"
+
+namespace tress::models {
+
+/// Which of a head's bodies reach its strands: looked for in the ball that holds all of
+/// them, once at a time, and then by block.
+class HeadBodies {
+ public:
+  /// What is near at one time; of one thread.
+  struct Near {
+    double t = std::numeric_limits<double>::quiet_NaN();
+    Vec head;                             // its position, m
+    std::vector<NearBody> around, reach;  // bodies that reach the head, and a block
+
+    bool none() const { return around.empty(); }
+  };
+
+  void add(const RigidContact* body) { bodies_.push_back(body); }
+  /// A strand that stays so near to the head's position (m).
+  void include(double radius) { radius_ = std::max(radius_, radius); }
+
+  void look(double t, const RootMotion& head, Near& near) const {
+    if (bodies_.empty() || near.t == t) return;
+    near.t = t;
+    near.head = head.at(t).x;
+    bodies_around(bodies_, t, {near.head, radius_}, near.around);
+  }
+  /// Of these, those that reach a block of strands with roots there, seen from the head's
+  /// position, of such lengths (m).
+  template <class T>
+  static std::span<const NearBody> reached(Near& near, const Vec3<T>& roots,
+                                           const T& lengths) {
+    bodies_near<T>(near.around, roots, lengths, near.reach);
+    return near.reach;
+  }
+
+ private:
+  std::vector<const RigidContact*> bodies_;
+  double radius_ = 0;  // of the ball about the head's position, m
+};
+
+}  // namespace tress::models

@@ -1,0 +1,52 @@
+#pragma once
+
+namespace tress::models {
+
+/// What SteppingHead steps. A Model has
+///
+///     Real                                  // PackOf
+///     Strand, Element                       // Real only: what is known of them
+///     Clamp, Scratch(Model)
+///     elements(), unknowns()                // of a strand
+///     describe(strand, units, lane, Strand&, Element*, q, v)
+///     clamp(Strand, RootPose)
+///     renew(Element*, Clamp, q, v)          // reference frames, before a step; > 0 in
+///                                           // lanes with new ones, whose accelerations
+///                                           // before mean nothing then
+///     predict(Strand, RootPose, RootPose, h, q, v, q_bar)   // q + h v
+///     newton(Strand, Element*, Clamp, Weights, q, v, a, correction, Scratch&)
+///     again(the same)                       // with the matrix of the last newton()
+///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
+///     positions(Strand, Frame, q, use(i, Vec3<Real>))
+///     velocities(Strand, RootPose, q, v, use(i, Vec3<Real>))
+///     energies(Strand, Element*, RootPose, q, v)   // LaneEnergies
+///     mass(Strand, lane)
+///     iterates                              // whether it has methods beyond
+///                                           // semi_implicit_euler, and
+///     newton_part                           // of a strand's tolerance, Newton's
+///     coordinate_size(Strand, dq)           // over those of System::scale
+///     use_others                            // remedy for effects that it has not
+///     straight                              // whether elements are
+///     element_length(Strand)
+///     takes_bodies                          // whether it has these, too:
+///     root_at(Strand, Frame), length(Strand)   // from the head's position; of strands
+///     most_stretched                        // their length over that
+///     find_loads(Strand, bodies, RootPose, HeadUnits, h, q, v, Scratch&)  // for
+///     newton() and again(), the latter two at their states; bodies outlive them
+///
+/// and an Element has keep(lane, double*), recall(lane, const double*): `kept` numbers.
+///
+///     unit(HeadUnits, k)                    // of unknown k
+///
+/// all without units; poses are HeadUnits' multiples.
+template <class Model>
+concept SteppedModel = requires {
+  typename Model::Real;
+  typename Model::Strand;
+  typename Model::Element;
+  typename Model::Clamp;
+  typename Model::Scratch;
+  Model::iterates || Model::takes_bodies || Model::straight;
+};
+
+}  // namespace tress::models

@@ -1,0 +1,290 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <tuple>
+
+#include "contract/integrator.h"
+#include "integrators/catalogue.h"
+#include "integrators/tr_bdf2.h"
+#include "models/catalogue.h"
+#include "models/effects/gravity.h"
+#include "models/effects/linear_drag.h"
+#include "models/head/lane_method.h"
+#include "tests/models/head/mixed_hairs.h"
+
+/// Errors of heads whose strands choose their steps by a tolerance, against equal steps
+/// that are so short that their own errors do not count, and what both cost.
+namespace tress::test_controlled_errors {
+
+using namespace models;
+using namespace testing_support;
+
+/// Of an interval: equal steps of 0.2 ms, of rods 0.05 ms.
+int parts_for(const HeadMaker& maker) { return maker.make == der_head ? 800 : 200; }
+
+/// A hair alone.
+using Alone = std::function<std::unique_ptr<Head>(const HeadOptions&, const HeadPack&)>;
+
+/// Its motion at the ends of all intervals, each in so many calls.
+struct Course {
+  std::vector<Motion> at;
+  long steps = 0, iterations = 0;
+};
+Course course(Head& head, int calls) {
+  Course all;
+  const auto scratch = head.scratch();
+  for (int i = 0; i < intervals; ++i) {
+    for (int s = 0; s < calls; ++s) {
+      head.step(0, 1, (i + static_cast<double>(s) / calls) * interval, interval / calls,
+                *scratch);
+    }
+    all.at.push_back(motion_of(head, (i + 1) * interval));
+  }
+  EXPECT_TRUE(head.losses().empty());
+  all.steps = scratch->work.steps;
+  all.iterations = scratch->work.iterations + scratch->work.again_iterations;
+  return all;
+}
+double off(const Course& from, const Course& want, double length) {
+  double most = 0;
+  for (std::size_t i = 0; i < want.at.size(); ++i) {
+    most = std::max(most, off(from.at[i], want.at[i], 0, length));
+  }
+  return most;
+}
+
+/// Each of N steps leaves an estimated error of the threshold, share tolerance^power, at
+/// most. The motion makes so many times as much of one until the end, by what it makes of
+/// a change of the velocities after the first interval, so that a run may be wrong by
+/// their product.
+double grown(Head& equal, int parts, const Course& want, double length) {
+  advance(equal, 0, 1, parts);
+  auto kept = kept_of(equal);
+  const std::size_t n = equal.kept_of_state() / 2;
+  for (std::size_t i = 0; i < n; ++i) kept[0][n + i] *= 1 + 1e-6;
+  recall(equal, kept);
+  const double began = off(motion_of(equal, interval), want.at[0], 0, length);
+  double most = 1;
+  for (int i = 1; i < intervals; ++i) {
+    advance(equal, i, i + 1, parts);
+    const Motion now = motion_of(equal, (i + 1) * interval);
+    most =
+        std::max(most, off(now, want.at[static_cast<std::size_t>(i)], 0, length) / began);
+  }
+  return most;
+}
+
+struct Found {
+  double error = 0, bound = 0;
+};
+/// Of a tolerance, in `options` for equal steps.
+Found with_tolerance(const Alone& alone, HeadOptions options, const HeadPack& pack,
+                     double tolerance, const Course& want, double by_motion,
+                     double length) {
+  options.tolerance = tolerance;
+  const Course own = course(*alone(options, pack), 1);
+  return {off(own, want, length), static_cast<double>(own.steps) * by_motion *
+                                      lane_stages::tr_bdf2_estimate.threshold(tolerance)};
+}
+
+class ControlledErrors : public testing::TestWithParam<HeadMaker> {
+ protected:
+  static Alone alone(const Strand& strand) {
+    return [strand](const HeadOptions& options, const HeadPack& pack) {
+      auto made = GetParam().make(options, pack);
+      made->add(strand);
+      return made;
+    };
+  }
+};
+
+// In the limit of short steps errors fall as the threshold to the power 2/3, so as
+// tolerance^(1.25 2/3). Steps are a half of what the control asks for at least, which
+// changes errors of second order by 4 at most. The stretch of rods has waves that nothing
+// damps but steps longer than they are: as large as errors of 1e-4.
+TEST_P(ControlledErrors, AreWithinTheToleranceAndFallWithItForEachStrand) {
+  const int parts = parts_for(GetParam());
+  const bool stretches = GetParam().make == der_head;
+  const double finest = stretches ? 1e-3 : 1e-4;
+  double falls = 0;  // log10, the mean
+  for (std::size_t k = 0; k < mixed; ++k) {
+    SCOPED_TRACE(k);
+    const Strand strand = mixed_hair(k);
+    const Alone hair = alone(strand);
+    const HeadOptions equal = mixed_options(0);
+    const double length = strand.length();
+    const Course want = course(*hair(equal, wide), parts);
+    // By twice the step the error of second order is 4 times as large.
+    const double left = off(course(*hair(equal, wide), parts / 2), want, length) / 3,
+                 by_motion = grown(*hair(equal, wide), parts, want, length);
+    double before = 1, first = 0;
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+      const auto [error, bound] =
+          with_tolerance(hair, equal, wide, tolerance, want, by_motion, length);
+      EXPECT_LE(error, bound + left) << tolerance;
+      if (tolerance < finest) continue;
+      EXPECT_GT(error, 2 * left) << tolerance;  // or this says little
+      EXPECT_LT(error, before) << tolerance;
+      before = error;
+      if (first == 0) first = error;
+    }
+    falls += std::log10(first / before) / mixed;
+  }
+  EXPECT_GE(falls, 1.25 * 2 / 3 * std::log10(1e-2 / finest) - std::log10(4));
+}
+
+struct Other {
+  const char* name;
+  HeadOptions options = mixed_options(0);
+  HeadPack pack = wide;
+  double tolerance = 1e-3;
+};
+std::vector<Other> others(const HeadMaker& maker) {
+  std::vector<Other> all{
+      {.name = "nothing"},
+      {.name = "32 bits", .pack = {HeadNumber::float32, 8}, .tolerance = 1e-2}};
+  // Third derivatives jump at times that are no ends of intervals.
+  all.push_back({.name = "a head that starts and stops"});
+  all.back().options.motion.rotations = {{{0, 0.6, 0.8}, smooth_step(1, 0.05, 0.13)}};
+  if (maker.make == der_head) return all;
+  all.push_back({.name = "no twist"});
+  all.back().options.twist = false;
+  all.push_back({.name = "a body"});
+  HeadOptions& on_body = all.back().options;
+  on_body.effects = {std::make_shared<Body>(
+      Ellipsoid({0.1, 0.1, 0.1}), StrandPlace{{0, 0.08, -0.12}, {}},
+      BodyContact{.stiffness = 1, .damping = 0.1, .friction = 0.2, .offset = 4e-5})};
+  return all;
+}
+
+TEST_P(ControlledErrors, AreWithinTheToleranceWhateverElseThereIs) {
+  const int parts = parts_for(GetParam());
+  for (const Other& other : others(GetParam())) {
+    SCOPED_TRACE(other.name);
+    double seen = 0;  // of what else there is, over the error
+    for (const std::size_t k : {0, 4, 11}) {
+      SCOPED_TRACE(k);
+      const Strand strand = mixed_hair(k);
+      const double length = strand.length();
+      const Alone hair = alone(strand);
+      const Course want = course(*hair(other.options, wide), parts);
+      const auto [error, bound] =
+          with_tolerance(hair, other.options, other.pack, other.tolerance, want,
+                         grown(*hair(other.options, wide), parts, want, length), length);
+      EXPECT_LE(error, bound);
+      const Course without = course(*hair(mixed_options(0), wide), parts);
+      seen = std::max(seen, off(without, want, length) / error);
+    }
+    EXPECT_TRUE(seen == 0 || seen > 10) << seen;
+  }
+}
+
+/// By the integrator of this name: steps, and the motion at the end.
+std::pair<long, Motion> by_integrator(const char* model, const Strand& in_head) {
+  const HeadOptions o = mixed_options(1e-3);
+  Strand strand = in_head;
+  strand.root.rotations = o.motion.rotations;
+  strand.root.centre = o.motion.position;
+  const ModelEntry& entry = find_model(model);
+  Parameters parameters(entry.parameters, "test");
+  parameters.set("tangent", "exact");
+  if (model != std::string_view("der")) parameters.set("quadrature", "4");
+  const auto system =
+      entry.on_strand(strand, parameters,
+                      {std::make_shared<Gravity>(o.gravity),
+                       std::make_shared<LinearDrag>(o.drag, o.mass_damping)});
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  std::vector<double> q(n), v(n);
+  system->initial_state(q, v);
+  Options options;
+  options.tolerance = o.tolerance;
+  const auto method = integrators::make_integrator("tr_bdf2", *system, options);
+  EXPECT_EQ(method->start(0, q, v), Status::ok);
+  EXPECT_EQ(method->advance(intervals * interval), Status::ok) << method->failure();
+  Motion end;
+  end.x.resize(3 * (mixed_elements + 1));
+  end.u.resize(end.x.size());
+  system->material_points()->positions(method->time(), method->q(), end.x);
+  system->material_points()->velocities(method->time(), method->q(), method->v(), end.u);
+  return {method->stats().steps, end};
+}
+
+// The same estimate in the same norm against the same threshold: steps of a head are what
+// the control asks for, rounded down by 2 at most. A norm or a threshold that is another
+// by 8 would double or halve their number.
+TEST_P(ControlledErrors, AreThoseOfAStrandAloneInAboutAsManySteps) {
+  const char* const model = GetParam().make == helix_head   ? "super_helix"
+                            : GetParam().make == chain_head ? "articulated_chain"
+                                                            : "der";
+  long all = 0, all_alone = 0;
+  for (std::size_t k = 0; k < mixed; ++k) {
+    SCOPED_TRACE(k);
+    const Strand strand = mixed_hair(k);
+    const Course own = course(*alone(strand)(mixed_options(1e-3), wide), 1);
+    const auto [steps, end] = by_integrator(model, strand);
+    EXPECT_LE(off(own.at.back(), end, 0, strand.length()),
+              static_cast<double>(own.steps + steps) *
+                  lane_stages::tr_bdf2_estimate.threshold(1e-3));
+    all += own.steps;
+    all_alone += steps;
+  }
+  EXPECT_GE(2 * all, all_alone);
+  EXPECT_LE(all, 2 * all_alone);
+}
+
+// A step that suits the hair that moves most is too short for the others. Rods that move
+// alike would cost up to a fifth more: their waves of stretch count, which the steps of
+// hairs do not resolve.
+TEST_P(ControlledErrors, TakeNoMoreIterationsThanEqualStepsThatLeaveNoLess) {
+  std::vector<Strand> hairs;
+  hairs.reserve(mixed + 1);
+  for (std::size_t k = 0; k < mixed; ++k) hairs.push_back(mixed_hair(k));
+  if (GetParam().make == der_head) hairs.push_back(lively_hair());
+  std::vector<Course> want;
+  want.reserve(hairs.size());
+  for (const Strand& one : hairs) {
+    want.push_back(course(*alone(one)(mixed_options(0), wide), parts_for(GetParam())));
+  }
+  const auto run = [&](const HeadOptions& options, int calls) {
+    double error = 0;
+    long iterations = 0;
+    for (std::size_t k = 0; k < hairs.size(); ++k) {
+      const Course own = course(*alone(hairs[k])(options, wide), calls);
+      error = std::max(error, off(own, want[k], hairs[k].length()));
+      iterations += own.iterations;
+    }
+    return std::pair{error, iterations};
+  };
+  for (const double tolerance : {1e-2, 1e-3}) {
+    const auto [error, iterations] = run(mixed_options(tolerance), 1);
+    HeadOptions equal = mixed_options(0);
+    equal.newton_tolerance = Options{}.newton_tolerance;
+    auto [of_equal, needed] = run(equal, 2);
+    for (double calls = 2.5; of_equal > error; calls *= 1.25) {
+      std::tie(of_equal, needed) = run(equal, static_cast<int>(calls));
+    }
+    EXPECT_LE(iterations, needed) << tolerance;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ControlledErrors, testing::ValuesIn(controlled_heads),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+TEST(LaneEstimate, IsThatOfTheIntegratorsTable) {
+  const integrators::EsdirkTable& table = integrators::tr_bdf2_table();
+  const LaneEstimate& estimate = lane_stages::tr_bdf2_estimate;
+  for (std::size_t j = 0; j < 3; ++j) {
+    double drift = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      drift += (table.a[2][i] - table.embedded[i]) * table.a[i][j];
+    }
+    EXPECT_NEAR(estimate.rate[j], table.a[2][j] - table.embedded[j], 1e-16);
+    EXPECT_NEAR(estimate.drift[j], drift, 1e-16);
+    EXPECT_GT(std::abs(estimate.rate[j]), 0.1);
+  }
+  EXPECT_EQ(estimate.share, table.share);
+  EXPECT_EQ(estimate.power, table.power);
+  EXPECT_EQ(estimate.falls, 1 + std::min(table.order, table.embedded_order));
+}
+
+}  // namespace tress::test_controlled_errors
